@@ -1,0 +1,45 @@
+"""The square grid of traction elements; element centres at (i + 1/2) side / M (SPEC 1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """``M x M`` square elements on a square of edge ``side`` (m).
+
+    >>> Grid(side=1.0, M=4).centres
+    array([0.125, 0.375, 0.625, 0.875])
+    """
+
+    side: float
+    M: int
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.M, int | np.integer) and not isinstance(self.M, bool) and self.M >= 1):
+            raise InputError("grid", self.M, "a whole number of elements per side, at least 1")
+        if not (np.isfinite(self.side) and self.side > 0):
+            raise InputError("side", self.side, "a positive length in m")
+
+    @property
+    def spacing(self) -> float:
+        """Edge of one element (m)."""
+        return self.side / self.M
+
+    @property
+    def element_area(self) -> float:
+        """Area dA of one element (m^2)."""
+        return self.spacing**2
+
+    @property
+    def centres(self) -> Array:
+        """Element centres along one axis, shape ``(M,)`` (m)."""
+        return (np.arange(self.M) + 0.5) * self.spacing
