@@ -1,0 +1,248 @@
+"""One verification case: what is claimed, how it is judged, and the verdict. Everything here fails closed.
+
+A case passes only if its function returned, its numbers are finite, its reference is at least as certain as
+its tolerance, and its error is within that tolerance. Whatever else happens is named: `fail`, `error` (could not
+be judged) or `unavailable` (an optional dependency is missing), and none of these is a pass.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+
+class Unavailable(Exception):
+    """Raised by a case whose optional dependency is missing; the message says which."""
+
+
+class Metric(StrEnum):
+    """How a case's error is formed from its value; a closed list."""
+
+    RELATIVE = "relative"  # |value - reference| / |reference|
+    ABSOLUTE = "absolute"  # |value - reference|
+    AT_MOST = "at_most"  # the value is itself an error, and has no reference
+    AT_LEAST = "at_least"  # the value is a figure of merit
+    EQUAL = "equal"  # exact
+
+
+class Tier(StrEnum):
+    """`full` runs the quick cases as well."""
+
+    QUICK = "quick"
+    FULL = "full"
+
+
+class Status(StrEnum):
+    """The verdict on a case; only PASS is a pass."""
+
+    PASS = "pass"
+    FAIL = "fail"
+    ERROR = "error"
+    UNAVAILABLE = "unavailable"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a case's function returns.
+
+    `value`, `reference` and `reference_uncertainty` share one `unit`. `data` maps labels to numbers, strings
+    or (nested) series, for figures; `note` is a remark for the reader.
+    """
+
+    value: float
+    reference: float | None = None
+    reference_uncertainty: float = 0.0
+    unit: str = ""
+    data: Mapping[str, object] = field(default_factory=dict)
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """A judged case, ready for JSON: strings, finite numbers, lists and None only (SPEC 3)."""
+
+    id: str
+    title: str
+    claim: str
+    source: str
+    metric: str
+    value: float | None
+    reference: float | None
+    reference_uncertainty: float | None
+    error: float | None
+    tolerance: float
+    tolerance_reason: str
+    status: str
+    seconds: float
+    unit: str
+    note: str
+    tier: str
+    tags: list[str]
+    data: dict[str, object]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A declared check. `function` takes nothing and returns a `Measured`; `tolerance_reason` is never empty.
+
+    Raises ValueError for an unknown metric or tier, an empty text, or a tolerance no error could be held to.
+    """
+
+    id: str
+    title: str
+    claim: str
+    source: str
+    metric: Metric
+    tolerance: float
+    tolerance_reason: str
+    function: Callable[[], Measured]
+    tier: Tier = Tier.QUICK
+    tags: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "metric", Metric(self.metric))
+        object.__setattr__(self, "tier", Tier(self.tier))
+        for name in ("title", "claim", "source", "tolerance_reason"):
+            if not getattr(self, name).strip():
+                raise ValueError(f"case {self.id!r}: {name} is empty")
+        subject, _, slug = self.id.partition("/")
+        if not subject or not slug or any(c.isspace() for c in self.id):
+            raise ValueError(f"case {self.id!r}: an id is 'subject/slug', without blanks")
+        if not math.isfinite(self.tolerance) or (self.tolerance < 0 and self.metric is not Metric.AT_LEAST):
+            raise ValueError(f"case {self.id!r}: tolerance {self.tolerance!r} is not finite and >= 0")
+        if self.metric is Metric.EQUAL and self.tolerance != 0:
+            raise ValueError(f"case {self.id!r}: 'equal' is exact; its tolerance is 0")
+
+    @property
+    def module(self) -> str:
+        """Dotted name of the module that declares the case."""
+        return self.function.__module__
+
+    @property
+    def line(self) -> int:
+        """Line of the function in its module; orders the cases of one module."""
+        return self.function.__code__.co_firstlineno
+
+    def run(self) -> Result:
+        """Run the function and judge what it returned; never raises for what the function does."""
+        start = time.perf_counter()
+        measured, error, status, note = None, None, Status.ERROR, ""
+        try:
+            measured = self.function()
+            data = jsonable(dict(measured.data))
+            error = error_of(self.metric, self.tolerance, measured)
+        except Unavailable as missing:
+            status, note = Status.UNAVAILABLE, str(missing) or "an optional dependency is missing"
+        # The one place that takes any failure: a case that breaks, or asks the interpreter to exit, is a verdict.
+        except (Exception, SystemExit) as failure:
+            note = f"{type(failure).__name__}: {failure} [{_place(failure)}]"
+        if measured is None or error is None:
+            return self.result(status, note, time.perf_counter() - start)
+        within = error >= self.tolerance if self.metric is Metric.AT_LEAST else error <= self.tolerance
+        verdict = Status.PASS if within else Status.FAIL
+        return self.result(verdict, measured.note, time.perf_counter() - start, measured, error, data)
+
+    def result(
+        self,
+        status: Status,
+        note: str,
+        seconds: float,
+        measured: Measured | None = None,
+        error: float | None = None,
+        data: object = None,
+    ) -> Result:
+        """The case with a verdict; the numbers stay None where nothing was measured."""
+        reference = None if measured is None or measured.reference is None else float(measured.reference)
+        return Result(
+            id=self.id,
+            title=self.title,
+            claim=self.claim,
+            source=self.source,
+            metric=self.metric.value,
+            value=None if measured is None else float(measured.value),
+            reference=reference,
+            reference_uncertainty=None if measured is None else float(measured.reference_uncertainty),
+            error=error,
+            tolerance=float(self.tolerance),
+            tolerance_reason=self.tolerance_reason,
+            status=status.value,
+            seconds=round(seconds, 3),
+            unit="" if measured is None else measured.unit,
+            note=note,
+            tier=self.tier.value,
+            tags=list(self.tags),
+            data=data if isinstance(data, dict) else {},
+        )
+
+
+def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
+    """The error of a measurement under a metric.
+
+    Raises ValueError when the numbers cannot be judged: not finite, no reference where one is needed (or one
+    where it would be ignored), a relative error against zero, or a reference less certain than the tolerance.
+
+    >>> error_of(Metric.RELATIVE, 0.1, Measured(value=1.02, reference=1.0))
+    0.020000000000000018
+    """
+    value, reference = _finite("value", measured.value), measured.reference
+    uncertainty = _finite("reference_uncertainty", measured.reference_uncertainty)
+    if uncertainty < 0:
+        raise ValueError(f"reference_uncertainty {uncertainty!r} is negative")
+    if metric is Metric.AT_LEAST:
+        return value
+    if metric is Metric.AT_MOST:
+        if reference is not None:
+            raise ValueError("'at_most' judges the value itself; a reference would be ignored")
+        if value < 0:
+            raise ValueError(f"value {value!r} is negative, so it is no error measure")
+        return value
+    if reference is None:
+        raise ValueError(f"metric {metric.value!r} needs a reference")
+    reference = _finite("reference", reference)
+    scale = abs(reference) if metric is Metric.RELATIVE else 1.0
+    if scale == 0:
+        raise ValueError("a relative error against a reference of zero")
+    if uncertainty / scale > tolerance:
+        raise ValueError(f"the reference is uncertain by {uncertainty / scale:.3g}, more than the tolerance")
+    return _finite("error", abs(value - reference) / scale)
+
+
+def jsonable(item: object) -> object:
+    """`item` as JSON can hold it: arrays to lists, 9 digits (they feed figures), NaN and inf to None.
+
+    Raises TypeError for anything that is not a number, a text, a mapping or a series of such.
+
+    >>> jsonable({"x": np.array([1 / 3, np.nan])})
+    {'x': [0.333333333, None]}
+    """
+    if item is None or isinstance(item, bool | str):
+        return item
+    if isinstance(item, np.ndarray | np.generic):
+        return jsonable(item.tolist())
+    if isinstance(item, int):
+        return item
+    if isinstance(item, float):
+        return float(f"{item:.9g}") if math.isfinite(item) else None
+    if isinstance(item, Mapping):
+        return {str(key): jsonable(value) for key, value in item.items()}
+    if isinstance(item, list | tuple):
+        return [jsonable(value) for value in item]
+    raise TypeError(f"data holds a {type(item).__name__}, which JSON cannot")
+
+
+def _finite(name: str, number: float) -> float:
+    if isinstance(number, str) or not math.isfinite(number):
+        raise ValueError(f"{name} {number!r} is not a finite number")
+    return float(number)
+
+
+def _place(failure: BaseException) -> str:
+    """File name and line where it was raised; no directories, so results do not depend on the machine."""
+    frames = traceback.extract_tb(failure.__traceback__)
+    return f"{frames[-1].filename.rsplit('/', 1)[-1]}:{frames[-1].lineno}" if frames else "no traceback"
