@@ -1,0 +1,23 @@
+"""Surfaces: shapes, Gaussian roughness (Eq. 9), measured heights, arrays and their sums."""
+
+from refimpl.surfaces.arrays import ArraySurface
+from refimpl.surfaces.base import Surface, SurfaceSum, SurfaceWarning, as_surface
+from refimpl.surfaces.gaussian import GaussianRoughness
+from refimpl.surfaces.measured import MeasuredSurface
+from refimpl.surfaces.shapes import Flat, Sphere
+from refimpl.surfaces.tables import surface_from_dict, surface_from_tables, surface_to_tables
+
+__all__ = [
+    "ArraySurface",
+    "Flat",
+    "GaussianRoughness",
+    "MeasuredSurface",
+    "Sphere",
+    "Surface",
+    "SurfaceSum",
+    "SurfaceWarning",
+    "as_surface",
+    "surface_from_dict",
+    "surface_from_tables",
+    "surface_to_tables",
+]

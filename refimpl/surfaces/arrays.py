@@ -1,0 +1,97 @@
+"""Arrays of heights over the scene's square."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.errors import InputError
+from refimpl.grid import Array, Grid
+from refimpl.surfaces.base import Surface
+from refimpl.surfaces.bicubic import resample, resample_periodic
+
+_ALLOWED = "a 2-D array of finite heights in m over the scene's square, indexed [i, j] along x, y"
+
+
+@dataclass(frozen=True, eq=False)
+class ArraySurface(Surface):
+    """Heights (m) at the centres of ``shape[0] x shape[1]`` equal cells of the scene's square.
+
+    Used as they are on a grid of the same shape; otherwise resampled bicubically to the element centres
+    (sampled, not averaged). Within the outermost half cell the spline's end piece goes on. An offset that
+    leaves the square is refused unless the scene is periodic.
+    """
+
+    data: NDArray[np.float64]
+    kind: ClassVar[str] = "array"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", _checked(self.data))
+
+    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
+        square = (grid.M, grid.M)
+        if self.data.shape == square and offset == (0.0, 0.0):
+            return self.data.copy()
+        if min(self.data.shape) < 4:
+            raise InputError("heights", f"array of shape {self.data.shape}", f"shape {square}, or >= 4 points an axis")
+        if not periodic:
+            _refuse_leaving(grid, offset)
+        (x, y) = (
+            (grid.centres + o) * (n / grid.side) - 0.5 for o, n in zip(offset, self.data.shape, strict=True)
+        )
+        return resample_periodic(self.data, x, y) if periodic else resample(self.data, x, y)
+
+    def describe(self, grid: Grid) -> tuple[str, ...]:
+        if self.data.shape == (grid.M, grid.M):
+            return (f"the array of {_by(self.data.shape)} heights is used as it is",)
+        said = f"the array of {_by(self.data.shape)} heights is resampled bicubically to {grid.M} x {grid.M} elements"
+        return (said, *self.cautions(grid))
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        if grid.M <= min(self.data.shape):
+            return ()
+        return (
+            f"the grid of {grid.M} x {grid.M} elements is finer than the data, {_by(self.data.shape)} heights: "
+            "what lies between them is interpolated, not measured",
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        raise InputError(
+            "surface", f"array of shape {self.data.shape}", 'a surface with a TOML form: save it as .npy, use kind = "measured"'
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ArraySurface) and np.array_equal(self.data, other.data)
+
+    def __hash__(self) -> int:
+        return hash((self.data.shape, float(self.data.sum())))
+
+
+def _checked(data: NDArray[Any]) -> Array:
+    if not isinstance(data, np.ndarray) or data.ndim != 2 or data.size == 0:
+        raise InputError("heights", getattr(data, "shape", data), _ALLOWED)
+    if data.dtype.kind not in "fiu":
+        raise InputError("heights", f"array of {data.dtype}", _ALLOWED)
+    heights = np.array(data, dtype=np.float64)
+    if isinstance(data, np.ma.MaskedArray):
+        heights[np.ma.getmaskarray(data)] = np.nan
+    bad = np.argwhere(~np.isfinite(heights))
+    if len(bad):
+        raise InputError(
+            "heights", f"{len(bad)} of {heights.size} not finite, the first at {tuple(map(int, bad[0]))}", _ALLOWED
+        )
+    heights.setflags(write=False)
+    return heights
+
+
+def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:
+    room = grid.spacing / 2.0  # the outermost element centres stand this far inside the square
+    if max(map(abs, offset)) > room * (1.0 + 1e-9):  # 1e-9: far above the rounding of an offset of just h / 2
+        raise InputError("offset", offset, f"at most {room:.6g} m either way: the array ends with the scene's square")
+
+
+def _by(shape: tuple[int, ...]) -> str:
+    return " x ".join(map(str, shape))

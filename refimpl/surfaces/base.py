@@ -1,0 +1,132 @@
+"""What a surface is: heights at the element centres of any grid, and sums of such surfaces."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.errors import InputError
+from refimpl.grid import Array, Grid
+
+
+class SurfaceWarning(UserWarning):
+    """Heights were delivered, but a user should know how: resampled finer than measured, points filled in."""
+
+
+class Surface(ABC):
+    """The shape of one body's surface: heights in m, positive upwards (SPEC 1).
+
+    Immutable. Surfaces and arrays of heights add up: ``Sphere(0.14) + GaussianRoughness(...) + array``.
+    """
+
+    kind: ClassVar[str]
+    __array_ufunc__ = None  # so that `array + surface` asks the surface, not each number of the array
+
+    @abstractmethod
+    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array: ...
+
+    def heights(
+        self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0), *, periodic: bool = False
+    ) -> Array:
+        """Heights (m, positive upwards) at ``(x_i + offset_x, y_j + offset_y)``, shape ``(M, M)``.
+
+        ``x_i`` are the element centres ``(i + 1/2) side / M``; ``offset`` in m. ``periodic=True`` asks for
+        heights that repeat with the period ``side`` along both axes. Raises InputError where the surface
+        cannot be had there; warns (SurfaceWarning) of everything in ``cautions(grid)``.
+        """
+        ox, oy = offset
+        if not (math.isfinite(ox) and math.isfinite(oy)):
+            raise InputError("offset", offset, "two finite lengths in m")
+        z = self._sample(grid, (float(ox), float(oy)), periodic)
+        for caution in self.cautions(grid):
+            warnings.warn(caution, SurfaceWarning, stacklevel=2)
+        return z
+
+    def describe(self, grid: Grid) -> tuple[str, ...]:
+        """What was read, cut, levelled, resampled or normalised for this grid, one sentence each."""
+        return self.cautions(grid)
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        """The part of ``describe`` that a user should be warned of."""
+        return ()
+
+    @property
+    def parts(self) -> tuple[Surface, ...]:
+        """The surfaces that add up to this one."""
+        return (self,)
+
+    def __add__(self, other: Surface | NDArray[Any]) -> SurfaceSum:
+        return SurfaceSum((*self.parts, *as_surface(other).parts))
+
+    def __radd__(self, other: NDArray[Any]) -> SurfaceSum:
+        return SurfaceSum((*as_surface(other).parts, *self.parts))
+
+    def to_dict(self) -> dict[str, Any]:
+        """A plain table for TOML: ``kind`` and every parameter that is set."""
+        values = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]  # dataclasses all
+        return {"kind": self.kind, **{name: v for name, v in values.items() if v is not None}}
+
+    @classmethod
+    def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
+        """The surface that ``table`` (without its ``kind``) holds; ``folder`` is where relative paths start."""
+        return cls(**table)
+
+
+@dataclass(frozen=True)
+class SurfaceSum(Surface):
+    """The sum of surfaces' heights; sums of sums are one flat sum."""
+
+    terms: tuple[Surface, ...]
+    kind: ClassVar[str] = "sum"
+
+    @property
+    def parts(self) -> tuple[Surface, ...]:
+        return self.terms
+
+    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
+        z = np.zeros((grid.M, grid.M))
+        for term in self.terms:
+            z += term._sample(grid, offset, periodic)
+        return z
+
+    def describe(self, grid: Grid) -> tuple[str, ...]:
+        return tuple(line for term in self.terms for line in term.describe(grid))
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        return tuple(line for term in self.terms for line in term.cautions(grid))
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"kind": self.kind, "terms": [term.to_dict() for term in self.terms]}
+
+
+def as_surface(value: Surface | NDArray[Any]) -> Surface:
+    """``value`` if it is a surface, an ``ArraySurface`` of it if it is an array; else InputError."""
+    from refimpl.surfaces.arrays import ArraySurface  # here: arrays are surfaces, and build on this module
+
+    if isinstance(value, Surface):
+        return value
+    if isinstance(value, np.ndarray):
+        return ArraySurface(value)
+    raise InputError("surface", value, "a surface, a sum of surfaces or a 2-D array of heights in m")
+
+
+def finite(field: str, value: object, allowed: str) -> float:
+    """``value`` as a float if it is a finite real number (no text, no truth value); else InputError."""
+    number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    if not number or not math.isfinite(value):  # type: ignore[arg-type]  # `number` narrows it
+        raise InputError(field, value, allowed)
+    return float(value)  # type: ignore[arg-type]  # as above
+
+
+def positive(field: str, value: object, allowed: str) -> float:
+    """``value`` as a float if it is a finite number above zero; else InputError."""
+    if finite(field, value, allowed) <= 0:
+        raise InputError(field, value, allowed)
+    return float(value)  # type: ignore[arg-type]  # `finite` has seen it
