@@ -1,0 +1,78 @@
+"""Elastic materials and what a pair of them contributes to the influence coefficients (SPEC 1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from refimpl.errors import InputError
+
+
+@dataclass(frozen=True)
+class Material:
+    """A linear elastic, isotropic material: Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``.
+
+    Raises `InputError` unless ``E`` is positive and finite and ``-1 < nu <= 0.5``.
+
+    >>> round(Material(E=200e9, nu=0.3).plane_strain_modulus / 1e9, 3)
+    219.78
+    """
+
+    E: float
+    nu: float
+
+    def __post_init__(self) -> None:
+        if not (_is_number(self.E) and math.isfinite(self.E) and self.E > 0):
+            raise InputError("E", self.E, "a positive, finite Young's modulus in Pa")
+        if not (_is_number(self.nu) and -1 < self.nu <= 0.5):
+            raise InputError("nu", self.nu, "a Poisson's ratio in (-1, 0.5]")
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        """``E / (1 - nu^2)`` (Pa)."""
+        return self.E / (1 - self.nu**2)
+
+    @property
+    def normal_compliance(self) -> float:
+        """Factor of ``I[1/rho]``: normal displacement per unit normal pressure (1/Pa), Boussinesq."""
+        return (1 - self.nu**2) / (math.pi * self.E)
+
+    @property
+    def shear_compliance(self) -> float:
+        """Factor of ``I[s/rho^2]``: normal displacement per unit tangential traction (1/Pa), Cerruti."""
+        return (1 + self.nu) * (1 - 2 * self.nu) / (2 * math.pi * self.E)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The two materials of a friction pair and their combined compliances.
+
+    Normal compliances add. Shear compliances subtract, lower minus upper, because the two bodies
+    feel opposite tractions: identical materials do not couple.
+
+    >>> steel = Material(E=200e9, nu=0.3)
+    >>> Pair(lower=steel, upper=steel).shear_compliance
+    0.0
+    """
+
+    lower: Material
+    upper: Material
+
+    @property
+    def normal_compliance(self) -> float:
+        """Factor of ``I[1/rho]`` for the approach of both surfaces, ``1 / (pi E*)`` (1/Pa)."""
+        return self.lower.normal_compliance + self.upper.normal_compliance
+
+    @property
+    def shear_compliance(self) -> float:
+        """Factor of ``I[s/rho^2]`` for the approach of both surfaces, lower minus upper (1/Pa)."""
+        return self.lower.shear_compliance - self.upper.shear_compliance
+
+    @property
+    def reduced_modulus(self) -> float:
+        """``E* = 1 / sum((1 - nu^2) / E)`` (Pa)."""
+        return 1 / (1 / self.lower.plane_strain_modulus + 1 / self.upper.plane_strain_modulus)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

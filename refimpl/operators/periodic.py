@@ -1,0 +1,68 @@
+"""Doubly periodic influence by the half-space's exact Fourier symbols.
+
+``I[1/rho] <-> 2 pi / q`` and ``I[s/rho^2] <-> -2 pi i q_s / q^2`` (the latter is the gradient of
+``ln rho <-> -2 pi / q^2``). The mean pressure displaces nothing: the approach counts from the mean
+planes. Fields are the band-limited interpolants of the element values, as in periodic peers.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+import scipy.fft as sfft
+
+from refimpl.grid import Array, Grid
+from refimpl.operators.fft import Complex, Counter
+from refimpl.operators.window import Window
+
+
+class PeriodicInfluence:
+    """Influence convolutions on the periodic square, shapes ``(M, M)``."""
+
+    def __init__(self, grid: Grid, direction: float, *, counter: Counter | None = None) -> None:
+        self.grid = grid
+        self.direction = direction
+        self.window = Window.full(grid.M)
+        self.counter = counter if counter is not None else Counter()
+
+    def normal(self, pressure: Array) -> Array:
+        """``I[1/rho]`` applied to a pressure."""
+        self.counter.add("normal", self.grid.M**2)
+        return self._filter(pressure, self._normal_symbol)
+
+    def shear(self, traction: Array) -> Array:
+        """``I[s/rho^2]`` applied to a traction along the sliding direction."""
+        self.counter.add("shear", self.grid.M**2)
+        return self._filter(traction, self._tangential_symbol(self.direction))
+
+    def shear_across(self, traction: Array) -> Array:
+        """``I[t/rho^2]`` applied to a traction across the sliding direction."""
+        self.counter.add("shear", self.grid.M**2)
+        return self._filter(traction, self._tangential_symbol(self.direction + math.pi / 2))
+
+    @cached_property
+    def _wavevectors(self) -> tuple[Array, Array, Array]:
+        """``q_x`` (column), ``q_y`` (row) and ``q^2`` with its zero replaced by infinity (1/m)."""
+        M, spacing = self.grid.M, self.grid.spacing
+        q_x = 2 * np.pi * sfft.fftfreq(M, spacing)[:, None]
+        q_y = 2 * np.pi * sfft.rfftfreq(M, spacing)[None, :]
+        squared = q_x**2 + q_y**2
+        squared[0, 0] = np.inf
+        return q_x, q_y, squared
+
+    @cached_property
+    def _normal_symbol(self) -> Array:
+        return 2 * np.pi / np.sqrt(self._wavevectors[2])
+
+    def _tangential_symbol(self, angle: float) -> Complex:
+        q_x, q_y, squared = self._wavevectors
+        if self.grid.M % 2 == 0:  # a real field has no sine at the Nyquist frequency
+            half = self.grid.M // 2
+            q_x, q_y = q_x.copy(), q_y.copy()
+            q_x[half], q_y[0, half] = 0.0, 0.0
+        return -2j * np.pi * (math.cos(angle) * q_x + math.sin(angle) * q_y) / squared
+
+    def _filter(self, source: Array, symbol: Array | Complex) -> Array:
+        return sfft.irfft2(sfft.rfft2(source) * symbol, s=source.shape)

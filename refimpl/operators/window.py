@@ -1,0 +1,58 @@
+"""A rectangle of elements: the part of the grid that a convolution works on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.grid import Array
+
+
+@dataclass(frozen=True)
+class Window:
+    """Elements ``[i0, i1) x [j0, j1)`` of a grid.
+
+    >>> Window(2, 5, 0, 4).shape
+    (3, 4)
+    """
+
+    i0: int
+    i1: int
+    j0: int
+    j1: int
+
+    @classmethod
+    def full(cls, M: int) -> Window:
+        """The whole ``M x M`` grid."""
+        return cls(0, M, 0, M)
+
+    @classmethod
+    def around(cls, where: NDArray[np.bool_], margin: int) -> Window:
+        """The bounding box of the true elements, widened by ``margin`` within the grid."""
+        rows, columns = np.flatnonzero(where.any(axis=1)), np.flatnonzero(where.any(axis=0))
+        if not rows.size:
+            return cls.full(len(where))
+        return cls(
+            max(0, int(rows[0]) - margin),
+            min(where.shape[0], int(rows[-1]) + 1 + margin),
+            max(0, int(columns[0]) - margin),
+            min(where.shape[1], int(columns[-1]) + 1 + margin),
+        )
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of elements along x and y."""
+        return self.i1 - self.i0, self.j1 - self.j0
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """Index of the window in an array of the grid's shape."""
+        return slice(self.i0, self.i1), slice(self.j0, self.j1)
+
+    def spread(self, values: Array, M: int) -> Array:
+        """``(M, M)`` array with the window's values, zero elsewhere."""
+        full = np.zeros((M, M), dtype=values.dtype)
+        full[self.slices] = values
+        return full

@@ -1,0 +1,130 @@
+"""The scene: two bodies, their friction, the load and the frame (SPEC 1 and 2)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from refimpl.errors import InputError
+from refimpl.grid import Array, Grid
+from refimpl.materials import Material, Pair
+from refimpl.surfaces import Surface, as_surface
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Local friction ``r = tau + beta f`` on contact, Eq. (1): ``tau`` in Pa, ``beta`` dimensionless."""
+
+    tau: float = 0.0
+    beta: float = 0.0
+
+    def __post_init__(self) -> None:
+        _require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
+        _require_number("friction.beta", self.beta, "a finite number, not negative", at_least=0)
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether no shear acts at all."""
+        return self.tau == 0 and self.beta == 0
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A half-space of one material with a rough surface (a `Surface`, an array of heights, or a sum)."""
+
+    material: Material
+    surface: Surface
+
+    def __init__(self, material: Material, surface: Any) -> None:
+        if not isinstance(material, Material):
+            raise InputError("material", material, "a Material")
+        object.__setattr__(self, "material", material)
+        object.__setattr__(self, "surface", as_surface(surface))
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Two rough half-spaces sliding under a normal load.
+
+    Parameters
+    ----------
+    upper, lower : the two bodies; the upper one slides along ``(cos phi, sin phi)``
+    friction : local friction law, Eq. (1)
+    load : normal load P (N)
+    side : edge of the square domain (m)
+    sliding_direction : phi (rad)
+    sliding_offset : how far the upper body has slid (m); the lower surface is sampled at x + offset
+    periodic : the doubly periodic problem instead of a half-space that is free outside the domain
+
+    Raises `InputError` naming the field.
+    """
+
+    upper: Body
+    lower: Body
+    friction: Friction
+    load: float
+    side: float
+    sliding_direction: float = 0.0
+    sliding_offset: float = 0.0
+    periodic: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("upper", "lower"):
+            if not isinstance(getattr(self, name), Body):
+                raise InputError(name, getattr(self, name), "a Body")
+        if not isinstance(self.friction, Friction):
+            raise InputError("friction", self.friction, "a Friction")
+        _require_number("load", self.load, "a positive normal load in N", above=0)
+        _require_number("side", self.side, "a positive length in m", above=0)
+        _require_number("sliding_direction", self.sliding_direction, "a finite angle in rad")
+        _require_number("sliding_offset", self.sliding_offset, "a finite length in m")
+        if not isinstance(self.periodic, bool):
+            raise InputError("periodic", self.periodic, "true or false")
+
+    @property
+    def materials(self) -> Pair:
+        """The two materials with their combined compliances."""
+        return Pair(lower=self.lower.material, upper=self.upper.material)
+
+    def heights(self, grid: Grid) -> tuple[Array, Array]:
+        """Heights ``(z_lower, z_upper)`` at the element centres, each about its own mid-height (m).
+
+        Mid-heights are taken off because only the gap enters: heights may come with any datum.
+
+        Raises `InputError` when a surface's peak-to-valley exceeds the side, which means a wrong unit.
+        """
+        slide = (
+            self.sliding_offset * math.cos(self.sliding_direction),
+            self.sliding_offset * math.sin(self.sliding_direction),
+        )
+        lower = self.lower.surface.heights(grid, slide, periodic=self.periodic)
+        upper = self.upper.surface.heights(grid, periodic=self.periodic)
+        return _centred("lower", lower, grid), _centred("upper", upper, grid)
+
+
+def _centred(name: str, heights: Array, grid: Grid) -> Array:
+    if not np.all(np.isfinite(heights)):
+        raise InputError(f"{name}.surface", "NaN or infinite heights", "finite heights in m")
+    low, high = float(heights.min()), float(heights.max())
+    if high - low > grid.side:
+        raise InputError(
+            f"{name}.surface",
+            f"peak-to-valley {high - low:.3g} m",
+            f"heights in m whose peak-to-valley is at most the side, {grid.side:.3g} m (wrong unit?)",
+        )
+    return heights - (low + 0.5 * (high - low))
+
+
+def _require_number(
+    name: str, value: object, allowed: str, *, above: float | None = None, at_least: float | None = None
+) -> None:
+    ok = isinstance(value, int | float | np.floating | np.integer) and not isinstance(value, bool)
+    if ok:
+        number = float(value)  # type: ignore[arg-type]  # narrowed by ok
+        ok = math.isfinite(number)
+        ok = ok and (above is None or number > above) and (at_least is None or number >= at_least)
+    if not ok:
+        raise InputError(name, value, allowed)

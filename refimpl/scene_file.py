@@ -1,0 +1,128 @@
+"""Scenes as TOML: reading with every field checked, writing, and the scenes that ship with the package."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from refimpl.errors import InputError
+from refimpl.materials import Material
+from refimpl.scene import Body, Friction, Scene
+from refimpl.surfaces import surface_from_dict
+from refimpl.surfaces.base import SurfaceSum
+
+_MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
+_SCENE_KEYS = ("load", "side", "sliding_direction", "sliding_offset", "periodic", "upper", "lower", "friction")
+
+
+def read_scene(path: str | Path) -> Scene:
+    """The scene of a TOML file (SPEC 3), or a shipped scene by its name (see `shipped_scenes`).
+
+    Paths of measured surfaces are relative to the file. Raises `InputError` naming the field.
+    """
+    path = Path(path)
+    if not path.is_file():
+        if str(path) in shipped_scenes():
+            path = Path(str(resources.files("refimpl").joinpath("data", "scenes", f"{path}.toml")))
+        else:
+            raise InputError("scene", str(path), f"a TOML file, or one of {', '.join(shipped_scenes())}")
+    if path.stat().st_size > _MAX_BYTES:
+        raise InputError("scene", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise InputError("scene", str(path), f"valid TOML ({error})") from error
+    return scene_from_dict(table, path.parent)
+
+
+def shipped_scenes() -> tuple[str, ...]:
+    """Names of the scenes that ship as package data.
+
+    >>> "table1-smooth" in shipped_scenes()
+    True
+    """
+    folder = resources.files("refimpl").joinpath("data", "scenes")
+    return tuple(sorted(item.name[: -len(".toml")] for item in folder.iterdir() if item.name.endswith(".toml")))
+
+
+def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
+    """The scene of a parsed TOML table; unknown and missing keys raise `InputError`."""
+    _refuse_unknown("scene", table, _SCENE_KEYS)
+    friction = _table(table, "friction", {})
+    _refuse_unknown("friction", friction, ("tau", "beta"))
+    optional = {key: table[key] for key in ("sliding_direction", "sliding_offset", "periodic") if key in table}
+    return Scene(
+        upper=_body(table, "upper", folder),
+        lower=_body(table, "lower", folder),
+        friction=Friction(**friction),
+        load=_required(table, "load", "a normal load in N"),
+        side=_required(table, "side", "a length in m"),
+        **optional,
+    )
+
+
+def scene_to_dict(scene: Scene) -> dict[str, Any]:
+    """The scene as a plain table; raises `InputError` for surfaces that are bare arrays."""
+    return {
+        "load": scene.load,
+        "side": scene.side,
+        "sliding_direction": scene.sliding_direction,
+        "sliding_offset": scene.sliding_offset,
+        "periodic": scene.periodic,
+        "friction": {"tau": scene.friction.tau, "beta": scene.friction.beta},
+        "upper": _body_to_dict(scene.upper),
+        "lower": _body_to_dict(scene.lower),
+    }
+
+
+def scene_to_toml(scene: Scene) -> str:
+    """The scene as TOML text that `read_scene` reads back."""
+    return tomli_w.dumps(scene_to_dict(scene))
+
+
+def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
+    body = _table(table, name, None)
+    _refuse_unknown(name, body, ("material", "surface"))
+    material = _table(body, "material", None, prefix=f"{name}.")
+    _refuse_unknown(f"{name}.material", material, ("E", "nu"))
+    parts = body.get("surface", [{"kind": "flat"}])
+    if isinstance(parts, Mapping):
+        parts = [parts]
+    if not isinstance(parts, list) or not parts or not all(isinstance(part, Mapping) for part in parts):
+        raise InputError(f"{name}.surface", parts, "one or more [[...surface]] tables")
+    surfaces = [surface_from_dict(dict(part), folder) for part in parts]
+    modulus = _required(material, "E", "Young's modulus in Pa", prefix=f"{name}.material.")
+    ratio = _required(material, "nu", "Poisson's ratio", prefix=f"{name}.material.")
+    return Body(Material(E=modulus, nu=ratio), sum(surfaces[1:], start=surfaces[0]))
+
+
+def _body_to_dict(body: Body) -> dict[str, Any]:
+    parts = body.surface.parts if isinstance(body.surface, SurfaceSum) else (body.surface,)
+    return {
+        "material": {"E": body.material.E, "nu": body.material.nu},
+        "surface": [part.to_dict() for part in parts],
+    }
+
+
+def _table(table: Mapping[str, Any], name: str, default: Any, prefix: str = "") -> Mapping[str, Any]:
+    value = table.get(name, default)
+    if not isinstance(value, Mapping):
+        raise InputError(f"{prefix}{name}", value, f"a [{prefix}{name}] table")
+    return value
+
+
+def _required(table: Mapping[str, Any], name: str, allowed: str, prefix: str = "") -> Any:
+    if name not in table:
+        raise InputError(f"{prefix}{name}", None, allowed)
+    return table[name]
+
+
+def _refuse_unknown(name: str, table: Mapping[str, Any], known: tuple[str, ...]) -> None:
+    for key in table:
+        if key not in known:
+            raise InputError(f"{name}.{key}", table[key], f"no such key; known are {', '.join(known)}")

@@ -1,0 +1,78 @@
+"""Slopes of the deformed common surface along and across the sliding direction (SPEC 1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from refimpl.grid import Array
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Tangents of the slope angles ``theta_x`` (along sliding, positive uphill) and ``theta_y``.
+
+    The direction of ``theta_y`` is 90 degrees anticlockwise of the sliding direction. Arrays share
+    one shape; cosines and sines follow from the tangents without trigonometry.
+    """
+
+    tan_x: Array
+    tan_y: Array
+
+    @classmethod
+    def flat(cls, shape: tuple[int, ...]) -> Slopes:
+        """Zero slopes: every cosine is 1 and every sine is 0."""
+        zero = np.zeros(shape)
+        return cls(zero, zero)
+
+    @classmethod
+    def of_surface(
+        cls, heights: Array, spacing: float, direction: float, *, periodic: bool = False
+    ) -> Slopes:
+        """Central differences of ``heights`` (m), one-sided at the border, wrapped when periodic.
+
+        >>> ramp = np.arange(4.0)[:, None] * np.ones(4)
+        >>> float(Slopes.of_surface(ramp, 1.0, math.pi).tan_x[0, 0])
+        -1.0
+        """
+        along_i = _difference(heights, 0, periodic) / spacing
+        along_j = _difference(heights, 1, periodic) / spacing
+        cos, sin = math.cos(direction), math.sin(direction)
+        return cls(cos * along_i + sin * along_j, cos * along_j - sin * along_i)
+
+    @cached_property
+    def cos_x(self) -> Array:
+        """``cos(theta_x)``."""
+        return 1 / np.sqrt(1 + self.tan_x**2)
+
+    @cached_property
+    def cos_y(self) -> Array:
+        """``cos(theta_y)``."""
+        return 1 / np.sqrt(1 + self.tan_y**2)
+
+    @cached_property
+    def sin_x(self) -> Array:
+        """``sin(theta_x)``."""
+        return self.tan_x * self.cos_x
+
+    @cached_property
+    def sin_y(self) -> Array:
+        """``sin(theta_y)``."""
+        return self.tan_y * self.cos_y
+
+    @cached_property
+    def obliqueness(self) -> Array:
+        """``cos(theta_x) cos(theta_y)``, the factor of Eq. (6)."""
+        return self.cos_x * self.cos_y
+
+
+def _difference(heights: Array, axis: int, periodic: bool) -> Array:
+    """Differences per element: central, and wrapped or one-sided at the border."""
+    if heights.shape[axis] == 1:
+        return np.zeros_like(heights)
+    if periodic:
+        return 0.5 * (np.roll(heights, -1, axis) - np.roll(heights, 1, axis))
+    return np.gradient(heights, axis=axis)
