@@ -1,8 +1,8 @@
 """One verification case: what is claimed, how it is judged, and the verdict. Everything here fails closed.
 
 A case passes only if its function returned, its numbers are finite, its reference is at least as certain as
-its tolerance, and its error is within that tolerance. Whatever else happens is named: `fail`, `error` (could not
-be judged) or `unavailable` (an optional dependency is missing), and none of these is a pass.
+its tolerance, and its error is within that tolerance. Whatever else happens is named: `fail`, `error` (could
+not be judged) or `unavailable` (an optional dependency is missing), and none of these is a pass.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class Case:
             error = error_of(self.metric, self.tolerance, measured)
         except Unavailable as missing:
             status, note = Status.UNAVAILABLE, str(missing) or "an optional dependency is missing"
-        # The one place that takes any failure: a case that breaks, or asks the interpreter to exit, is a verdict.
+        # The one place that takes any failure: a case that breaks, or asks to exit, gets its verdict as well.
         except (Exception, SystemExit) as failure:
             note = f"{type(failure).__name__}: {failure} [{_place(failure)}]"
         if measured is None or error is None:

@@ -83,3 +83,8 @@ def select(cases: Iterable[Case], tier: Tier, globs: Iterable[str] = ()) -> tupl
     if idle or not chosen:
         raise LookupError(f"no case of the {tier.value} tier matches {', '.join(idle) or 'anything'}")
     return chosen
+
+
+def find(id: str) -> Case:
+    """The declared case of this id; KeyError when no module imported so far declares it."""
+    return _declared[id]

@@ -1,0 +1,148 @@
+"""A case passes on good numbers and in no other way."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from verification.case import Case, Measured, Metric, Status, Unavailable, jsonable
+
+
+def declare(
+    function: Callable[[], Measured], metric: str = "relative", tolerance: float = 0.1, **other: Any
+) -> Case:
+    texts = {"title": "t", "claim": "c", "source": "s", "tolerance_reason": "measured", **other}
+    return Case(id="subject/slug", metric=cast(Metric, metric), tolerance=tolerance, function=function, **texts)
+
+
+@pytest.mark.parametrize(
+    ("metric", "tolerance", "value", "reference", "error", "status"),
+    [
+        ("relative", 0.1, 1.05, 1.0, 0.05, "pass"),
+        ("relative", 0.1, -2.3, -2.0, 0.15, "fail"),
+        ("absolute", 0.1, 7.05, 7.0, 0.05, "pass"),
+        ("absolute", 0.1, 7.0, -7.0, 14.0, "fail"),
+        ("at_most", 1e-9, 1e-9, None, 1e-9, "pass"),
+        ("at_most", 1e-9, 1.1e-9, None, 1.1e-9, "fail"),
+        ("at_least", 1.8, 1.8, None, 1.8, "pass"),
+        ("at_least", 1.8, 1.7, 2.0, 1.7, "fail"),
+        ("at_least", -1.0, 0.0, None, 0.0, "pass"),
+        ("equal", 0.0, 3, 3, 0.0, "pass"),
+        ("equal", 0.0, 1 + 2.0**-52, 1.0, 2.0**-52, "fail"),
+    ],
+)
+def test_metrics(
+    metric: str, tolerance: float, value: float, reference: float | None, error: float, status: str
+) -> None:
+    result = declare(lambda: Measured(value=value, reference=reference), metric, tolerance).run()
+    assert result.status == status
+    assert result.error == pytest.approx(error, rel=1e-12, abs=0)
+    assert (result.value, result.reference) == (value, reference)
+
+
+@pytest.mark.parametrize(
+    ("metric", "measured"),
+    [
+        ("relative", Measured(value=math.nan, reference=1.0)),
+        ("relative", Measured(value=math.inf, reference=math.inf)),
+        ("relative", Measured(value=1.0, reference=math.nan)),
+        ("relative", Measured(value=0.0, reference=0.0)),
+        ("relative", Measured(value=1.0)),
+        ("relative", Measured(value=1.0, reference=1.0, reference_uncertainty=0.11)),
+        ("relative", Measured(value=1.0, reference=1.0, reference_uncertainty=math.nan)),
+        ("relative", Measured(value=1.0, reference=1.0, reference_uncertainty=-0.01)),
+        ("absolute", Measured(value=1e308, reference=-1e308)),
+        ("absolute", Measured(value=np.nan, reference=0.0)),
+        ("at_most", Measured(value=math.nan)),
+        ("at_most", Measured(value=-1.0)),
+        ("at_most", Measured(value=0.0, reference=0.0)),
+        ("at_least", Measured(value=math.inf)),
+        ("at_least", Measured(value=math.nan)),
+        ("equal", Measured(value=math.nan, reference=math.nan)),
+        ("relative", Measured(value=cast(float, "1.0"), reference=1.0)),
+        ("relative", Measured(value=1.0, reference=1.0, data={"x": object()})),
+        ("relative", None),
+    ],
+)
+def test_numbers_that_cannot_be_judged_are_errors(metric: str, measured: Any) -> None:
+    result = declare(lambda: measured, metric, 0.0 if metric == "equal" else 0.1).run()
+    assert result.status == Status.ERROR
+    assert result.error is None
+    assert result.note
+
+
+@pytest.mark.parametrize("raised", [RuntimeError("broken"), SystemExit(0), AssertionError(), MemoryError()])
+def test_whatever_a_case_raises_is_an_error(raised: BaseException) -> None:
+    def function() -> Measured:
+        raise raised
+
+    result = declare(function).run()
+    assert result.status == Status.ERROR
+    assert type(raised).__name__ in result.note
+    assert "test_case.py" in result.note
+    assert "/" not in result.note
+
+
+def test_a_missing_dependency_is_unavailable_and_says_which() -> None:
+    def function() -> Measured:
+        raise Unavailable("needs tamaas")
+
+    result = declare(function).run()
+    assert (result.status, result.note) == (Status.UNAVAILABLE, "needs tamaas")
+
+
+def test_an_interrupt_is_not_a_verdict() -> None:
+    def function() -> Measured:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        declare(function).run()
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"metric": "close"},
+        {"metric": "RELATIVE"},
+        {"tolerance_reason": "  "},
+        {"claim": ""},
+        {"tolerance": math.nan},
+        {"tolerance": math.inf},
+        {"tolerance": -1e-3},
+        {"tier": "nightly"},
+        {"metric": "equal", "tolerance": 1e-12},
+    ],
+)
+def test_a_badly_declared_case_is_refused(other: dict[str, Any]) -> None:
+    with pytest.raises(ValueError):
+        declare(lambda: Measured(value=1.0, reference=1.0), **other)
+
+
+@pytest.mark.parametrize("id", ["noslash", "/slug", "subject/", "a b/c"])
+def test_an_id_is_subject_and_slug(id: str) -> None:
+    with pytest.raises(ValueError, match="subject/slug"):
+        Case(id, "t", "c", "s", Metric.EQUAL, 0.0, "exact", lambda: Measured(1.0, 1.0))
+
+
+def test_a_result_is_json_whatever_the_data_holds() -> None:
+    data = {"map": np.arange(4.0).reshape(2, 2), "n": np.int64(3), "h": [1.0, math.nan], "x": "y", "-": None}
+    result = declare(lambda: Measured(value=np.float64(1.0), reference=1.0, data=data)).run()
+    back = json.loads(json.dumps(asdict(result), allow_nan=False))
+    assert back["data"] == {"map": [[0.0, 1.0], [2.0, 3.0]], "n": 3, "h": [1.0, None], "x": "y", "-": None}
+    assert back["value"] == 1.0
+    assert {"id", "claim", "source", "value", "reference", "reference_uncertainty", "error", "tolerance",
+            "tolerance_reason", "status", "seconds"} <= set(back)  # fmt: skip
+
+
+def test_data_keep_nine_digits_but_the_verdict_keeps_all() -> None:
+    result = declare(lambda: Measured(value=1 / 3, reference=1 / 3, data={"x": 1 / 3})).run()
+    assert result.value == 1 / 3
+    assert result.data == {"x": 0.333333333}
+    with pytest.raises(TypeError):
+        jsonable({1, 2})

@@ -1,0 +1,119 @@
+"""Orders and grid uncertainties against manufactured series whose answer is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from verification.rates import CAUTIOUS_FACTOR, TRUSTED_FACTOR, extrapolate, fit_order
+
+H = [0.4, 0.2, 0.1, 0.05]
+
+
+@given(order=st.floats(0.5, 6.0), constant=st.floats(1e-6, 1e6), ratio=st.floats(1.2, 4.0))
+def test_a_pure_power_gives_its_order_back(order: float, constant: float, ratio: float) -> None:
+    h = [ratio**-k for k in range(4)]
+    found = fit_order(h, [constant * s**order for s in h])
+    # Rounding in log(error) is a few ulp of |log(error)| <= 50, over a fit that spans log(1.2**3) = 0.55.
+    assert found.order == pytest.approx(order, abs=1e-12)
+    assert found.constant == pytest.approx(constant, rel=1e-11)
+    assert found.local == pytest.approx([order] * 3, abs=1e-12)
+    assert found.credible(order)
+    assert not found.credible(order + 0.6)
+    assert not found.credible(order - 0.6)
+
+
+def test_the_order_is_the_least_squares_one() -> None:
+    # Hand-made: log2 errors 0, 1, 1 at log2 spacings 0, 1, 2 have slope 1/2 and intercept 1/6.
+    found = fit_order([4.0, 2.0, 1.0], [2.0, 2.0, 1.0])
+    assert found.order == pytest.approx(0.5, abs=1e-14)
+    assert found.constant == pytest.approx(2 ** (1 / 6), rel=1e-14)
+    assert found.local == pytest.approx([0.0, 1.0], abs=1e-14)
+    assert not found.credible(1.0)
+
+
+@given(
+    order=st.floats(0.8, 4.0),
+    limit=st.floats(-10, 10),
+    factor=st.sampled_from([-3.0, -0.1, 0.1, 3.0]),
+    ratio=st.floats(1.5, 3.0),
+)
+def test_richardson_gives_limit_order_and_uncertainty_back(
+    order: float, limit: float, factor: float, ratio: float
+) -> None:
+    h = [ratio**-k for k in range(4)]
+    found = extrapolate(h, [limit + factor * s**order for s in h], expected_order=order)
+    correction = abs(factor) * h[-1] ** order
+    # Values of size 10 carry 2e-15; the smallest correction is 0.1 * 3**-12 = 2e-7, which leaves 1e-8 of it.
+    assert found.credible
+    assert found.order == pytest.approx(order, abs=1e-5)
+    assert found.extrapolated == pytest.approx(limit, abs=1e-3 * correction)
+    assert found.uncertainty == pytest.approx(TRUSTED_FACTOR * correction, rel=1e-3)
+    assert found.safety_factor == TRUSTED_FACTOR
+
+
+def test_three_grids_reproduce_the_textbook_index() -> None:
+    # Roache 1994: GCI = 1.25 |f2 - f1| / (r**p - 1), with p from the three values.
+    f3, f2, f1 = 0.9613, 0.9682, 0.9705
+    p = np.log((f2 - f3) / (f1 - f2)) / np.log(2)
+    found = extrapolate([4.0, 2.0, 1.0], [f3, f2, f1], expected_order=2.0)
+    assert found.order == pytest.approx(p, abs=1e-6)
+    assert found.uncertainty == pytest.approx(1.25 * (f1 - f2) / (2**p - 1), rel=1e-5)
+    assert found.extrapolated == pytest.approx(f1 + (f1 - f2) / (2**p - 1), rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("values", "why"),
+    [
+        ([1.0 + 0.3 * h**0.9 for h in H], "first order where second is expected"),
+        ([1.0 + (-1) ** k * 0.1 * h for k, h in enumerate(H)], "oscillates"),
+        ([1.1, 1.1, 1.1, 1.1], "constant"),
+        ([1.0 + 0.01 * h**2 + 0.4 * h**6 * 100 for h in H], "coarse grids are outside the asymptotic range"),
+        ([1.5, 1.3, 1.2, 0.7], "diverges"),
+    ],
+)
+def test_an_order_that_is_not_credible_costs_a_factor_of_three(values: list[float], why: str) -> None:
+    found = extrapolate(H, values, expected_order=2.0)
+    assert not found.credible, why
+    assert found.safety_factor == CAUTIOUS_FACTOR
+    assert found.uncertainty >= CAUTIOUS_FACTOR * np.ptp(values)
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_the_uncertainty_covers_the_true_error(order: float) -> None:
+    """Series with a higher-order tail: the limit lies within the stated uncertainty of the finest value."""
+    rng = np.random.default_rng(3)
+    for tail in rng.uniform(-1, 1, size=100):
+        values = [2.0 + 0.5 * h**order + tail * h ** (order + 1) for h in H]
+        found = extrapolate(H, values, expected_order=order)
+        assert abs(found.finest - 2.0) <= found.uncertainty
+
+
+@pytest.mark.parametrize(
+    ("spacing", "values"),
+    [
+        ([0.2, 0.1], [1.0, 2.0]),
+        ([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
+        ([0.4, 0.2, 0.2], [1.0, 2.0, 3.0]),
+        ([0.4, 0.2, 0.0], [1.0, 2.0, 3.0]),
+        ([0.4, 0.2, 0.1], [1.0, np.nan, 3.0]),
+        ([0.4, 0.2, 0.1], [1.0, 2.0]),
+    ],
+)
+def test_bad_series_are_refused(spacing: list[float], values: list[float]) -> None:
+    with pytest.raises(ValueError):
+        fit_order(spacing, values)
+    with pytest.raises(ValueError):
+        extrapolate(spacing, values, expected_order=2.0)
+
+
+def test_an_error_of_zero_has_no_order() -> None:
+    with pytest.raises(ValueError, match="logarithm"):
+        fit_order([0.4, 0.2, 0.1], [1.0, 0.5, 0.0])
+
+
+def test_an_expected_order_must_be_positive() -> None:
+    with pytest.raises(ValueError, match="expected_order"):
+        extrapolate([0.4, 0.2, 0.1], [1.0, 0.5, 0.25], expected_order=0.0)

@@ -1,0 +1,87 @@
+"""Cases are found by themselves, in a fixed order, and never twice."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable
+
+import pytest
+
+from verification import registry
+from verification.case import Tier
+
+Make = Callable[..., str]
+
+ONE = """
+@case("{id}", metric="equal", tolerance=0.0, tier="{tier}")
+def {name}():
+    return Measured(1.0, 1.0)
+"""
+
+
+def source(*ids: str, tier: str = "quick") -> str:
+    return "".join(ONE.format(id=i, name=i.replace("/", "_"), tier=tier) for i in ids)
+
+
+def test_all_modules_are_found_and_ordered_by_module_and_line(make_package: Make) -> None:
+    package = make_package(beta=source("b/1"), alpha=source("a/2", "a/1"))
+    importlib.import_module(f"{package}.beta")
+    assert [c.id for c in registry.load(package)] == ["a/2", "a/1", "b/1"]
+
+
+@pytest.mark.parametrize(
+    "modules",
+    [{"alpha": source("a/1") + source("a/1")}, {"alpha": source("a/1"), "beta": source("a/1")}],
+    ids=["one module", "two modules"],
+)
+def test_an_id_declared_twice_is_refused(make_package: Make, modules: dict[str, str]) -> None:
+    package = make_package(**modules)
+    with pytest.raises(ValueError, match="declared twice"):
+        registry.load(package)
+
+
+def test_a_module_imported_anew_is_not_a_second_case(make_package: Make) -> None:
+    package = make_package(alpha=source("a/1"))
+    first = registry.load(package)
+    importlib.reload(sys.modules[f"{package}.alpha"])
+    assert [c.id for c in registry.load(package)] == [c.id for c in first]
+
+
+@pytest.mark.parametrize(
+    "fault", ["import surely_not_installed\n", source("a/1").replace("equal", "close"), "(\n"]
+)
+def test_a_module_that_cannot_be_imported_stops_the_run(make_package: Make, fault: str) -> None:
+    package = make_package(alpha=source("a/1"), beta=fault)
+    with pytest.raises((ImportError, ValueError, SyntaxError)):
+        registry.load(package)
+
+
+def test_selection_by_tier_and_glob(make_package: Make) -> None:
+    package = make_package(alpha=source("a/1", "b/1"), beta=source("a/full", tier="full"))
+    cases = registry.load(package)
+
+    def ids(tier: Tier, *globs: str) -> list[str]:
+        return [c.id for c in registry.select(cases, tier, globs)]
+
+    assert ids(Tier.QUICK) == ["a/1", "b/1"]
+    assert ids(Tier.FULL) == ["a/1", "b/1", "a/full"]
+    assert ids(Tier.FULL, "a/*") == ["a/1", "a/full"]
+    assert ids(Tier.QUICK, "b/1", "a/*") == ["a/1", "b/1"]
+
+
+@pytest.mark.parametrize("globs", [("none/*",), ("a/full",), ("a/1", "none/*")])
+def test_a_selection_without_cases_is_an_error(make_package: Make, globs: tuple[str, ...]) -> None:
+    package = make_package(alpha=source("a/1"), beta=source("a/full", tier="full"))
+    with pytest.raises(LookupError, match=r"none|a/full"):
+        registry.select(registry.load(package), Tier.QUICK, globs)
+
+
+def test_an_empty_registry_is_an_error(make_package: Make) -> None:
+    with pytest.raises(LookupError):
+        registry.select(registry.load(make_package()), Tier.FULL)
+
+
+def test_the_real_cases_load_and_their_ids_are_unique() -> None:
+    ids = [c.id for c in registry.load()]
+    assert len(ids) == len(set(ids))

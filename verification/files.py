@@ -1,0 +1,59 @@
+"""Output files that are whole or not there, and a progress line for terminals."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A temporary path beside `path`, of the same suffix, that takes its place when the block ends well.
+
+    The file appears in one step; after an error the old file, if any, is still there. Raises OSError where
+    the directory cannot be written to.
+    """
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
+    os.close(handle)
+    try:
+        yield Path(name)
+        os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def write_text(text: str, path: Path) -> None:
+    """Write a UTF-8 text file in one step."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def to_json(document: object) -> str:
+    """JSON text with a final newline; NaN and infinity, which JSON does not have, raise ValueError."""
+    return json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+class Progress:
+    """One line on stderr, rewritten at each step, and nothing at all when stderr is no terminal."""
+
+    def __init__(self, total: int) -> None:
+        self.total, self.done, self._shown = total, 0, sys.stderr.isatty()
+
+    def tick(self, text: str) -> None:
+        """Count a finished step and show its text, cut to the terminal's usual width."""
+        self.done += 1
+        if self._shown:
+            sys.stderr.write("\r\x1b[K" + f"[{self.done}/{self.total}] {text}"[:78])
+            sys.stderr.flush()
+
+    def close(self) -> None:
+        """Clear the line."""
+        if self._shown:
+            sys.stderr.write("\r\x1b[K")

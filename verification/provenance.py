@@ -1,0 +1,76 @@
+"""What a result depends on beside the code of its case: versions, commit, machine, date and command."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import platform
+import shlex
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+DISTRIBUTION = "rough-friction"
+PACKAGES = ("numpy", "scipy", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography", "pyamg",
+            "matplotlib", "hypothesis", "pytest")  # fmt: skip
+
+
+def versions() -> dict[str, str | None]:
+    """Version of Python, of this package and of each dependency; None for one that is not installed."""
+    found: dict[str, str | None] = {"python": platform.python_version()}
+    for package in (DISTRIBUTION, *PACKAGES):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = None
+    return found
+
+
+def revision() -> dict[str, str | bool | None]:
+    """The checkout's commit and whether its tree is `dirty`; `commit` is None for an installed package.
+
+    Only a checkout that this file is part of counts, not whatever repository lies around an environment.
+    """
+    root = Path(__file__).resolve().parents[1]
+    if not (root / "pyproject.toml").is_file() or _git(root, "rev-parse", "--show-prefix") != "":
+        return {"commit": None, "dirty": None}
+    changes = _git(root, "status", "--porcelain")
+    return {"commit": _git(root, "rev-parse", "HEAD"), "dirty": None if changes is None else bool(changes)}
+
+
+def machine() -> dict[str, str | int | None]:
+    """Processor model, cores this process may use, and platform."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return {"cores": cores, "processor": _processor(), "platform": platform.platform()}
+
+
+def command() -> str:
+    """The command line as it could be typed again: the program's name without its directory."""
+    return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
+
+
+def provenance() -> dict[str, object]:
+    """All of it, ready for JSON."""
+    now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    return {"command": command(), "date": now, **revision(), "versions": versions(), "machine": machine()}
+
+
+def _git(root: Path, *arguments: str) -> str | None:
+    """Output of a git command, or None when there is no git or no repository."""
+    try:
+        asked = ["git", "-C", str(root), *arguments]
+        done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return done.stdout.strip()
+
+
+def _processor() -> str:
+    """Model name; Linux keeps it in /proc/cpuinfo, where `platform` does not look."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return models[0] if models else platform.processor()

@@ -1,0 +1,102 @@
+"""Worker processes for cases: one BLAS thread each, so that their number changes no result."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import multiprocessing
+import os
+import queue
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+
+from verification import registry
+from verification.case import Case, Result, Status
+
+BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class Worker:
+    """A process that runs cases one by one. A case that kills it is an `error`, and a new process starts."""
+
+    def __init__(self) -> None:
+        self._pool = _process()
+
+    def run(self, case: Case) -> Result:
+        """The case's verdict; never raises for what the case does."""
+        start = time.perf_counter()
+        try:
+            return self._pool.submit(_run_in_worker, case.module, case.id).result()
+        except BrokenProcessPool:
+            self.close()
+            self._pool = _process()
+            note = "the worker process died while it ran this case"
+            return case.result(Status.ERROR, note, time.perf_counter() - start)
+
+    def close(self) -> None:
+        """End the process."""
+        self._pool.shutdown()
+
+
+def run_all(cases: Iterable[Case], jobs: int, tick: Callable[[Result], None]) -> list[Result]:
+    """Results in the order of `cases`, from `jobs` workers; `tick` sees each as it is finished.
+
+    A worker takes the cases of a whole module, in their order, since those may share a cached solution.
+    """
+    cases = list(cases)
+    lines: queue.SimpleQueue[list[Case]] = queue.SimpleQueue()
+    for _, line in itertools.groupby(cases, key=lambda c: c.module):
+        lines.put(list(line))
+
+    def work(_: int) -> list[Result]:
+        worker, results = Worker(), []
+        try:
+            for case in _drain(lines):
+                results.append(worker.run(case))
+                tick(results[-1])
+        finally:
+            worker.close()
+        return results
+
+    with _one_blas_thread(), ThreadPoolExecutor(jobs) as threads:
+        found = {r.id: r for results in threads.map(work, range(jobs)) for r in results}
+    return [found[c.id] for c in cases]
+
+
+def _drain(lines: queue.SimpleQueue[list[Case]]) -> Iterator[Case]:
+    """Cases, line after line, until no line is left."""
+    while True:
+        try:
+            line = lines.get_nowait()
+        except queue.Empty:
+            return
+        yield from line
+
+
+def _process() -> ProcessPoolExecutor:
+    """A fresh interpreter ('spawn'): nothing is inherited but the environment and the module path."""
+    return ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
+
+
+def _run_in_worker(module: str, case_id: str) -> Result:
+    """In the worker, find the case again by module and id: its function need not be picklable."""
+    importlib.import_module(module)
+    return registry.find(case_id).run()
+
+
+@contextmanager
+def _one_blas_thread() -> Iterator[None]:
+    """Workers inherit the environment and read it when they import numpy."""
+    before = {name: os.environ.get(name) for name in BLAS_THREADS}
+    os.environ.update(dict.fromkeys(BLAS_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
