@@ -18,7 +18,7 @@ def declare(
     function: Callable[[], Measured], metric: str = "relative", tolerance: float = 0.1, **other: Any
 ) -> Case:
     texts = {"title": "t", "claim": "c", "source": "s", "tolerance_reason": "measured", **other}
-    return Case(id="subject/slug", metric=cast(Metric, metric), tolerance=tolerance, function=function, **texts)
+    return Case("subject/slug", metric=cast(Metric, metric), tolerance=tolerance, function=function, **texts)
 
 
 @pytest.mark.parametrize(
