@@ -5,7 +5,7 @@ from refimpl.surfaces.base import Surface, SurfaceSum, SurfaceWarning, as_surfac
 from refimpl.surfaces.gaussian import GaussianRoughness
 from refimpl.surfaces.measured import MeasuredSurface
 from refimpl.surfaces.shapes import Flat, Sphere
-from refimpl.surfaces.tables import surface_from_dict, surface_from_tables, surface_to_tables
+from refimpl.surfaces.tables import surface_from_dict
 
 __all__ = [
     "ArraySurface",
@@ -18,6 +18,4 @@ __all__ = [
     "SurfaceWarning",
     "as_surface",
     "surface_from_dict",
-    "surface_from_tables",
-    "surface_to_tables",
 ]

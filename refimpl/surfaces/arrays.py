@@ -36,7 +36,8 @@ class ArraySurface(Surface):
         if self.data.shape == square and offset == (0.0, 0.0):
             return self.data.copy()
         if min(self.data.shape) < 4:
-            raise InputError("heights", f"array of shape {self.data.shape}", f"shape {square}, or >= 4 points an axis")
+            shape = f"array of shape {self.data.shape}"
+            raise InputError("heights", shape, f"the grid's shape {square}, or at least 4 points an axis")
         if not periodic:
             _refuse_leaving(grid, offset)
         (x, y) = (
@@ -47,21 +48,22 @@ class ArraySurface(Surface):
     def describe(self, grid: Grid) -> tuple[str, ...]:
         if self.data.shape == (grid.M, grid.M):
             return (f"the array of {_by(self.data.shape)} heights is used as it is",)
-        said = f"the array of {_by(self.data.shape)} heights is resampled bicubically to {grid.M} x {grid.M} elements"
-        return (said, *self.cautions(grid))
+        return (
+            f"the array of {_by(self.data.shape)} heights is resampled bicubically to {_by((grid.M,) * 2)}",
+            *self.cautions(grid),
+        )
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        if grid.M <= min(self.data.shape):
+        if min(self.data.shape) >= grid.M:
             return ()
         return (
-            f"the grid of {grid.M} x {grid.M} elements is finer than the data, {_by(self.data.shape)} heights: "
-            "what lies between them is interpolated, not measured",
+            f"the grid of {_by((grid.M,) * 2)} is finer than the array of {_by(self.data.shape)} heights: "
+            "what lies between them is interpolated",
         )
 
     def to_dict(self) -> dict[str, Any]:
-        raise InputError(
-            "surface", f"array of shape {self.data.shape}", 'a surface with a TOML form: save it as .npy, use kind = "measured"'
-        )
+        allowed = 'a surface that has a TOML form; save the array as .npy and read it by kind = "measured"'
+        raise InputError("surface", f"array of shape {self.data.shape}", allowed)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ArraySurface) and np.array_equal(self.data, other.data)
@@ -80,8 +82,9 @@ def _checked(data: NDArray[Any]) -> Array:
         heights[np.ma.getmaskarray(data)] = np.nan
     bad = np.argwhere(~np.isfinite(heights))
     if len(bad):
+        first = tuple(map(int, bad[0]))
         raise InputError(
-            "heights", f"{len(bad)} of {heights.size} not finite, the first at {tuple(map(int, bad[0]))}", _ALLOWED
+            "heights", f"{len(bad)} of {heights.size} not finite, the first at {first}", _ALLOWED
         )
     heights.setflags(write=False)
     return heights
@@ -90,7 +93,7 @@ def _checked(data: NDArray[Any]) -> Array:
 def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:
     room = grid.spacing / 2.0  # the outermost element centres stand this far inside the square
     if max(map(abs, offset)) > room * (1.0 + 1e-9):  # 1e-9: far above the rounding of an offset of just h / 2
-        raise InputError("offset", offset, f"at most {room:.6g} m either way: the array ends with the scene's square")
+        raise InputError("offset", offset, f"at most {room:.6g} m either way: the array ends with the square")
 
 
 def _by(shape: tuple[int, ...]) -> str:

@@ -75,7 +75,7 @@ class Surface(ABC):
 
     @classmethod
     def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
-        """The surface that ``table`` (without its ``kind``) holds; ``folder`` is where relative paths start."""
+        """The surface of ``table`` (without its ``kind``); relative paths start at ``folder``."""
         return cls(**table)
 
 

@@ -1,8 +1,8 @@
 """Gaussian roughness with the paper's autocorrelation, Eq. (9), as one continuous random field per seed.
 
-Eq. (9), ``R(r) = rms^2 exp(-2.3 r^2 / l^2)``, falls to exp(-2.3) = 0.1003 at r = l (2.3 is the paper's ln 10).
-``exp(-4.6 r^2 / l^2)`` convolved with itself is proportional to R. So independent standard normal numbers w on
-the nodes of an infinite square lattice of spacing h, smoothed by that kernel,
+Eq. (9), ``R(r) = rms^2 exp(-2.3 r^2 / l^2)``, falls to exp(-2.3) = 0.1003 at r = l (2.3 is the paper's
+ln 10). ``exp(-4.6 r^2 / l^2)`` convolved with itself is proportional to R. So independent standard normal
+numbers w on the nodes of an infinite square lattice of spacing h, smoothed by that kernel,
 
     z(x, y) = rms (h k / l) sum_mn exp(-4.6 ((x - m h)^2 + (y - n h)^2) / l^2) w_mn,    k = sqrt(9.2 / pi),
 
@@ -10,7 +10,8 @@ make a Gaussian field, analytic in x and y. Its covariance is R(r) but for two e
 
 - The lattice. By Poisson's sum the covariance at the mean position c of two points is R(r) times
   ``1 + 2 exp(-pi^2 l^2 / (9.2 h^2)) cos(2 pi c / h) + ...`` for each axis: with h = l / 6, 1.7e-17 cos(...).
-- Cutting the kernel off at 17 nodes, r = 2.83 l: the last value dropped is exp(-4.6 * 2.83^2) = 9e-17 of its peak.
+- Cutting the kernel off at 17 nodes, r = 2.83 l: what is dropped is below exp(-4.6 * 2.83^2) = 9e-17 of its
+  peak.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ DECAY = 2.3  # of Eq. (9)
 NODES_PER_LENGTH = 6
 HALF_WIDTH = 17 / NODES_PER_LENGTH  # of the kernel, in correlation lengths
 MAX_NODES = 8192  # an axis: 512 MiB of noise
+MAX_FAR = 1e6  # lattice spacings from the origin: rounding of x there moves heights by < 1e-9 rms
 _ALLOWED_SEED = "a whole number, 0 <= seed < 2^63"
 _ALLOWED_FLAG = "true or false"
 
@@ -39,14 +41,14 @@ _ALLOWED_FLAG = "true or false"
 class GaussianRoughness(Surface):
     """Isotropic Gaussian roughness, autocorrelation Eq. (9); the same surface on every grid, at every offset.
 
-    ``rms`` height and ``correlation_length`` (autocorrelation 10 %) in m. The seed alone fixes the noise: another rms
-    scales the heights, another length stretches the surface; bodies that shall differ need different
-    seeds. ``rms`` holds for the ensemble, the mean of which is 0; ``normalise=True`` scales this realisation
-    (it does not shift it), so that its standard deviation over the scene's square at offset 0, an integral that knows no
-    grid, is ``rms``, as in the paper's section 6.1.
+    ``rms`` height and ``correlation_length`` (autocorrelation 10 %) in m. The seed alone fixes the noise:
+    another rms scales the heights, another length stretches the surface; bodies that shall differ need
+    different seeds. ``rms`` holds for the ensemble, the mean of which is 0; ``normalise=True`` scales this
+    realisation (it does not shift it), so that its standard deviation over the scene's square at offset 0,
+    an integral that knows no grid, is ``rms``, as in the paper's section 6.1.
 
-    Periodic scenes get a field of its own that repeats with ``side``: the noise repeats, on a lattice that divides the
-    side. Its covariance is the periodic sum of Eq. (9) scaled to ``rms``; length <= side.
+    Periodic scenes get another realisation, one that repeats with ``side``: the noise repeats, on a lattice
+    that divides the side. Its covariance is the periodic sum of Eq. (9) scaled to ``rms``; length <= side.
     """
 
     rms: float
@@ -59,7 +61,8 @@ class GaussianRoughness(Surface):
         object.__setattr__(self, "rms", positive("rms", self.rms, "a positive rms height in m"))
         length = positive("correlation_length", self.correlation_length, "a positive length in m")
         object.__setattr__(self, "correlation_length", length)
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int | np.integer) or not 0 <= self.seed < 2**63:
+        whole = isinstance(self.seed, int | np.integer) and not isinstance(self.seed, bool)
+        if not whole or not 0 <= self.seed < 2**63:
             raise InputError("seed", self.seed, _ALLOWED_SEED)
         object.__setattr__(self, "seed", int(self.seed))
         if not isinstance(self.normalise, bool):
@@ -88,47 +91,47 @@ class GaussianRoughness(Surface):
 
     def _smoothing(self, x: Array, period: float | None) -> tuple[range, csr_array]:
         """One axis of the sum above: the nodes it needs, and the kernel as a matrix ``(len(x), nodes)``."""
-        length = self.correlation_length
-        per_period = None if period is None else self._nodes_in(period)
-        h = length / NODES_PER_LENGTH if period is None or per_period is None else period / per_period
+        length, h = self.correlation_length, self._lattice_spacing(period)
         reach = math.ceil(HALF_WIDTH * length / h)
+        self._refuse_too_many(x, h, reach)
         node = np.rint(x / h).astype(np.int64)[:, None] + np.arange(-reach, reach + 1)
-        weight = math.sqrt(h / length * math.sqrt(4.0 * DECAY / math.pi)) * np.exp(
-            -2.0 * DECAY * ((x[:, None] - node * h) / length) ** 2
-        )
-        if period is not None and per_period is not None:
-            node %= per_period
+        from_node = (x[:, None] - node * h) / length
+        peak = math.sqrt(math.sqrt(4.0 * DECAY / math.pi) * h / length)
+        weight = peak * np.exp(-2.0 * DECAY * from_node**2)
+        if period is not None:
+            node %= round(period / h)
             weight /= math.sqrt(_images(period / length))
         nodes = range(int(node.min()), int(node.max()) + 1)
-        self._refuse_too_many(len(nodes), float(x.max() - x.min()))
         row = np.repeat(np.arange(len(x)), node.shape[1])
         entries = (weight.ravel(), (row, node.ravel() - nodes.start))
-        return nodes, csr_array(entries, shape=(len(x), len(nodes)))
+        return nodes, csr_array(entries, shape=(len(x), len(nodes)))  # entries of one node add up
 
-    def _nodes_in(self, period: float) -> int:
-        if self.correlation_length > period:
-            raise InputError("correlation_length", self.correlation_length, f"at most the period, {period:.6g} m")
-        return math.ceil(NODES_PER_LENGTH * period / self.correlation_length)
+    def _lattice_spacing(self, period: float | None) -> float:
+        length = self.correlation_length
+        if period is None:
+            return length / NODES_PER_LENGTH
+        if length > period:
+            raise InputError("correlation_length", length, f"at most the period, {period:.6g} m")
+        return period / math.ceil(NODES_PER_LENGTH * period / length)
 
-    def _refuse_too_many(self, nodes: int, extent: float) -> None:
-        if nodes > MAX_NODES:
-            least = extent * NODES_PER_LENGTH / (MAX_NODES - 2 * HALF_WIDTH * NODES_PER_LENGTH)
-            raise InputError(
-                "correlation_length",
-                self.correlation_length,
-                f"at least {least:.3g} m here (the surface would take {8e-9 * nodes**2:.3g} GB)",
-            )
+    def _refuse_too_many(self, x: Array, h: float, reach: int) -> None:
+        extent, farthest = float(x.max() - x.min()), float(np.abs(x).max())
+        if extent / h + 2 * reach + 2 > MAX_NODES:
+            least = extent / h / (MAX_NODES - 2 * reach - 2) * self.correlation_length
+            need = f"at least {least:.3g} m on this square ({MAX_NODES} noise nodes an axis)"
+            raise InputError("correlation_length", self.correlation_length, need)
+        if farthest / h > MAX_FAR:
+            raise InputError("offset", farthest, f"within {MAX_FAR:.3g} x {h:.3g} m: beyond, digits are lost")
 
     def _scale(self, side: float, period: float | None) -> float:
         return self.rms / self._realised_rms(side, period) if self.normalise else 1.0
 
     def _realised_rms(self, side: float, period: float | None) -> float:
-        """Standard deviation (m) of the unscaled field over the square of edge ``side``: Gauss-Legendre, 10 points on
-        each panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
+        """Standard deviation (m) of the unscaled field over the square of edge ``side``: Gauss-Legendre, 10
+        points on each panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
         if side < self.correlation_length:
-            raise InputError(
-                "normalise", True, f"a side of at least one correlation length, {self.correlation_length:.6g} m"
-            )
+            least = f"false, or a side of at least one correlation length, {self.correlation_length:.6g} m"
+            raise InputError("normalise", True, least)
         panels = math.ceil(2.0 * side / self.correlation_length)
         node, weight = np.polynomial.legendre.leggauss(10)
         x = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (side / panels)).ravel()
@@ -138,10 +141,9 @@ class GaussianRoughness(Surface):
         return math.sqrt(w @ (z - mean) ** 2 @ w)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        said = f"Gaussian roughness, seed {self.seed}: ensemble rms {self.rms:.6g} m, length {self.correlation_length:.6g} m"
-        if self.normalise:
-            said += f"; scaled to rms {self.rms:.6g} m over the square of {grid.side:.6g} m"
-        return (said, *self.cautions(grid))
+        over = f"over the square of {grid.side:.6g} m" if self.normalise else "in the ensemble"
+        said = f"rms {self.rms:.6g} m {over}, correlation length {self.correlation_length:.6g} m"
+        return (f"Gaussian roughness of seed {self.seed}: {said}", *self.cautions(grid))
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
         if grid.spacing <= self.correlation_length / 4.0:
@@ -153,6 +155,6 @@ class GaussianRoughness(Surface):
 
 
 def _images(ratio: float) -> float:
-    """``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: what images add to the variance, an axis."""
+    """``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: one axis's variance with images."""
     m = np.arange(1, 6)  # the sixth image would add exp(-2.3 * 36) = 1e-36
     return float(1.0 + 2.0 * np.exp(-DECAY * (m * ratio) ** 2).sum())

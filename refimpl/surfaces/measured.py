@@ -1,20 +1,140 @@
-"""Measured surfaces."""
+"""Measured surfaces: the central window of a file, gaps filled, form removed, on the element centres."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar, Self
 
+import numpy as np
+
+from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.base import Surface
+from refimpl.surfaces.base import Surface, finite, positive
+from refimpl.surfaces.bicubic import resample
+from refimpl.surfaces.levelling import DEGREES, Form, fit
+from refimpl.surfaces.readers import UNITS, Reading, read
+from refimpl.surfaces.window import ROUNDING, Window, by
+
+_ALLOWED_PIXEL = "a positive length in m, or two (x, y)"
+_ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
 
 @dataclass(frozen=True)
 class MeasuredSurface(Surface):
-    """Heights from an instrument's file."""
+    """Measured heights from a file (which: ``readers.read``), treated in this order:
 
-    path: str
+    1. window: the square of the scene's side about the middle of the measured area, moved by the offset;
+       refused where it leaves that area, in which each point counts as one pixel;
+    2. gaps: ``missing="fill"`` fills by Laplace's equation (``gaps.fill``), but refuses a window with more
+       than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
+    3. level: the least-squares ``"mean"``, ``"plane"`` or ``"paraboloid"`` (all six quadratic terms) of the
+       points in the window at offset 0 is taken off everywhere, so that a shifted surface remains the same
+       rigid body; ``"none"`` takes nothing off;
+    4. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
+       the measured area the spline's end piece goes on.
+
+    ``unit`` (of heights: m, mm, um, nm, pm) and ``pixel_size`` (m; a number or (x, y)) are for files that do
+    not state them. Read on first use, then kept. Periodic scenes refuse it: measured heights do not repeat.
+    """
+
+    path: Path
+    unit: str | None = field(default=None, kw_only=True)
+    pixel_size: tuple[float, float] | None = field(default=None, kw_only=True)
+    level: str = field(default="plane", kw_only=True)
+    missing: str = field(default="fill", kw_only=True)
+    max_missing: float = field(default=0.05, kw_only=True)
     kind: ClassVar[str] = "measured"
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.path, str | Path) or not str(self.path) or "\0" in str(self.path):
+            raise InputError("path", self.path, "the path of a file")
+        object.__setattr__(self, "path", Path(self.path))
+        if self.unit is not None:
+            _require_one_of("unit", self.unit, tuple(UNITS))
+        if self.pixel_size is not None:
+            object.__setattr__(self, "pixel_size", _pixel(self.pixel_size))
+        _require_one_of("level", self.level, tuple(DEGREES))
+        _require_one_of("missing", self.missing, ("fill", "refuse"))
+        if not 0 <= finite("max_missing", self.max_missing, _ALLOWED_FRACTION) < 1:
+            raise InputError("max_missing", self.max_missing, _ALLOWED_FRACTION)
+
+    @cached_property
+    def reading(self) -> Reading:
+        """What the file holds, as it is (read once)."""
+        return read(self.path, self.unit, self.pixel_size)
+
     def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        raise NotImplementedError
+        if periodic:
+            raise InputError("periodic", True, f"false: {self.path.name} does not repeat")
+        window = self._window(grid.side, offset)
+        heights, (i, j) = window.filled()
+        x, y = (window.positions(grid.centres, axis) for axis in (0, 1))
+        return resample(heights, x - i.start, y - j.start) - self._central(grid.side)[1](x, y)
+
+    def _window(self, side: float, offset: tuple[float, float] = (0.0, 0.0)) -> Window:
+        window = Window(self.reading, side, offset)
+        allowed = self.max_missing if self.missing == "fill" else 0.0
+        if window.lost > allowed * window.size:
+            said = f"{window.lost} of {window.size} points of the window in {self.path.name}"
+            raise InputError("missing", said, f"at most a fraction of {allowed:.3g}")
+        return window
+
+    def _central(self, side: float) -> tuple[Array, Form, Array]:
+        """At offset 0: the window's points with gaps filled, their form, and what is left of them."""
+        window = self._window(side)
+        (i, j), (heights, (around_i, around_j)) = window.points, window.filled()
+        z = heights[i.start - around_i.start :, j.start - around_j.start :]
+        z = z[: i.stop - i.start, : j.stop - j.start]
+        x, y = np.arange(i.start, i.stop, dtype=float), np.arange(j.start, j.stop, dtype=float)
+        form = fit(x, y, z, DEGREES[self.level])
+        return z, form, z - form(x, y)
+
+    def describe(self, grid: Grid) -> tuple[str, ...]:
+        name, reading = self.path.name, self.reading
+        z, form, rest = self._central(grid.side)
+        tilt = by(tuple(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True)))
+        return (
+            f"{name}: {by(reading.heights.shape)} points on {by(reading.area)} m, read {reading.source}",
+            f"{name}: the central square of {grid.side:.6g} m is used, {by(z.shape)} points, "
+            f"resampled bicubically to {grid.M} x {grid.M} elements",
+            f"{name}: levelled by {self.level} in that square (slopes {tilt}), "
+            f"which takes the rms height from {z.std():.4g} to {rest.std():.4g} m",
+            *self.cautions(grid),
+        )
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        name, window = self.path.name, Window(self.reading, grid.side)
+        said = []
+        if window.lost:
+            said.append(
+                f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"
+            )
+        if grid.spacing < max(self.reading.pixel) * (1.0 - ROUNDING):
+            said.append(
+                f"{name}: the element, {grid.spacing:.4g} m, is finer than the measured pixel, "
+                f"{by(self.reading.pixel)} m: what lies between the points is interpolated"
+            )
+        return tuple(said)
+
+    def to_dict(self) -> dict[str, Any]:
+        table = super().to_dict() | {"path": str(self.path.absolute())}
+        return table if self.pixel_size is None else table | {"pixel_size": list(self.pixel_size)}
+
+    @classmethod
+    def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
+        path = table["path"]
+        return cls(**table | {"path": folder / path if isinstance(path, str) and path else path})
+
+
+def _pixel(value: object) -> tuple[float, float]:
+    pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
+    if len(pair) != 2:
+        raise InputError("pixel_size", value, _ALLOWED_PIXEL)
+    return positive("pixel_size", pair[0], _ALLOWED_PIXEL), positive("pixel_size", pair[1], _ALLOWED_PIXEL)
+
+
+def _require_one_of(name: str, value: object, allowed: tuple[str, ...]) -> None:
+    if not isinstance(value, str) or value not in allowed:
+        raise InputError(name, value, "one of " + ", ".join(allowed))

@@ -15,9 +15,9 @@ _STREAM = 0x726F7567686E6573  # the key's second word, ASCII "roughnes": keeps t
 def white_noise(seed: int, rows: range, columns: range) -> Array:
     """Independent standard normal numbers at the lattice nodes ``rows x columns``; indices may be negative.
 
-    Philox (Salmon et al. 2011) is a function of key and counter, so the tile ``(p, q)`` is drawn without drawing others:
-    key = (seed, stream), counter = (0, 0, p, q). Its raw words are fixed for good, numpy's normal numbers are
-    not; so 53 bits of each word give a uniform number in (0, 1), and its normal quantile the noise.
+    Philox (Salmon et al. 2011) is a function of key and counter, so a tile ``(p, q)`` is drawn without any
+    other: key = (seed, stream), counter = (0, 0, p, q). Its raw words are fixed for good, numpy's normal
+    numbers are not; so 53 bits of each word give a uniform number in (0, 1), its normal quantile the noise.
 
     >>> part = white_noise(7, range(-3, 70), range(100, 103))
     >>> bool((part[60:, 1:] == white_noise(7, range(57, 70), range(101, 103))).all())

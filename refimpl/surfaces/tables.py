@@ -41,26 +41,13 @@ def surface_from_dict(table: dict[str, Any], folder: Path = Path()) -> Surface:
     return KINDS[kind].from_table(parameters, folder)
 
 
-def surface_from_tables(tables: list[dict[str, Any]], folder: Path = Path()) -> Surface:
-    """The sum of the surfaces of several tables, as ``[[upper.surface]]`` in a scene file; none is ``Flat()``."""
-    if not isinstance(tables, list):
-        raise InputError("surface", tables, "a list of tables ([[...surface]] in TOML)")
-    parts = tuple(part for table in tables for part in surface_from_dict(table, folder).parts)
-    if not parts:
-        return Flat()
-    return parts[0] if len(parts) == 1 else SurfaceSum(parts)
-
-
-def surface_to_tables(surface: Surface) -> list[dict[str, Any]]:
-    """The tables ``surface_from_tables`` reads back; raises InputError for arrays, which have none."""
-    return [part.to_dict() for part in surface.parts]
-
-
-def _sum_from_dict(parameters: dict[str, Any], folder: Path) -> Surface:
-    for key in parameters:
-        if key != "terms":
-            raise InputError(f"surface.{key}", parameters[key], "a key of kind sum: terms")
-    return surface_from_tables(parameters.get("terms", []), folder)
+def _sum_from_dict(parameters: dict[str, Any], folder: Path) -> SurfaceSum:
+    terms = parameters.pop("terms", None)
+    for key, value in parameters.items():
+        raise InputError(f"surface.{key}", value, "a key of kind sum: terms")
+    if not isinstance(terms, list) or not terms:
+        raise InputError("surface.terms", terms, "a list of surface tables")
+    return SurfaceSum(tuple(part for term in terms for part in surface_from_dict(term, folder).parts))
 
 
 def _names(known: list[Any]) -> str:

@@ -1,0 +1,166 @@
+"""Heights from files: plain tables of numbers, and instrument files through SurfaceTopography.
+
+Files come from anywhere. Before a byte is interpreted, the file's size, and what a zip archive says it
+unpacks to (Python's zipfile never unpacks more than that), are held against MAX_BYTES. Nothing is unpickled.
+"""
+
+from __future__ import annotations
+
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any, TypeVar
+
+import numpy as np
+
+from refimpl.errors import InputError
+from refimpl.grid import Array
+
+T = TypeVar("T")
+
+MAX_BYTES = 256 * 2**20
+MAX_POINTS = 2**24
+UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}
+PLAIN = (".npy", ".csv")  # by nature; text (.asc, .txt) is a plain table if its unit and pixel size are given
+TEXT = (".asc", ".txt")
+
+# What a reader may raise on bytes that are not what they claim to be. SurfaceTopography's own errors are
+# plain Exceptions and join these where it is imported.
+_BROKEN: tuple[type[Exception], ...] = (
+    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
+    RuntimeError, SyntaxError, TypeError, ValueError, struct.error, zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Heights (m), ``[i, j]`` along x, y, missing points NaN; the pixel's edges (m);
+    the file's name; what read it."""
+
+    heights: Array
+    pixel: tuple[float, float]
+    name: str
+    source: str
+
+    @property
+    def area(self) -> tuple[float, float]:
+        """Edges of the measured area (m): each point counts as one pixel."""
+        return self.heights.shape[0] * self.pixel[0], self.heights.shape[1] * self.pixel[1]
+
+
+def read(path: Path, unit: str | None, pixel_size: tuple[float, float] | None) -> Reading:
+    """Heights of one file.
+
+    ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) belong to plain tables: ``.npy``, ``.csv``
+    (commas), ``.asc`` and ``.txt`` (blanks), row i at x_i, column j at y_j, nan where nothing was measured.
+    Other files, and text without both of these, are an instrument's, indexed as SurfaceTopography does; unit
+    and pixel size then serve only files that state none. Raises InputError.
+    """
+    _inspect(path)
+    suffix = path.suffix.lower()
+    if suffix in PLAIN or (suffix in TEXT and unit is not None and pixel_size is not None):
+        if unit is None or pixel_size is None:
+            allowed = f"both, for {path.name}: a table of numbers states neither"
+            raise InputError("unit, pixel_size", (unit, pixel_size), allowed)
+        load = _npy if suffix == ".npy" else _text
+        heights = _heights(path, _guarded(path, load, _BROKEN)) * UNITS[unit]
+        return Reading(heights, pixel_size, path.name, "as a plain table")
+    return _instrument(path, unit, pixel_size)
+
+
+def _inspect(path: Path) -> None:
+    if not path.is_file():
+        raise InputError("path", str(path), "an existing file")
+    try:
+        size = path.stat().st_size
+        if zipfile.is_zipfile(path):
+            with zipfile.ZipFile(path) as archive:
+                size = max(size, sum(member.file_size for member in archive.infolist()))
+    except _BROKEN as error:
+        raise InputError("path", str(path), f"a readable file ({_brief(error)})") from error
+    if size > MAX_BYTES:
+        raise InputError("path", str(path), f"at most {MAX_BYTES} bytes, unpacked as well (this: {size})")
+
+
+def _npy(path: Path) -> Array:
+    # mapped, so that a header that promises more than the file holds is refused before any memory is taken
+    return np.lib.format.open_memmap(path, mode="r")
+
+
+def _text(path: Path) -> Array:
+    with path.open(encoding="utf-8") as lines:
+        return np.loadtxt(lines, delimiter="," if path.suffix.lower() == ".csv" else None, ndmin=2)
+
+
+def _instrument(path: Path, unit: str | None, pixel_size: tuple[float, float] | None) -> Reading:
+    library = _library(path)
+    broken = (*_BROKEN, library.Exceptions.ReadFileError)
+
+    def load(file: Path) -> Reading:
+        with np.errstate(all="ignore"), library.open_topography(str(file)) as reader:
+            return _from_topography(file, reader.topography(), reader.format(), unit, pixel_size)
+
+    return _guarded(path, load, broken)
+
+
+def _library(path: Path) -> ModuleType:
+    try:
+        import SurfaceTopography
+        import SurfaceTopography.Exceptions
+    except ImportError as error:
+        allowed = (
+            'a plain .npy or .csv, or the package that reads it (pip install "rough-friction[instrument]")'
+        )
+        raise InputError("path", str(path), allowed) from error
+    module: ModuleType = SurfaceTopography
+    return module
+
+
+def _from_topography(
+    path: Path, topography: Any, reader: str, unit: str | None, pixel_size: tuple[float, float] | None
+) -> Reading:
+    t = topography
+    if t.dim != 2 or not t.is_uniform:
+        raise InputError("path", str(path), "heights on a regular two-dimensional grid")
+    stated = t.unit is not None and t.physical_sizes is not None
+    if stated and (unit is not None or pixel_size is not None):
+        raise InputError("unit, pixel_size", (unit, pixel_size), f"neither: {path.name} states its own")
+    if stated:
+        t = t.to_unit("m")
+        (lx, ly), (nx, ny) = t.physical_sizes, t.nb_grid_pts
+        pixel_size = (float(lx / nx), float(ly / ny))
+        unit = "m"
+    if unit is None or pixel_size is None:
+        raise InputError("unit, pixel_size", (unit, pixel_size), f"both: {path.name} does not state them")
+    heights = np.ma.filled(np.ma.asarray(t.heights(), dtype=np.float64), np.nan)
+    source = f"by SurfaceTopography's {reader} reader"
+    return Reading(_heights(path, heights) * UNITS[unit], pixel_size, path.name, source)
+
+
+def _guarded(path: Path, load: Callable[[Path], T], broken: tuple[type[Exception], ...]) -> T:
+    try:
+        return load(path)
+    except InputError:
+        raise
+    except broken as error:
+        raise InputError("path", str(path), f"a file that can be read ({_brief(error)})") from error
+
+
+def _heights(path: Path, raw: Array) -> Array:
+    if raw.ndim != 2 or min(raw.shape) < 4 or raw.size > MAX_POINTS or raw.dtype.kind not in "fiu":
+        what = f"{raw.dtype} of shape {raw.shape} in {path.name}"
+        raise InputError(
+            "path", what, f"a 2-D table of real numbers, at least 4 an axis, at most {MAX_POINTS}"
+        )
+    heights = np.array(raw, dtype=np.float64)
+    heights[~np.isfinite(heights)] = np.nan
+    return heights
+
+
+def _brief(error: Exception) -> str:
+    lines = str(error).splitlines() or [""]
+    return f"{type(error).__name__}: {lines[0][:160]}"
