@@ -38,7 +38,7 @@ ORDERS = range(2, 10)  # 9 points suffice at NEAR
 
 
 class Kernel(NamedTuple):
-    """A kernel: its closed form in ``(x, y, dx, dy)``, its inner integrals for quadrature over x and over y."""
+    """A kernel: closed form of ``(x, y, dx, dy)``, inner integrals for quadrature over x and over y."""
 
     closed_form: Callable[[Array, Array, float, float], Array]
     over_x: Integrand

@@ -1,8 +1,8 @@
 """The normal kernel: integral of 1/rho over a rectangle (Love 1929; Johnson 1985, Eq. 3.25).
 
 Textbook form: second differences, over the four corners, of ``X asinh(Y/X) + Y asinh(X/Y)``. Each term
-grows with distance while the sum decays, so at n elements from the load the error grows about as
-n^2 eps: see the case ``kernels/textbook-normal-fails``, where nothing is left at a million elements.
+grows with distance while the sum decays, so n elements from the load the error is about n^2 eps: at a
+million elements four of sixteen digits are left (case ``kernels/textbook-normal-fails``).
 
 Cure. The potential of a uniformly charged segment, with its ends at s1 < s2 and t off its line, is
 
@@ -51,7 +51,8 @@ def weighted_edge(centre: Array, t: Array, length: float) -> Array:
     near_sum = np.where(near_end < 0, distance * (distance / near_reach), near_reach)
     # Below the floor t < 1e-150 length, where t log(length / t) adds nothing to the other edges.
     excess = np.maximum(near_sum + distance * (distance / far_reach), _TINY)
-    return t * np.log1p(2 * length / excess)
+    weighted: Array = t * np.log1p(2 * length / excess)
+    return weighted
 
 
 def closed_form(x: Array, y: Array, dx: float, dy: float) -> Array:
