@@ -38,14 +38,7 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None) -> Array:
     dx, dy, unit = _edges(n, m, dx, dy)
     if dx != dy:
         return unit * _table(LOVE, n, m, dx, dy)
-    size = max(n, m)
-    table = _near_block(LOVE, size, size, dx, dy)
-    for start, stop in _slabs(size, size):
-        rows = _across_x(LOVE, start, stop, stop, dx, dy)
-        table[start:stop, :stop] = rows
-        table[:start, start:stop] = rows[:, :start].T
-        table[start:stop, start:stop] = np.tril(rows[:, start:]) + np.tril(rows[:, start:], -1).T
-    return unit * table[:n, :m]
+    return unit * (_symmetric_table(LOVE, n, m, dx) if n >= m else _symmetric_table(LOVE, m, n, dx).T)
 
 
 def tangential_table(n: int, m: int, dx: float, dy: float | None = None) -> Array:
@@ -73,15 +66,31 @@ def _edges(n: int, m: int, dx: float, dy: float | None) -> tuple[float, float, f
 def _table(kernel: Kernel, n: int, m: int, dx: float, dy: float) -> Array:
     table = _near_block(kernel, n, m, dx, dy)
     for start, stop in _slabs(n, m):
-        table[start:stop, :stop] = _across_x(kernel, start, min(stop, n), min(stop, m), dx, dy)
-    for start, stop in _slabs(m, n):
-        table[:start, start:stop] = _across_y(kernel, min(start, n), start, min(stop, m), dx, dy)
+        rows, columns = min(stop, n), min(stop, m)
+        if start < n:
+            table[start:rows, :columns] = _across_x(kernel, start, rows, columns, dx, dy)
+        if start < m:
+            table[:start, start:columns] = _across_y(kernel, min(start, n), start, columns, dx, dy)
+    return table
+
+
+def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float) -> Array:
+    """The same for square elements, ``n >= m``, and a kernel symmetric in x and y: half the work."""
+    table = _near_block(kernel, n, m, edge, edge)
+    for start, stop in _slabs(n, m):
+        columns = min(stop, m)
+        rows = _across_x(kernel, start, stop, columns, edge, edge)
+        table[start:stop, :columns] = rows
+        if start < m:
+            table[:start, start:columns] = rows[: columns - start, :start].T
+            block = np.tril(rows[: columns - start, start:])
+            table[start:columns, start:columns] = block + np.tril(block, -1).T
     return table
 
 
 def _near_block(kernel: Kernel, n: int, m: int, dx: float, dy: float) -> Array:
-    """An empty table with its first few rows and columns filled in by the closed form."""
-    table = np.empty((n, m))
+    """A table of NaN, for whatever no slab would reach, with its first few rows and columns in closed form."""
+    table = np.full((n, m), np.nan)
     x, y = _offsets(0, min(n, _NEAR_COUNT), dx), _offsets(0, min(m, _NEAR_COUNT), dy)
     table[: len(x), : len(y)] = kernel.closed_form(x[:, None], y, dx, dy)
     return table
@@ -92,11 +101,11 @@ def _offsets(start: int, stop: int, edge: float) -> Array:
 
 
 def _slabs(n: int, m: int) -> Iterator[tuple[int, int]]:
-    """Rows ``[start, stop)``: thin near the load, where the order changes fast, then by size."""
+    """``[start, stop)``, for rows and columns alike: thin near the load, where the order changes fast."""
     start = _NEAR_COUNT
-    while start < n:
-        height = min(1 + start // 8, max(1, _SLAB // min(start, m)))
-        yield start, min(start + height, n)
+    while start < max(n, m):
+        height = min(1 + start // 8, max(1, _SLAB // min(start, n, m)))
+        yield start, min(start + height, max(n, m))
         start += height
 
 

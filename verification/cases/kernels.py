@@ -8,17 +8,11 @@ from typing import Any
 
 import mpmath as mp
 import numpy as np
-from numpy.typing import NDArray
 
 from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
-from refimpl.kernels.cerruti import CERRUTI
-from refimpl.kernels.far_field import ORDERS, across, relative_error_bound
-from refimpl.kernels.love import LOVE
 from verification.case import Measured
 from verification.exact import kernel_reference as reference
 from verification.exact.kernel_points import (
-    ASPECTS,
-    FARTHEST,
     Point,
     awkward_points,
     boundary_points,
@@ -26,9 +20,6 @@ from verification.exact.kernel_points import (
 )
 from verification.registry import case
 
-Array = NDArray[np.float64]
-
-EPS = float(np.finfo(np.float64).eps)
 LOVE_SOURCE = "Love 1929; Johnson 1985, Eq. (3.25); paper section 3"
 CERRUTI_SOURCE = "Cerruti 1882; Johnson 1985, section 3.6; paper section 3"
 TOLERANCE = 1e-14
@@ -36,14 +27,6 @@ REASON = (
     "ten times below the 1e-13 asked for. Closed form: at most q_x + q_y + 2 = 14 times the rounding of one "
     "edge, about 5 eps/2, or 8e-15; quadrature: 1e-15 by its bound, and as much rounding. Measured 2e-15"
 )
-
-
-def relative_error(value: float, exact: Any) -> float:
-    """``|value - exact| / |exact|`` in the reference's precision; where 0 is exact nothing else will do."""
-    if exact == 0:
-        return 0.0 if value == 0 else np.inf
-    with mp.workdps(reference.DIGITS):
-        return float(abs(mp.mpf(float(value)) - exact) / abs(exact))
 
 
 def worst(
@@ -78,7 +61,9 @@ def all_points() -> dict[str, Iterable[Point]]:
     tags=("kernels", "eq7"),
 )
 def normal_accuracy() -> Measured:
-    return worst(normal_integral, lambda value, p: relative_error(value, reference.normal(*p)), all_points())
+    return worst(
+        normal_integral, lambda value, p: reference.relative_error(value, reference.normal(*p)), all_points()
+    )
 
 
 @case(
@@ -94,13 +79,15 @@ def normal_accuracy() -> Measured:
 )
 def tangential_accuracy() -> Measured:
     return worst(
-        tangential_integral, lambda value, p: relative_error(value, reference.tangential(*p)), all_points()
+        tangential_integral,
+        lambda value, p: reference.relative_error(value, reference.tangential(*p)),
+        all_points(),
     )
 
 
 def enclosed_points() -> dict[str, Iterable[Point]]:
     """A smaller set, in the first quadrant and off the axis, as the enclosures ask."""
-    random = [(abs(x), abs(y), dx, dy) for x, y, dx, dy in random_points(seed=2002, count=150) if x != 0]
+    random = [(abs(x), abs(y), dx, dy) for x, y, dx, dy in random_points(seed=2002, count=120) if x != 0]
     return {"random": random, "centre, edges, corners": [p for p in awkward_points() if 1e-8 < p[0] < 3][::4]}
 
 
@@ -151,11 +138,9 @@ def tangential_enclosed() -> Measured:
 def references_agree() -> Measured:
     points: tuple[Point, ...] = (
         (0.3, 0.2, 1.0, 1.0),
-        (0.5, 0.5, 1.0, 1.0),
         (1e-5, 0.7, 1.0, 1e-3),
         (3e3, 2.0, 1.0, 1e-2),
         (5.0, 0.0, 1.0, 1e3),
-        (1e6, 1e6, 1.0, 1.0),
     )
     with mp.workdps(reference.DIGITS):
         normal = [abs(reference.normal_by_transform(*p) / reference.normal(*p) - 1) for p in points]
@@ -169,7 +154,7 @@ def references_agree() -> Measured:
 @case(
     "kernels/tables-50-digits",
     title="Tables for the convolution against 50-digit values",
-    claim="sampled entries of 1024-wide tables, for square and oblong elements, err by less than 1e-14, relatively",
+    claim="sampled entries of 1024-wide tables, for square and oblong elements, err by less than 1e-14",
     source=f"{LOVE_SOURCE}; {CERRUTI_SOURCE}",
     metric="at_most",
     tolerance=TOLERANCE,
@@ -191,123 +176,6 @@ def table_accuracy() -> Measured:
         ):
             # The offset i dx is exact here, j dy to half an eps: a relative error of that size or less.
             errors[f"{name}, dy/dx = {aspect:.4g}"] = max(
-                relative_error(table[i, j], exact(i * dx, j * dy, dx, dy)) for i, j in indices
+                reference.relative_error(table[i, j], exact(i * dx, j * dy, dx, dy)) for i, j in indices
             )
     return Measured(value=max(errors.values()), data=errors, note=f"{len(indices)} entries of each")
-
-
-def digits_lost(
-    textbook: Callable[..., Array], kernel: Callable[..., Array], exact: Callable[..., Any]
-) -> Measured:
-    """log10(error / eps) of the textbook form at 1e6 elements, median over directions; data by distance."""
-    distances = np.logspace(0, np.log10(FARTHEST), 13)
-    tangents = np.linspace(0, 1, 9)
-    errors: dict[str, list[float]] = {"offset": [], "textbook": [], "production": []}
-    for distance in np.round(distances):
-        x, y = np.full(tangents.shape, distance), np.round(distance * tangents)
-        true = [exact(a, b, 1.0, 1.0) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-        printed, made = textbook(x, y, 1.0, 1.0), kernel(x, y, 1.0, 1.0)
-        errors["offset"].append(float(distance))
-        errors["textbook"].append(float(np.median([*map(relative_error, printed, true)])))
-        errors["production"].append(max(map(relative_error, made, true)))
-    lost = float(np.log10(errors["textbook"][-1] / EPS))
-    printed_error, made_error = errors["textbook"][-1], errors["production"][-1]
-    note = f"error at 1e6 elements: textbook {printed_error:.1e}, production {made_error:.1e}"
-    return Measured(value=lost, unit="digits", data=errors, note=note)
-
-
-@case(
-    "kernels/textbook-normal-fails",
-    title="Love's corner sum loses its digits far from the load",
-    claim="at 1e6 elements the textbook form of I[1/rho] has lost at least 11 of a double's 16 digits",
-    source=LOVE_SOURCE,
-    metric="at_least",
-    tolerance=11.0,
-    tolerance_reason="terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread",
-    tags=("kernels", "textbook"),
-)
-def textbook_normal_fails() -> Measured:
-    return digits_lost(reference.textbook_normal, normal_integral, reference.normal)
-
-
-@case(
-    "kernels/textbook-tangential-fails",
-    title="Cerruti's corner sum loses its digits far from the load",
-    claim="at 1e6 elements the textbook form of I[s/rho^2] has lost at least 11 of a double's 16 digits",
-    source=CERRUTI_SOURCE,
-    metric="at_least",
-    tolerance=11.0,
-    tolerance_reason="terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread",
-    tags=("kernels", "textbook"),
-)
-def textbook_tangential_fails() -> Measured:
-    return digits_lost(reference.textbook_tangential, tangential_integral, reference.tangential)
-
-
-@case(
-    "kernels/quadrature-bound",
-    title="The error bound that chooses the quadrature order holds",
-    claim="truncation errors of 2 ... 9 points stay below their Bernstein-ellipse bound, all q and aspects tried",
-    source="refimpl/kernels/far_field.py; Trefethen 2008 for the method",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="error over bound; a bound is a bound",
-    tags=("kernels", "bound"),
-)
-def quadrature_bound() -> Measured:
-    ratios: dict[str, float] = {}
-    kernels = (("normal", LOVE, reference.normal), ("tangential", CERRUTI, reference.tangential))
-    for order, q, aspect, other in product(ORDERS, (2.0, 3.0, 6.0, 20.0, 100.0), ASPECTS, (1e-3, 0.5, 3.0)):
-        bound = relative_error_bound(order, q)
-        if not 1e-11 < bound < 1:  # below, rounding would be judged; above, nothing
-            continue
-        offset, beside = q / 2, other * aspect
-        for name, kernel, exact in kernels:
-            over_x = across(kernel.over_x, np.array(offset), np.array(beside), 1.0, aspect, order)
-            over_y = across(kernel.over_y, np.array(offset), np.array(beside), 1.0, aspect, order)
-            error = max(
-                relative_error(float(over_x), exact(offset, beside, 1.0, aspect)),
-                relative_error(float(over_y), exact(beside, offset, aspect, 1.0)),
-            )
-            key = f"{name}, {order} points"
-            ratios[key] = max(ratios.get(key, 0.0), error / bound)
-    return Measured(
-        value=max(ratios.values()), data=ratios, note="largest error over bound, by kernel and order"
-    )
-
-
-@case(
-    "kernels/love-at-centre",
-    title="Deflection at the centre of a uniformly loaded square",
-    claim="I[1/rho] at the centre of a unit square is 4 ln(1 + sqrt 2)",
-    source="Love 1929; Johnson 1985, Eq. (3.26)",
-    metric="relative",
-    tolerance=4 * EPS,
-    tolerance_reason="four equal terms of a few roundings each",
-    tags=("kernels",),
-)
-def love_at_centre() -> Measured:
-    return Measured(
-        value=float(normal_integral(0.0, 0.0, 1.0, 1.0)),
-        reference=3.525494348078172,  # 4 ln(1 + sqrt 2) = 3.52549434807817210093...
-        reference_uncertainty=2.3e-16,
-        note="a side of unit length",
-    )
-
-
-@case(
-    "kernels/cerruti-at-edge",
-    title="Deflection at the edge of a uniformly sheared square",
-    claim="I[s/rho^2] at the middle of the leading edge of a unit square is ln(5)/2 + 2 atan(1/2)",
-    source="integral of 2 atan(1 / 2s) over 0 < s < 1, by parts",
-    metric="relative",
-    tolerance=4 * EPS,
-    tolerance_reason="four terms of a few roundings each",
-    tags=("kernels",),
-)
-def cerruti_at_edge() -> Measured:
-    return Measured(
-        value=float(tangential_integral(0.5, 0.0, 1.0, 1.0)),
-        reference=1.7320141742186624,  # ... = 1.732014174218662420...
-        reference_uncertainty=2.3e-16,
-    )
