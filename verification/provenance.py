@@ -36,7 +36,10 @@ def revision() -> dict[str, str | bool | None]:
     if not (root / "pyproject.toml").is_file() or _git(root, "rev-parse", "--show-prefix") != "":
         return {"commit": None, "dirty": None}
     changes = _git(root, "status", "--porcelain")
-    return {"commit": _git(root, "rev-parse", "HEAD"), "dirty": None if changes is None else bool(changes)}
+    return {
+        "commit": _git(root, "rev-parse", "HEAD"),
+        "dirty": None if changes is None else bool(changes),
+    }
 
 
 def machine() -> dict[str, str | int | None]:
@@ -53,7 +56,13 @@ def command() -> str:
 def provenance() -> dict[str, object]:
     """All of it, ready for JSON."""
     now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-    return {"command": command(), "date": now, **revision(), "versions": versions(), "machine": machine()}
+    return {
+        "command": command(),
+        "date": now,
+        **revision(),
+        "versions": versions(),
+        "machine": machine(),
+    }
 
 
 def _git(root: Path, *arguments: str) -> str | None:

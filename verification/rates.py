@@ -22,7 +22,10 @@ Array = NDArray[np.float64]
 
 CREDIBLE_WITHIN = 0.5
 TRUSTED_FACTOR, CAUTIOUS_FACTOR = 1.25, 3.0
-ORDER_RANGE = (0.05, 10.0)  # an unknown limit's order is sought here; outside, no discretisation is meant
+ORDER_RANGE = (
+    0.05,
+    10.0,
+)  # an unknown limit's order is sought here; outside, no discretisation is meant
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,9 @@ def fit_order(spacing: Sequence[float], error: Sequence[float]) -> Order:
     return Order(float(order), float(np.exp(intercept)), tuple(local.tolist()), scatter)
 
 
-def extrapolate(spacing: Sequence[float], value: Sequence[float], expected_order: float) -> Extrapolation:
+def extrapolate(
+    spacing: Sequence[float], value: Sequence[float], expected_order: float
+) -> Extrapolation:
     """Limit of `value` for spacing to zero, and the uncertainty of the finest grid's value.
 
     Credible: least-squares fit of ``limit + C h**p``; the uncertainty at the finest h is ``1.25 |C h**p| +

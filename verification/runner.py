@@ -55,7 +55,11 @@ class Run:
 
 
 def run(
-    tier: Tier | str = Tier.QUICK, *, only: Iterable[str] = (), jobs: int = 2, package: str = CASES_PACKAGE
+    tier: Tier | str = Tier.QUICK,
+    *,
+    only: Iterable[str] = (),
+    jobs: int = 2,
+    package: str = CASES_PACKAGE,
 ) -> Run:
     """Run the cases of a tier whose ids match `only` (globs; all when empty) in `jobs` worker processes.
 

@@ -18,7 +18,9 @@ def declare(
     function: Callable[[], Measured], metric: str = "relative", tolerance: float = 0.1, **other: Any
 ) -> Case:
     texts = {"title": "t", "claim": "c", "source": "s", "tolerance_reason": "measured", **other}
-    return Case("subject/slug", metric=cast(Metric, metric), tolerance=tolerance, function=function, **texts)
+    return Case(
+        "subject/slug", metric=cast(Metric, metric), tolerance=tolerance, function=function, **texts
+    )
 
 
 @pytest.mark.parametrize(
@@ -77,7 +79,9 @@ def test_numbers_that_cannot_be_judged_are_errors(metric: str, measured: Any) ->
     assert result.note
 
 
-@pytest.mark.parametrize("raised", [RuntimeError("broken"), SystemExit(0), AssertionError(), MemoryError()])
+@pytest.mark.parametrize(
+    "raised", [RuntimeError("broken"), SystemExit(0), AssertionError(), MemoryError()]
+)
 def test_whatever_a_case_raises_is_an_error(raised: BaseException) -> None:
     def function() -> Measured:
         raise raised
@@ -131,10 +135,22 @@ def test_an_id_is_subject_and_slug(id: str) -> None:
 
 
 def test_a_result_is_json_whatever_the_data_holds() -> None:
-    data = {"map": np.arange(4.0).reshape(2, 2), "n": np.int64(3), "h": [1.0, math.nan], "x": "y", "-": None}
+    data = {
+        "map": np.arange(4.0).reshape(2, 2),
+        "n": np.int64(3),
+        "h": [1.0, math.nan],
+        "x": "y",
+        "-": None,
+    }
     result = declare(lambda: Measured(value=np.float64(1.0), reference=1.0, data=data)).run()
     back = json.loads(json.dumps(asdict(result), allow_nan=False))
-    assert back["data"] == {"map": [[0.0, 1.0], [2.0, 3.0]], "n": 3, "h": [1.0, None], "x": "y", "-": None}
+    assert back["data"] == {
+        "map": [[0.0, 1.0], [2.0, 3.0]],
+        "n": 3,
+        "h": [1.0, None],
+        "x": "y",
+        "-": None,
+    }
     assert back["value"] == 1.0
     assert {"id", "claim", "source", "value", "reference", "reference_uncertainty", "error", "tolerance",
             "tolerance_reason", "status", "seconds"} <= set(back)  # fmt: skip

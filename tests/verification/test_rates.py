@@ -70,7 +70,10 @@ def test_three_grids_reproduce_the_textbook_index() -> None:
         ([1.0 + 0.3 * h**0.9 for h in H], "first order where second is expected"),
         ([1.0 + (-1) ** k * 0.1 * h for k, h in enumerate(H)], "oscillates"),
         ([1.1, 1.1, 1.1, 1.1], "constant"),
-        ([1.0 + 0.01 * h**2 + 0.4 * h**6 * 100 for h in H], "coarse grids are outside the asymptotic range"),
+        (
+            [1.0 + 0.01 * h**2 + 0.4 * h**6 * 100 for h in H],
+            "coarse grids are outside the asymptotic range",
+        ),
         ([1.5, 1.3, 1.2, 0.7], "diverges"),
     ],
 )

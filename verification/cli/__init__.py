@@ -1,0 +1,62 @@
+"""The console script `rough-friction`: one module per subcommand, heavy imports only where they are used."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import NoReturn
+
+from verification.cli import appendix_a, report, solve, verify
+
+BAD_INPUT, INTERRUPTED = 2, 130
+
+EPILOG = """exit status: 0 success, 1 a check failed or the solve did not converge, 2 bad input
+
+examples:
+  rough-friction solve table1-smooth --grid 256
+  rough-friction verify --tier quick --json results.json
+  rough-friction report --results results.json --output report
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that refuses bad usage by one line on stderr."""
+
+    def error(self, message: str) -> NoReturn:
+        """Exit with status 2."""
+        self.exit(BAD_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The whole command line."""
+    top = Parser(
+        prog="rough-friction",
+        description="Friction between rough elastic surfaces: solve scenes, verify the solvers, report.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    top.add_argument(
+        "--version", action="version", version=f"rough-friction {version('rough-friction')}"
+    )
+    commands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
+    for module in (solve, verify, report, appendix_a):
+        module.add_parser(commands)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit status. Errors that nobody foresaw keep their traceback."""
+    top = parser()
+    options = top.parse_args(arguments)
+    from refimpl.errors import InputError  # here and not above: --help must not wait for numpy
+
+    try:
+        status: int = options.run(options)
+    except InputError as refused:
+        print(f"{top.prog}: {' '.join(str(refused).split())}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return status

@@ -1,0 +1,156 @@
+"""Kinds of figures, drawn from a case's series, and their export as SVG for light, dark and print."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Canvas
+
+Data = Mapping[str, Any]
+Draw = Callable[[Canvas, Data], None]
+
+# Okabe and Ito 2008: told apart by colour-blind readers; black is left to the text.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+MARKERS = "os^Dv<"
+INK = "#010203"  # stands for the page's text colour until the export
+STYLE: dict[Any, Any] = {
+    "axes.edgecolor": INK, "axes.labelcolor": INK, "axes.titlecolor": INK, "text.color": INK,
+    "xtick.color": INK, "ytick.color": INK, "grid.color": "#808080", "grid.alpha": 0.35, "axes.grid": True,
+    "legend.frameon": False, "legend.fontsize": 9, "font.size": 10, "lines.linewidth": 1.4,
+    "lines.markersize": 5,
+    "svg.hashsalt": "rough-friction", "svg.fonttype": "path",
+}  # fmt: skip
+SCHEMES = (
+    "<style>svg{color:#1c1c1e}@media screen and (prefers-color-scheme:dark){svg{color:#ececf0}}</style>"
+)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A declared figure: which cases (glob) it belongs to, the series it needs, and how it is drawn."""
+
+    cases: str
+    needs: tuple[str, ...]
+    draw: Draw
+    caption: str
+    size: tuple[float, float] = (6.4, 3.8)
+
+    def available(self, data: Data) -> bool:
+        """Whether every series it needs is there and holds something."""
+        return all(data.get(name) not in (None, [], {}) for name in self.needs)
+
+
+def svg(figure: Figure, data: Data) -> str | None:
+    """The drawn figure as SVG text in the reader's colours; None when its series are not available."""
+    if not figure.available(data):
+        return None
+    with matplotlib.rc_context(STYLE):
+        canvas = Canvas(figsize=figure.size, layout="constrained")
+        figure.draw(canvas, data)
+        buffer = io.StringIO()
+        # No date: the same results give the same bytes.
+        canvas.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    text = buffer.getvalue().replace(INK, "currentColor")
+    head, mark, rest = text.partition("<defs>")
+    return head + SCHEMES + mark + rest
+
+
+def lines(
+    x: str, series: Mapping[str, str], *, xlabel: str, ylabel: str, log: str = "", marker: bool = False
+) -> Draw:
+    """Series (key to legend text) over `x`; `log` names the logarithmic axes, "", "x", "y" or "xy"."""
+
+    def draw(canvas: Canvas, data: Data) -> None:
+        axes = _axes(canvas, xlabel, ylabel, log)
+        for k, (key, label) in enumerate(series.items()):
+            style = "--" if key.startswith(("exact", "reference", "hertz")) else "-"
+            mark = MARKERS[k] if marker else None
+            axes.plot(data[x], _numbers(data[key]), style, marker=mark, color=COLOURS[k], label=label)
+        axes.legend()
+
+    return draw
+
+
+def order(
+    x: str, series: Mapping[str, str], *, xlabel: str, ylabel: str, slopes: Sequence[float]
+) -> Draw:
+    """Errors over spacing, log-log, with the fitted orders in the legend and lines of the expected ones."""
+
+    def draw(canvas: Canvas, data: Data) -> None:
+        axes = _axes(canvas, xlabel, ylabel, "xy")
+        h = np.asarray(data[x], dtype=float)
+        lowest = np.inf
+        for k, (key, label) in enumerate(series.items()):
+            error = np.abs(_numbers(data[key]))
+            fitted = np.polyfit(np.log(h), np.log(error), 1)[0]
+            text = f"{label}, order {fitted:.2f}"
+            axes.plot(h, error, marker=MARKERS[k], color=COLOURS[k], label=text)
+            lowest = min(lowest, error[np.argmin(h)])
+        for slope in slopes:
+            guide = 0.5 * lowest * (h / h.min()) ** slope
+            axes.plot(h, guide, ":", color="#808080", label=f"order {slope:g}")
+        axes.legend()
+
+    return draw
+
+
+def dots(values: str | None, *, xlabel: str, limit: float | None = None) -> Draw:
+    """One dot per entry of the mapping `values` (or of all data), on a logarithmic axis; zeros say so."""
+
+    def draw(canvas: Canvas, data: Data) -> None:
+        entries = data if values is None else data[values]
+        sizes = _numbers(list(entries.values()))
+        axes = _axes(canvas, xlabel, "", "x")
+        shown = [*sizes[sizes > 0], *([limit] if limit is not None else [])] or [1.0]
+        axes.set_xlim(0.2 * min(shown), 5 * max(shown))
+        axes.set(ylim=(len(sizes) - 0.5, -0.5), yticks=range(len(sizes)), yticklabels=list(entries))
+        for k, size in enumerate(sizes):
+            if size > 0:
+                axes.plot(size, k, marker="o", color=COLOURS[0])
+                axes.annotate(f"{size:.1e}", (size, k), (7, 5), textcoords="offset points", fontsize=9)
+            else:
+                axes.text(axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center")
+        if limit is not None:
+            axes.axvline(limit, color=COLOURS[1], linestyle="--", label="tolerance")
+            axes.legend(loc="lower right")
+
+    return draw
+
+
+def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str = "viridis") -> Draw:
+    """Maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left blank."""
+
+    def draw(canvas: Canvas, data: Data) -> None:
+        row = canvas.subplots(1, len(fields), squeeze=False)[0]
+        for axes, (key, title) in zip(row, fields.items(), strict=True):
+            field = np.ma.masked_equal(_numbers(data[key]), 0.0)
+            edge = float(data[side]) if side is not None else field.shape[0]
+            extent = (0.0, edge, 0.0, edge)
+            image = axes.imshow(
+                field.T, cmap=colours, origin="lower", extent=extent, interpolation="none"
+            )
+            length = "mm" if side is not None else "elements"
+            axes.set(title=title, xlabel=f"x ({length})", ylabel=f"y ({length})")
+            axes.grid(visible=False)
+            canvas.colorbar(image, ax=axes, label=unit, shrink=0.85)
+
+    return draw
+
+
+def _axes(canvas: Canvas, xlabel: str, ylabel: str, log: str) -> Axes:
+    axes = canvas.add_subplot()
+    axes.set(xlabel=xlabel, ylabel=ylabel)
+    axes.set_xscale("log" if "x" in log else "linear")
+    axes.set_yscale("log" if "y" in log else "linear")
+    return axes
+
+
+def _numbers(series: Sequence[Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Floats with NaN for what was recorded as not available."""
+    return np.array(series, dtype=float)

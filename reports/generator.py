@@ -1,0 +1,80 @@
+"""The validation report: one HTML page that needs nothing else, from a result file alone."""
+
+from __future__ import annotations
+
+import base64
+import shlex
+from collections.abc import Mapping
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from reports import figures
+from reports.results import Case, by, by_subject, check, worst
+
+
+def render(results: object) -> str:
+    """The page. Raises ResultFileError (a ValueError) for anything but a result file."""
+    checked = check(results)
+    environment = Environment(
+        loader=PackageLoader("reports"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(number=number, anchor=anchor)
+    cases: list[Case] = checked["cases"]
+    return environment.get_template("report.html").render(
+        results=checked,
+        counts=checked["counts"],
+        provenance=checked["provenance"],
+        claims=[(claim, group, worst(group)) for claim, group in by(cases, "claim").items()],
+        subjects=by_subject(cases),
+        judgement=judgement,
+        rerun=rerun,
+        pictures={case["id"]: picture(case) for case in cases},
+    )
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number for a table; what was not measured is "n/a", never 0.
+
+    >>> number(None), number(0.25), number(171.0512, 6)
+    ('n/a', '0.25', '171.051')
+    """
+    return "n/a" if value is None else f"{value:.{digits}g}"
+
+
+def anchor(case_id: str) -> str:
+    """The fragment that links to a case."""
+    return "case-" + "".join(c if c.isalnum() else "-" for c in case_id)
+
+
+def judgement(case: Case) -> str:
+    """Error against tolerance, as the verdict was found."""
+    if case["error"] is None:
+        return "not judged"
+    sign = "≥" if case["metric"] == "at_least" else "≤"
+    sign = sign if case["status"] == "pass" else {"≥": "<", "≤": ">"}[sign]
+    return f"{number(case['error'], 3)} {sign} {number(case['tolerance'], 3)}"
+
+
+def rerun(case: Case) -> str:
+    """The command that runs this case alone."""
+    tier = " --tier full" if case["tier"] == "full" else ""
+    return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"
+
+
+def picture(case: Case) -> Mapping[str, Any] | None:
+    """The case's figure as a data address with its caption; `address` is None where its data are missing.
+
+    None for a case that declares no figure.
+    """
+    declared = figures.declared_for(case["id"])
+    if declared is None:
+        return None
+    svg = figures.svg(declared, case["data"])
+    encoded = None if svg is None else base64.b64encode(svg.encode()).decode()
+    address = None if encoded is None else f"data:image/svg+xml;base64,{encoded}"
+    return {"caption": declared.caption, "address": address}

@@ -1,0 +1,67 @@
+"""Result files of `rough-friction verify`: what a report needs of them, checked before anything is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+FORMAT = "rough-friction results, version 1"
+TOP_KEYS = ("tier", "only", "counts", "seconds", "cases", "errata", "provenance")
+CASE_KEYS = (
+    "id", "title", "claim", "source", "metric", "value", "reference", "reference_uncertainty", "error",
+    "tolerance", "tolerance_reason", "status", "seconds", "unit", "note", "tier", "tags", "data",
+)  # fmt: skip
+STATUSES = ("pass", "fail", "error", "unavailable")
+
+Case = Mapping[str, Any]
+
+
+class ResultFileError(ValueError):
+    """The file is not a result file that this report understands."""
+
+
+def check(results: object) -> Mapping[str, Any]:
+    """The results, if they are of the known format, complete, and their counts are those of their cases.
+
+    Raises ResultFileError.
+    """
+    if not isinstance(results, Mapping) or results.get("format") != FORMAT:
+        raise ResultFileError(f"not a file of the format {FORMAT!r}")
+    _require(results, TOP_KEYS, "the file")
+    for case in results["cases"]:
+        _require(case, CASE_KEYS, f"case {case.get('id', '?')!r}")
+        if case["status"] not in STATUSES:
+            raise ResultFileError(f"case {case['id']!r} has the unknown status {case['status']!r}")
+    counted = {status: sum(c["status"] == status for c in results["cases"]) for status in STATUSES}
+    if counted != results["counts"]:
+        raise ResultFileError(f"counts {results['counts']} are not those of the cases, {counted}")
+    return results
+
+
+def worst(cases: list[Case]) -> str:
+    """The status that decides about several cases: any error or failure outweighs, then what did not run."""
+    present = {case["status"] for case in cases}
+    return next(status for status in ("error", "fail", "unavailable", "pass") if status in present)
+
+
+def by(cases: list[Case], key: str) -> dict[str, list[Case]]:
+    """Cases grouped by a field, in order of first appearance.
+
+    >>> by([{"claim": "a", "id": 1}, {"claim": "b", "id": 2}, {"claim": "a", "id": 3}], "claim")["a"]
+    [{'claim': 'a', 'id': 1}, {'claim': 'a', 'id': 3}]
+    """
+    groups: dict[str, list[Case]] = {}
+    for case in cases:
+        groups.setdefault(case[key], []).append(case)
+    return groups
+
+
+def by_subject(cases: list[Case]) -> dict[str, list[Case]]:
+    """Cases grouped by the part of their id before the slash."""
+    return by([{**case, "subject": case["id"].partition("/")[0]} for case in cases], "subject")
+
+
+def _require(item: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
+    missing = [key for key in keys if key not in item]
+    if missing:
+        raise ResultFileError(f"{where} lacks {', '.join(missing)}")

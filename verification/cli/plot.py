@@ -1,0 +1,106 @@
+"""A solution as a picture: maps of pressure and traction, and profiles through the centre."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from refimpl import Scene, Solution
+    from verification.exact.hertz import Sphere as HertzSphere
+
+BLUE, ORANGE, BLACK = (
+    "#0072B2",
+    "#D55E00",
+    "#000000",
+)  # Okabe and Ito 2008, safe for colour-blind readers
+MEGA, MILLI = 1e6, 1e-3
+
+
+def check_suffix(path: Path | None) -> None:
+    """Refuse, before any work, a picture that is not PNG. Raises InputError."""
+    from refimpl.errors import InputError
+
+    if path is not None and path.suffix != ".png":
+        raise InputError("--plot", str(path), "a file name that ends in .png")
+
+
+def draw(solution: Solution, scene: Scene, path: Path) -> None:
+    """Write the picture: two maps above, profiles along x and y below, against Hertz for a sphere."""
+    import matplotlib
+
+    matplotlib.use("Agg")  # no display is needed, or asked for
+    import matplotlib.pyplot as plt
+
+    from verification.files import replacing
+
+    figure, axes = plt.subplots(2, 2, figsize=(9.5, 8), layout="constrained")
+    _map(axes[0, 0], solution, "pressure", "viridis")
+    _map(axes[0, 1], solution, "traction", "cividis")
+    hertz = hertz_of(scene, solution.normal_force)
+    _profile(axes[1, 0], solution, hertz, axis=0)
+    _profile(axes[1, 1], solution, hertz, axis=1)
+    figure.suptitle(
+        f"$\\mu$ = {solution.friction_coefficient:.4f},  A = {solution.contact_area / MILLI**2:.4g} mm$^2$,  "
+        f"$f_{{max}}$ = {solution.max_pressure / MEGA:.4g} MPa  ({solution.status.value})"
+    )
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=130)
+    plt.close(figure)
+
+
+def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
+    """The smooth, frictionless Hertz contact of a scene with a sphere; None for a scene without one."""
+    from refimpl.surfaces.shapes import Sphere
+    from verification.exact import hertz
+
+    curvature = sum(
+        sign / part.radius
+        for sign, body in ((1, scene.upper), (-1, scene.lower))
+        for part in getattr(body.surface, "parts", (body.surface,))
+        if isinstance(part, Sphere)
+    )
+    if scene.periodic or curvature <= 0 or load <= 0:
+        return None
+    return hertz.Sphere(load=load, radius=1 / curvature, modulus=scene.materials.reduced_modulus)
+
+
+def _map(axes: Axes, solution: Solution, name: str, colours: str) -> None:
+    """One field in MPa over the square in mm; places without contact are left white."""
+    import numpy as np
+
+    field = np.ma.masked_equal(getattr(solution, name) / MEGA, 0.0)
+    edge = solution.grid.side / MILLI
+    image = axes.imshow(field.T, origin="lower", extent=(0, edge, 0, edge), cmap=colours)
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", title=name.capitalize())
+    axes.figure.colorbar(image, ax=axes, label="MPa")
+
+
+def _profile(axes: Axes, solution: Solution, hertz: HertzSphere | None, axis: int) -> None:
+    """Pressure and traction (MPa) along the line of elements next to the centre."""
+    import numpy as np
+
+    middle = solution.grid.M // 2
+    s = solution.grid.centres - solution.grid.side / 2
+    for name, colour in (("pressure", BLUE), ("traction", ORANGE)):
+        line = np.take(getattr(solution, name), middle, axis=1 - axis)
+        axes.plot(
+            s / MILLI, line / MEGA, color=colour, label=name, marker=".", markersize=3, linewidth=1
+        )
+    if hertz is not None:
+        fine = np.linspace(s[0], s[-1], 2001)
+        label = "Hertz, smooth and frictionless"
+        axes.plot(
+            fine / MILLI,
+            hertz.pressure(np.hypot(fine, s[middle])) / MEGA,
+            "--",
+            color=BLACK,
+            lw=1,
+            label=label,
+        )
+    letter = "xy"[axis]
+    axes.set(xlabel=f"{letter} from the centre (mm)", ylabel="MPa", title=f"Profile along {letter}")
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False, fontsize="small")

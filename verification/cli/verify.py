@@ -1,0 +1,81 @@
+"""`rough-friction verify`: run the verification cases."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from verification.cli.output import add_json, columns, emit
+
+if TYPE_CHECKING:
+    from verification.case import Result
+    from verification.runner import Run
+
+EPILOG = """examples:
+  rough-friction verify --tier quick --json results.json
+  rough-friction verify --tier full --only 'hertz/*' --only kernels/love
+  rough-friction verify --list
+"""
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand."""
+    parser = commands.add_parser(
+        "verify",
+        help="run the verification cases",
+        description="Run the verification cases. A case that could not run is never a pass.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--tier", choices=("quick", "full"), default="quick", help="full includes the quick cases"
+    )
+    parser.add_argument(
+        "--only", metavar="ID-GLOB", action="append", default=[], help="only these; may be repeated"
+    )
+    parser.add_argument("--jobs", metavar="N", type=int, default=2, help="worker processes (default 2)")
+    parser.add_argument("--list", action="store_true", help="list the selected cases and run nothing")
+    add_json(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run or list the cases; status 1 when one failed or broke, or none passed."""
+    from refimpl.errors import InputError
+    from verification import registry, runner
+    from verification.case import Tier
+
+    if options.jobs < 1:
+        raise InputError("--jobs", options.jobs, "at least one worker process")
+    try:
+        chosen = registry.select(registry.load(), Tier(options.tier), options.only)
+    except LookupError as nothing:
+        raise InputError(
+            "--only", options.only, f"the id of a case ({nothing}; see --list)"
+        ) from nothing
+    if options.list:
+        document = [
+            {"id": c.id, "tier": c.tier.value, "title": c.title, "tags": list(c.tags)} for c in chosen
+        ]
+        emit(document, options.json, columns([[c.id, c.tier.value, c.title] for c in chosen], indent=""))
+        return 0
+    done = runner.run(options.tier, only=options.only, jobs=options.jobs)
+    emit(done.document(), options.json, table(done))
+    return done.exit_status
+
+
+def table(done: Run) -> str:
+    """One line per case, the reasons of those that did not pass, and the counts."""
+    rows = [[r.status, r.id, _judgement(r), f"{r.seconds:.1f} s"] for r in done.results]
+    reasons = [[r.id, r.note] for r in done.results if r.status in ("error", "unavailable")]
+    counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
+    parts = [columns(rows, indent=""), columns(reasons), f"{counts}; {done.seconds:.0f} s"]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _judgement(result: Result) -> str:
+    if result.error is None:
+        return ""
+    sign = ">=" if result.metric == "at_least" else "<="
+    sign = sign if result.status == "pass" else {">=": "<", "<=": ">"}[sign]
+    return f"{result.error:.3g} {sign} {result.tolerance:.3g}"

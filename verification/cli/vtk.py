@@ -1,0 +1,48 @@
+"""Both deformed surfaces with their contact fields, for ParaView."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from refimpl import Solution
+
+SUFFIXES = (".vtk", ".vtu")
+
+
+def check_suffix(path: Path | None) -> None:
+    """Refuse, before any work, a file name whose suffix names no format. Raises InputError."""
+    from refimpl.errors import InputError
+
+    if path is not None and path.suffix not in SUFFIXES:
+        raise InputError("--vtk", str(path), f"a file name that ends in {' or '.join(SUFFIXES)}")
+
+
+def write(solution: Solution, path: Path) -> None:
+    """Write the lower surface and, as a second sheet, the upper one.
+
+    Points are the element centres at the deformed heights (m), cells the squares between them. Point fields:
+    `pressure` and `traction` (Pa), `gap` (m) between the deformed surfaces, `body` (0 lower, 1 upper).
+    """
+    import meshio
+    import numpy as np
+
+    from verification.files import replacing
+
+    M = solution.grid.M
+    x, y = np.meshgrid(solution.grid.centres, solution.grid.centres, indexing="ij")
+    sheets = [np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+              for z in (solution.surface_lower, solution.surface_upper)]  # fmt: skip
+    number = np.arange(M * M).reshape(M, M)
+    around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    squares = np.stack(around, axis=-1).reshape(-1, 4)
+    fields = {
+        name: np.tile(getattr(solution, name).ravel(), 2) for name in ("pressure", "traction", "gap")
+    }
+    fields["body"] = np.repeat([0.0, 1.0], M * M)
+    mesh = meshio.Mesh(
+        np.vstack(sheets), [("quad", np.vstack([squares, squares + M * M]))], point_data=fields
+    )
+    with replacing(path) as temporary:
+        mesh.write(temporary)
