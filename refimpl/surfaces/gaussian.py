@@ -84,13 +84,16 @@ class GaussianRoughness(Surface):
 
     def _field(self, x: Array, y: Array, period: float | None) -> Array:
         """Ensemble heights (m) at all pairs of ``x``, ``y``."""
-        nodes_x, smooth_x = self._smoothing(x, period)
-        nodes_y, smooth_y = self._smoothing(y, period)
+        nodes_x, smooth_x = self.smoothing(x, period)
+        nodes_y, smooth_y = self.smoothing(y, period)
         noise = white_noise(self.seed, nodes_x, nodes_y)
         return self.rms * np.ascontiguousarray((smooth_y @ (smooth_x @ noise).T).T)
 
-    def _smoothing(self, x: Array, period: float | None) -> tuple[range, csr_array]:
-        """One axis of the sum above: the nodes it needs, and the kernel as a matrix ``(len(x), nodes)``."""
+    def smoothing(self, x: Array, period: float | None = None) -> tuple[range, csr_array]:
+        """One axis of the sum above: the nodes it needs, and the kernel as a matrix S, ``(len(x), nodes)``.
+
+        Heights are ``rms S_x w S_y^T``: the exact correlation along an axis, in the ensemble, is ``S S^T``.
+        """
         length, h = self.correlation_length, self._lattice_spacing(period)
         reach = math.ceil(HALF_WIDTH * length / h)
         self._refuse_too_many(x, h, reach)

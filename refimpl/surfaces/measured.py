@@ -99,8 +99,8 @@ class MeasuredSurface(Surface):
             f"{name}: {by(reading.heights.shape)} points on {by(reading.area)} m, read {reading.source}",
             f"{name}: the central square of {grid.side:.6g} m is used, {by(z.shape)} points, "
             f"resampled bicubically to {grid.M} x {grid.M} elements",
-            f"{name}: levelled by {self.level} in that square (slopes {tilt}), "
-            f"which takes the rms height from {z.std():.4g} to {rest.std():.4g} m",
+            f"{name}: level {self.level!r} fitted in that square (slopes {tilt}) and taken off; "
+            f"rms height there {z.std():.4g} m before, {rest.std():.4g} m after",
             *self.cautions(grid),
         )
 

@@ -1,0 +1,81 @@
+"""Statistics of heights on equidistant points: pure functions of ``z[i, j]`` (m) and the spacing (m).
+
+Moments are about the mean of the points given. Slopes are central differences, one-sided at the border.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refimpl.grid import Array
+
+
+def rms_height(z: Array) -> float:
+    """Root of the mean square deviation from the mean height (m)."""
+    return float(np.std(z))
+
+
+def skewness(z: Array) -> float:
+    """Third central moment over ``rms^3``; 0 for Gaussian heights."""
+    return _moment(z, 3)
+
+
+def kurtosis(z: Array) -> float:
+    """Fourth central moment over ``rms^4``; 3 for Gaussian heights.
+
+    >>> kurtosis(np.array([[-1.0, 1.0], [1.0, -1.0]]))
+    1.0
+    """
+    return _moment(z, 4)
+
+
+def slopes(z: Array, spacing: float) -> tuple[Array, Array]:
+    """``dz/dx, dz/dy`` at every point, each of z's shape."""
+    return np.asarray(np.gradient(z, spacing, axis=0)), np.asarray(np.gradient(z, spacing, axis=1))
+
+
+def slope_angles(z: Array, spacing: float) -> tuple[Array, Array]:
+    """Angles ``atan(dz/dx), atan(dz/dy)`` (rad)."""
+    dz_dx, dz_dy = slopes(z, spacing)
+    return np.arctan(dz_dx), np.arctan(dz_dy)
+
+
+def rms_slopes(z: Array, spacing: float) -> tuple[float, float]:
+    """Root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts).
+
+    On Eq. (9) and spacing h the central difference sees ``(R(0) - R(2h)) / (2 h^2)`` in place of ``-R''(0)``:
+    too little by the fraction ``4.6 (h / l)^2`` of the mean square, to leading order.
+    """
+    along_x, along_y = slopes(z, spacing)
+    return float(np.sqrt(np.mean(along_x**2))), float(np.sqrt(np.mean(along_y**2)))
+
+
+def autocorrelation(z: Array, axis: int) -> Array:
+    """Mean product of deviations at lags 0, 1, ... along one axis, over the variance; ``(z.shape[axis],)``.
+
+    Each lag averages the pairs that exist (nothing wraps). Heights of no variance give NaN.
+    """
+    deviations = np.moveaxis(z - np.mean(z), axis, -1)
+    n = deviations.shape[-1]
+    spectrum = np.fft.rfft(deviations, 2 * n)
+    products = np.fft.irfft(np.mean(np.abs(spectrum) ** 2, axis=0), 2 * n)[:n]
+    variance = float(np.var(z))
+    return np.asarray(products / (n - np.arange(n)) / (variance if variance > 0 else np.nan))
+
+
+def correlation_length(z: Array, spacing: float, level: float = 0.1) -> float | None:
+    """Lag (m) where the autocorrelation, averaged over both axes, first falls to ``level``; None if never.
+
+    ``z`` is square; linear between the points.
+    """
+    mean = (autocorrelation(z, 0) + autocorrelation(z, 1)) / 2.0
+    below = np.flatnonzero(mean <= level)
+    if len(below) == 0:
+        return None
+    k = int(below[0])
+    return float(spacing * (k - (level - mean[k]) / (mean[k - 1] - mean[k])))
+
+
+def _moment(z: Array, order: int) -> float:
+    deviations = z - np.mean(z)
+    return float(np.mean(deviations**order) / np.mean(deviations**2) ** (order / 2.0))

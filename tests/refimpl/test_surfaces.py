@@ -1,0 +1,254 @@
+"""Shapes, arrays, sums, bicubic resampling and tables."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from refimpl.errors import InputError
+from refimpl.grid import Grid
+from refimpl.surfaces import (
+    ArraySurface,
+    Flat,
+    GaussianRoughness,
+    MeasuredSurface,
+    Sphere,
+    Surface,
+    SurfaceSum,
+    SurfaceWarning,
+    as_surface,
+    surface_from_dict,
+)
+from refimpl.surfaces.bicubic import resample, resample_periodic
+
+GRID = Grid(side=2e-3, M=16)
+EPS = np.finfo(float).eps
+
+
+def centres(grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
+    return np.meshgrid(grid.centres + offset[0], grid.centres + offset[1], indexing="ij")
+
+
+def test_sphere_is_the_paraboloid_about_the_centre_and_moves_with_the_offset() -> None:
+    offset = (3e-4, -1e-4)
+    x, y = centres(GRID, offset)
+    expected = ((x - 1e-3) ** 2 + (y - 1e-3) ** 2) / (2 * 0.14)
+    np.testing.assert_allclose(
+        Sphere(0.14).heights(GRID, offset), expected, rtol=0, atol=8 * EPS * expected.max()
+    )
+    np.testing.assert_array_equal(Sphere(-0.14).heights(GRID), -Sphere(0.14).heights(GRID))
+
+
+@given(st.floats(1e-6, 1e3), st.integers(1, 40))
+def test_sphere_is_symmetric_to_the_last_bit(side: float, M: int) -> None:
+    z = Sphere(0.1).heights(Grid(side, M))
+    np.testing.assert_array_equal(z, z[::-1])
+    np.testing.assert_array_equal(z, z.T)
+
+
+def test_periodic_sphere_repeats() -> None:
+    z = Sphere(0.14).heights(GRID, periodic=True)
+    shifted = Sphere(0.14).heights(GRID, (5 * GRID.spacing, -3 * GRID.spacing), periodic=True)
+    np.testing.assert_allclose(shifted, np.roll(z, (-5, 3), axis=(0, 1)), rtol=0, atol=8 * EPS * z.max())
+
+
+def test_sums_are_flat_and_add_up() -> None:
+    array = np.arange(256.0).reshape(16, 16) * 1e-9
+    left, right = array + Sphere(0.14), Sphere(0.14) + array + (Flat() + GaussianRoughness(1e-6, 1e-4, 1))
+    assert [type(p) for p in left.parts] == [ArraySurface, Sphere]
+    assert [type(p) for p in right.parts] == [Sphere, ArraySurface, Flat, GaussianRoughness]
+    np.testing.assert_array_equal(left.heights(GRID), array + Sphere(0.14).heights(GRID))
+    assert len(right.describe(GRID)) == 3  # the array, the roughness, and the caution about its resolution
+
+
+def test_array_of_the_grids_shape_is_used_as_it_is_and_never_shared() -> None:
+    array = np.random.default_rng(1).normal(size=(16, 16))
+    kept, surface = array.copy(), as_surface(array)
+    array[:] = 0.0
+    z = surface.heights(GRID)
+    np.testing.assert_array_equal(z, kept)
+    z[:] = 1.0
+    np.testing.assert_array_equal(surface.heights(GRID), kept)
+    assert surface == ArraySurface(kept)
+    assert hash(surface) == hash(ArraySurface(kept))
+
+
+@pytest.mark.parametrize("shape", [(7, 7), (40, 40), (9, 30)])
+def test_resampling_reproduces_bicubics_up_to_the_border(shape: tuple[int, int]) -> None:
+    def bicubic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.asarray((1 + 2 * x - 3 * x**2 + x**3) * (2 - y + y**2 + 4 * y**3))
+
+    x, y = ((np.arange(n) + 0.5) / n for n in shape)
+    grid = Grid(side=1.0, M=16)
+    z = resampled_quietly(bicubic(x[:, None], y[None, :]), grid)
+    # not-a-knot splines contain all cubics; extrapolation by half a cell amplifies rounding by < 4 an axis
+    np.testing.assert_allclose(z, bicubic(*centres(grid)), rtol=0, atol=200 * EPS * 12)
+
+
+def resampled_quietly(array: np.ndarray, grid: Grid) -> np.ndarray:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SurfaceWarning)
+        return ArraySurface(array).heights(grid)
+
+
+def test_resampling_converges_with_the_fourth_order() -> None:
+    def wave(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.asarray(np.sin(5 * x) * np.cos(4 * y))
+
+    grid = Grid(side=1.0, M=50)
+    errors = []
+    for n in (16, 32, 64, 128):
+        at = (np.arange(n) + 0.5) / n
+        errors.append(
+            np.abs(resampled_quietly(wave(at[:, None], at[None, :]), grid) - wave(*centres(grid))).max()
+        )
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(orders > 3.5), orders
+
+
+def test_only_the_points_a_spline_remembers_matter() -> None:
+    data = np.random.default_rng(2).normal(size=(200, 150))
+    x, y = np.linspace(90.2, 110.7, 11), np.linspace(60.1, 71.3, 9)
+    far = data.copy()
+    far[:40] += 1e3
+    np.testing.assert_allclose(resample(far, x, y), resample(data, x, y), rtol=0, atol=1e-12)
+    whole = resample(data, np.append(x, 199.0), np.append(y, 149.0))[:-1, :-1]
+    np.testing.assert_allclose(resample(data, x, y), whole, rtol=0, atol=1e-13)
+
+
+def test_periodic_resampling_wraps_and_keeps_the_data() -> None:
+    data = np.random.default_rng(3).normal(size=(6, 11))
+    at = (np.arange(6.0), np.arange(11.0))
+    np.testing.assert_allclose(resample_periodic(data, *at), data, rtol=0, atol=1e-14)
+    x, y = np.array([-0.3, 2.7]), np.array([4.4, 10.9])
+    np.testing.assert_allclose(
+        resample_periodic(data, x + 6, y - 22), resample_periodic(data, x, y), rtol=0, atol=1e-12
+    )
+    shift = ArraySurface(np.tile(data, (2, 1))[:11]).heights(Grid(11.0, 11), (3.0, -4.0), periodic=True)
+    np.testing.assert_allclose(
+        shift, np.roll(np.tile(data, (2, 1))[:11], (-3, 4), (0, 1)), rtol=0, atol=1e-13
+    )
+
+
+def test_finer_than_the_data_warns_and_coarser_does_not() -> None:
+    array = np.zeros((20, 12))
+    with pytest.warns(SurfaceWarning, match="16 x 16 is finer than the array of 20 x 12"):
+        ArraySurface(array).heights(GRID)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ArraySurface(array).heights(Grid(1.0, 12))
+        ArraySurface(array[:12]).heights(Grid(1.0, 12))
+    assert "resampled bicubically to 16 x 16" in ArraySurface(array).describe(GRID)[0]
+    assert "as it is" in ArraySurface(np.zeros((16, 16))).describe(GRID)[0]
+
+
+def test_arrays_end_with_the_square() -> None:
+    array = np.zeros((16, 16))
+    ArraySurface(array).heights(GRID, (GRID.spacing / 2, 0.0))
+    with pytest.raises(InputError, match="offset"):
+        ArraySurface(array).heights(GRID, (0.0, 0.51 * GRID.spacing))
+
+
+@pytest.mark.parametrize(
+    ("array", "said"),
+    [
+        (np.full((4, 4), np.nan), "16 of 16 not finite, the first at \\(0, 0\\)"),
+        (np.array([[0.0, np.inf]]), "1 of 2 not finite, the first at \\(0, 1\\)"),
+        (np.zeros(5), "2-D"),
+        (np.zeros((0, 3)), "2-D"),
+        (np.zeros((3, 3), dtype=complex), "complex128"),
+        (np.array([["a"]]), "<U1"),
+        (np.array([[None]]), "object"),
+        (np.ma.masked_equal(np.array([[0.0, 9.0]]), 9.0), "1 of 2 not finite"),
+    ],
+)
+def test_bad_arrays_are_refused(array: np.ndarray, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        as_surface(array)
+
+
+def test_what_is_no_surface_is_refused() -> None:
+    with pytest.raises(InputError, match="surface = 3.0"):
+        as_surface(3.0)  # type: ignore[arg-type]  # the point of the test
+    with pytest.raises(InputError, match="surface = None"):
+        Flat() + None  # type: ignore[operator]  # likewise
+    with pytest.raises(InputError, match="at least 4 points"):
+        ArraySurface(np.zeros((3, 9))).heights(GRID)
+    with pytest.raises(InputError, match="offset"):
+        Flat().heights(GRID, (math.nan, 0.0))
+
+
+@pytest.mark.parametrize("radius", [0.0, math.nan, math.inf, "0.14", None, True])
+def test_bad_radii_are_refused(radius: object) -> None:
+    with pytest.raises(InputError, match="radius"):
+        Sphere(radius)  # type: ignore[arg-type]  # the point of the test
+
+
+SURFACES: list[Surface] = [
+    Flat(),
+    Sphere(-0.2),
+    GaussianRoughness(1e-6, 1e-4, 5, normalise=True),
+    MeasuredSurface(
+        Path("/data/a.csv"), unit="um", pixel_size=(1e-6, 2e-6), level="paraboloid", missing="refuse"
+    ),
+    Sphere(1.0) + GaussianRoughness(1e-6, 1e-4, 5),
+]
+
+
+@pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s.kind)
+def test_tables_read_back(surface: Surface) -> None:
+    assert surface_from_dict(surface.to_dict()) == surface
+
+
+def test_relative_paths_start_at_the_folder() -> None:
+    surface = surface_from_dict({"kind": "measured", "path": "a.x3p"}, Path("/scenes"))
+    assert isinstance(surface, MeasuredSurface)
+    assert surface.path == Path("/scenes/a.x3p")
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ({"kind": "sphere", "radius": 1.0, "radios": 2.0}, "surface.radios = 2.0"),
+        ({"kind": "sphere"}, "surface.radius"),
+        ({"kind": "sphare"}, "surface.kind = 'sphare'"),
+        ({"kind": ["sphere"]}, "surface.kind"),
+        ({}, "surface.kind = None"),
+        ({"kind": "flat", "height": 1}, "surface.height"),
+        ({"kind": "measured", "path": 3}, "path = 3"),
+        ({"kind": "measured", "path": "a", "level": "sphere"}, "level = 'sphere'"),
+        ({"kind": "measured", "path": "a", "unit": "inch"}, "unit = 'inch'"),
+        ({"kind": "measured", "path": "a", "pixel_size": [1e-6]}, "pixel_size"),
+        ({"kind": "measured", "path": "a", "pixel_size": -1e-6}, "pixel_size"),
+        ({"kind": "measured", "path": "a", "missing": "zero"}, "missing"),
+        ({"kind": "measured", "path": "a", "max_missing": 1.0}, "max_missing"),
+        ({"kind": "gaussian", "rms": -1e-6, "correlation_length": 1e-4, "seed": 1}, "rms = -1e-06"),
+        ({"kind": "gaussian", "rms": 1e-6, "correlation_length": "l", "seed": 1}, "correlation_length"),
+        ({"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": 1.0}, "seed = 1.0"),
+        ({"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": -1}, "seed = -1"),
+        ({"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": True}, "seed = True"),
+        (
+            {"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": 1, "normalise": 1},
+            "normalise",
+        ),
+        ({"kind": "sum", "terms": []}, "surface.terms"),
+        ({"kind": "sum", "parts": []}, "surface.parts"),
+        ("sphere", "surface = 'sphere'"),
+    ],
+)
+def test_bad_tables_are_refused_by_name(table: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        surface_from_dict(table)
+    assert said in str(refusal.value)
+
+
+def test_arrays_have_no_table() -> None:
+    with pytest.raises(InputError, match=r"\.npy"):
+        (Flat() + np.zeros((4, 4))).to_dict()
+    assert isinstance(Flat() + np.zeros((4, 4)), SurfaceSum)

@@ -1,0 +1,197 @@
+"""The random field of Eq. (9): its sum, its invariances, its statistics."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import time
+import warnings
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from refimpl.errors import InputError
+from refimpl.grid import Grid
+from refimpl.surfaces import GaussianRoughness, SurfaceWarning
+from refimpl.surfaces.noise import white_noise
+from refimpl.surfaces.statistics import kurtosis, skewness
+
+SIDE, LENGTH = 1.61e-3, 104e-6
+GRID = Grid(SIDE, 64)
+
+
+def unit(seed: int = 1, length: float = LENGTH, normalise: bool = False) -> GaussianRoughness:
+    return GaussianRoughness(1.0, length, seed, normalise=normalise)
+
+
+def test_heights_are_the_plain_double_sum() -> None:
+    """The documented sum, point by point in 30 digits over a wider square of nodes, from the same noise."""
+    grid, offset = Grid(3.0, 3), (-40.7, 1.3)
+    z = quietly(GaussianRoughness(2.0, 1.7, seed=9), grid, offset)
+    with mp.workdps(30):
+        length, h = mp.mpf("1.7"), mp.mpf("1.7") / 6
+        for i, j in itertools.product(range(3), range(3)):
+            x, y = mp.mpf(grid.centres[i]) + offset[0], mp.mpf(grid.centres[j]) + offset[1]
+            m0, n0 = int(mp.nint(x / h)), int(mp.nint(y / h))
+            w = white_noise(9, range(m0 - 22, m0 + 23), range(n0 - 22, n0 + 23))
+            kx = [mp.exp(mp.mpf("-4.6") * ((x - m * h) / length) ** 2) for m in range(m0 - 22, m0 + 23)]
+            ky = [mp.exp(mp.mpf("-4.6") * ((y - n * h) / length) ** 2) for n in range(n0 - 22, n0 + 23)]
+            total = mp.fsum(a * b * mp.mpf(w[p, q]) for p, a in enumerate(kx) for q, b in enumerate(ky))
+            exact = 2 * h / length * mp.sqrt(mp.mpf("9.2") / mp.pi) * total
+            # kernel arguments round by eps |x| / l times 9.2 r / l; 45 x 45 terms of size < 0.1
+            assert abs(z[i, j] - float(exact)) < 1e-13
+
+
+def quietly(surface: GaussianRoughness, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SurfaceWarning)
+        return surface.heights(grid, offset)
+
+
+@pytest.mark.parametrize("per_length", [4.0, 6.0, 0.7])
+def test_covariance_is_equation_9_wherever_the_points_lie(per_length: float) -> None:
+    x = np.arange(0.0, 4.0, 1.0 / per_length) + 0.013
+    _, smooth = unit(length=1.0).smoothing(x)
+    exact = np.exp(-2.3 * (x[:, None] - x[None, :]) ** 2)
+    np.testing.assert_allclose((smooth @ smooth.T).toarray(), exact, rtol=0, atol=3e-15)
+
+
+@pytest.mark.parametrize(("period", "length"), [(1.0, 1.0), (7.3, 1.0), (40.0, 3.0)])
+def test_periodic_covariance_is_the_periodic_sum(period: float, length: float) -> None:
+    x = np.linspace(-period, period, 57)
+    _, smooth = unit(length=length).smoothing(x, period)
+    lag = x[:, None] - x[None, :]
+    images = sum(np.exp(-2.3 * ((lag + m * period) / length) ** 2) for m in range(-12, 13))
+    at_zero = sum(math.exp(-2.3 * (m * period / length) ** 2) for m in range(-9, 10))
+    np.testing.assert_allclose((smooth @ smooth.T).toarray(), images / at_zero, rtol=0, atol=5e-15)
+
+
+def test_nested_grids_see_one_surface() -> None:
+    coarse = unit().heights(GRID)
+    fine = unit().heights(Grid(SIDE, 3 * 64))
+    np.testing.assert_allclose(fine[1::3, 1::3], coarse, rtol=0, atol=1e-12)
+    half = unit().heights(Grid(SIDE / 2, 32))  # another side: the same plane, the same corner
+    np.testing.assert_allclose(half, coarse[:32, :32], rtol=0, atol=1e-12)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(-60, 60), st.integers(-60, 60), st.booleans())
+def test_offsets_slide_one_rigid_surface(i: int, j: int, normalise: bool) -> None:
+    far = Grid(SIDE, 64)
+    surface = unit(normalise=normalise)
+    here, there = surface.heights(far), surface.heights(far, (i * far.spacing, j * far.spacing))
+    # the points both windows hold
+    a = here[max(i, 0) : 64 + min(i, 0), max(j, 0) : 64 + min(j, 0)]
+    b = there[max(-i, 0) : 64 + min(-i, 0), max(-j, 0) : 64 + min(-j, 0)]
+    np.testing.assert_allclose(b, a, rtol=0, atol=1e-12)
+
+
+def test_periodic_field_repeats_and_slides() -> None:
+    z = unit().heights(GRID, periodic=True)
+    again = unit().heights(GRID, (3 * SIDE, -SIDE), periodic=True)
+    np.testing.assert_allclose(again, z, rtol=0, atol=1e-12)
+    slid = unit().heights(GRID, (5 * GRID.spacing, -70 * GRID.spacing), periodic=True)
+    np.testing.assert_allclose(slid, np.roll(z, (-5, 70), (0, 1)), rtol=0, atol=1e-12)
+    assert np.abs(z - unit().heights(GRID)).max() > 0.1
+
+
+def test_rms_and_length_only_scale() -> None:
+    z = unit(7).heights(GRID)
+    np.testing.assert_array_equal(GaussianRoughness(4.0, LENGTH, 7).heights(GRID), 4.0 * z)
+    np.testing.assert_allclose(unit(7, 2 * LENGTH).heights(Grid(2 * SIDE, 64)), z, rtol=0, atol=1e-13)
+
+
+def test_deterministic_and_pinned() -> None:
+    """The stream is part of the interface: a scene file must mean the same surface in every version."""
+    corner = white_noise(1, range(-1, 1), range(-1, 1))
+    # four tiles; 1e-12 leaves room for another library's normal quantile, none for other random words
+    pinned = [[1.286807986953587, 0.01082817098087742], [0.7851003480687619, 0.4214897034318442]]
+    np.testing.assert_allclose(corner, pinned, rtol=1e-12, atol=0)
+    np.testing.assert_array_equal(unit().heights(GRID), unit().heights(GRID))
+
+
+def test_noise_is_standard_normal_and_white() -> None:
+    w = white_noise(3, range(-500, 500), range(-500, 500))
+    n = w.size
+    # four standard errors of the moments of n independent normal numbers
+    assert abs(w.mean()) < 4 / math.sqrt(n)
+    assert abs(w.var() - 1) < 4 * math.sqrt(2 / n)
+    assert abs(skewness(w)) < 4 * math.sqrt(6 / n)
+    assert abs(kurtosis(w) - 3) < 4 * math.sqrt(24 / n)
+    for shift in ((0, 1), (1, 0), (1, 1), (64, 0), (0, 64)):  # 64: the same place in the next tile
+        product = w[shift[0] :, shift[1] :] * w[: 1000 - shift[0], : 1000 - shift[1]]
+        assert abs(product.mean()) < 4 / math.sqrt(product.size)
+
+
+def test_heights_are_gaussian() -> None:
+    # points 3 l apart are independent (Eq. 9: 1e-9): 84^2 samples a seed, skewness and kurtosis as above
+    z = np.concatenate([quietly(unit(s, 1.0), Grid(252.0, 84)).ravel() for s in (1, 2, 3)])
+    assert abs(skewness(z)) < 4 * math.sqrt(6 / z.size)
+    assert abs(kurtosis(z) - 3) < 4 * math.sqrt(24 / z.size)
+    assert abs(z.var() - 1) < 4 * math.sqrt(2 / z.size)
+
+
+@pytest.mark.parametrize("other", [2, 0, 2**32 + 1, 2**62])
+def test_seeds_are_independent(other: int) -> None:
+    grid = Grid(60.0, 240)
+    a, b = unit(1, 1.0).heights(grid), unit(other, 1.0).heights(grid)
+    # the mean product of independent fields has the variance int R^2 / area = pi / 4.6 / 60^2
+    assert abs(np.mean(a * b)) < 4 * math.sqrt(math.pi / 4.6) / 60
+
+
+def test_normalised_realisation_has_its_rms_on_every_grid() -> None:
+    for seed in range(5):
+        fine = GaussianRoughness(0.5e-6, LENGTH, seed, normalise=True).heights(Grid(SIDE, 512))
+        # the midpoint sum misses the integral by O((h / l)^2) = 1e-3 of the border's share
+        assert abs(np.std(fine) / 0.5e-6 - 1) < 1e-5
+        ensemble = GaussianRoughness(0.5e-6, LENGTH, seed).heights(Grid(SIDE, 512))
+        np.testing.assert_allclose(fine * (np.std(ensemble) / np.std(fine)), ensemble, rtol=1e-12, atol=0)
+
+
+def test_quadrature_of_the_normalisation_has_converged() -> None:
+    """Against 40 Gauss points on each of panels a third as long as those it uses."""
+    surface, side = unit(4), 2.7 * LENGTH
+    node, weight = np.polynomial.legendre.leggauss(40)
+    panels = 18
+    x = ((np.arange(panels)[:, None] + (node + 1) / 2) * side / panels).ravel()
+    w = np.tile(weight / 2 / panels, panels)
+    z = surface._field(x, x, None)
+    exact = math.sqrt(w @ z**2 @ w - (w @ z @ w) ** 2)
+    assert abs(surface._realised_rms(side, None) / exact - 1) < 1e-12
+
+
+def test_what_cannot_be_had_is_refused() -> None:
+    with pytest.raises(InputError, match="correlation_length"):
+        unit(length=SIDE / 5000).heights(GRID)
+    with pytest.raises(InputError, match="correlation_length"):
+        unit(length=1e-300).heights(GRID)
+    with pytest.raises(InputError, match="period"):
+        unit(length=1.1 * SIDE).heights(GRID, periodic=True)
+    with pytest.raises(InputError, match="normalise"):
+        unit(length=1.1 * SIDE, normalise=True).heights(GRID)
+    with pytest.raises(InputError, match="offset"):
+        unit().heights(GRID, (1e7 * LENGTH, 0.0))
+
+
+def test_long_lengths_are_smooth_not_special() -> None:
+    z = unit(length=1e4).heights(Grid(1.0, 8))
+    assert np.ptp(z) < 1e-2  # slopes of 2e-4 over a side of 1
+    assert np.all(np.isfinite(unit(length=1e300).heights(Grid(1.0, 4))))
+
+
+def test_unresolved_roughness_warns() -> None:
+    with pytest.warns(SurfaceWarning, match="not resolved"):
+        unit().heights(Grid(SIDE, 48))
+    assert unit().cautions(Grid(SIDE, 64)) == ()
+    assert "seed 1" in unit().describe(GRID)[0]
+
+
+def test_cost_is_small() -> None:
+    unit(1, SIDE / 15).heights(Grid(SIDE, 512))
+    start = time.process_time()
+    for seed in range(5):
+        unit(seed, SIDE / 15).heights(Grid(SIDE, 512))
+    assert (time.process_time() - start) / 5 < 0.1  # CPU seconds; measured 0.01
