@@ -115,7 +115,9 @@ def dots(values: str | None, *, xlabel: str, limit: float | None = None) -> Draw
                 axes.plot(size, k, marker="o", color=COLOURS[0])
                 axes.annotate(f"{size:.1e}", (size, k), (7, 5), textcoords="offset points", fontsize=9)
             else:
-                axes.text(axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center")
+                axes.text(
+                    axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center"
+                )
         if limit is not None:
             axes.axvline(limit, color=COLOURS[1], linestyle="--", label="tolerance")
             axes.legend(loc="lower right")

@@ -1,0 +1,35 @@
+# `make report` and `make test` are all that a fresh machine with Python 3.11 or newer needs.
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.stamp-ready
+OUT := out
+# One BLAS thread: the runner and pytest use their own processes.
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+
+.PHONY: report test lint setup clean
+
+report: $(READY)
+	@mkdir -p $(OUT)
+	@status=0; \
+	$(BIN)/rough-friction verify --tier quick --json $(OUT)/results.json || status=$$?; \
+	$(BIN)/rough-friction report --results $(OUT)/results.json --output $(OUT)/report; \
+	exit $$status
+
+test: lint
+	$(BIN)/python -m pytest -n 2 --dist worksteal
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+setup: $(READY)
+
+$(READY): pyproject.toml constraints.txt
+	test -d .venv || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check \
+		-c constraints.txt -e ".[instrument,rigorous,fem3d,dev]"
+	@touch $@
+
+clean:
+	rm -rf .venv $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

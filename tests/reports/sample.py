@@ -1,0 +1,45 @@
+"""A small result file, made by hand: reports know nothing of the package that writes real ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def case(id: str, status: str = "pass", **other: Any) -> dict[str, Any]:
+    return {
+        "id": id, "title": f"Title of {id}", "claim": "Eq. (7) holds", "source": "Johnson 1985",
+        "metric": "relative",
+        "value": 1.01, "reference": 1.0, "reference_uncertainty": 0.0, "error": 0.01, "tolerance": 0.1,
+        "tolerance_reason": "first order in h", "status": status, "seconds": 0.5, "unit": "Pa", "note": "",
+        "tier": "quick", "tags": ["eq7"], "data": {}, **other,
+    }  # fmt: skip
+
+
+def results(*cases: dict[str, Any], **other: Any) -> dict[str, Any]:
+    statuses = ("pass", "fail", "error", "unavailable")
+    return {
+        "format": "rough-friction results, version 1",
+        "tier": "quick",
+        "only": [],
+        "counts": {s: sum(c["status"] == s for c in cases) for s in statuses},
+        "seconds": 1.0,
+        "cases": list(cases),
+        "errata": [],
+        "provenance": {
+            "command": "rough-friction verify --tier quick",
+            "date": "2001-01-01T00:00:00+00:00",
+            "commit": "0123456789abcdef",
+            "dirty": False,
+            "versions": {"python": "3.11", "rough-friction": "0.1.0", "pyamg": None},
+            "machine": {"cores": 2, "processor": "x", "platform": "Linux"},
+        },
+        **other,
+    }
+
+
+UNJUDGED = {"value": None, "reference": None, "reference_uncertainty": None, "error": None}
+TEXTBOOK = {
+    "offset": [1, 10, 100],
+    "textbook": [1e-15, 1e-13, 1e-11],
+    "production": [1e-16, 2e-16, 1e-16],
+}

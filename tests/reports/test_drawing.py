@@ -1,0 +1,70 @@
+"""Kinds of figures: they draw what they are given, and the export follows the page's colours."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure as Canvas
+
+from reports.drawing import INK, Draw, Figure, dots, lines, maps, order, svg
+
+H = [0.4, 0.2, 0.1]
+
+
+def drawn(draw: Draw, data: dict[str, Any]) -> Canvas:
+    canvas = Canvas()
+    draw(canvas, data)
+    return canvas
+
+
+def test_an_order_figure_states_the_fitted_order() -> None:
+    draw = order("h", {"e": "peak"}, xlabel="h", ylabel="error", slopes=(2.0,))
+    axes = drawn(draw, {"h": H, "e": [3 * h**1.5 for h in H]}).axes[0]
+    legend = axes.get_legend()
+    assert legend is not None
+    assert [t.get_text() for t in legend.get_texts()] == ["peak, order 1.50", "order 2"]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+
+
+def test_lines_hold_the_series() -> None:
+    axes = drawn(lines("x", {"p": "pressure", "hertz": "Hertz"}, xlabel="x (mm)", ylabel="MPa"),
+                 {"x": [0, 1], "p": [1, None], "hertz": [1, 2]}).axes[0]  # fmt: skip
+    np.testing.assert_array_equal(axes.lines[1].get_ydata(), [1, 2])
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), [1, np.nan])
+    assert axes.lines[1].get_linestyle() == "--"
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (mm)", "MPa")
+
+
+def test_dots_say_zero_and_missing_in_words() -> None:
+    axes = drawn(dots("e", xlabel="error", limit=1e-9), {"e": {"a": 1e-12, "b": 0.0, "c": None}}).axes[0]
+    assert [t.get_text() for t in axes.texts] == ["1.0e-12", " exactly 0", " not available"]
+    assert [t.get_text() for t in axes.get_yticklabels()] == ["a", "b", "c"]
+
+
+def test_maps_have_x_to_the_right_and_blank_zeros() -> None:
+    draw = maps({"p": "Pressure"}, side="side", unit="MPa")
+    image = drawn(draw, {"p": [[0.0, 0.0], [3.0, 0.0]], "side": 1.6}).axes[0].images[0]
+    shown = image.get_array()
+    assert shown is not None
+    assert shown[0, 1] == 3.0  # p[1, 0]: at large x and small y, that is right of the first row
+    assert np.ma.getmaskarray(shown).tolist() == [[True, False], [True, True]]
+    assert list(image.get_extent()) == [0.0, 1.6, 0.0, 1.6]
+
+
+def test_the_export_takes_the_readers_colours() -> None:
+    figure = Figure("*", ("x", "y"), lines("x", {"y": "y"}, xlabel="x", ylabel="y"), "a caption")
+    text = svg(figure, {"x": [0, 1], "y": [1, 2]})
+    assert text is not None
+    assert INK not in text
+    assert "currentColor" in text
+    assert "prefers-color-scheme:dark" in text
+    assert not re.search(r"\d{4}-\d\d-\d\dT", text)
+
+
+@pytest.mark.parametrize("data", [{}, {"x": [1]}, {"x": [1], "y": []}, {"x": [1], "y": None}])
+def test_missing_series_make_no_picture(data: dict[str, Any]) -> None:
+    figure = Figure("*", ("x", "y"), lines("x", {"y": "y"}, xlabel="x", ylabel="y"), "a caption")
+    assert svg(figure, data) is None

@@ -1,0 +1,158 @@
+"""The page: complete, self-contained, and honest about what is missing."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from reports.generator import render
+from reports.results import ResultFileError, check
+from tests.reports.sample import TEXTBOOK, UNJUDGED, case, results
+
+VOID = {"meta", "input", "img", "br", "link", "hr"}
+
+
+class Page(HTMLParser):
+    """Ids, links, images and the nesting of a page."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.ids: list[str] = []
+        self.links: list[str] = []
+        self.images: list[dict[str, str | None]] = []
+        self.tags: list[str] = []
+        self.text = ""
+        self._open: list[str] = []
+        self.feed(html)
+        assert self._open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        found = dict(attrs)
+        self.tags.append(tag)
+        self.ids += [v for k, v in attrs if k == "id" and v]
+        self.links += [v for k, v in attrs if k in ("href", "src") and v]
+        if tag == "img":
+            self.images.append(found)
+        if tag not in VOID:
+            self._open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if not self._open or self._open[-1] not in ("script", "style"):
+            self.text += data
+
+
+def test_every_case_is_on_the_page_with_all_that_a_reader_needs() -> None:
+    page = Page(
+        render(results(case("hertz/a"), case("hertz/b", "fail", error=0.2, tier="full", note="see c")))
+    )
+    for text in (
+        "hertz/a",
+        "Title of hertz/b",
+        "Eq. (7) holds",
+        "Johnson 1985",
+        "first order in h",
+        "see c",
+    ):
+        assert text in page.text
+    assert "0.01 ≤ 0.1" in page.text
+    assert "0.2 > 0.1" in page.text
+    assert "rough-friction verify --only hertz/a" in page.text
+    assert "rough-friction verify --tier full --only hertz/b" in page.text
+    assert len(page.ids) == len(set(page.ids))
+    assert {link.removeprefix("#") for link in page.links if link.startswith("#")} <= set(page.ids)
+
+
+def test_the_summary_counts_and_no_claim_passes_on_a_failure() -> None:
+    page = render(
+        results(case("a/1"), case("a/2", "fail"), case("b/1", claim="other"), case("c/1", "unavailable"))
+    )
+    assert re.search(r"<b>2</b> pass", page)
+    assert re.search(r"<b>1</b> fail", page)
+    assert re.search(r"<b>1</b> unavailable", page)
+    rows = re.findall(r'<span class="mark (\w+)">\w+</span></td><td>(Eq\. \(7\) holds|other)</td>', page)
+    assert rows == [("fail", "Eq. (7) holds"), ("pass", "other")]
+
+
+def test_no_request_leaves_the_page() -> None:
+    page = Page(render(results(case("kernels/textbook-x-fails", data=TEXTBOOK))))
+    assert all(link.startswith(("#", "data:image/svg+xml;base64,")) for link in page.links)
+    assert "link" not in page.tags
+    svg = base64.b64decode(str(page.images[0]["src"]).partition(",")[2]).decode()
+    assert not re.search(r'(href|src)="(?!#|data:)', svg)
+    assert "currentColor" in svg
+    assert page.images[0]["alt"]
+
+
+@pytest.mark.parametrize("data", [{}, {**TEXTBOOK, "textbook": []}, {**TEXTBOOK, "production": None}])
+def test_a_figure_without_data_is_not_available(data: dict[str, object]) -> None:
+    page = Page(render(results(case("kernels/textbook-x-fails", data=data))))
+    assert page.images == []
+    assert "Figure not available" in page.text
+
+
+def test_unjudged_numbers_are_not_zero() -> None:
+    page = Page(render(results(case("a/1", "error", note="RuntimeError: broken", **UNJUDGED))))
+    assert "not judged" in page.text
+    assert "RuntimeError: broken" in page.text
+    assert "n/a" in page.text
+
+
+def test_texts_are_escaped() -> None:
+    bad = "<script>alert(1)</script>"
+    page = render(
+        results(
+            case("a/1", title=bad, claim=bad, note=bad, source=bad, tags=[bad]),
+            errata=[{"printed": bad}],
+        )
+    )
+    assert bad not in page
+    assert page.count("&lt;script&gt;") >= 6
+
+
+def test_errata_are_shown() -> None:
+    erratum = {
+        "where": "Eq. (A4)",
+        "printed": "sin",
+        "evidence_against": "residual 0.3",
+        "corrected": "cos",
+    }
+    page = Page(render(results(case("a/1"), errata=[erratum])))
+    for text in ("Eq. (A4)", "Evidence against", "residual 0.3", "cos"):
+        assert text in page.text
+
+
+def test_an_uncommitted_tree_and_a_selection_are_said() -> None:
+    made = results(case("a/1"), only=["a/*"])
+    made["provenance"]["dirty"] = True
+    text = Page(render(made)).text
+    assert "with uncommitted changes" in text
+    assert "only a/*" in text
+
+
+def test_the_same_results_make_the_same_page() -> None:
+    made = results(case("kernels/textbook-x-fails", data=TEXTBOOK))
+    assert render(made) == render(json.loads(json.dumps(made)))
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        None,
+        [],
+        {"format": "another"},
+        {k: v for k, v in results().items() if k != "cases"},
+        results({k: v for k, v in case("a/1").items() if k != "tolerance_reason"}),
+        results(case("a/1", "passed")),
+        results(case("a/1", "fail"), counts={"pass": 1, "fail": 0, "error": 0, "unavailable": 0}),
+    ],
+)
+def test_what_is_not_a_result_file_is_refused(broken: object) -> None:
+    with pytest.raises(ResultFileError):
+        check(broken)
