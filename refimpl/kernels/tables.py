@@ -89,7 +89,7 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float) -> Array:
 
 
 def _near_block(kernel: Kernel, n: int, m: int, dx: float, dy: float) -> Array:
-    """A table of NaN, for whatever no slab would reach, with its first few rows and columns in closed form."""
+    """A table of NaN (so that no gap between slabs goes unseen) with its first corner in closed form."""
     table = np.full((n, m), np.nan)
     x, y = _offsets(0, min(n, _NEAR_COUNT), dx), _offsets(0, min(m, _NEAR_COUNT), dy)
     table[: len(x), : len(y)] = kernel.closed_form(x[:, None], y, dx, dy)
