@@ -1,0 +1,147 @@
+"""Strip of pressure on a sinusoidal boundary: surface displacement and its error (paper, Fig. 12)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from appendix_a.errors import InputError
+from appendix_a.fem.departure import Departure, Setup, departure
+from appendix_a.fem.geometry import sinusoid_boundary
+from appendix_a.fem.halfplane import pressed_strip
+from appendix_a.fem.mesh import Source
+
+Array = NDArray[np.float64]
+END_SIZE = 2.0**-7  # cell at the strip's ends; 2^-10 changes displacements by less than 1e-4 % of flat
+REACH = 3.0  # wavelengths kept on either side; 4 and 8 change less than 0.001 % of flat
+OUTER = 8.0  # outer boundary over reach; 64 changes less than 0.001 % of flat
+REACHES = (0.5, 0.5**0.5, 1.0)  # the three outer radii, in units of the one used
+
+
+@dataclass(frozen=True)
+class WavyResult:
+    """Vertical surface displacements at `offsets` (m,) from the strip's centre, relative to the centre's.
+
+    `wavy` (m,) and the exact `flat` (m,) are in units of p a / E, positive into the body.
+    `discretisation_error` is the estimated error of `wavy`, hence of `wavy - flat`, in the same units, the
+    largest over the offsets: per offset the change between the two finest of three meshes (`mesh_error`)
+    plus that between the two largest of three outer radii (`truncation_error`).
+    `mesh_values` (3, m) are `wavy` on the three meshes, coarse to fine.
+    """
+
+    offsets: Array
+    wavy: Array
+    flat: Array
+    discretisation_error: float
+    mesh_error: Array
+    truncation_error: Array
+    mesh_values: Array
+
+    @property
+    def percentage_points(self) -> Array:
+        """(m,) estimated error as a percentage of the flat coefficient at the same offset; nan where zero."""
+        away = self.flat != 0.0
+        relative = np.full(self.flat.shape, np.nan)
+        relative[away] = 100.0 * (self.mesh_error + self.truncation_error)[away] / np.abs(self.flat[away])
+        return relative
+
+
+@dataclass(frozen=True)
+class Departures:
+    """Wavy minus flat displacement of one geometry, for every nu: three meshes, three outer radii."""
+
+    offsets: Array
+    meshes: tuple[Departure, ...]
+    radii: tuple[Departure, ...]
+
+    def result(self, nu: float) -> WavyResult:
+        """The displacements at one Poisson ratio and their error."""
+        meshes = [d.at(nu) for d in self.meshes]
+        radii = [d.at(nu) for d in self.radii]
+        flat = pressed_strip(self.offsets, nu)
+        mesh_error, truncation = np.abs(meshes[-1] - meshes[-2]), np.abs(radii[-1] - radii[-2])
+        largest = float(np.max(mesh_error + truncation, initial=0.0))
+        return WavyResult(
+            self.offsets, flat + meshes[-1], flat, largest, mesh_error, truncation, flat + np.array(meshes)
+        )
+
+
+def sinusoid(
+    slope_deg: float, wavelength: float, position: float, nu: float, *, offsets: ArrayLike
+) -> WavyResult:
+    """Surface displacements of profile (A2) under a uniform pressure p along the local normal, plane strain.
+
+    slope_deg: maximum slope of y = 2 h_a sin^2(pi x / lambda), y into the body, so that its tangent is
+        2 pi h_a / lambda; 0 to 45 degrees.
+    wavelength: lambda / a, 4 to 10^4; a is half the strip's width measured along the surface.
+    position: x / lambda of the strip's centre: crest 0, flank 0.25 (+x downhill), valley 0.5.
+    nu: Poisson's ratio, -1 < nu <= 0.5.
+    offsets: (m,) horizontal distances from the centre in units of a, at most 10^4.
+    Raises InputError.
+
+    >>> r = sinusoid(6.5, 100.0, 0.25, 0.3, offsets=[-3.0, 3.0])
+    >>> ((r.wavy - r.flat) / r.flat * 100).round(1).tolist()  # percent: uphill less, downhill more
+    [-2.8, 2.1]
+    """
+    if not -1.0 < nu <= 0.5:
+        raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
+    return departures(slope_deg, wavelength, position, offsets).result(nu)
+
+
+def departures(
+    slope_deg: float,
+    wavelength: float,
+    position: float,
+    offsets: ArrayLike,
+    levels: Sequence[int] = (1, 2, 3),
+) -> Departures:
+    """As `sinusoid`, for every Poisson ratio at once; `levels` are the three meshes, coarse to fine."""
+    where = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
+    _check(slope_deg, wavelength, position, where)
+    # fading waves must not touch the outermost offset at half the reach either: it begins at reach / 4 there
+    reach = max(REACH * wavelength, 4.0 * float(np.max(np.abs(where), initial=1.0)))
+    radii = [_at(slope_deg, wavelength, position, where, part * reach, levels[0]) for part in REACHES]
+    meshes = [radii[-1], *(_at(slope_deg, wavelength, position, where, reach, level) for level in levels[1:])]
+    return Departures(where, tuple(meshes), tuple(radii))
+
+
+def setup_for(wavelength: float, reach: float) -> Setup:
+    """Mesh parameters: grading to the strip's ends, cells of lambda / 8 near it and lambda / 4 far."""
+    ends = [Source(end, end, END_SIZE, 1.0) for end in (-1.0, 1.0)]
+    near = min(reach, 1.5 * wavelength)
+    waves = [Source(-near, near, wavelength / 8, 1.0), Source(-reach, reach, wavelength / 4, 1.0)]
+    return Setup((*ends, *waves), float(2.0 ** np.ceil(np.log2(OUTER * reach))))
+
+
+def _at(
+    slope_deg: float, wavelength: float, position: float, offsets: Array, reach: float, level: int
+) -> Departure:
+    boundary = sinusoid_boundary(slope_deg, wavelength, position, reach)
+    return departure(setup_for(wavelength, reach), level, boundary, offsets)
+
+
+def _check(slope_deg: float, wavelength: float, position: float, offsets: Array) -> None:
+    if not 0.0 <= slope_deg <= 45.0:
+        raise InputError("slope_deg", slope_deg, "a maximum slope of 0 to 45 degrees")
+    if not 4.0 <= wavelength <= 1e4:
+        raise InputError("wavelength", wavelength, "4 to 10000 times the strip's half-width")
+    if not np.isfinite(position):
+        raise InputError("position", position, "a finite fraction of the wavelength")
+    if offsets.ndim != 1 or not np.all(np.abs(offsets) <= 1e4):
+        raise InputError("offsets", offsets, "a list of finite distances, at most 10000 half-widths")
+
+
+def fem_json(
+    slope_deg: float, wavelength: float, position: float, nu: float, *, offsets: ArrayLike
+) -> dict[str, list[float] | float]:
+    """`sinusoid` as the command line prints it."""
+    found = sinusoid(slope_deg, wavelength, position, nu, offsets=offsets)
+    return {
+        "offsets": found.offsets.tolist(),
+        "wavy": found.wavy.tolist(),
+        "flat": found.flat.tolist(),
+        "discretisation_error": found.discretisation_error,
+    }
