@@ -50,11 +50,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status. Errors that nobody foresaw keep their traceback."""
     top = parser()
     options = top.parse_args(arguments)
-    from refimpl.errors import InputError  # here and not above: --help must not wait for numpy
+    from appendix_a.errors import InputError as AppendixInputError  # here and not above: --help is quick
+    from refimpl.errors import InputError
 
     try:
         status: int = options.run(options)
-    except InputError as refused:
+    except (InputError, AppendixInputError) as refused:
         print(f"{top.prog}: {' '.join(str(refused).split())}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:

@@ -6,7 +6,7 @@ import argparse
 import json
 from pathlib import Path
 
-from verification.cli.output import add_json, columns, emit
+from verification.cli.output import Parsers, add_json, columns, emit
 
 EPILOG = """example:
   rough-friction verify --tier quick --json results.json
@@ -14,7 +14,7 @@ EPILOG = """example:
 """
 
 
-def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
     parser = commands.add_parser(
         "report",

@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from verification.cli.output import add_json, columns, emit, output_file
+from verification.cli.output import Parsers, add_json, columns, emit, output_file
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
@@ -39,7 +39,7 @@ QUANTITIES = (
 )
 
 
-def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
     parser = commands.add_parser(
         "solve",
@@ -108,8 +108,6 @@ def run(options: argparse.Namespace) -> int:
 
 def table(solution: Solution, options: argparse.Namespace) -> str:
     """What was found, how well it converged, what was left out, and the warnings."""
-    from refimpl import Status
-
     size = f"{solution.grid.M} x {solution.grid.M}"
     found = [
         [name, f"{getattr(solution, attribute) * factor:.6g}", unit]
@@ -119,10 +117,9 @@ def table(solution: Solution, options: argparse.Namespace) -> str:
         [field.name.replace("_", " "), f"{getattr(solution.certificate, field.name):.2g}"]
         for field in fields(solution.certificate)
     ]
-    verdict = "" if solution.status is Status.CONVERGED else f" ({_doc_line(solution.status)})"
     parts = [
         f"{options.scene}: {size} elements, method {options.method}",
-        f"status: {solution.status.name}{verdict}",
+        f"status: {solution.status.name}",
         columns(found),
         f"certificate (0 is exact):\n{columns(certificate)}",
         *(f"warning: {text}" for text in solution.warnings),

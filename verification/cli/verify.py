@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from verification.cli.output import add_json, columns, emit
+from verification.cli.output import Parsers, add_json, columns, emit
 
 if TYPE_CHECKING:
     from verification.case import Result
@@ -18,7 +18,7 @@ EPILOG = """examples:
 """
 
 
-def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
     parser = commands.add_parser(
         "verify",
