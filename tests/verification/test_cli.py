@@ -1,0 +1,183 @@
+"""The command line as a person or a program meets it: exit statuses, one-line refusals, JSON, whole files."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from verification import registry, runner
+from verification.case import Case, Measured, Metric, Status, Tier
+from verification.cli import main, parser
+from verification.cli.appendix_a import numbers
+from verification.cli.output import columns
+
+QUICK = "kernels/love-at-centre"
+FEM = ["appendix-a", "fem", "--slope-deg=6.5", "--wavelength=100", "--position=0.25", "--offsets=-3,3"]
+WEDGE = ["appendix-a", "wedge", "--r=1", "--theta-deg=0"]
+
+Capture = pytest.CaptureFixture[str]
+
+
+def refused(capsys: Capture, *arguments: str) -> str:
+    """Run a command that must be refused: status 2, one line on stderr, nothing on stdout."""
+    try:
+        status = main(arguments)
+    except SystemExit as usage:
+        status = int(usage.code or 0)
+    printed = capsys.readouterr()
+    assert status == 2
+    assert printed.out == ""
+    assert printed.err.count("\n") == 1
+    assert "Traceback" not in printed.err
+    return printed.err
+
+
+def commands() -> list[list[str]]:
+    """Every (sub)command that the parser knows."""
+
+    def below(node: argparse.ArgumentParser, path: list[str]) -> list[list[str]]:
+        found = [path]
+        for action in node._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                for name, child in action.choices.items():
+                    found += below(child, [*path, name])
+        return found
+
+    return below(parser(), [])
+
+
+@pytest.mark.parametrize("command", commands(), ids=" ".join)
+def test_every_command_has_help(command: list[str], capsys: Capture) -> None:
+    with pytest.raises(SystemExit) as done:
+        main([*command, "--help"])
+    assert done.value.code == 0
+    assert "usage: rough-friction" in capsys.readouterr().out
+
+
+def test_every_command_that_computes_takes_json(capsys: Capture) -> None:
+    groups = {tuple(c[:-1]) for c in commands() if c}
+    for command in commands():
+        if tuple(command) not in groups:
+            with pytest.raises(SystemExit):
+                main([*command, "--help"])
+            assert "--json FILE" in capsys.readouterr().out, command
+
+
+def test_help_does_not_wait_for_numpy() -> None:
+    check = "import sys; import verification.cli as c; c.parser(); sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", check], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ([], "required"),
+        (["nonsense"], "nonsense"),
+        (["verify", "--tier", "nightly"], "nightly"),
+        (["verify", "--only", "none/*"], "none/*"),
+        (["verify", "--jobs", "0"], "--jobs = 0"),
+        (["verify", "--json", "/no/such/folder/results.json"], "/no/such/folder"),
+        (["verify", "--json", "."], "directory"),
+        (["report", "--results", "no-such-file.json"], "no-such-file.json"),
+        (["report", "--results", "."], "--results"),
+        (["appendix-a"], "required"),
+        ([*WEDGE, "--gamma-deg", "10", "--r", "x"], "'x'"),
+        ([*WEDGE, "--gamma-deg", "95"], "gamma"),
+        ([*FEM, "--nu", "0.6"], "nu = 0.6"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(arguments: list[str], says: str, capsys: Capture) -> None:
+    assert says in refused(capsys, *arguments)
+
+
+def test_verify_writes_what_the_report_reads(tmp_path: Path, capsys: Capture) -> None:
+    results, folder = tmp_path / "results.json", tmp_path / "report"
+    assert main(["verify", "--only", QUICK, "--jobs", "1", "--json", str(results)]) == 0
+    printed = capsys.readouterr()
+    assert f"pass  {QUICK}" in printed.out
+    assert "1 pass, 0 fail, 0 error, 0 unavailable" in printed.out
+    assert printed.err == ""
+    assert main(["report", "--results", str(results), "--output", str(folder), "--json", "-"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert made["counts"] == {"pass": 1, "fail": 0, "error": 0, "unavailable": 0}
+    assert QUICK in Path(made["report"]).read_text(encoding="utf-8")
+    assert [p.name for p in folder.iterdir()] == ["report.html"]
+
+
+@pytest.mark.parametrize("status", [Status.FAIL, Status.ERROR, Status.UNAVAILABLE])
+def test_verify_without_a_pass_has_status_1(
+    status: Status, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    case = Case("a/b", "t", "c", "s", Metric.EQUAL, 0.0, "exact", lambda: Measured(1.0, 1.0))
+    done = runner.Run(Tier.QUICK, (), (case.result(status, "the reason", 0.0),), 0.0)
+    monkeypatch.setattr(runner, "run", lambda *_, **__: done)
+    assert main(["verify", "--only", QUICK]) == 1
+    printed = capsys.readouterr().out
+    assert f"{status.value}" in printed
+    assert ("the reason" in printed) is (status is not Status.FAIL)
+
+
+def test_list_runs_nothing(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    monkeypatch.delattr(runner, "run")
+    assert main(["verify", "--list", "--tier", "full", "--json", "-"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert [c["id"] for c in listed] == [c.id for c in registry.load()]
+
+
+@pytest.mark.parametrize("text", ["{", '{"format": "another"}', "[]", "\x00"])
+def test_report_refuses_what_is_not_a_result_file(text: str, tmp_path: Path, capsys: Capture) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(text)
+    assert "--results" in refused(capsys, "report", "--results", str(path), "--output", str(tmp_path / "r"))
+    assert not (tmp_path / "r").exists()
+
+
+def test_fem_prints_the_four_keys(capsys: Capture) -> None:
+    assert main([*FEM, "--nu", "0.3", "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert list(found) == ["offsets", "wavy", "flat", "discretisation_error"]
+    assert found["offsets"] == [-3.0, 3.0]
+    # Uphill (-3) the wavy boundary yields less than the flat one, downhill more (paper, Fig. 12).
+    assert found["wavy"][0] > found["flat"][0] == found["flat"][1] > found["wavy"][1]
+
+
+def test_wedge_of_no_slope_is_the_half_plane(capsys: Capture) -> None:
+    assert main([*WEDGE, "--gamma-deg", "0", "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    # Flamant's strip, -1 < x < 1, at depth 1 below its centre: -(1/pi)(2 atan 1 -+ sin(2 atan 1)).
+    assert found["sigma_r"] == pytest.approx([-0.5 - 1 / 3.141592653589793], abs=1e-9)
+    assert found["sigma_theta"] == pytest.approx([-0.5 + 1 / 3.141592653589793], abs=1e-9)
+    assert found["tau_rtheta"] == pytest.approx([0.0], abs=1e-9)
+
+
+def test_number_lists() -> None:
+    assert numbers("-10,3") == [-10.0, 3.0]
+    with pytest.raises(argparse.ArgumentTypeError):
+        numbers("1;2")
+
+
+def test_columns_of_nothing_are_nothing() -> None:
+    assert columns([]) == ""
+
+
+def test_an_unknown_error_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise RuntimeError("a bug")
+
+    monkeypatch.setattr(registry, "load", broken)
+    with pytest.raises(RuntimeError, match="a bug"):
+        main(["verify", "--list"])
+
+
+def test_an_interrupt_ends_without_a_traceback(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(registry, "load", interrupted)
+    assert main(["verify", "--list"]) == 130
+    assert capsys.readouterr().err == ""
