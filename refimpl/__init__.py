@@ -1,0 +1,52 @@
+"""Reference implementation of a numerical model of friction between rough surfaces (2001).
+
+>>> steel, copper = Material(E=200e9, nu=0.30), Material(E=118e9, nu=0.30)
+>>> scene = Scene(
+...     upper=Body(steel, Sphere(radius=0.14)), lower=Body(copper, Flat()),
+...     friction=Friction(tau=15e6, beta=0.08), load=70.0, side=1.61e-3)
+>>> s = solve(scene, grid=64)
+>>> s.status.name, round(s.friction_coefficient, 3)
+('CONVERGED', 0.215)
+"""
+
+from refimpl.errors import InputError
+from refimpl.grid import Grid
+from refimpl.materials import Material
+from refimpl.outcome import Status
+from refimpl.scene import Body, Friction, Scene
+from refimpl.scene_file import read_scene, scene_to_toml, shipped_scenes
+from refimpl.solution import Solution
+from refimpl.solve import solve
+from refimpl.surfaces import (
+    ArraySurface,
+    Flat,
+    GaussianRoughness,
+    MeasuredSurface,
+    Sphere,
+    Surface,
+    SurfaceSum,
+    SurfaceWarning,
+)
+
+__all__ = [
+    "ArraySurface",
+    "Body",
+    "Flat",
+    "Friction",
+    "GaussianRoughness",
+    "Grid",
+    "InputError",
+    "Material",
+    "MeasuredSurface",
+    "Scene",
+    "Solution",
+    "Sphere",
+    "Status",
+    "Surface",
+    "SurfaceSum",
+    "SurfaceWarning",
+    "read_scene",
+    "scene_to_toml",
+    "shipped_scenes",
+    "solve",
+]

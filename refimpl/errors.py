@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import numbers
+
 
 class InputError(ValueError):
     """Input refused at the border: names the field, the value and what is allowed.
@@ -18,3 +21,30 @@ class InputError(ValueError):
         if len(shown) > 120:
             shown = shown[:117] + "..."
         super().__init__(f"{field} = {shown}: expected {allowed}")
+
+
+def require_number(
+    field: str,
+    value: object,
+    allowed: str,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+) -> None:
+    """Raise `InputError` unless ``value`` is a finite real number within the bounds.
+
+    >>> require_number("nu", 0.3, "a ratio", above=-1, at_most=0.5)
+    """
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        number = float(value)
+        if (
+            math.isfinite(number)
+            and (above is None or number > above)
+            and (at_least is None or number >= at_least)
+            and (below is None or number < below)
+            and (at_most is None or number <= at_most)
+        ):
+            return
+    raise InputError(field, value, allowed)

@@ -42,11 +42,16 @@ class TauSupport:
         self.current: Mask = np.zeros(shape, dtype=bool)
         self.withheld: Mask = np.zeros(shape, dtype=bool)
         self.settled = False
-        self.cycles = 0
+        self.cycle_length = 0
         self._history: list[Mask] = [self.current]
 
     def next(self, contact: Mask) -> Mask:
-        """The support for the next solve, given the contact set of the last; sets `settled`."""
+        """The support for the next solve, given the contact set of the last.
+
+        Sets ``settled`` when it is the last one again, and ``cycle_length`` to the number of states
+        in a cycle that this contact set closes (else 0).
+        """
+        self.cycle_length = 0
         support = contact & ~self.withheld
         self.settled = bool(np.array_equal(support, self.current))
         if self.settled:
@@ -55,7 +60,7 @@ class TauSupport:
             if np.array_equal(support, self._history[k]):
                 cycle = np.array(self._history[k:])
                 self.withheld = self.withheld | (cycle.any(axis=0) & ~cycle.all(axis=0))
-                self.cycles += 1
+                self.cycle_length = len(cycle)
                 self._history = []
                 support = contact & ~self.withheld
                 break

@@ -42,4 +42,4 @@ class Grid:
     @property
     def centres(self) -> Array:
         """Element centres along one axis, shape ``(M,)`` (m)."""
-        return (np.arange(self.M) + 0.5) * self.spacing
+        return (np.arange(self.M, dtype=np.float64) + 0.5) * self.spacing

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from refimpl.errors import InputError
+from refimpl.errors import require_number
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,8 @@ class Material:
     nu: float
 
     def __post_init__(self) -> None:
-        if not (_is_number(self.E) and math.isfinite(self.E) and self.E > 0):
-            raise InputError("E", self.E, "a positive, finite Young's modulus in Pa")
-        if not (_is_number(self.nu) and -1 < self.nu <= 0.5):
-            raise InputError("nu", self.nu, "a Poisson's ratio in (-1, 0.5]")
+        require_number("E", self.E, "a positive, finite Young's modulus in Pa", above=0)
+        require_number("nu", self.nu, "a Poisson's ratio in (-1, 0.5]", above=-1, at_most=0.5)
 
     @property
     def plane_strain_modulus(self) -> float:
@@ -72,7 +70,3 @@ class Pair:
     def reduced_modulus(self) -> float:
         """``E* = 1 / sum((1 - nu^2) / E)`` (Pa)."""
         return 1 / (1 / self.lower.plane_strain_modulus + 1 / self.upper.plane_strain_modulus)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

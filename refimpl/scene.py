@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_number
 from refimpl.grid import Array, Grid
 from refimpl.materials import Material, Pair
 from refimpl.surfaces import Surface, as_surface
@@ -22,8 +22,8 @@ class Friction:
     beta: float = 0.0
 
     def __post_init__(self) -> None:
-        _require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
-        _require_number("friction.beta", self.beta, "a finite number, not negative", at_least=0)
+        require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
+        require_number("friction.beta", self.beta, "a finite number, not negative", at_least=0)
 
     @property
     def is_zero(self) -> bool:
@@ -77,10 +77,10 @@ class Scene:
                 raise InputError(name, getattr(self, name), "a Body")
         if not isinstance(self.friction, Friction):
             raise InputError("friction", self.friction, "a Friction")
-        _require_number("load", self.load, "a positive normal load in N", above=0)
-        _require_number("side", self.side, "a positive length in m", above=0)
-        _require_number("sliding_direction", self.sliding_direction, "a finite angle in rad")
-        _require_number("sliding_offset", self.sliding_offset, "a finite length in m")
+        require_number("load", self.load, "a positive normal load in N", above=0)
+        require_number("side", self.side, "a positive length in m", above=0)
+        require_number("sliding_direction", self.sliding_direction, "a finite angle in rad")
+        require_number("sliding_offset", self.sliding_offset, "a finite length in m")
         if not isinstance(self.periodic, bool):
             raise InputError("periodic", self.periodic, "true or false")
 
@@ -116,15 +116,3 @@ def _centred(name: str, heights: Array, grid: Grid) -> Array:
             f"heights in m whose peak-to-valley is at most the side, {grid.side:.3g} m (wrong unit?)",
         )
     return heights - (low + 0.5 * (high - low))
-
-
-def _require_number(
-    name: str, value: object, allowed: str, *, above: float | None = None, at_least: float | None = None
-) -> None:
-    ok = isinstance(value, int | float | np.floating | np.integer) and not isinstance(value, bool)
-    if ok:
-        number = float(value)  # type: ignore[arg-type]  # narrowed by ok
-        ok = math.isfinite(number)
-        ok = ok and (above is None or number > above) and (at_least is None or number >= at_least)
-    if not ok:
-        raise InputError(name, value, allowed)

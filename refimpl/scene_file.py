@@ -17,7 +17,8 @@ from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.base import SurfaceSum
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
-_SCENE_KEYS = ("load", "side", "sliding_direction", "sliding_offset", "periodic", "upper", "lower", "friction")
+_OPTIONAL_KEYS = ("sliding_direction", "sliding_offset", "periodic")
+_SCENE_KEYS = ("load", "side", "upper", "lower", "friction", *_OPTIONAL_KEYS)
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -47,7 +48,8 @@ def shipped_scenes() -> tuple[str, ...]:
     True
     """
     folder = resources.files("refimpl").joinpath("data", "scenes")
-    return tuple(sorted(item.name[: -len(".toml")] for item in folder.iterdir() if item.name.endswith(".toml")))
+    files = (Path(item.name) for item in folder.iterdir())
+    return tuple(sorted(file.stem for file in files if file.suffix == ".toml"))
 
 
 def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
@@ -55,7 +57,7 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
     _refuse_unknown("scene", table, _SCENE_KEYS)
     friction = _table(table, "friction", {})
     _refuse_unknown("friction", friction, ("tau", "beta"))
-    optional = {key: table[key] for key in ("sliding_direction", "sliding_offset", "periodic") if key in table}
+    optional = {key: table[key] for key in _OPTIONAL_KEYS if key in table}
     return Scene(
         upper=_body(table, "upper", folder),
         lower=_body(table, "lower", folder),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refimpl.grid import Array
 
@@ -42,6 +43,13 @@ class Slopes:
         along_j = _difference(heights, 1, periodic) / spacing
         cos, sin = math.cos(direction), math.sin(direction)
         return cls(cos * along_i + sin * along_j, cos * along_j - sin * along_i)
+
+    def distance(self, other: Slopes, where: NDArray[np.bool_]) -> float:
+        """Largest difference of the tangents on the marked elements."""
+        if self.tan_x is other.tan_x or not where.any():
+            return 0.0
+        pairs = ((self.tan_x, other.tan_x), (self.tan_y, other.tan_y))
+        return max(float(np.abs(a - b)[where].max()) for a, b in pairs)
 
     @cached_property
     def cos_x(self) -> Array:

@@ -58,7 +58,7 @@ class DenseInfluence:
     def _offsets(self) -> tuple[Array, Array, float]:
         """All offsets ``-(M-1) ... M-1`` between centres along x and y (m), and the element's edge."""
         edge = self.grid.spacing
-        steps = np.arange(1 - self.grid.M, self.grid.M) * edge
+        steps = np.arange(1 - self.grid.M, self.grid.M, dtype=np.float64) * edge
         return steps[:, None], steps[None, :], edge
 
     def _along(self, angle: float) -> Array:
@@ -74,7 +74,8 @@ class DenseInfluence:
         """Matrix over pairs (field, source) from values over the ``(2M-1, 2M-1)`` offsets."""
         M = self.grid.M
         i, j = np.divmod(np.arange(M * M), M)
-        return by_offset[i[:, None] - i[None, :] + M - 1, j[:, None] - j[None, :] + M - 1]
+        pairs: Array = by_offset[i[:, None] - i[None, :] + M - 1, j[:, None] - j[None, :] + M - 1]
+        return pairs
 
     def _from_symbol(self, angle: float | None) -> Array:
         """Periodic matrix by summing the Fourier modes one by one: ``2 pi/q`` or ``-2 pi i q_s/q^2``."""
@@ -82,7 +83,7 @@ class DenseInfluence:
         modes = np.arange(M) - M // 2
         q = 2 * np.pi * modes / self.grid.side
         squared = q[:, None] ** 2 + q[None, :] ** 2
-        squared[M // 2, M // 2] = np.inf  # the mean displaces nothing: the approach counts from the mean planes
+        squared[M // 2, M // 2] = np.inf  # the mean pressure displaces nothing
         if angle is None:
             symbol = 2 * np.pi / np.sqrt(squared) + 0j
         else:

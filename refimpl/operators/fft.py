@@ -12,11 +12,10 @@ from functools import cached_property
 
 import numpy as np
 import scipy.fft as sfft
-
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
-from refimpl.operators.tables import signed_table, unit_table
+from refimpl.operators.tables import signed_table
 from refimpl.operators.window import Window
 
 Complex = NDArray[np.complex128]
@@ -38,23 +37,32 @@ class Counter:
 
 
 class FFTInfluence:
-    """Influence convolutions from a window onto itself (default: the whole grid).
+    """Influence convolutions from a source window to a target window, by default the same one.
 
-    The padded size is at least twice the window's, so that no periodic image reaches it: the result
-    is the dense product to rounding. Kernels are built when first used and never otherwise.
+    The padded size holds every offset that occurs exactly once, so no periodic image reaches the
+    target: the result is the dense product to rounding. Kernels are built when first used and never
+    otherwise. Arguments have the source's shape, results the target's.
     """
 
     def __init__(
-        self, grid: Grid, direction: float, *, window: Window | None = None, counter: Counter | None = None
+        self,
+        grid: Grid,
+        direction: float,
+        *,
+        source: Window | None = None,
+        target: Window | None = None,
+        counter: Counter | None = None,
     ) -> None:
         self.grid = grid
         self.direction = direction
-        self.window = window or Window.full(grid.M)
+        self.source = source or Window.full(grid.M)
+        self.target = target or self.source
         self.counter = counter if counter is not None else Counter()
-        self._padded = tuple(sfft.next_fast_len(2 * n, real=True) for n in self.window.shape)
+        lengths = [n + m for n, m in zip(self.source.shape, self.target.shape, strict=True)]
+        self._padded = tuple(sfft.next_fast_len(n, real=True) for n in lengths)
 
     def normal(self, pressure: Array) -> Array:
-        """``I[1/rho]`` applied to a pressure on the window."""
+        """``I[1/rho]`` applied to a pressure."""
         self.counter.add("normal", math.prod(self._padded))
         return self._convolve(pressure, self._normal_hat)
 
@@ -69,12 +77,19 @@ class FFTInfluence:
         return self._convolve(traction, self._across_hat)
 
     @cached_property
-    def _normal_hat(self) -> Array:
-        """The even kernel's transform, real."""
-        rows, columns = (_wrapped(n) for n in self._padded)
-        table = unit_table("normal", 1 + max(n // 2 for n in self._padded))
-        kernel = table[np.ix_(np.abs(rows), np.abs(columns))] * self.grid.spacing
-        return np.ascontiguousarray(sfft.rfft2(kernel).real)
+    def _offsets(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+        """Signed element offsets, target minus source, around the circle of each axis."""
+        return (
+            _circle(self._padded[0], self.target.shape[0], self.target.i0 - self.source.i0),
+            _circle(self._padded[1], self.target.shape[1], self.target.j0 - self.source.j0),
+        )
+
+    @cached_property
+    def _normal_hat(self) -> Array | Complex:
+        """The kernel's transform; real, and kept so, when source and target coincide."""
+        rows, columns = self._offsets
+        hat = sfft.rfft2(signed_table("normal", rows, columns) * self.grid.spacing)
+        return np.ascontiguousarray(hat.real) if self.source == self.target else hat
 
     @cached_property
     def _shear_hat(self) -> Complex:
@@ -85,23 +100,37 @@ class FFTInfluence:
         return self._tangential_hat(self.direction + math.pi / 2)
 
     def _tangential_hat(self, angle: float) -> Complex:
-        """The odd kernel's transform, imaginary."""
-        rows, columns = (_wrapped(n) for n in self._padded)
+        rows, columns = self._offsets
         along_x = signed_table("tangential", rows, columns)
         along_y = signed_table("tangential", columns, rows).T
-        kernel = (math.cos(angle) * along_x + math.sin(angle) * along_y) * self.grid.spacing
-        return sfft.rfft2(kernel)
+        hat: Complex = sfft.rfft2(
+            (math.cos(angle) * along_x + math.sin(angle) * along_y) * self.grid.spacing
+        )
+        return hat
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
-        n, m = self.window.shape
+        n, m = self.target.shape
         N, K = self._padded
         spectrum = sfft.fft(sfft.rfft(source, n=K, axis=1), n=N, axis=0)
         spectrum *= hat
         rows = sfft.ifft(spectrum, axis=0, overwrite_x=True)[:n]
-        return sfft.irfft(rows, n=K, axis=1)[:, :m]
+        result: Array = sfft.irfft(rows, n=K, axis=1)[:, :m]
+        return result
 
 
-def _wrapped(n: int) -> NDArray[np.int_]:
-    """Signed offsets ``0, 1, ..., -1`` of a circle of ``n`` points."""
+class WholeGridInfluence(FFTInfluence):
+    """From a source window to the whole grid, with arguments of the grid's shape.
+
+    Tractions outside the source are taken to be zero: the caller chose the source to hold them all.
+    """
+
+    def _convolve(self, source: Array, hat: Array | Complex) -> Array:
+        return super()._convolve(source[self.source.slices], hat)
+
+
+def _circle(n: int, targets: int, shift: int) -> NDArray[np.int_]:
+    """Offsets met around a circle of ``n`` points: ``0 ... targets - 1``, then the negative ones."""
     steps = np.arange(n)
-    return np.where(steps <= n // 2, steps, steps - n)
+    if shift == 0:  # keep the circle even, so that an even kernel has a real transform
+        return np.where(steps <= n // 2, steps, steps - n)
+    return np.where(steps < targets, steps, steps - n) + shift

@@ -62,7 +62,9 @@ class PeriodicInfluence:
             half = self.grid.M // 2
             q_x, q_y = q_x.copy(), q_y.copy()
             q_x[half], q_y[0, half] = 0.0, 0.0
-        return -2j * np.pi * (math.cos(angle) * q_x + math.sin(angle) * q_y) / squared
+        q_s: Array = math.cos(angle) * q_x + math.sin(angle) * q_y
+        return np.complex128(-2j * np.pi) * q_s / squared
 
     def _filter(self, source: Array, symbol: Array | Complex) -> Array:
-        return sfft.irfft2(sfft.rfft2(source) * symbol, s=source.shape)
+        result: Array = sfft.irfft2(sfft.rfft2(source) * symbol, s=source.shape)
+        return result

@@ -32,5 +32,5 @@ def unit_table(kind: str, n: int) -> Array:
 def signed_table(kind: str, rows: NDArray[np.int_], columns: NDArray[np.int_]) -> Array:
     """The table's values at signed integer offsets ``rows[:, None], columns[None, :]``."""
     n = 1 + int(max(np.abs(rows).max(), np.abs(columns).max()))
-    values = unit_table(kind, n)[np.ix_(np.abs(rows), np.abs(columns))]
-    return values * np.sign(rows)[:, None] if kind == "tangential" else values
+    values: Array = unit_table(kind, n)[np.ix_(np.abs(rows), np.abs(columns))]
+    return values * np.sign(rows)[:, None].astype(np.float64) if kind == "tangential" else values

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from refimpl.grid import Array
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ class Window:
         """Index of the window in an array of the grid's shape."""
         return slice(self.i0, self.i1), slice(self.j0, self.j1)
 
-    def spread(self, values: Array, M: int) -> Array:
+    def spread(self, values: NDArray[Any], M: int) -> NDArray[Any]:
         """``(M, M)`` array with the window's values, zero elsewhere."""
         full = np.zeros((M, M), dtype=values.dtype)
         full[self.slices] = values

@@ -1,0 +1,265 @@
+"""The production solver: nested grids, FFTs on the contact's window, projected CG with lagged coupling.
+
+Only ``a f`` is inverted. Shear displacement, slopes, the load's weights and tau's support are held
+while CG reduces the residual tenfold and are then brought up to date; their own feedback is weak
+(it scales with ``beta`` times a Dundurs parameter and with the slopes), so few updates suffice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.contact.certificate import State, certify
+from refimpl.contact.preconditioner import SpectralPreconditioner
+from refimpl.contact.projected_cg import ProjectedCG
+from refimpl.friction import Mask, TauSupport, local_friction
+from refimpl.grid import Array, Grid
+from refimpl.operators.base import Influence
+from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
+from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.operators.window import Window
+from refimpl.outcome import Outcome, Status, Visited
+from refimpl.problem import Problem, visit
+from refimpl.slopes import Slopes
+
+_REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
+_COARSEST = 64  # elements per side where nesting starts
+_COARSE_TOLERANCE = 1e-4  # a coarse state is only a start: its own grid error is larger than this
+_CG_LIMIT = 1000
+_CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
+_STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
+_SUPPORT_ITERATIONS = 200
+
+
+def solve_fft(problem: Problem, tolerance: float, counter: Counter) -> tuple[Outcome, State]:
+    """Outcome and certified state of the problem, to a certificate of about ``tolerance``.
+
+    The outcome's status speaks of the loops only; the certificate is of the full grid.
+    """
+    pressure: Array | None = None
+    iterations: dict[str, int] = {}
+    *coarse, _ = levels = _levels(problem)
+    for level in coarse:
+        solver = _LevelSolver(level, counter, _window_for(level, pressure), pressure)
+        solver.settle(_COARSE_TOLERANCE)
+        iterations[f"CG at {level.grid.M}"] = solver.cg_iterations
+        pressure = _prolonged(solver.full(solver.cg.pressure))
+    solver = _LevelSolver(levels[-1], counter, _window_for(problem, pressure), pressure)
+    while True:
+        outcome = solver.solve(tolerance)
+        state = _certified(problem, outcome, counter)
+        outside = solver.penetrating_outside(state, tolerance)
+        if not outside.any():
+            outcome.iterations.update(iterations)
+            return outcome, state
+        solver.widen(outside)
+
+
+def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
+    """The state on the whole grid, from a source window that holds all tractions."""
+    if problem.periodic:
+        operator: Influence = PeriodicInfluence(problem.grid, problem.direction, counter=counter)
+    else:
+        loaded = (outcome.pressure != 0) | (outcome.traction != 0)
+        operator = WholeGridInfluence(
+            problem.grid,
+            problem.direction,
+            source=Window.around(loaded, margin=0),
+            target=Window.full(problem.grid.M),
+            counter=counter,
+        )
+    return certify(problem, operator, outcome.pressure, outcome.traction, outcome.slopes)
+
+
+def _levels(problem: Problem) -> list[Problem]:
+    """The problem on halved grids, coarsest first; each coarse gap is the mean of four."""
+    levels = [problem]
+    while levels[0].grid.M % 2 == 0 and levels[0].grid.M // 2 >= _COARSEST:
+        fine = levels[0]
+        coarse = replace(
+            fine,
+            grid=Grid(fine.grid.side, fine.grid.M // 2),
+            gap=_halved(fine.gap),
+            mean_surface=_halved(fine.mean_surface),
+        )
+        levels.insert(0, coarse)
+    return levels
+
+
+def _halved(values: Array) -> Array:
+    return 0.25 * (values[::2, ::2] + values[1::2, ::2] + values[::2, 1::2] + values[1::2, 1::2])
+
+
+def _prolonged(coarse: Array) -> Array:
+    """Bilinear interpolation from element centres to those of the twice finer grid."""
+    for _ in range(2):
+        padded = np.pad(coarse, ((1, 1), (0, 0)), mode="edge")
+        fine = np.empty((2 * len(coarse), coarse.shape[1]))
+        fine[::2] = 0.75 * coarse + 0.25 * padded[:-2]
+        fine[1::2] = 0.75 * coarse + 0.25 * padded[2:]
+        coarse = fine.T
+    return coarse
+
+
+def _window_for(problem: Problem, pressure: Array | None) -> Window:
+    if pressure is None or problem.periodic:
+        return Window.full(problem.grid.M)
+    return Window.around(pressure > 0, margin=max(3, problem.grid.M // 64))
+
+
+def _start(problem: Problem) -> Array:
+    """Pressure to start from: that of a springy foundation on the part that interferes, or the lowest."""
+    depth = problem.approach if problem.approach is not None else float(np.quantile(problem.gap, 0.3))
+    interference = np.maximum(depth - problem.gap, 0.0)
+    if not interference.any():
+        interference = (problem.gap <= problem.gap.min()).astype(float)
+    return interference / (problem.pair.normal_compliance * problem.grid.side)
+
+
+class _LevelSolver:
+    """One grid level: CG on a window, with slopes, shear and tau's support brought up to date."""
+
+    def __init__(
+        self, problem: Problem, counter: Counter, window: Window, pressure: Array | None
+    ) -> None:
+        self.whole = problem
+        self.counter = counter
+        self.cg_iterations = 0
+        self._open(window, _start(problem) if pressure is None else pressure)
+
+    def _open(self, window: Window, pressure: Array) -> None:
+        """Set up operator, preconditioner and CG on a window, starting from a full-grid pressure."""
+        grid, direction = self.whole.grid, self.whole.direction
+        self.window = window
+        self.problem = self.whole.windowed(window)
+        if self.whole.periodic:
+            self.operator: FFTInfluence | PeriodicInfluence = PeriodicInfluence(
+                grid, direction, counter=self.counter
+            )
+        else:
+            self.operator = FFTInfluence(grid, direction, source=window, counter=self.counter)
+        compliance = self.problem.pair.normal_compliance
+        self.cg = ProjectedCG(
+            lambda pressure: compliance * self.operator.normal(pressure),
+            SpectralPreconditioner(window.shape, grid.spacing, compliance, self.counter),
+            pressure[window.slices],
+        )
+        self.slopes = Slopes.flat(window.shape)
+        self.traction = np.zeros(window.shape)
+
+    def solve(self, tolerance: float) -> Outcome:
+        """The settled state; tau's support follows the rule of `refimpl.friction` if it cycles."""
+        if self.settle(tolerance) or self.problem.friction.tau == 0:
+            return self._outcome(self._ended(), TauSupport((1, 1)), [])
+        rule = TauSupport(self.window.shape)
+        states: list[Visited] = []
+        in_cycles: list[Visited] = []
+        for _ in range(_SUPPORT_ITERATIONS):
+            self.settle(tolerance, rule.current)
+            states.append(visit(self.problem, self.cg.pressure, self.traction, self.slopes))
+            rule.next(self.cg.pressure > 0)
+            in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
+            if rule.settled:
+                break
+        lawful = not np.any(rule.withheld & (self.cg.pressure > 0))
+        status = self._ended()
+        if status is Status.CONVERGED and not lawful:
+            status = Status.CYCLED
+        return self._outcome(status if rule.settled else Status.ITERATION_LIMIT, rule, in_cycles)
+
+    def settle(self, tolerance: float, support: Mask | None = None) -> bool:
+        """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
+        self._tolerance, self._budget = tolerance, self.cg_iterations + _CG_LIMIT
+        residual = best = self._update(support)
+        stalled = 0
+        while residual > tolerance and stalled < _STALLED and self.cg_iterations < self._budget:
+            self._reduce(max(_REDUCTION * residual, 0.3 * tolerance))
+            residual = self._update(support) if self._lags else max(self.cg.residuals())
+            best, stalled = (residual, 0) if residual < 0.5 * best else (best, stalled + 1)
+        self.residual = residual
+        return residual <= tolerance
+
+    def _reduce(self, goal: float) -> None:
+        """CG steps until the frozen problem's residual meets the goal or no longer falls."""
+        best, since = np.inf, 0
+        while since < _CG_PATIENCE and self.cg_iterations < self._budget:
+            residual = max(self.cg.residuals())
+            if residual <= goal:
+                return
+            best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
+            self.cg.iterate()
+            self.cg_iterations += 1
+
+    @property
+    def _lags(self) -> bool:
+        """Whether anything is held during CG that depends on the pressure."""
+        terms = self.problem.terms
+        sheared = terms.coupled and not self.problem.friction.is_zero
+        return terms.oblique or terms.slope_correction or sheared
+
+    def _update(self, support: Mask | None) -> float:
+        """Bring slopes, shear and load weights up to date; the residual of the whole problem."""
+        problem, pressure = self.problem, self.cg.pressure
+        self.support = pressure > 0 if support is None else support
+        self.traction = local_friction(problem.friction, pressure, self.support)
+        normal = None if problem.terms.slope_correction else self.cg.normal_displacement
+        lower, upper = problem.displacements(
+            self.operator, pressure, self.traction, self.slopes, normal_displacement=normal
+        )
+        slopes = problem.slopes(lower, upper)
+        change = slopes.distance(self.slopes, pressure > 0)
+        self.slopes = slopes
+        target, balance = None, 0.0
+        if problem.load is not None:
+            weights, offset = problem.load_weights(slopes, self.support)
+            dA = problem.grid.element_area
+            found = float(np.vdot(weights, pressure))
+            balance = abs(found * dA - offset - problem.load) / problem.load
+            lag = float(np.vdot(slopes.obliqueness, pressure)) - found
+            target = (problem.load + offset) / dA + lag
+        shear = lower + upper - self.cg.normal_displacement
+        self.cg.freeze(
+            slopes.obliqueness * problem.gap + shear,
+            slopes.obliqueness,
+            target=target,
+            approach=problem.approach,
+        )
+        return max(*self.cg.residuals(), balance, change)
+
+    def _ended(self) -> Status:
+        if self.residual <= self._tolerance:
+            return Status.CONVERGED
+        return Status.ITERATION_LIMIT if self.cg_iterations >= self._budget else Status.STAGNATED
+
+    def _outcome(self, status: Status, rule: TauSupport, in_cycles: list[Visited]) -> Outcome:
+        withheld = rule.withheld if in_cycles else np.zeros(self.window.shape, dtype=bool)
+        return Outcome(
+            pressure=self.full(self.cg.pressure),
+            traction=self.full(local_friction(self.problem.friction, self.cg.pressure, self.support)),
+            slopes=Slopes(self.full(self.slopes.tan_x), self.full(self.slopes.tan_y)),
+            status=status,
+            withheld=self.full(withheld),
+            visited=tuple(in_cycles),
+            iterations={f"CG at {self.whole.grid.M}": self.cg_iterations},
+        )
+
+    def penetrating_outside(self, state: State, tolerance: float) -> Mask:
+        """Elements outside the window that penetrate by more than the tolerance."""
+        u = state.displacement_lower + state.displacement_upper
+        v = u / state.slopes.obliqueness + self.whole.gap
+        outside = v < state.approach * (1 - tolerance)
+        outside[self.window.slices] = False
+        return outside
+
+    def widen(self, outside: Mask) -> None:
+        """Start again from the present pressure on a window that also holds the penetrating elements."""
+        pressure = self.full(self.cg.pressure)
+        self._open(Window.around((pressure > 0) | outside, margin=max(3, self.whole.grid.M // 64)), pressure)
+
+    def full(self, values: NDArray[Any]) -> NDArray[Any]:
+        """A window array on the whole grid."""
+        return self.window.spread(values, self.whole.grid.M)

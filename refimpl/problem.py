@@ -1,0 +1,156 @@
+"""The discrete problem on one grid: gap, compliances and the terms that enter Eqs (6) and (7)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from refimpl.forces import resultants
+from refimpl.friction import Mask
+from refimpl.grid import Array, Grid
+from refimpl.materials import Pair
+from refimpl.operators.base import Influence
+from refimpl.operators.window import Window
+from refimpl.outcome import Visited
+from refimpl.scene import Friction, Scene
+from refimpl.slopes import Slopes
+
+
+@dataclass(frozen=True)
+class Terms:
+    """Which physics enters: tau/beta coupled to displacement, slopes, exact facet tractions."""
+
+    coupled: bool
+    oblique: bool
+    slope_correction: bool
+
+    def shear_moves(self) -> bool:
+        """Whether tangential tractions displace anything that enters the problem."""
+        return self.coupled or self.oblique
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A scene on a grid (or on a window of it), all arrays of one shape.
+
+    ``gap`` is ``z_upper - z_lower`` shifted to ``min h = 0``; ``mean_surface`` is the undeformed
+    ``(z_lower + z_upper) / 2`` at first touch. Exactly one of ``load`` (N) and ``approach`` (m,
+    counted from first touch) is given.
+    """
+
+    grid: Grid
+    gap: Array
+    mean_surface: Array
+    pair: Pair
+    friction: Friction
+    direction: float
+    periodic: bool
+    terms: Terms
+    load: float | None
+    approach: float | None
+
+    @property
+    def heights(self) -> tuple[Array, Array]:
+        """Undeformed heights ``(z_lower, z_upper)`` at first touch (m)."""
+        return self.mean_surface - 0.5 * self.gap, self.mean_surface + 0.5 * self.gap
+
+    def windowed(self, window: Window) -> Problem:
+        """The same problem seen on a window of its grid."""
+        return replace(self, gap=self.gap[window.slices], mean_surface=self.mean_surface[window.slices])
+
+    def tractions(
+        self, pressure: Array, traction: Array, slopes: Slopes
+    ) -> tuple[Array, Array, Array | None]:
+        """Tractions that enter Eq. (7): down, along and across the sliding direction (Pa).
+
+        As printed they are ``f``, ``r`` and none. With the slope correction they are the exact facet
+        tractions per projected area: ``f - r tan theta_x``, ``r + f tan theta_x``, ``f tan theta_y``.
+        """
+        if not self.terms.slope_correction:
+            return pressure, traction, None
+        return (
+            pressure - traction * slopes.tan_x,
+            traction + pressure * slopes.tan_x,
+            pressure * slopes.tan_y,
+        )
+
+    def displacements(
+        self,
+        operator: Influence,
+        pressure: Array,
+        traction: Array,
+        slopes: Slopes,
+        *,
+        normal_displacement: Array | None = None,
+    ) -> tuple[Array, Array]:
+        """Normal displacements ``(u_lower, u_upper)`` into each body, Eq. (7) (m).
+
+        ``normal_displacement`` is the pair's own answer to the downward traction, if known already.
+        """
+        down, along, across = self.tractions(pressure, traction, slopes)
+        if normal_displacement is None:
+            normal = operator.normal(down)
+        else:
+            normal = normal_displacement / self.pair.normal_compliance
+        lower = self.pair.lower.normal_compliance * normal
+        upper = self.pair.upper.normal_compliance * normal
+        if self.terms.shear_moves() and (across is not None or np.any(along)):
+            shear = operator.shear(along)
+            if across is not None:
+                shear = shear + operator.shear_across(across)
+            lower = lower + self.pair.lower.shear_compliance * shear
+            upper = upper - self.pair.upper.shear_compliance * shear
+        return lower, upper
+
+    def slopes(self, lower: Array, upper: Array) -> Slopes:
+        """Slopes of the common surface, the mean of both deformed ones; flat when not oblique."""
+        if not self.terms.oblique:
+            return Slopes.flat(lower.shape)
+        surface = self.mean_surface + 0.5 * (upper - lower)
+        return Slopes.of_surface(surface, self.grid.spacing, self.direction, periodic=self.periodic)
+
+    def load_weights(self, slopes: Slopes, support: Mask) -> tuple[Array, float]:
+        """Eq. (2) as an affine map of the pressure: ``N = sum(weights f) dA - offset`` (N).
+
+        With ``r = tau chi + beta f``: weights ``(cos theta_x - beta sin theta_x) cos theta_y`` and
+        offset ``tau sum(chi sin theta_x cos theta_y) dA``.
+        """
+        tau, beta = self.friction.tau, self.friction.beta
+        weights = (slopes.cos_x - beta * slopes.sin_x) * slopes.cos_y
+        offset = tau * float(np.sum(support * slopes.sin_x * slopes.cos_y)) * self.grid.element_area
+        return weights, offset
+
+
+def visit(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> Visited:
+    """What a cycle's report keeps of a state."""
+    forces = resultants(pressure, traction, slopes, problem.grid.element_area)
+    load = problem.load if problem.load is not None else forces.normal
+    area = float(np.count_nonzero(pressure)) * problem.grid.element_area
+    return Visited(forces.friction / load if load else math.nan, area)
+
+
+def pose(scene: Scene, grid: Grid, terms: Terms, approach: float | None) -> Problem:
+    """The scene's problem on a grid.
+
+    ``approach`` replaces the load if given: counted from first touch, or from the mean planes when
+    the scene is periodic (m).
+    """
+    lower, upper = scene.heights(grid)
+    gap = upper - lower
+    gap = gap - gap.min()
+    if approach is not None and scene.periodic:
+        approach += float(gap.mean())
+    return Problem(
+        grid=grid,
+        gap=gap,
+        mean_surface=lower + 0.5 * gap,
+        pair=scene.materials,
+        friction=scene.friction,
+        direction=scene.sliding_direction,
+        periodic=scene.periodic,
+        terms=terms,
+        load=scene.load if approach is None else None,
+        approach=approach,
+    )

@@ -1,0 +1,114 @@
+"""What a solve returns: the numbers, the arrays, how well it converged and what it cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from refimpl.contact.certificate import Certificate
+from refimpl.friction import Mask
+from refimpl.grid import Array, Grid
+from refimpl.outcome import Status
+from refimpl.plan import Plan
+from refimpl.slopes import Slopes
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Work done: seconds, operator applications by kind, their ``n log2 n`` sum, iterations by loop."""
+
+    seconds: float
+    applications: Mapping[str, int]
+    point_logs: float
+    iterations: Mapping[str, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A solved scene. Forces in N, lengths in m, areas in m^2, pressures in Pa, arrays ``(M, M)``.
+
+    ``approach`` counts from first touch, or from the mean planes when periodic. ``pressure`` is the
+    local ``f`` and ``traction`` the local ``r`` of Eq. (1). ``surface_lower`` and ``surface_upper``
+    are the deformed heights; ``separation`` is the gap left between them. ``uncertainty`` maps each
+    reported number to its parts, absolute, in the number's unit.
+    """
+
+    status: Status
+    approach: float
+    normal_force: float
+    friction_force: float
+    binormal_force: float
+    friction_coefficient: float
+    contact_area: float
+    contact_area_corrected: float
+    max_pressure: float
+    pressure: Array
+    traction: Array
+    slopes: Slopes
+    surface_lower: Array
+    surface_upper: Array
+    separation: Array
+    withheld: Mask
+    grid: Grid
+    sliding_direction: float
+    certificate: Certificate
+    tolerance: float
+    uncertainty: Mapping[str, Mapping[str, float]]
+    plan: Plan
+    warnings: tuple[str, ...]
+    cost: Cost
+
+    @property
+    def contact(self) -> Mask:
+        """Elements with ``f > 0``."""
+        return self.pressure > 0
+
+    @cached_property
+    def theta_x(self) -> Array:
+        """Slope angle along the sliding direction, positive uphill (rad)."""
+        return np.arctan(self.slopes.tan_x)
+
+    @cached_property
+    def theta_y(self) -> Array:
+        """Slope angle along the direction 90 degrees anticlockwise of sliding (rad)."""
+        return np.arctan(self.slopes.tan_y)
+
+    def summary(self) -> dict[str, Any]:
+        """Everything but the arrays, as plain values for JSON."""
+        numbers = {name: getattr(self, name) for name in REPORTED}
+        return {
+            "status": self.status.value,
+            **numbers,
+            "grid": self.grid.M,
+            "side": self.grid.side,
+            "tolerance": self.tolerance,
+            "certificate": asdict(self.certificate),
+            "uncertainty": {name: dict(parts) for name, parts in self.uncertainty.items()},
+            "plan": [
+                {"term": term.name, "included": term.included, "reason": term.reason}
+                for term in self.plan.terms
+            ],
+            "method": self.plan.method,
+            "warnings": list(self.warnings),
+            "cost": {
+                "seconds": self.cost.seconds,
+                "applications": dict(self.cost.applications),
+                "iterations": dict(self.cost.iterations),
+            },
+        }
+
+
+REPORTED = (
+    "friction_coefficient",
+    "contact_area",
+    "contact_area_corrected",
+    "max_pressure",
+    "approach",
+    "normal_force",
+    "friction_force",
+    "binormal_force",
+)

@@ -1,0 +1,162 @@
+"""From a scene to a solution: plan, pose, solve, certify, report."""
+
+from __future__ import annotations
+
+import math
+import time
+import warnings
+
+import numpy as np
+
+from refimpl.contact.certificate import State, certify
+from refimpl.dense_solver import solve_dense
+from refimpl.errors import require_number
+from refimpl.fft_solver import solve_fft
+from refimpl.forces import perimeter_corrected_area
+from refimpl.friction import Mask
+from refimpl.grid import Grid
+from refimpl.operators.dense import DenseInfluence
+from refimpl.operators.fft import Counter, WholeGridInfluence
+from refimpl.operators.window import Window
+from refimpl.outcome import Outcome, Status, Visited
+from refimpl.plan import Method, Plan, make_plan
+from refimpl.problem import Problem, pose
+from refimpl.scene import Scene
+from refimpl.solution import Cost, Solution
+from refimpl.surfaces import SurfaceWarning
+
+
+def solve(
+    scene: Scene,
+    grid: int,
+    *,
+    method: Method = "fft",
+    approach: float | None = None,
+    oblique: bool | None = None,
+    slope_correction: bool = False,
+    tolerance: float = 1e-8,
+) -> Solution:
+    """Solve a scene on ``grid x grid`` elements.
+
+    Parameters
+    ----------
+    method : "fft" the production solver, "dense" the plain reference for small grids
+    approach : prescribe the approach (m) instead of the scene's load
+    oblique : False drops every slope term; None lets the scene decide
+    slope_correction : exact facet tractions in Eq. (7) (SPEC 2)
+    tolerance : what every residual of the certificate must meet for status `CONVERGED`
+
+    Raises `InputError` for input that is out of range, before anything large is allocated.
+    """
+    require_number("tolerance", tolerance, "a number between 0 and 1", above=0, below=1)
+    if approach is not None:
+        allowed = "an approach below 0 m (mean planes)" if scene.periodic else "a finite approach in m"
+        require_number("approach", approach, allowed, below=0 if scene.periodic else None)
+    elements = Grid(scene.side, grid)
+    plan = make_plan(scene, elements.M, method, oblique=oblique, slope_correction=slope_correction)
+    started, counter = time.perf_counter(), Counter()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", SurfaceWarning)
+        problem = pose(scene, elements, plan.switches, approach)
+    outcome, state = _solve_posed(problem, plan, tolerance, counter)
+    cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, outcome.iterations)
+    notes = tuple(dict.fromkeys(str(w.message) for w in caught))
+    return _solution(problem, plan, outcome, state, tolerance, notes, cost)
+
+
+def _solve_posed(
+    problem: Problem, plan: Plan, tolerance: float, counter: Counter
+) -> tuple[Outcome, State]:
+    if problem.approach is not None and problem.approach <= 0:
+        return _apart(problem)
+    if plan.method == "dense":
+        operator = DenseInfluence(problem.grid, problem.direction, periodic=problem.periodic)
+        return solve_dense(problem, operator)
+    return solve_fft(problem, tolerance, counter)
+
+
+def _apart(problem: Problem) -> tuple[Outcome, State]:
+    """The state of surfaces that the approach leaves apart: nothing is loaded."""
+    zero = np.zeros(problem.gap.shape)
+    slopes = problem.slopes(zero, zero)
+    unloaded = WholeGridInfluence(
+        problem.grid, problem.direction, source=Window(0, 1, 0, 1), target=Window.full(problem.grid.M)
+    )
+    free = Outcome(zero, zero, slopes, Status.NO_CONTACT, zero > 0, ())
+    return free, certify(problem, unloaded, zero, zero, slopes)
+
+
+def _solution(
+    problem: Problem,
+    plan: Plan,
+    outcome: Outcome,
+    state: State,
+    tolerance: float,
+    notes: tuple[str, ...],
+    cost: Cost,
+) -> Solution:
+    """Gather the state's numbers; the status yields to the certificate."""
+    grid, contact = problem.grid, state.pressure > 0
+    load = problem.load if problem.load is not None else state.forces.normal
+    lower, upper = problem.heights
+    surface_lower = lower - state.displacement_lower
+    surface_upper = upper + state.displacement_upper - state.approach
+    found = Visited(
+        friction_coefficient=state.forces.friction / load if load else math.nan,
+        contact_area=float(np.count_nonzero(contact)) * grid.element_area,
+    )
+    return Solution(
+        status=_final_status(outcome.status, state, tolerance),
+        approach=state.approach - (float(problem.gap.mean()) if problem.periodic else 0.0),
+        normal_force=state.forces.normal,
+        friction_force=state.forces.friction,
+        binormal_force=state.forces.binormal,
+        friction_coefficient=found.friction_coefficient,
+        contact_area=found.contact_area,
+        contact_area_corrected=perimeter_corrected_area(contact, grid.spacing, periodic=problem.periodic),
+        max_pressure=float(state.pressure.max()),
+        pressure=state.pressure,
+        traction=state.traction,
+        slopes=state.slopes,
+        surface_lower=surface_lower,
+        surface_upper=surface_upper,
+        separation=surface_upper - surface_lower,
+        withheld=outcome.withheld,
+        grid=grid,
+        sliding_direction=problem.direction,
+        certificate=state.certificate,
+        tolerance=tolerance,
+        uncertainty=_cycle_spread(outcome, found),
+        plan=plan,
+        warnings=notes + _contact_warnings(problem, contact),
+        cost=cost,
+    )
+
+
+def _final_status(status: Status, state: State, tolerance: float) -> Status:
+    """A loop that ended well still fails on a failed certificate."""
+    if status in (Status.CONVERGED, Status.CYCLED) and not state.certificate.meets(tolerance):
+        return Status.STAGNATED
+    return status
+
+
+def _cycle_spread(outcome: Outcome, found: Visited) -> dict[str, dict[str, float]]:
+    """How far mu and A of the states of tau's cycles lie from the settled ones."""
+    if not outcome.visited:
+        return {}
+    names = Visited._fields
+    return {
+        name: {"tau support": max(abs(getattr(v, name) - getattr(found, name)) for v in outcome.visited)}
+        for name in names
+    }
+
+
+def _contact_warnings(problem: Problem, contact: Mask) -> tuple[str, ...]:
+    if problem.periodic:
+        return ()
+    border = contact.copy()
+    border[1:-1, 1:-1] = False
+    touching = int(np.count_nonzero(border))
+    if touching and problem.grid.M > 2:
+        return (f"contact reaches the border of the domain on {touching} elements: enlarge the side",)
+    return ()
