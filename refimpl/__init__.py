@@ -6,7 +6,7 @@
 ...     friction=Friction(tau=15e6, beta=0.08), load=70.0, side=1.61e-3)
 >>> s = solve(scene, grid=64)
 >>> s.status.name, round(s.friction_coefficient, 3)
-('CONVERGED', 0.215)
+('CONVERGED', 0.217)
 """
 
 from refimpl.errors import InputError
