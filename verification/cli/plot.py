@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,9 +43,13 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
     hertz = hertz_of(scene, solution.normal_force)
     _profile(axes[1, 0], solution, hertz, axis=0)
     _profile(axes[1, 1], solution, hertz, axis=1)
+    figure.legend(
+        *axes[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False
+    )
     figure.suptitle(
         f"$\\mu$ = {solution.friction_coefficient:.4f},  A = {solution.contact_area / MILLI**2:.4g} mm$^2$,  "
-        f"$f_{{max}}$ = {solution.max_pressure / MEGA:.4g} MPa  ({solution.status.value})"
+        f"$f_{{max}}$ = {solution.max_pressure / MEGA:.4g} MPa,  {solution.status.value};  "
+        f"the upper body slides at {math.degrees(solution.sliding_direction):g}° from x"
     )
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=130)
@@ -101,6 +106,9 @@ def _profile(axes: Axes, solution: Solution, hertz: HertzSphere | None, axis: in
             label=label,
         )
     letter = "xy"[axis]
-    axes.set(xlabel=f"{letter} from the centre (mm)", ylabel="MPa", title=f"Profile along {letter}")
+    title = f"Profile through the centre along {letter}"
+    axes.set(xlabel=f"{letter} from the centre (mm)", ylabel="MPa", title=title)
+    if axes.get_ylim()[1] < solution.max_pressure / MEGA / 100:
+        axes.set_ylim(top=solution.max_pressure / MEGA)
+        axes.text(0.5, 0.5, "no contact on this line", ha="center", transform=axes.transAxes)
     axes.set_ylim(bottom=0)
-    axes.legend(frameon=False, fontsize="small")

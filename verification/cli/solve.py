@@ -5,28 +5,23 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
-from enum import Enum
 from typing import TYPE_CHECKING
 
 from verification.cli.output import Parsers, add_json, columns, emit, output_file
 
 if TYPE_CHECKING:
-    from refimpl import Scene, Solution
+    from refimpl import Solution
 
 EPILOG = """examples:
   rough-friction solve table1-smooth
   rough-friction solve scene.toml --grid 512 --json result.json --plot result.png --vtk result.vtu
   rough-friction solve hertz --grid 48 --method dense
-  rough-friction solve scene.toml --accuracy 0.01
   rough-friction solve scene.toml --approach 1.2e-6
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
-DEFAULT_GRID = 256
-
-# attribute, name in the table, factor from SI, unit shown
+# attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 QUANTITIES = (
     ("friction_coefficient", "friction coefficient mu", 1.0, ""),
     ("contact_area", "contact area A", 1e6, "mm^2"),
@@ -48,123 +43,95 @@ def add_parser(commands: Parsers) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "scene", metavar="SCENE", help="a scene's TOML file, or the name of a shipped scene"
+    add = parser.add_argument
+    add("scene", metavar="SCENE", help="a scene's TOML file, or the name of a shipped scene")
+    add("--grid", metavar="N", type=int, default=256, help="N x N elements (default 256)")
+    add(
+        "--method", choices=("fft", "dense"), default="fft", help="default fft; dense is for small grids"
     )
-    size = parser.add_mutually_exclusive_group()
-    size.add_argument("--grid", metavar="N", type=int, help=f"N x N elements (default {DEFAULT_GRID})")
-    size.add_argument(
-        "--accuracy", metavar="A", type=float, help="refine until the results are this certain"
-    )
-    parser.add_argument("--method", choices=("fft", "dense"), default="fft", help="default fft")
-    parser.add_argument(
-        "--approach", metavar="D", type=float, help="prescribe the approach (m) instead of the load"
-    )
-    parser.add_argument(
+    add("--approach", metavar="D", type=float, help="prescribe the approach (m) instead of the load")
+    add(
         "--oblique",
         action=argparse.BooleanOptionalAction,
         default=None,
         help="keep or drop every slope term (default: the scene decides)",
     )
-    parser.add_argument(
-        "--tolerance", metavar="T", type=float, help="what the certificate must meet (default 1e-8)"
-    )
-    parser.add_argument(
-        "--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture"
-    )
-    parser.add_argument(
-        "--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces for ParaView"
-    )
+    add("--tolerance", metavar="T", type=float, default=1e-8, help="for the certificate (default 1e-8)")
+    add("--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture")
+    add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
     add_json(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Solve and show; status 1 when the certificate does not meet the tolerance."""
+    """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
     from verification.cli import plot, vtk
 
     plot.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     scene = refimpl.read_scene(options.scene)
-    grid = DEFAULT_GRID if options.grid is None and options.accuracy is None else options.grid
-    chosen = {"tolerance": options.tolerance} if options.tolerance is not None else {}
     solution = refimpl.solve(
         scene,
-        grid=grid,
-        accuracy=options.accuracy,
+        grid=options.grid,
         method=options.method,
         approach=options.approach,
         oblique=options.oblique,
-        **chosen,
+        tolerance=options.tolerance,
     )
     if options.plot is not None:
         plot.draw(solution, scene, options.plot)
     if options.vtk is not None:
         vtk.write(solution, options.vtk)
-    emit(document(solution, scene, options), options.json, table(solution, options))
-    return 0 if solution.status in (refimpl.Status.CONVERGED, refimpl.Status.CYCLED) else 1
+    emit(document(solution, options.scene), options.json, table(solution, options.scene))
+    good = refimpl.Status.CONVERGED, refimpl.Status.CYCLED  # a settled cycle is certified as well
+    return 0 if solution.status in good else 1
 
 
-def table(solution: Solution, options: argparse.Namespace) -> str:
+def document(solution: Solution, scene: str) -> dict[str, object]:
+    """The JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK file."""
+    from verification.provenance import provenance
+
+    summary = {key: plain(value) for key, value in solution.summary().items()}
+    return {"scene": scene, **summary, "provenance": provenance()}
+
+
+def table(solution: Solution, scene: str) -> str:
     """What was found, how well it converged, what was left out, and the warnings."""
     size = f"{solution.grid.M} x {solution.grid.M}"
     found = [
-        [name, f"{getattr(solution, attribute) * factor:.6g}", unit]
+        [name, _shown(getattr(solution, attribute) * factor), unit]
         for attribute, name, factor, unit in QUANTITIES
     ]
+    summary = solution.summary()
     certificate = [
-        [field.name.replace("_", " "), f"{getattr(solution.certificate, field.name):.2g}"]
-        for field in fields(solution.certificate)
+        [name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()
     ]
+    left_out = [[term["term"], term["reason"]] for term in summary["plan"] if not term["included"]]
     parts = [
-        f"{options.scene}: {size} elements, method {options.method}",
+        f"{scene}: {size} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
         f"status: {solution.status.name}",
         columns(found),
-        f"certificate (0 is exact):\n{columns(certificate)}",
+        f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
+        f"left out:\n{columns(left_out)}" if left_out else "",
         *(f"warning: {text}" for text in solution.warnings),
     ]
-    return "\n\n".join(parts)
+    return "\n\n".join(part for part in parts if part)
 
 
-def document(solution: Solution, scene: Scene, options: argparse.Namespace) -> dict[str, object]:
-    """The JSON of a solve: SI units, the names of `refimpl.Solution`; arrays are for the VTK file."""
-    from verification.provenance import provenance
-
-    numbers = {name: getattr(solution, name) for name, *_ in QUANTITIES}
-    return {
-        "scene": options.scene,
-        "grid": solution.grid.M,
-        "method": options.method,
-        "load": scene.load,
-        **numbers,
-        "binormal_ratio": solution.binormal_force / solution.normal_force,
-        "status": solution.status.name,
-        "certificate": plain(solution.certificate),
-        "uncertainty": plain(solution.uncertainty),
-        "plan": plain(solution.plan),
-        "warnings": list(solution.warnings),
-        "cost": plain(solution.cost),
-        "provenance": provenance(),
-    }
+def _shown(value: float) -> str:
+    """Six digits; what does not exist, like mu without contact, is "n/a"."""
+    return f"{value:.6g}" if math.isfinite(value) else "n/a"
 
 
 def plain(item: object) -> object:
-    """Dataclasses, enums and numpy numbers as JSON has them; NaN and infinity become None.
+    """NaN and infinity, which JSON does not have, as None.
 
-    >>> plain({"a": (1.0, float("nan"))})
+    >>> plain({"a": [1.0, float("nan")]})
     {'a': [1.0, None]}
     """
-    if is_dataclass(item) and not isinstance(item, type):
-        return {field.name: plain(getattr(item, field.name)) for field in fields(item)}
-    if isinstance(item, Enum):
-        return item.name
     if isinstance(item, Mapping):
-        return {str(plain(key)): plain(value) for key, value in item.items()}
+        return {key: plain(value) for key, value in item.items()}
     if isinstance(item, list | tuple):
         return [plain(value) for value in item]
-    if hasattr(item, "tolist"):
-        return plain(item.tolist())
-    if isinstance(item, float) and not math.isfinite(item):
-        return None
-    return item
+    return None if isinstance(item, float) and not math.isfinite(item) else item

@@ -1,0 +1,188 @@
+"""`rough-friction solve`: its table, JSON, picture and VTK file tell the same as the solution itself."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from PIL import Image
+
+import refimpl
+from tests.verification.test_cli import Capture, refused
+from verification.cli import main, solve
+from verification.cli.plot import hertz_of
+
+SCENE = """
+load = 5.0
+side = 1e-3
+sliding_direction = 0.5
+[upper.material]
+E = 200e9
+nu = 0.3
+[[upper.surface]]
+kind = "sphere"
+radius = 0.05
+[lower.material]
+E = 3e9
+nu = 0.38
+[friction]
+tau = 0.3e6
+beta = 0.1
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> str:
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE)
+    return str(path)
+
+
+def test_help_names_the_shipped_scenes() -> None:
+    named = re.search(r"Shipped scenes: (.*)\.", solve.EPILOG)
+    assert named is not None
+    assert tuple(named[1].split(", ")) == refimpl.shipped_scenes()
+
+
+def test_json_has_the_solutions_numbers(scene: str, capsys: Capture) -> None:
+    assert main(["solve", scene, "--grid", "48", "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    solution = refimpl.solve(refimpl.read_scene(scene), grid=48)
+    for attribute, *_ in solve.QUANTITIES:
+        assert found[attribute] == getattr(solution, attribute)
+    assert found["status"] == "converged"
+    assert found["certificate"]["gap"] <= 1e-8
+    assert {"plan", "warnings", "cost", "uncertainty", "provenance"} <= set(found)
+
+
+def test_the_table_names_what_was_found(scene: str, capsys: Capture) -> None:
+    assert main(["solve", scene, "--grid", "48", "--no-oblique"]) == 0
+    printed = capsys.readouterr()
+    solution = refimpl.solve(refimpl.read_scene(scene), grid=48, oblique=False)
+    row = re.search(r"friction coefficient mu +(\S+)", printed.out)
+    assert row is not None
+    assert float(row[1]) == pytest.approx(solution.friction_coefficient, rel=1e-5)
+    for text in ("48 x 48", "CONVERGED", "A, perimeter-corrected", "f_max", "approach", "penetration"):
+        assert text in printed.out
+    assert "obliqueness" in printed.out.partition("left out")[2]
+    assert printed.err == ""
+
+
+@pytest.mark.parametrize(
+    ("status", "exit_status"),
+    [
+        (refimpl.Status.CONVERGED, 0),
+        (refimpl.Status.CYCLED, 0),
+        (refimpl.Status.STAGNATED, 1),
+        (refimpl.Status.ITERATION_LIMIT, 1),
+        (refimpl.Status.NO_CONTACT, 1),
+    ],
+)
+def test_exit_status(
+    status: refimpl.Status, exit_status: int, scene: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    ended = dataclasses.replace(refimpl.solve(refimpl.read_scene(scene), grid=8), status=status)
+    monkeypatch.setattr(refimpl, "solve", lambda *_, **__: ended)
+    assert main(["solve", scene]) == exit_status
+    assert f"status: {status.name}" in capsys.readouterr().out
+
+
+def test_without_contact_mu_is_not_a_number_in_words(scene: str, tmp_path: Path, capsys: Capture) -> None:
+    files = ["--json", str(tmp_path / "s.json"), "--plot", str(tmp_path / "s.png")]
+    assert main(["solve", scene, "--grid", "8", "--approach", "0", *files]) == 1
+    assert re.search(r"friction coefficient mu +n/a", capsys.readouterr().out)
+    assert json.loads((tmp_path / "s.json").read_text())["friction_coefficient"] is None
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtu"])
+def test_vtk_holds_both_surfaces_and_the_whole_load(scene: str, suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"s{suffix}"
+    assert main(["solve", scene, "--grid", "32", "--vtk", str(path), "--no-oblique"]) == 0
+    mesh = meshio.read(path)
+    fields = mesh.point_data
+    assert set(fields) == {"pressure", "traction", "gap", "height", "body"}
+    assert len(mesh.points) == 2 * 32**2
+    assert len(mesh.cells_dict["quad"]) == 2 * 31**2
+    lower, upper = mesh.points[fields["body"] == 0], mesh.points[fields["body"] == 1]
+    np.testing.assert_array_equal(lower[:, :2], upper[:, :2])
+    assert lower[0, 0] == pytest.approx(0.5e-3 / 32)
+    # Without obliqueness N is the plain sum of the pressures, and balances the load to rounding.
+    force = fields["pressure"][fields["body"] == 0].sum() * (1e-3 / 32) ** 2
+    assert force == pytest.approx(5.0, rel=1e-12)
+    peak = int(np.argmax(fields["pressure"][fields["body"] == 0]))
+    touching = fields["pressure"][fields["body"] == 0] > 0
+    gap = (upper - lower)[:, 2]
+    np.testing.assert_allclose(gap, fields["gap"][fields["body"] == 0], atol=1e-18)
+    # In contact the surfaces coincide to the certificate's 1e-8 of an approach of about 2e-5 m.
+    assert np.abs(gap[touching]).max() < 1e-12 < gap[~touching].max()
+    assert np.abs(lower[peak, :2] - 0.5e-3).max() < 0.1e-3
+
+
+def test_the_picture_is_a_picture(scene: str, tmp_path: Path) -> None:
+    path = tmp_path / "s.png"
+    assert main(["solve", scene, "--grid", "32", "--plot", str(path)]) == 0
+    with Image.open(path) as image:
+        assert min(image.size) > 800
+        colours = image.convert("RGB").getcolors(maxcolors=image.width * image.height)
+        assert colours is not None
+        assert len(colours) > 50
+
+
+def test_hertz_of_a_ball_in_a_cup_and_of_no_ball() -> None:
+    soft, flat = refimpl.Material(E=1e9, nu=0.5), refimpl.Flat()
+
+    def scene(upper: refimpl.Surface, lower: refimpl.Surface, periodic: bool = False) -> refimpl.Scene:
+        bodies = refimpl.Body(soft, upper), refimpl.Body(soft, lower)
+        return refimpl.Scene(*bodies, refimpl.Friction(), load=1.0, side=1e-3, periodic=periodic)
+
+    ball, cup = refimpl.Sphere(radius=0.1), refimpl.Sphere(radius=0.2)
+    found = hertz_of(scene(ball + flat, cup), load=1.0)
+    assert found is not None
+    assert found.radius == pytest.approx(0.2)  # 1/R = 1/0.1 - 1/0.2: the cup curves the same way
+    assert hertz_of(scene(flat, flat), load=1.0) is None
+    assert hertz_of(scene(cup, ball), load=1.0) is None
+    assert hertz_of(scene(ball, flat, periodic=True), load=1.0) is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["no-such-scene"], "table1-smooth"),
+        (["hertz", "--grid", "0"], "grid = 0"),
+        (["hertz", "--grid", "1000000"], "GB"),
+        (["hertz", "--grid", "8", "--method", "exact"], "exact"),
+        (["hertz", "--grid", "8", "--tolerance", "-1"], "tolerance"),
+        (["hertz", "--grid", "8", "--approach", "nan"], "approach"),
+        (["hertz", "--grid", "8", "--plot", "picture.jpg"], ".png"),
+        (["hertz", "--grid", "8", "--vtk", "surfaces.stl"], ".vtu"),
+        (["hertz", "--grid", "8", "--vtk", "/no/such/folder/s.vtu"], "/no/such/folder"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(arguments: list[str], says: str, capsys: Capture) -> None:
+    assert says in refused(capsys, "solve", *arguments)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("load = 5.0", "load = -5.0", "load"),
+        ("nu = 0.38", "nu = 0.7", "nu"),
+        ("E = 3e9", "E = 0.0", "E = 0.0"),
+        ("side = 1e-3", "side = 1e-3\nlaod = 3", "laod"),
+        ("[friction]", "[friction", "TOML"),
+        ('"sphere"', '"cone"', "cone"),
+    ],
+)
+def test_a_bad_scene_is_refused_and_nothing_is_written(
+    old: str, new: str, says: str, tmp_path: Path, capsys: Capture
+) -> None:
+    assert old in SCENE
+    path = tmp_path / "bad.toml"
+    path.write_text(SCENE.replace(old, new))
+    assert says in refused(capsys, "solve", str(path), "--json", str(tmp_path / "s.json"))
+    assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
