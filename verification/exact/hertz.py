@@ -1,0 +1,150 @@
+"""Hertz contact of a paraboloid, round or elliptical, with a half-space.
+
+Sources: Hertz 1882; Johnson 1985, sections 3.4 and 4.2. The elliptical case is written in Carlson's integrals
+(DLMF 19.16), which have no special case for the circle; Johnson's K and E are kept for the check.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mpmath as mp
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+from scipy.special import elliprd, elliprf
+
+Array = NDArray[np.float64]
+
+UNCERTAINTY = 1e-14
+"""Relative error of the closed forms below: rounding only."""
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Paraboloid r^2/2R under ``load`` (N), ``radius`` R (m), reduced ``modulus`` E* (Pa).
+
+    >>> contact = Sphere(load=70.0, radius=0.14, modulus=1e11)
+    >>> bool(np.isclose(contact.load, 2 / 3 * np.pi * contact.peak_pressure * contact.contact_radius**2))
+    True
+    """
+
+    load: float
+    radius: float
+    modulus: float
+
+    @property
+    def contact_radius(self) -> float:
+        """a (m), Johnson (4.22)."""
+        return float((3 * self.load * self.radius / (4 * self.modulus)) ** (1 / 3))
+
+    @property
+    def peak_pressure(self) -> float:
+        """p0 (Pa), Johnson (4.24)."""
+        return 3 * self.load / (2 * np.pi * self.contact_radius**2)
+
+    @property
+    def approach(self) -> float:
+        """delta = a^2/R (m), Johnson (4.23)."""
+        return self.contact_radius**2 / self.radius
+
+    def pressure(self, r: ArrayLike) -> Array:
+        """p (Pa) at distance ``r`` (m) from the axis, any shape."""
+        rho = np.asarray(r, dtype=float) / self.contact_radius
+        return self.peak_pressure * np.sqrt(np.maximum(0.0, 1 - rho**2))
+
+    def displacement(self, r: ArrayLike) -> Array:
+        """Normal displacement of both bodies together (m), inside and outside: Johnson (3.41a), (3.42a)."""
+        rho = np.asarray(r, dtype=float) / self.contact_radius
+        outer = np.maximum(rho, 1.0)
+        inside = np.pi / 2 * (2 - rho**2)
+        outside = (2 - outer**2) * np.arcsin(1 / outer) + np.sqrt(outer**2 - 1)
+        return (
+            self.peak_pressure
+            * self.contact_radius
+            / (2 * self.modulus)
+            * np.where(rho <= 1, inside, outside)
+        )
+
+
+@dataclass(frozen=True)
+class Ellipse:
+    """Paraboloid ``curvature_x`` x^2/2 + ``curvature_y`` y^2/2 (1/m), ``load`` (N), reduced ``modulus`` E*
+    (Pa).
+
+    >>> round_, sphere = Ellipse(70.0, 1 / 0.14, 1 / 0.14, 1e11), Sphere(70.0, 0.14, 1e11)
+    >>> bool(np.isclose(round_.semi_axes[0], sphere.contact_radius, rtol=1e-14))
+    True
+    """
+
+    load: float
+    curvature_x: float
+    curvature_y: float
+    modulus: float
+
+    @property
+    def semi_axes(self) -> tuple[float, float]:
+        """Semi-axes along x and y (m): equal curvature ratio and R_D ratio, then the load."""
+        wanted = np.log(self.curvature_y / self.curvature_x)
+
+        def mismatch(log_ratio: float) -> float:
+            k2 = np.exp(2 * log_ratio)
+            return float(np.log(elliprd(0, 1, k2) / elliprd(0, k2, 1)) - wanted)
+
+        k = np.exp(brentq(mismatch, -12.0, 12.0, xtol=1e-15, rtol=1e-15))
+        along_x = (self.load * elliprd(0, k**2, 1) / (np.pi * self.modulus * self.curvature_x)) ** (1 / 3)
+        return float(along_x), float(k * along_x)
+
+    @property
+    def peak_pressure(self) -> float:
+        """p0 (Pa)."""
+        a, b = self.semi_axes
+        return 3 * self.load / (2 * np.pi * a * b)
+
+    @property
+    def approach(self) -> float:
+        """delta (m), the displacement at the centre."""
+        a, b = self.semi_axes
+        return float(self.peak_pressure * a * b / self.modulus * elliprf(0, a**2, b**2))
+
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """p (Pa) at ``(x, y)`` (m), shapes broadcast."""
+        a, b = self.semi_axes
+        inside = 1 - (np.asarray(x, dtype=float) / a) ** 2 - (np.asarray(y, dtype=float) / b) ** 2
+        return self.peak_pressure * np.sqrt(np.maximum(0.0, inside))
+
+    def displacement(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Normal displacement of both bodies together (m), inside and outside, shapes broadcast.
+
+        Potential of the ellipsoidal pressure (Johnson 3.35): the integral over w of
+        (1 - x^2/(a^2+w) - y^2/(b^2+w)) / sqrt((a^2+w)(b^2+w)w) from the confocal ellipse through (x, y).
+        """
+        a, b = self.semi_axes
+        x2, y2 = np.asarray(x, dtype=float) ** 2, np.asarray(y, dtype=float) ** 2
+        middle = (a**2 + b**2 - x2 - y2) / 2
+        # larger root of x^2/(a^2 + w) + y^2/(b^2 + w) = 1, zero inside; the discriminant as a sum of squares
+        w = np.maximum(0.0, np.sqrt(((a**2 - b**2 - x2 + y2) / 2) ** 2 + x2 * y2) - middle)
+        alpha, beta = a**2 + w, b**2 + w
+        curved = x2 * elliprd(w, beta, alpha) + y2 * elliprd(w, alpha, beta)
+        return np.asarray(self.peak_pressure * a * b / self.modulus * (elliprf(w, alpha, beta) - curved / 3))
+
+
+def ellipse_by_legendre(
+    load: float, curvature_x: float, curvature_y: float, modulus: float
+) -> tuple[float, float]:
+    """Semi-axes (m) along x and y again, from Johnson (4.26)-(4.27) in K and E with mpmath; needs curvatures
+    that differ.
+    """
+    with mp.workdps(30):
+        flat, steep = sorted((mp.mpf(curvature_x), mp.mpf(curvature_y)))
+
+        def mismatch(m: mp.mpf) -> mp.mpf:
+            K, E = mp.ellipk(m), mp.ellipe(m)
+            return (E / (1 - m) - K) / (K - E) - steep / flat
+
+        m = mp.findroot(mismatch, (mp.mpf("1e-6"), 1 - mp.mpf("1e-12")), solver="anderson")
+        K, E = mp.ellipk(m), mp.ellipe(m)
+        # flat/2 = (p0/E*) b (K - E)/(e^2 a^2), p0 = 3P/(2 pi a b)
+        longer = mp.cbrt(3 * load * (K - E) / (mp.pi * modulus * m * flat))
+        axes = float(longer), float(longer * mp.sqrt(1 - m))
+    return axes if curvature_x < curvature_y else (axes[1], axes[0])
