@@ -1,0 +1,127 @@
+"""Westergaard's wave, the sliding cylinder and the sliding wave against their own integral equations."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from refimpl.errors import InputError
+from verification.exact import sliding_plane, sliding_wave, westergaard
+from verification.exact.sliding_plane import SlidingCylinder, dundurs
+from verification.exact.sliding_wave import SlidingWave
+
+UNIT = 1 / np.pi  # amplitude that makes p* = 1 with unit modulus and wavelength
+
+
+@pytest.mark.parametrize("share", [0.03, 0.5, 0.95])
+def test_wave_is_flat_where_it_touches_and_open_beyond(share: float) -> None:
+    wave = westergaard.Wave(share, UNIT, 1.0, 1.0)
+    a = wave.contact_fraction / 2
+
+    def level(x: float) -> float:
+        u, error = westergaard.displacement_by_quadrature(wave, x)
+        assert error < 1e-12
+        return u + UNIT * (1 - np.cos(2 * np.pi * x))
+
+    for x in (0.0, 0.5 * a, 0.95 * a):
+        assert level(x) == pytest.approx(wave.approach, rel=1e-12)
+    assert level((a + 0.5) / 2) > wave.approach
+
+
+def test_wave_carries_its_mean_and_reaches_full_contact() -> None:
+    wave = westergaard.Wave(0.4, UNIT, 1.0, 1.0)
+    a = wave.contact_fraction / 2
+    assert quad(wave.pressure, -a, a)[0] == pytest.approx(0.4, rel=1e-9)
+    almost, full = westergaard.Wave(1 - 1e-14, UNIT, 1.0, 1.0), westergaard.Wave(1.0, UNIT, 1.0, 1.0)
+    x = np.linspace(0, 1, 11)
+    np.testing.assert_allclose(almost.pressure(x), full.pressure(x), atol=1e-6)
+    with pytest.raises(InputError):
+        westergaard.Wave(0.0, UNIT, 1.0, 1.0)
+
+
+HARD_ON_SOFT = dundurs(lower=(1e9, 0.2), upper=(1e15, 0.3))
+
+
+def cylinder(tau: float = 2e6, beta: float = 0.9) -> SlidingCylinder:
+    return SlidingCylinder(1e5, 0.1, HARD_ON_SOFT[0], HARD_ON_SOFT[1], tau, beta)
+
+
+@pytest.mark.parametrize("place", [-0.97, -0.3, 0.0, 0.6, 0.97])
+def test_sliding_cylinder_satisfies_its_integral_equation(place: float) -> None:
+    contact = cylinder()
+    x = contact.centre + place * contact.half_width
+    # x itself is a double: its rounding is the residual's size
+    assert sliding_plane.equation_residual(contact, x) < 1e-14
+
+
+def test_sliding_cylinder_shifts_to_the_trailing_side_of_a_softer_flat() -> None:
+    hard, still = cylinder(tau=0.0), cylinder(tau=0.0, beta=0.0)
+    assert HARD_ON_SOFT[1] > 0
+    assert hard.centre < 0 == still.centre
+    assert hard.pressure_centroid < 0
+    mirrored = dataclasses.replace(hard, coupling=-hard.coupling)
+    assert mirrored.centre == pytest.approx(-hard.centre, rel=1e-14)
+    assert mirrored.pressure(1e-3) == pytest.approx(hard.pressure(-1e-3), rel=1e-13)
+
+
+def test_sliding_cylinder_load_centroid_and_width() -> None:
+    contact = cylinder()
+    ends = contact.centre - contact.half_width, contact.centre + contact.half_width
+    load = quad(contact.pressure, *ends, epsrel=1e-10)[0]
+    first = quad(lambda x: x * contact.pressure(x), *ends, epsrel=1e-10)[0]
+    # scipy's rule on the edges' powers: 1e-7
+    assert load == pytest.approx(1e5, rel=1e-7)
+    assert first / load == pytest.approx(contact.pressure_centroid, rel=1e-6)
+    assert contact.half_width > cylinder(beta=0.0).half_width
+    assert 0 < contact.idle_width < 1e-2 * contact.half_width
+
+
+def wave(tau: float = 0.0, beta: float = 0.8, coupling: float = 0.4, mean: float = 0.3) -> SlidingWave:
+    return SlidingWave(mean, UNIT, 1.0, 1.0, coupling, tau, beta)
+
+
+@pytest.mark.parametrize("tau", [0.0, 0.05])
+def test_sliding_wave_satisfies_its_integral_equation(tau: float) -> None:
+    contact = wave(tau)
+    low, high = contact.edges
+    for share in (0.03, 0.4, 0.9):
+        assert sliding_wave.principal_value_residual(contact, low + share * (high - low)) < 1e-14
+    assert quad(contact.pressure, low, high)[0] == pytest.approx(0.3, rel=1e-7)
+
+
+@pytest.mark.parametrize("tau", [0.0, 0.05])
+def test_sliding_wave_is_flat_by_fourier_series(tau: float) -> None:
+    contact = wave(tau)
+    low, high = contact.edges
+    x = low + np.array([0.1, 0.3, 0.5, 0.7, 0.9]) * (high - low)
+    # 512 waves: the cut series leaves 3.4e-7 of the amplitude (measured; 1e-9 at 4096)
+    assert np.ptp(sliding_wave.flatness(contact, x, terms=512)) < 5e-7 * UNIT
+
+
+def test_sliding_wave_without_coupling_is_westergaard() -> None:
+    contact, still = wave(coupling=0.0), westergaard.Wave(0.3, UNIT, 1.0, 1.0)
+    assert contact.contact_fraction == pytest.approx(still.contact_fraction, rel=1e-12)
+    x = np.linspace(-0.45, 0.45, 13)
+    np.testing.assert_allclose(contact.pressure(x), still.pressure(x), rtol=1e-11, atol=1e-12)
+
+
+def test_a_light_sliding_wave_is_a_sliding_cylinder() -> None:
+    contact = wave(mean=1e-5)
+    radius = 1 / (4 * np.pi**2 * UNIT)
+    round_ = SlidingCylinder(1e-5, radius, 1.0, 0.4, 0.0, 0.8)
+    low, high = contact.edges
+    # the mean of the shear, absent in the periodic problem, tilts by d beta p, so moves by 2 R d beta p
+    moved = 2 * radius * 0.4 * 0.8 * 1e-5
+    # the crest's next order is (a/lambda)^2, some 1e-6 times a factor of ten
+    assert (high - low) / 2 == pytest.approx(round_.half_width, rel=1e-4)
+    assert (high + low) / 2 == pytest.approx(round_.centre + moved, rel=1e-4)
+
+
+def test_sliding_wave_refuses_what_is_not_partial_contact() -> None:
+    with pytest.raises(InputError):
+        wave(mean=0.99)
+    with pytest.raises(InputError):
+        wave(mean=-1.0)

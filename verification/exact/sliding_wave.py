@@ -1,0 +1,176 @@
+"""The sliding Westergaard problem: a wave pressed on a half-plane of another material, with Coulomb's or
+binomial friction.
+
+Our own extension of Westergaard 1939 by the exponents of `sliding_plane`; it is periodic, so that a doubly
+periodic solver can be held to it without end effects. Gap Delta (1 - cos 2 psi), psi = pi x/lambda; kernels
+cot(psi - psi') for 1/x, and a mean-free sign for the shear. The slope of u plus gap vanishes in contact when
+
+    PV integral of p cot(psi - psi') dpsi' - pi d (q - mean q) = (pi E* Delta/lambda) pi sin 2 psi.
+
+Solution on -l < psi < t, with cot(pi g) = d beta and m = g l - (1 - g) t:
+
+    p = 2 p* sin(pi g) sin^g(psi + l) sin^(1-g)(t - psi) cos(psi - m),      p* = pi E* Delta/lambda.
+
+Boundedness at psi -> +- i infinity gives mean p = p* X/2 and d (beta mean p - tau (1 - c)) = p* Y/2 (c
+contact fraction): X = cos 2m - g cos 2l - (1 - g) cos 2t, Y = -sin 2m - g sin 2l + (1 - g) sin 2t. With tau >
+0 the remark in `sliding_plane` on the leading edge holds here as well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import mpmath as mp
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+
+from refimpl.errors import InputError
+
+Array = NDArray[np.float64]
+
+UNCERTAINTY = 1e-12
+"""Relative: the edges come from root finding to 1e-15 of a period, the rest is rounding."""
+
+
+@dataclass(frozen=True)
+class SlidingWave:
+    """``mean_pressure`` (Pa), wave ``amplitude``, ``wavelength`` (m), ``modulus`` E* (Pa), ``coupling`` d,
+    ``tau``, ``beta``.
+
+    >>> still = SlidingWave(0.5, 1 / np.pi, 1.0, 1.0, coupling=0.0, tau=0.0, beta=0.2)    # p = p*/2
+    >>> [round(float(edge), 12) for edge in still.edges]
+    [-0.25, 0.25]
+    """
+
+    mean_pressure: float
+    amplitude: float
+    wavelength: float
+    modulus: float
+    coupling: float
+    tau: float
+    beta: float
+
+    def __post_init__(self) -> None:
+        if not 0 < self.mean_pressure < self.full_contact_pressure * np.sin(np.pi * self.exponent):
+            raise InputError(
+                "mean_pressure", self.mean_pressure, "a positive pressure below full contact, in Pa"
+            )
+
+    @property
+    def full_contact_pressure(self) -> float:
+        """Frictionless p* = pi E* Delta/lambda (Pa); with friction contact is full from p* sin(pi g) on."""
+        return np.pi * self.modulus * self.amplitude / self.wavelength
+
+    @property
+    def exponent(self) -> float:
+        """g of the trailing edge; cot(pi g) = d beta."""
+        return float(0.5 - np.arctan(self.coupling * self.beta) / np.pi)
+
+    def _offset(self, w: float) -> float:
+        """Middle o of a contact of half-width w (both angles), NaN where none balances.
+
+        Y - d beta X = -2 d tau (1 - c)/p* is linear in sin 2o and cos 2o once l = w - o, t = w + o are put
+        in.
+        """
+        k, slip = 1 - 2 * self.exponent, self.coupling * self.beta
+        sines = np.cos(2 * k * w) + np.cos(2 * w) + slip * (np.sin(2 * k * w) - k * np.sin(2 * w))
+        cosines = np.sin(2 * k * w) + k * np.sin(2 * w) - slip * (np.cos(2 * k * w) - np.cos(2 * w))
+        pull = -2 * self.coupling * self.tau * (1 - 2 * w / np.pi) / self.full_contact_pressure
+        reach = np.hypot(sines, cosines)
+        if abs(pull) > reach:
+            return float("nan")
+        return float((np.arcsin(pull / reach) - np.arctan2(cosines, sines)) / 2)
+
+    def _load(self, w: float) -> float:
+        """Mean pressure (Pa) at half-width w: p* X/2, X with l = w - o, t = w + o written out."""
+        k, o = 1 - 2 * self.exponent, self._offset(w)
+        even, odd = np.cos(2 * k * w) - np.cos(2 * w), np.sin(2 * k * w) - k * np.sin(2 * w)
+        return float(self.full_contact_pressure / 2 * (np.cos(2 * o) * even - np.sin(2 * o) * odd))
+
+    @cached_property
+    def _angles(self) -> tuple[float, float]:
+        """Edges (-l, t) as angles psi; the load is bracketed on 1000 widths (NaN compares false)."""
+        widths = np.pi / 2 * np.arange(1, 1000) / 1000
+        enough = [i for i, w in enumerate(widths) if self._load(w) >= self.mean_pressure]
+        if not enough:
+            raise InputError(
+                "mean_pressure", self.mean_pressure, "a pressure that leaves 0.1 % of the wave open, in Pa"
+            )
+        upper = widths[enough[0]]
+        lower = widths[enough[0] - 1] if enough[0] else 1e-9
+        w = float(brentq(lambda w: self._load(w) - self.mean_pressure, lower, upper, xtol=1e-16, rtol=1e-15))
+        o = self._offset(w)
+        return o - w, o + w
+
+    @property
+    def edges(self) -> tuple[float, float]:
+        """Trailing and leading edge (m) from a crest."""
+        low, high = self._angles
+        return low * self.wavelength / np.pi, high * self.wavelength / np.pi
+
+    @property
+    def contact_fraction(self) -> float:
+        """Contact width over wavelength."""
+        low, high = self._angles
+        return (high - low) / np.pi
+
+    def pressure(self, x: ArrayLike) -> Array:
+        """p (Pa) at ``x`` (m) from a crest, within half a wavelength of it; any shape."""
+        g, (low, high) = self.exponent, self._angles
+        psi = np.pi * np.asarray(x, dtype=float) / self.wavelength
+        m = -g * low - (1 - g) * high
+        # both sines stay positive inside the contact; outside one clipped argument gives zero
+        behind, ahead = np.sin(np.maximum(0.0, psi - low)), np.sin(np.maximum(0.0, high - psi))
+        shape = np.maximum(0.0, behind) ** g * np.maximum(0.0, ahead) ** (1 - g) * np.cos(psi - m)
+        return np.asarray(2 * self.full_contact_pressure * np.sin(np.pi * g) * shape)
+
+
+def flatness(contact: SlidingWave, x: ArrayLike, terms: int = 4096) -> Array:
+    """u(x) + gap(x) (m) up to a constant, by Fourier series of pressure and shear: equal within contact.
+
+    Independent of the derivation: symbols 2/(E* k) for pressure and d/(i k E*) for shear (d of
+    `sliding_plane`, from the transform 2/(i k) of sign), series cut after ``terms`` waves; truncation falls
+    as terms^(-2).
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(2 * terms)
+    low, high = contact.edges
+    # x = mid + half sin(pi t/2) flattens the edges' powers for the Gauss rule
+    mid, half = (low + high) / 2, (high - low) / 2
+    s = mid + half * np.sin(np.pi * nodes / 2)
+    ds = weights * half * np.pi / 2 * np.cos(np.pi * nodes / 2)
+    p = contact.pressure(s) * ds
+    q = (contact.tau * ds + contact.beta * p) * contact.coupling
+    at = np.asarray(x, dtype=float)
+    total = contact.amplitude * (1 - np.cos(2 * np.pi * at / contact.wavelength))
+    for block in np.array_split(np.arange(1, terms + 1), max(1, terms // 256)):
+        k = 2 * np.pi * block / contact.wavelength
+        waves = np.exp(-1j * np.outer(k, s)) * (2 / (contact.modulus * k * contact.wavelength))[:, None]
+        symbol = waves @ p + (waves @ q) / 1j
+        total = total + 2 * np.real(np.exp(1j * np.multiply.outer(at, k)) @ symbol)
+    return np.asarray(total)
+
+
+def principal_value_residual(contact: SlidingWave, x: float) -> float:
+    """The integral equation's misfit at ``x`` (m) in the contact over its largest term, by quadrature."""
+    with mp.workdps(20):
+        at = mp.pi * mp.mpf(x) / contact.wavelength
+        low, high = (mp.mpf(angle) for angle in contact._angles)
+        g = mp.mpf(1) / 2 - mp.atan(mp.mpf(contact.coupling) * contact.beta) / mp.pi
+        m, star = -g * low - (1 - g) * high, mp.mpf(contact.full_contact_pressure)
+
+        def p(psi: mp.mpf) -> mp.mpf:
+            if not low < psi < high:
+                return mp.mpf(0)
+            edges = mp.sin(psi - low) ** g * mp.sin(high - psi) ** (1 - g)
+            return 2 * star * mp.sin(mp.pi * g) * edges * mp.cos(psi - m)
+
+        near = min(at - low, high - at)
+        paired = mp.quad(lambda s: (p(at - s) - p(at + s)) * mp.cot(s), [0, near / 2, near])
+        rest = [low, at - near] if at - low > near else [at + near, high]
+        principal = paired + mp.quad(lambda psi: p(psi) * mp.cot(at - psi), rest)
+        mean = contact.beta * mp.mpf(contact.mean_pressure) + contact.tau * (high - low) / mp.pi
+        shear = mp.pi * contact.coupling * (contact.tau + contact.beta * p(at) - mean)
+        wanted = mp.pi * star * mp.sin(2 * at)
+        return float(abs(principal - shear - wanted) / max(abs(principal), abs(shear), abs(wanted)))
