@@ -1,0 +1,98 @@
+"""Coupled indentation, rectangular patch and full contact in Fourier space, each evaluated a second way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from refimpl.errors import InputError
+from verification.exact import coupled_indentation, fourier, patch
+from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
+from verification.exact.hertz import Sphere
+
+HERTZ = Sphere(load=70.0, radius=0.14, modulus=81.6e9)
+STATE = CoupledHertz(HERTZ, c0=2e-13, tau=15e6, beta=0.3)
+
+
+@pytest.mark.parametrize("place", [(0.3, 0.2), (-0.7, 0.0), (0.9, -0.3), (1e-9, 0.0)])
+def test_coupling_displacement_by_polar_quadrature(place: tuple[float, float]) -> None:
+    x, y = (share * HERTZ.contact_radius for share in place)
+    expected, error = coupled_indentation.coupling_by_quadrature(STATE, x, y)
+    assert error < 1e-25
+    assert float(STATE.coupling_displacement(x, y)) == pytest.approx(expected, rel=1e-12)
+
+
+def test_coupling_displacement_far_away_is_the_point_force() -> None:
+    x = 1e3 * HERTZ.contact_radius
+    assert float(STATE.coupling_displacement(x, 0)) == pytest.approx(
+        2e-13 * STATE.friction_force / x, rel=1e-14
+    )
+    assert float(STATE.coupling_displacement(-x, 0)) < 0 == float(STATE.coupling_displacement(0, x))
+
+
+def test_coupled_gap_leaves_hertz_in_contact() -> None:
+    r = HERTZ.contact_radius * np.linspace(0, 0.99, 9)
+    level = HERTZ.displacement(r) + STATE.coupling_displacement(r, 0) + STATE.gap(r, 0)
+    np.testing.assert_allclose(level, HERTZ.approach, rtol=1e-13)
+
+
+def test_sheared_sphere_shifts_and_stays_level() -> None:
+    sphere = ShearedSphere(HERTZ, c0=2e-13, tau=15e6)
+    assert sphere.shift < 0
+    only_tau = CoupledHertz(HERTZ, 2e-13, 15e6, 0.0)
+    xi = HERTZ.contact_radius * np.linspace(-0.99, 0.99, 9)
+    u = HERTZ.displacement(np.abs(xi)) + only_tau.coupling_displacement(xi, 0)
+    level = u + (xi + sphere.shift) ** 2 / (2 * HERTZ.radius)
+    np.testing.assert_allclose(level, sphere.approach, rtol=1e-13)
+    assert sphere.pressure(sphere.shift, 0) == pytest.approx(HERTZ.peak_pressure, rel=1e-14)
+    assert 0 < sphere.uncertainty < 1e-5
+
+
+@pytest.mark.parametrize("place", [(0, 0), (1, 0.5), (1, 0.2), (0.3, 0.1), (3, 2), (0, 5), (0.999999, 0)])
+def test_patch_by_polar_quadrature(place: tuple[float, float]) -> None:
+    plate = patch.Patch(1e6, 2e-3, 1e-3, 1e11)
+    x, y = place[0] * 1e-3, place[1] * 1e-3
+    expected, _ = patch.displacement_by_quadrature(plate, x, y)
+    assert float(plate.displacement(x, y)) == pytest.approx(expected, rel=patch.UNCERTAINTY)
+
+
+def test_patch_mean_by_gauss_rule() -> None:
+    plate = patch.Patch(1.0, 2.0, 1.0, 1.0)
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    u = plate.displacement(nodes[:, None], nodes[None, :] / 2)
+    # the displacement's edge has an x ln x: Gauss with n points leaves about n^-4
+    assert plate.mean_displacement == pytest.approx(float(weights @ u @ weights / 4), rel=1e-6)
+
+
+@pytest.mark.parametrize("frequency", [(1, 0), (0, 1), (3, 2), (4, 4), (-2, 1)])
+def test_discrete_symbol_from_both_spaces(frequency: tuple[int, int]) -> None:
+    m, n = frequency
+    inverse = fourier.piecewise_symbol(m, n, 8, 1.0, 1.0, 0.3)
+    shorter = fourier.piecewise_symbol(m, n, 8, 1.0, 1.0, 0.3, aliases=24)
+    assert abs(inverse - shorter) < fourier.SYMBOL_UNCERTAINTY * abs(inverse)
+    # two window widths cancel its square; the fourth power leaves 3e-5 at the longest wave with 96 rings
+    direct = fourier.lattice_symbol(m, n, 8, 1.0, 1.0, 0.3)
+    assert abs(inverse - direct) < 1e-4 * abs(inverse)
+
+
+def test_discrete_symbol_tends_to_the_continuous_one_with_order_two() -> None:
+    exact = complex(fourier.symbol_at(2 * np.pi, 4 * np.pi, 1.0, 0.3))
+    errors = [abs(fourier.piecewise_symbol(1, 2, M, 1.0, 1.0, 0.3) - exact) for M in (64, 128, 256)]
+    # -(q h)^2/24 from sinc, and the aliases' next order h^3
+    assert 3.7 < errors[0] / errors[1] < 4.0
+    assert 3.8 < errors[1] / errors[2] < 4.0
+
+
+def test_full_contact_of_one_wave() -> None:
+    M, amplitude = 32, 1e-6
+    x = (np.arange(M) + 0.5) / M * 1e-3
+    gap = amplitude * (1 - np.cos(2 * np.pi * x / 1e-3))[:, None] * np.ones(M)
+    star, phi = fourier.single_wave(amplitude, 1e-3, 1e9, slip=0.2)
+    sliding = fourier.FullContact(gap, 1e-3, 1e9, mean_pressure=2 * star, coupling=0.4, beta=0.5)
+    expected = 2 * star + star * np.cos(2 * np.pi * x / 1e-3 + phi)
+    np.testing.assert_allclose(sliding.pressure, expected[:, None] * np.ones(M), rtol=1e-12)
+    across = fourier.FullContact(gap, 1e-3, 1e9, 2 * star, 0.4, 0.5, direction=np.pi / 2)
+    frictionless = fourier.FullContact(gap, 1e-3, 1e9, 2 * star)
+    np.testing.assert_allclose(across.pressure, frictionless.pressure, rtol=1e-12)
+    with pytest.raises(InputError, match="mean_pressure"):
+        _ = fourier.FullContact(gap, 1e-3, 1e9, 0.5 * star).pressure
