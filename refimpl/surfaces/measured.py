@@ -39,9 +39,9 @@ class MeasuredSurface(Surface):
     not state them. Read on first use, then kept. Periodic scenes refuse it: measured heights do not repeat.
     """
 
-    path: Path
+    path: str | Path
     unit: str | None = field(default=None, kw_only=True)
-    pixel_size: tuple[float, float] | None = field(default=None, kw_only=True)
+    pixel_size: float | tuple[float, float] | None = field(default=None, kw_only=True)
     level: str = field(default="plane", kw_only=True)
     missing: str = field(default="fill", kw_only=True)
     max_missing: float = field(default=0.05, kw_only=True)
@@ -60,14 +60,18 @@ class MeasuredSurface(Surface):
         if not 0 <= finite("max_missing", self.max_missing, _ALLOWED_FRACTION) < 1:
             raise InputError("max_missing", self.max_missing, _ALLOWED_FRACTION)
 
+    @property
+    def _file(self) -> Path:
+        return Path(self.path)
+
     @cached_property
     def reading(self) -> Reading:
         """What the file holds, as it is (read once)."""
-        return read(self.path, self.unit, self.pixel_size)
+        return read(self._file, self.unit, None if self.pixel_size is None else _pixel(self.pixel_size))
 
     def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
         if periodic:
-            raise InputError("periodic", True, f"false: {self.path.name} does not repeat")
+            raise InputError("periodic", True, f"false: {self._file.name} does not repeat")
         window = self._window(grid.side, offset)
         heights, (i, j) = window.filled()
         x, y = (window.positions(grid.centres, axis) for axis in (0, 1))
@@ -77,7 +81,7 @@ class MeasuredSurface(Surface):
         window = Window(self.reading, side, offset)
         allowed = self.max_missing if self.missing == "fill" else 0.0
         if window.lost > allowed * window.size:
-            said = f"{window.lost} of {window.size} points of the window in {self.path.name}"
+            said = f"{window.lost} of {window.size} points of the window in {self._file.name}"
             raise InputError("missing", said, f"at most a fraction of {allowed:.3g}")
         return window
 
@@ -92,7 +96,7 @@ class MeasuredSurface(Surface):
         return z, form, z - form(x, y)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        name, reading = self.path.name, self.reading
+        name, reading = self._file.name, self.reading
         z, form, rest = self._central(grid.side)
         tilt = by(tuple(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True)))
         return (
@@ -105,7 +109,7 @@ class MeasuredSurface(Surface):
         )
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        name, window = self.path.name, Window(self.reading, grid.side)
+        name, window = self._file.name, Window(self.reading, grid.side)
         said = []
         if window.lost:
             said.append(
@@ -119,8 +123,8 @@ class MeasuredSurface(Surface):
         return tuple(said)
 
     def to_dict(self) -> dict[str, Any]:
-        table = super().to_dict() | {"path": str(self.path.absolute())}
-        return table if self.pixel_size is None else table | {"pixel_size": list(self.pixel_size)}
+        table = super().to_dict() | {"path": str(self._file.absolute())}
+        return table if self.pixel_size is None else table | {"pixel_size": list(_pixel(self.pixel_size))}
 
     @classmethod
     def from_table(cls, table: dict[str, Any], folder: Path) -> Self:

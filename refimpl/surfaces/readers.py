@@ -6,6 +6,7 @@ unpacks to (Python's zipfile never unpacks more than that), are held against MAX
 
 from __future__ import annotations
 
+import math
 import struct
 import zipfile
 import zlib
@@ -27,6 +28,7 @@ MAX_POINTS = 2**24
 UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}
 PLAIN = (".npy", ".csv")  # by nature; text (.asc, .txt) is a plain table if its unit and pixel size are given
 TEXT = (".asc", ".txt")
+TEXT_FORMATS = ("asc", "xyz")
 
 # What a reader may raise on bytes that are not what they claim to be. SurfaceTopography's own errors are
 # plain Exceptions and join these where it is imported.
@@ -82,8 +84,10 @@ def _inspect(path: Path) -> None:
                 size = max(size, sum(member.file_size for member in archive.infolist()))
     except _BROKEN as error:
         raise InputError("path", str(path), f"a readable file ({_brief(error)})") from error
-    if size > MAX_BYTES:
-        raise InputError("path", str(path), f"at most {MAX_BYTES} bytes, unpacked as well (this: {size})")
+    if not 0 < size <= MAX_BYTES:
+        raise InputError(
+            "path", str(path), f"at least 1 and at most {MAX_BYTES} bytes, unpacked as well (this: {size})"
+        )
 
 
 def _npy(path: Path) -> Array:
@@ -100,11 +104,41 @@ def _instrument(path: Path, unit: str | None, pixel_size: tuple[float, float] | 
     library = _library(path)
     broken = (*_BROKEN, library.Exceptions.ReadFileError)
 
-    def load(file: Path) -> Reading:
-        with np.errstate(all="ignore"), library.open_topography(str(file)) as reader:
-            return _from_topography(file, reader.topography(), reader.format(), unit, pixel_size)
+    def load(name: str | None) -> Reading:
+        with np.errstate(all="ignore"), library.open_topography(str(path), format=name) as reader:
+            return _from_reader(path, reader, unit, pixel_size)
 
-    return _guarded(path, load, broken)
+    *others, last = _formats(library, path)
+    for name in others:
+        try:
+            return load(name)
+        except broken as error:
+            if isinstance(error, InputError):
+                raise
+    return _guarded(path, lambda _: load(last), broken)
+
+
+def _formats(library: ModuleType, path: Path) -> list[str | None]:
+    """The formats that the suffix may mean, or [None], all that the library knows, for an unknown suffix.
+
+    Text readers take a minute to find out that 50 MB hold no numbers; the first MiB tells as much.
+    """
+    with path.open("rb") as file:
+        head = file.read(2**20)
+    binary = b"\0" in head
+    if not binary and not any(_begins_with_numbers(line) for line in head.splitlines()):
+        raise InputError("path", str(path), "rows of numbers, or the binary file of an instrument")
+    known = [r.format() for r in library.IO.readers if path.suffix.lower()[1:] in r.file_extensions()]
+    possible = [name for name in known if not (binary and name in TEXT_FORMATS)]
+    return sorted(possible, key=lambda name: name in TEXT_FORMATS) or [None]  # the last one's error is shown
+
+
+def _begins_with_numbers(line: bytes) -> bool:
+    words = line.replace(b",", b" ").replace(b";", b" ").split(maxsplit=3)[:3]
+    try:
+        return len([float(word) for word in words]) == 3
+    except ValueError:
+        return False
 
 
 def _library(path: Path) -> ModuleType:
@@ -120,24 +154,29 @@ def _library(path: Path) -> ModuleType:
     return module
 
 
-def _from_topography(
-    path: Path, topography: Any, reader: str, unit: str | None, pixel_size: tuple[float, float] | None
+def _from_reader(
+    path: Path, reader: Any, unit: str | None, pixel_size: tuple[float, float] | None
 ) -> Reading:
-    t = topography
-    if t.dim != 2 or not t.is_uniform:
-        raise InputError("path", str(path), "heights on a regular two-dimensional grid")
-    stated = t.unit is not None and t.physical_sizes is not None
-    if stated and (unit is not None or pixel_size is not None):
-        raise InputError("unit, pixel_size", (unit, pixel_size), f"neither: {path.name} states its own")
-    if stated:
-        t = t.to_unit("m")
-        (lx, ly), (nx, ny) = t.physical_sizes, t.nb_grid_pts
-        pixel_size = (float(lx / nx), float(ly / ny))
-        unit = "m"
-    if unit is None or pixel_size is None:
-        raise InputError("unit, pixel_size", (unit, pixel_size), f"both: {path.name} does not state them")
-    heights = np.ma.filled(np.ma.asarray(t.heights(), dtype=np.float64), np.nan)
-    source = f"by SurfaceTopography's {reader} reader"
+    channel, given = reader.default_channel, (unit, pixel_size)
+    if channel.dim != 2 or not channel.is_uniform or math.prod(channel.nb_grid_pts) > MAX_POINTS:
+        raise InputError("path", str(path), f"heights on a regular 2-D grid of at most {MAX_POINTS} points")
+    if channel.unit is not None and channel.physical_sizes is not None:
+        if given != (None, None):
+            raise InputError("unit, pixel_size", given, f"neither: {path.name} states its own")
+        topography = reader.topography().to_unit("m")
+        (lx, ly), (nx, ny) = topography.physical_sizes, topography.nb_grid_pts
+        unit, pixel_size = "m", (float(lx / nx), float(ly / ny))
+    else:
+        if unit is None or pixel_size is None:
+            raise InputError("unit, pixel_size", given, f"both: {path.name} does not state them")
+        sizes = tuple(n * edge for n, edge in zip(channel.nb_grid_pts, pixel_size, strict=True))
+        topography = reader.topography(
+            **({"physical_sizes": sizes} if channel.physical_sizes is None else {})
+        )
+    if not all(0 < edge < np.inf for edge in pixel_size):
+        raise InputError("path", f"pixels of {pixel_size} m in {path.name}", "pixels of positive size")
+    heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
+    source = f"by SurfaceTopography's {reader.format()} reader"
     return Reading(_heights(path, heights) * UNITS[unit], pixel_size, path.name, source)
 
 
@@ -162,5 +201,5 @@ def _heights(path: Path, raw: Array) -> Array:
 
 
 def _brief(error: Exception) -> str:
-    lines = str(error).splitlines() or [""]
+    lines = str(error).strip().splitlines() or [""]
     return f"{type(error).__name__}: {lines[0][:160]}"

@@ -174,7 +174,7 @@ def test_bad_arrays_are_refused(array: np.ndarray, said: str) -> None:
 
 
 def test_what_is_no_surface_is_refused() -> None:
-    with pytest.raises(InputError, match="surface = 3.0"):
+    with pytest.raises(InputError, match=r"surface = 3\.0"):
         as_surface(3.0)  # type: ignore[arg-type]  # the point of the test
     with pytest.raises(InputError, match="surface = None"):
         Flat() + None  # type: ignore[operator]  # likewise

@@ -1,0 +1,71 @@
+"""Statistics of heights against closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from refimpl.grid import Grid
+from refimpl.surfaces import GaussianRoughness
+from refimpl.surfaces import statistics as stats
+
+N = 64
+X = (np.arange(N) + 0.5) / N
+WAVE = np.sin(2 * np.pi * 4 * X)[:, None] * np.ones(N)
+
+
+def test_moments_of_a_wave() -> None:
+    # mean of sin^2 is 1/2, of sin^4 3/8; equidistant points sum them exactly
+    assert abs(stats.rms_height(3 + WAVE) - math.sqrt(0.5)) < 1e-15 * N
+    assert abs(stats.skewness(WAVE)) < 1e-14
+    assert abs(stats.kurtosis(5 - WAVE) - 1.5) < 1e-13
+    assert abs(stats.skewness(np.array([[0.0, 0.0, 0.0, 1.0]])) - 2 / math.sqrt(3)) < 1e-15
+
+
+def test_slopes_are_exact_for_bilinear_heights_and_know_their_axis() -> None:
+    z = 0.3 * X[:, None] - 2.0 * X[None, :]
+    dz_dx, dz_dy = stats.slopes(z, 1 / N)
+    np.testing.assert_allclose(dz_dx, 0.3, rtol=1e-12)
+    np.testing.assert_allclose(dz_dy, -2.0, rtol=1e-12)
+    angle_x, angle_y = stats.slope_angles(z, 1 / N)
+    np.testing.assert_allclose(angle_x, math.atan(0.3), rtol=1e-12)
+    np.testing.assert_allclose(angle_y, -math.atan(2.0), rtol=1e-12)
+    np.testing.assert_allclose(stats.rms_slopes(z, 1 / N), (0.3, 2.0), rtol=1e-12)
+
+
+def test_autocorrelation_is_the_plain_sum_over_pairs() -> None:
+    z = np.random.default_rng(1).normal(size=(9, 6))
+    d = z - z.mean()
+    for axis in (0, 1):
+        rows = np.moveaxis(d, axis, 0)
+        expected = [np.mean(rows[: len(rows) - k] * rows[k:]) / np.mean(d**2) for k in range(len(rows))]
+        np.testing.assert_allclose(stats.autocorrelation(z, axis), expected, rtol=0, atol=1e-13)
+
+
+def test_flat_heights_have_no_correlation_length() -> None:
+    assert np.isnan(stats.autocorrelation(np.zeros((4, 4)), 0)).all()
+    assert stats.correlation_length(np.zeros((4, 4)), 1.0) is None
+
+
+def test_correlation_length_interpolates() -> None:
+    crossing = stats.correlation_length(WAVE + WAVE.T, 1 / N, level=0.5)
+    # each axis sees one wave move and the other stand: (1 + cos(8 pi r)) / 2 falls to 1/2 at r = 1/16, four
+    # points; the finite length shifts the products of the moving wave by O(1 / N) of its amplitude
+    assert crossing is not None
+    assert abs(crossing - 1 / 16) < 0.2 / N
+
+
+def test_gaussian_roughness_has_its_parameters() -> None:
+    side, length = 60.0, 1.0
+    z = GaussianRoughness(1.0, length, seed=2).heights(Grid(side, 480))
+    h, area = side / 480, side**2
+    # four standard errors: relative variances 2 pi / 4.6 / area of z^2, 1.5 pi / 4.6 / area of slope^2
+    assert abs(stats.rms_height(z) - 1) < 2 * math.sqrt(2 * math.pi / 4.6 / area)
+    seen = math.sqrt((1 - math.exp(-2.3 * (2 * h) ** 2)) / (2 * h**2))
+    for slope in stats.rms_slopes(z, h):
+        assert abs(slope / seen - 1) < 2 * math.sqrt(1.5 * math.pi / 4.6 / area)
+    found = stats.correlation_length(z, h, level=math.exp(-2.3))
+    # the autocorrelation there falls by 4.6 / l * 0.1; its error is sqrt(pi / 4.6 / area)
+    assert found is not None
+    assert abs(found - length) < 4 * math.sqrt(math.pi / 4.6 / area) / 0.46
