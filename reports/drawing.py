@@ -62,16 +62,31 @@ def svg(figure: Figure, data: Data) -> str | None:
 
 
 def lines(
-    x: str, series: Mapping[str, str], *, xlabel: str, ylabel: str, log: str = "", marker: bool = False
+    x: str,
+    series: Mapping[str, str],
+    *,
+    xlabel: str,
+    ylabel: str,
+    log: str = "",
+    marker: bool = False,
+    errors: str | None = None,
 ) -> Draw:
-    """Series (key to legend text) over `x`; `log` names the logarithmic axes, "", "x", "y" or "xy"."""
+    """Series (key to legend text) over `x`; `log` names the logarithmic axes, "", "x", "y" or "xy".
+
+    References (keys that begin with exact, reference, hertz or eq) are dashed. `errors` is the key of the
+    first series' standard error, drawn as a band of two of them.
+    """
 
     def draw(canvas: Canvas, data: Data) -> None:
         axes = _axes(canvas, xlabel, ylabel, log)
         for k, (key, label) in enumerate(series.items()):
-            style = "--" if key.startswith(("exact", "reference", "hertz")) else "-"
+            style = "--" if key.startswith(("exact", "reference", "hertz", "eq")) else "-"
             mark = MARKERS[k] if marker else None
             axes.plot(data[x], _numbers(data[key]), style, marker=mark, color=COLOURS[k], label=label)
+        if errors is not None:
+            middle, width = _numbers(data[next(iter(series))]), 2 * _numbers(data[errors])
+            band: dict[str, Any] = {"color": COLOURS[0], "alpha": 0.2, "label": "two standard errors"}
+            axes.fill_between(data[x], middle - width, middle + width, **band)
         axes.legend()
 
     return draw

@@ -28,6 +28,30 @@ FIGURES = (
         dots("worst", xlabel="largest relative error", limit=1e-14),
         "Largest relative error by group of points.",
     ),
+    Figure(
+        "surfaces/ensemble",
+        ("lag / l", "estimate", "eq9", "standard error"),
+        lines(
+            "lag / l",
+            {"estimate": "ensemble", "eq9": "Eq. (9)"},
+            xlabel="lag / correlation length",
+            ylabel="autocorrelation",
+            errors="standard error",
+        ),
+        "Autocorrelation of an ensemble of rough surfaces and of Eq. (9).",
+    ),
+    Figure(
+        "surfaces/spectrum",
+        ("k l", "power / eq9", "standard error"),
+        lines(
+            "k l",
+            {"power / eq9": "ensemble"},
+            xlabel="wavenumber x correlation length",
+            ylabel="power / that of Eq. (9)",
+            errors="standard error",
+        ),
+        "Power of the periodic rough surface by wavenumber, over the Fourier transform of Eq. (9).",
+    ),
 )
 
 

@@ -32,6 +32,7 @@ def render(results: object) -> str:
         claims=[(claim, group, worst(group)) for claim, group in by(cases, "claim").items()],
         subjects=by_subject(cases),
         judgement=judgement,
+        facts=facts,
         rerun=rerun,
         pictures={case["id"]: picture(case) for case in cases},
     )
@@ -58,6 +59,29 @@ def judgement(case: Case) -> str:
     sign = "≥" if case["metric"] == "at_least" else "≤"
     sign = sign if case["status"] == "pass" else {"≥": "<", "≤": ">"}[sign]
     return f"{number(case['error'], 3)} {sign} {number(case['tolerance'], 3)}"
+
+
+def facts(data: Mapping[str, Any], most: int = 12) -> list[tuple[str, str]]:
+    """The single numbers and texts that a case recorded, and its small tables of them, ready to print.
+
+    >>> facts({"worst": 1e-15, "by grid": {"64": 0.1, "128": 0.05}, "series": [1, 2, 3]})
+    [('worst', '1e-15'), ('by grid', '64: 0.1, 128: 0.05')]
+    """
+    found = []
+    for name, value in data.items():
+        if isinstance(value, Mapping) and 0 < len(value) <= most and all(map(_single, value.values())):
+            found.append((name, ", ".join(f"{key}: {_text(entry)}" for key, entry in value.items())))
+        elif _single(value):
+            found.append((name, _text(value)))
+    return found
+
+
+def _single(value: object) -> bool:
+    return value is None or isinstance(value, str | int | float)
+
+
+def _text(value: Any) -> str:
+    return str(value) if isinstance(value, str | bool) else number(value)
 
 
 def rerun(case: Case) -> str:
