@@ -26,6 +26,9 @@ DAMPED_RANGE = 20.0
 """Up to this |log r| the line is Re z = -1/2; beyond, it moves to keep the weight r^(-1-c) below exp(10)."""
 POINTS_PER_SWEEP = 2048
 """Points in one Horner sweep: 3 x 2048 complex numbers stay in the second-level cache."""
+HALF_PI_TAIL = 6.123233995736766e-17
+"""pi/2 minus its double."""
+FACE_ULP = 2.3e-16
 HORNER_RUN = 64
 """Terms between two restarts: the power's rounding error stays below 64 units in the last place."""
 
@@ -105,19 +108,34 @@ def remainder_sums(rows: Rows, r: Real, theta: Real, gamma: float) -> Complex:
     return sums
 
 
-def half_plane(r: Real, delta: Real) -> tuple[Real, Complex]:
+def angle_from_face(theta: Real, gamma: float) -> tuple[Real, Real]:
+    """``delta = pi/2 - gamma - theta``, not less than zero, and its sine, both to relative rounding.
+
+    pi/2 is taken in two parts; a theta that rounds to the face (within one unit in the last place) is on it.
+    Beyond pi/2 the sine is that of ``pi - delta``, which for small gamma is small too.
+    """
+    complement = np.pi / 2 - theta
+    lost = (np.pi / 2 - complement) - theta
+    delta = (complement - gamma) + (HALF_PI_TAIL + lost)
+    delta = np.where(delta < FACE_ULP, 0.0, delta)
+    supplement = (np.pi / 2 + theta + gamma) + HALF_PI_TAIL
+    return delta, np.sin(np.minimum(delta, supplement))
+
+
+def half_plane(r: Real, delta: Real, sine: Real) -> tuple[Real, Complex]:
     """(sigma_r + sigma_theta, sigma_theta - sigma_r + 2i tau) of a half-plane pressed on 0 < r < 1.
 
-    ``delta`` is the angle from that edge, 0 <= delta <= pi, the shear counted with the angle growing
-    towards it. These are the integrals of the subtracted kernels: ``(2/pi) Im log(1 - exp(i delta)/r)`` and
-    ``2 sin(delta) exp(-i delta) / (pi (r exp(-i delta) - 1))``. At the load's end, r = 1 on the face, both
-    take the mean of their one-sided limits along the face.
+    ``delta`` is the angle from that edge, 0 <= delta <= pi, ``sine`` its sine; the shear is counted with
+    the angle growing towards it. These are the integrals of the subtracted kernels: ``(2/pi) Im log(1 -
+    exp(i delta)/r)`` and ``2 sin(delta) exp(-i delta) / (pi (r exp(-i delta) - 1))``. At the load's end, r
+    = 1 on the face, both take the mean of their one-sided limits along the face.
     """
-    with np.errstate(invalid="ignore"):
-        angle = np.arctan2(np.sin(delta), r - np.cos(delta))
-        shift = 2 * np.sin(delta) * np.exp(-1j * delta) / (np.pi * (r * np.exp(-1j * delta) - 1))
+    versine = 2 * np.sin(delta / 2) ** 2
     edge = (delta == 0) & (r == 1)
-    return np.where(edge, -1.0, -2 * angle / np.pi), np.where(edge, 0.0, shift)
+    angle = np.arctan2(sine, np.where(edge, np.nan, r - 1) + versine)
+    from_end = np.where(edge, 1, r - 1) - r * versine - 1j * r * sine
+    shift = 2 * sine * np.exp(-1j * delta) / (np.pi * from_end)
+    return np.where(edge, -1.0, -2 * angle / np.pi), shift
 
 
 def unit_stresses(r: Real, theta: Real, gamma: float) -> tuple[Real, Real, Real]:
@@ -126,7 +144,7 @@ def unit_stresses(r: Real, theta: Real, gamma: float) -> tuple[Real, Real, Real]
     mean = 4 * phi1.real
     deviator = 2 * (phi2 + np.exp(2j * theta) * psi1)
     for side in (1, -1):
-        pressed, turned = half_plane(r, np.maximum(np.pi / 2 - gamma - side * theta, 0.0))
+        pressed, turned = half_plane(r, *angle_from_face(side * theta, gamma))
         mean = mean + pressed
         deviator = deviator + (turned if side == 1 else np.conj(turned))
     return (mean - deviator.real) / 2, (mean + deviator.real) / 2, deviator.imag / 2
@@ -146,10 +164,10 @@ def unit_displacements(r: Real, theta: Real, gamma: float, nu: float) -> tuple[R
     u = zeta * (kappa * phi - np.conj(phi1)) - np.conj(zeta * psi)
     for side in (1, -1):
         end = np.exp(1j * side * alpha)
-        delta = np.maximum(alpha - side * theta, 0.0)
+        delta, sine = angle_from_face(side * theta, gamma)
         away = 1 - r * np.exp(-1j * side * delta)
         size = np.abs(away)
-        angle = np.arctan2(r * np.sin(delta), 1 - r * np.cos(delta))
+        angle = np.arctan2(r * sine, 1 - r * np.cos(delta))
         log = np.log(np.where(size == 0, 1, size)) + 1j * side * angle
         turn = 1j * side * (delta - np.pi)
         u += side / (2j * np.pi) * ((kappa - 1) * zeta * turn - end * away * (kappa * log + np.conj(log)))
