@@ -7,6 +7,7 @@ while CG reduces the residual tenfold and are then brought up to date; their own
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -32,6 +33,7 @@ _COARSE_TOLERANCE = 1e-4  # a coarse state is only a start: its own grid error i
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 _STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
+_LEAST_RELAXATION = 1 / 16  # below this, updates that do not contract are given up
 _SUPPORT_ITERATIONS = 200
 
 
@@ -117,7 +119,10 @@ def _start(problem: Problem) -> Array:
     interference = np.maximum(depth - problem.gap, 0.0)
     if not interference.any():
         interference = (problem.gap <= problem.gap.min()).astype(float)
-    return interference / (problem.pair.normal_compliance * problem.grid.side)
+    pressure = interference / (problem.pair.normal_compliance * problem.grid.side)
+    if problem.load is not None:
+        pressure *= problem.load / (problem.grid.element_area * pressure.sum())
+    return pressure
 
 
 class _LevelSolver:
@@ -150,6 +155,13 @@ class _LevelSolver:
         )
         self.slopes = Slopes.flat(window.shape)
         self.traction = np.zeros(window.shape)
+        self._held: tuple[Array, Array] | None = None
+        pair = self.problem.pair
+        # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
+        # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
+        sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
+        self._relaxation = 1 / (1 + sigma**2)
+        self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
     def solve(self, tolerance: float) -> Outcome:
         """The settled state; tau's support follows the rule of `refimpl.friction` if it cycles."""
@@ -174,14 +186,19 @@ class _LevelSolver:
     def settle(self, tolerance: float, support: Mask | None = None) -> bool:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
         self._tolerance, self._budget = tolerance, self.cg_iterations + _CG_LIMIT
-        residual = best = self._update(support)
+        self.residual = best = self._update(support)
         stalled = 0
-        while residual > tolerance and stalled < _STALLED and self.cg_iterations < self._budget:
-            self._reduce(max(_REDUCTION * residual, 0.3 * tolerance))
-            residual = self._update(support) if self._lags else max(self.cg.residuals())
-            best, stalled = (residual, 0) if residual < 0.5 * best else (best, stalled + 1)
-        self.residual = residual
-        return residual <= tolerance
+        while self.residual > tolerance and self.cg_iterations < self._budget:
+            before = self.support
+            self._reduce(max(_REDUCTION * self.residual, 0.3 * tolerance))
+            self.residual = self._update(support) if self._lags else max(self.cg.residuals())
+            best, stalled = (self.residual, 0) if self.residual < 0.5 * best else (best, stalled + 1)
+            if stalled >= self._patience:
+                cycling = self.problem.friction.tau > 0 and not np.array_equal(before, self.support)
+                if cycling or not self._lags or self._relaxation < _LEAST_RELAXATION:
+                    break
+                self._relaxation, stalled = 0.5 * self._relaxation, 0
+        return self.residual <= tolerance
 
     def _reduce(self, goal: float) -> None:
         """CG steps until the frozen problem's residual meets the goal or no longer falls."""
@@ -213,22 +230,32 @@ class _LevelSolver:
         slopes = problem.slopes(lower, upper)
         change = slopes.distance(self.slopes, pressure > 0)
         self.slopes = slopes
-        target, balance = None, 0.0
-        if problem.load is not None:
-            weights, offset = problem.load_weights(slopes, self.support)
-            dA = problem.grid.element_area
-            found = float(np.vdot(weights, pressure))
-            balance = abs(found * dA - offset - problem.load) / problem.load
-            lag = float(np.vdot(slopes.obliqueness, pressure)) - found
-            target = (problem.load + offset) / dA + lag
-        shear = lower + upper - self.cg.normal_displacement
-        self.cg.freeze(
-            slopes.obliqueness * problem.gap + shear,
-            slopes.obliqueness,
-            target=target,
-            approach=problem.approach,
-        )
-        return max(*self.cg.residuals(), balance, change)
+        target, balance = self._target(slopes.obliqueness)
+        shear, K = lower + upper - self.cg.normal_displacement, slopes.obliqueness
+        self._hold(shear, K, target)
+        residual = max(*self.cg.residuals(), balance, change)
+        if self._held is not None and self._relaxation < 1 and residual > self._tolerance:
+            shear = self._held[0] + self._relaxation * (shear - self._held[0])
+            K = self._held[1] + self._relaxation * (K - self._held[1])
+            self._hold(shear, K, self._target(K)[0])
+        self._held = shear, K
+        return residual
+
+    def _hold(self, shear: Array, K: Array, target: float | None) -> None:
+        self.cg.freeze(K * self.problem.gap + shear, K, target=target, approach=self.problem.approach)
+
+    def _target(self, K: Array) -> tuple[float | None, float]:
+        """What ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| / P."""
+        problem, pressure = self.problem, self.cg.pressure
+        if problem.load is None:
+            return None, 0.0
+        weights, offset = problem.load_weights(self.slopes, self.support)
+        dA = problem.grid.element_area
+        found = float(np.vdot(weights, pressure))
+        target = (problem.load + offset) / dA + float(np.vdot(K, pressure)) - found
+        balance = abs(found * dA - offset - problem.load) / problem.load
+        # shear on slopes that alone exceeds the load leaves no balance: keep some contact and fail by it
+        return max(target, 1e-3 * problem.load / dA), balance
 
     def _ended(self) -> Status:
         if self.residual <= self._tolerance:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from refimpl.contact.projected_cg import relative_gap
 from refimpl.forces import Forces, resultants
 from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array
@@ -93,7 +94,7 @@ def certify(
         approach=approach,
         forces=forces,
         certificate=Certificate(
-            gap=duality / energy if energy > 0 else (0.0 if total == 0 else np.inf),
+            gap=relative_gap(duality, energy),
             penetration=max(0.0, approach - float(v.min())) / (abs(approach) or 1.0),
             negative_pressure=max(0.0, -float(pressure.min())) / peak,
             balance=balance,

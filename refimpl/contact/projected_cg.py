@@ -20,6 +20,13 @@ from refimpl.grid import Array
 Apply = Callable[[Array], Array]
 
 
+def relative_gap(duality: float, energy: float) -> float:
+    """Complementarity gap over elastic energy; an exact state without energy has none."""
+    if duality == 0:
+        return 0.0
+    return duality / energy if energy > 0 else np.inf
+
+
 class ProjectedCG:
     """Iterates ``pressure`` towards the contact of the frozen problem.
 
@@ -62,7 +69,7 @@ class ProjectedCG:
         gap = float(np.vdot(self.pressure, v - lowest))
         off = abs(float(np.vdot(self.pressure, v)) / float(self.pressure.sum()) - approach)
         scale = abs(approach) or 1.0
-        return gap / energy if energy > 0 else np.inf, max(off, approach - lowest) / scale
+        return relative_gap(gap, energy), max(off, approach - lowest) / scale
 
     def iterate(self) -> None:
         """One step of projected CG on the contact set, then the exchange of elements."""
@@ -79,12 +86,10 @@ class ProjectedCG:
         direction = self._conjugate(residual, step)
         moved = self._apply(direction)
         curvature = float(np.vdot(direction, moved))
-        if curvature <= 0:
-            self._direction = None
-            return
-        length = float(np.vdot(residual, direction)) / curvature
-        self.pressure = self.pressure + length * direction
-        self.normal_displacement = self.normal_displacement + length * moved
+        if curvature > 0:  # zero when the constraint alone fixes the set's pressure
+            length = float(np.vdot(residual, direction)) / curvature
+            self.pressure = self.pressure + length * direction
+            self.normal_displacement = self.normal_displacement + length * moved
         self._exchange()
 
     def _preconditioned(self, residual: Array) -> Array:
