@@ -21,7 +21,7 @@ Real = NDArray[np.float64]
 
 GAUSS = np.polynomial.legendre.leggauss(12)
 REACH = 30.0
-"""Wavelengths integrated on either side; doubling it changes displacements by < 2e-9 p a / E up to 20 degrees."""
+"""Wavelengths integrated on either side; twice as many change the result by less than 2e-9 p a / E."""
 PANELS_PER_WAVE = 8
 FINEST = 40
 """Panels shrink by halves down to 2^-40 towards the strip's ends and the logarithm's pole."""
@@ -35,7 +35,7 @@ class Theta(StrEnum):
 
 
 def pseudo_tractions(x: ArrayLike, profile: Sinusoid, theta: Theta) -> tuple[Real, Real]:
-    """(X, Y) of (A3) on the wavy line at x, per unit pressure; ``profile`` has its crest at x = 0."""
+    """(X, Y) of (A3) per unit pressure on the wavy line at x; ``profile`` has a crest at x = 0."""
     x = np.asarray(x, dtype=float)
     sigma_x, sigma_y, tau = stresses(x, profile.depth(x))
     angle = profile.slope(x) - (np.pi / 2 if theta is Theta.NORMAL else 0.0)
@@ -53,7 +53,7 @@ def applied(x: ArrayLike, profile: Sinusoid) -> tuple[Real, Real]:
 def printed(
     slope_deg: float, wavelength: float, nu: float, *, offsets: ArrayLike, theta: Theta = Theta.NORMAL
 ) -> tuple[Real, Real]:
-    """(wavy, flat) as ``first_order`` for a strip on a crest (the paper's case), by the paper's superposition.
+    """(wavy, flat) as ``first_order`` for a strip on a crest, by the paper's superposition.
 
     The pseudo tractions, plus the applied ones where (A3) would cancel the load itself, act on the flat
     boundary of a half-plane (Flamant). Exact to first order in the slope for ``Theta.NORMAL``, but for the
