@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
 
-from verification.cli import appendix_a, report, solve, verify
+from verification.cli import appendix_a, report, solve, sweep, verify
 
 BAD_INPUT, INTERRUPTED = 2, 130
 
@@ -41,7 +41,7 @@ def parser() -> argparse.ArgumentParser:
         "--version", action="version", version=f"rough-friction {version('rough-friction')}"
     )
     commands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
-    for module in (solve, verify, report, appendix_a):
+    for module in (solve, verify, report, sweep, appendix_a):
         module.add_parser(commands)
     return top
 

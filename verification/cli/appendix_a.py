@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from verification.cli.output import Parsers, add_json, columns, emit
 
@@ -25,8 +26,9 @@ def add_parser(commands: Parsers) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     problems = parser.add_subparsers(title="problems", metavar="PROBLEM", required=True)
-    _add_fem(problems)
+    _add_strip(problems)
     _add_wedge(problems)
+    _add_fem(problems)
 
 
 def numbers(text: str) -> list[float]:
@@ -41,20 +43,28 @@ def numbers(text: str) -> list[float]:
         raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers like -3,0,3") from None
 
 
+def _add_strip(problems: Parsers) -> None:
+    parser = _problem(problems, "strip", strip, "pressed strip on a sinusoidal boundary, to first order")
+    _wavy_options(parser)
+
+
 def _add_fem(problems: Parsers) -> None:
     parser = _problem(problems, "fem", fem, "pressed strip on a sinusoidal boundary, by finite elements")
-    parser.add_argument(
-        "--slope-deg", type=float, required=True, help="maximum slope of the profile (degrees)"
-    )
-    parser.add_argument("--wavelength", type=float, required=True, help="in half-widths of the strip")
-    parser.add_argument("--position", type=float, required=True, help="crest 0, flank 0.25, valley 0.5")
-    parser.add_argument("--nu", type=float, required=True, help="Poisson's ratio")
-    parser.add_argument(
-        "--offsets",
-        type=numbers,
+    _wavy_options(parser)
+
+
+def _wavy_options(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("--slope-deg", type=float, required=True, help="maximum slope of the profile (degrees)")
+    add("--wavelength", type=float, required=True, help="in half-widths of the strip")
+    add(
+        "--position",
+        type=float,
         required=True,
-        help="distances from the strip's centre, in half-widths",
+        help="centre of the strip: crest 0, flank 0.25, valley 0.5",
     )
+    add("--nu", type=float, required=True, help="Poisson's ratio")
+    add("--offsets", type=numbers, required=True, help="distances from the centre, in half-widths")
 
 
 def _add_wedge(problems: Parsers) -> None:
@@ -80,30 +90,41 @@ def _problem(
     return parser
 
 
+def strip(options: argparse.Namespace) -> int:
+    """Displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
+    from appendix_a.strip import first_order
+
+    wavy, flat = first_order(*_wave(options), offsets=options.offsets)
+    document = {"offsets": options.offsets, "wavy": wavy.tolist(), "flat": flat.tolist()}
+    emit(document, options.json, _displacements(document, "to first order in the slope"))
+    return 0
+
+
 def fem(options: argparse.Namespace) -> int:
-    """Displacements of a wavy boundary and of a flat one, in units of p a / E."""
+    """Displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem.sinusoid import sinusoid
 
-    found = sinusoid(
-        options.slope_deg, options.wavelength, options.position, options.nu, offsets=options.offsets
-    )
+    found = sinusoid(*_wave(options), offsets=options.offsets)
     document = {
         "offsets": found.offsets.tolist(),
         "wavy": found.wavy.tolist(),
         "flat": found.flat.tolist(),
         "discretisation_error": found.discretisation_error,
     }
-    rows = [
-        [f"{x:g}", f"{w:.6f}", f"{f:.6f}"]
-        for x, w, f in zip(found.offsets, found.wavy, found.flat, strict=True)
-    ]
-    table = columns([["offset", "wavy", "flat"], *rows], indent="")
-    emit(
-        document,
-        options.json,
-        f"{table}\n\nin units of p a / E; discretisation error {found.discretisation_error:.1g}",
-    )
+    remark = f"discretisation error {found.discretisation_error:.1g}"
+    emit(document, options.json, _displacements(document, remark))
     return 0
+
+
+def _wave(options: argparse.Namespace) -> tuple[float, float, float, float]:
+    return options.slope_deg, options.wavelength, options.position, options.nu
+
+
+def _displacements(document: Mapping[str, Any], remark: str) -> str:
+    series = zip(document["offsets"], document["wavy"], document["flat"], strict=True)
+    rows = [[f"{x:g}", f"{wavy:.6f}", f"{flat:.6f}"] for x, wavy, flat in series]
+    table = columns([["offset", "wavy", "flat"], *rows], indent="")
+    return f"{table}\n\nin units of p a / E, relative to the centre; {remark}"
 
 
 def wedge(options: argparse.Namespace) -> int:
