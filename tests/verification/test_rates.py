@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verification.rates import CAUTIOUS_FACTOR, TRUSTED_FACTOR, extrapolate, fit_order
+from verification.rates import extrapolate, fit_order
 
 H = [0.4, 0.2, 0.1, 0.05]
 
@@ -50,8 +50,8 @@ def test_richardson_gives_limit_order_and_uncertainty_back(
     assert found.credible
     assert found.order == pytest.approx(order, abs=1e-5)
     assert found.extrapolated == pytest.approx(limit, abs=1e-3 * correction)
-    assert found.uncertainty == pytest.approx(TRUSTED_FACTOR * correction, rel=1e-3)
-    assert found.safety_factor == TRUSTED_FACTOR
+    assert found.uncertainty == pytest.approx(1.25 * correction, rel=1e-3)
+    assert found.safety_factor == 1.25
 
 
 def test_three_grids_reproduce_the_textbook_index() -> None:
@@ -80,8 +80,8 @@ def test_three_grids_reproduce_the_textbook_index() -> None:
 def test_an_order_that_is_not_credible_costs_a_factor_of_three(values: list[float], why: str) -> None:
     found = extrapolate(H, values, expected_order=2.0)
     assert not found.credible, why
-    assert found.safety_factor == CAUTIOUS_FACTOR
-    assert found.uncertainty >= CAUTIOUS_FACTOR * np.ptp(values)
+    assert found.safety_factor == 3.0
+    assert found.uncertainty >= 3.0 * np.ptp(values)
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0])
