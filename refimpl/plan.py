@@ -11,8 +11,8 @@ from refimpl.errors import InputError
 from refimpl.problem import Terms
 from refimpl.scene import Scene
 
-Method = Literal["dense", "fft"]
-METHODS: tuple[Method, ...] = ("dense", "fft")
+Method = Literal["dense", "fft", "paper"]
+METHODS: tuple[Method, ...] = ("dense", "fft", "paper")
 
 # Bytes per element at the peak, measured on the shipped scenes with slopes and shear coupling: FFT
 # work arrays, two kernel tables and their transforms; or five dense matrices of Eq. (7).
@@ -63,7 +63,9 @@ def make_plan(
         raise InputError("method", method, f"one of {', '.join(METHODS)}")
     if slope_correction and oblique is False:
         raise InputError("oblique", oblique, "true or unset: the slope correction needs the slopes")
-    memory = _FFT_BYTES * M**2 if method == "fft" else 8 * _DENSE_MATRICES * M**4
+    if method == "paper" and scene.periodic:
+        raise InputError("method", method, "dense or fft for a periodic scene")
+    memory = 8 * _DENSE_MATRICES * M**4 if method == "dense" else _FFT_BYTES * M**2
     free = free_memory()
     if memory > free:
         raise InputError(
