@@ -67,22 +67,24 @@ def lines(
     *,
     xlabel: str,
     ylabel: str,
+    exact: Mapping[str, str] | None = None,
+    errors: str | None = None,
     log: str = "",
     marker: bool = False,
-    errors: str | None = None,
 ) -> Draw:
-    """Series (key to legend text) over `x`; `log` names the logarithmic axes, "", "x", "y" or "xy".
+    """Series (key to legend text) over `x`, and those of `exact` dashed.
 
-    References (keys that begin with exact, reference, hertz or eq) are dashed. `errors` is the key of the
-    first series' standard error, drawn as a band of two of them.
+    `errors` is the key of the first series' standard error, drawn as a band of two of them; `log` names the
+    logarithmic axes, "", "x", "y" or "xy".
     """
 
     def draw(canvas: Canvas, data: Data) -> None:
         axes = _axes(canvas, xlabel, ylabel, log)
         for k, (key, label) in enumerate(series.items()):
-            style = "--" if key.startswith(("exact", "reference", "hertz", "eq")) else "-"
             mark = MARKERS[k] if marker else None
-            axes.plot(data[x], _numbers(data[key]), style, marker=mark, color=COLOURS[k], label=label)
+            axes.plot(data[x], _numbers(data[key]), marker=mark, color=COLOURS[k], label=label)
+        for style, (key, label) in zip(("--", ":", "-."), (exact or {}).items(), strict=False):
+            axes.plot(data[x], _numbers(data[key]), style, color=INK, label=label)
         if errors is not None:
             middle, width = _numbers(data[next(iter(series))]), 2 * _numbers(data[errors])
             band: dict[str, Any] = {"color": COLOURS[0], "alpha": 0.2, "label": "two standard errors"}
@@ -93,23 +95,26 @@ def lines(
 
 
 def order(
-    x: str, series: Mapping[str, str], *, xlabel: str, ylabel: str, slopes: Sequence[float]
+    series: Mapping[str, str], *, ylabel: str = "error", expected: Sequence[float] = (1.0, 2.0)
 ) -> Draw:
-    """Errors over spacing, log-log, with the fitted orders in the legend and lines of the expected ones."""
+    """Errors over the elements per side `M`, log-log, with fitted orders and lines of the expected ones."""
 
     def draw(canvas: Canvas, data: Data) -> None:
-        axes = _axes(canvas, xlabel, ylabel, "xy")
-        h = np.asarray(data[x], dtype=float)
-        lowest = np.inf
+        axes = _axes(canvas, "elements per side", ylabel, "xy")
+        M = np.asarray(data["M"], dtype=float)
+        finest = np.inf
         for k, (key, label) in enumerate(series.items()):
             error = np.abs(_numbers(data[key]))
-            fitted = np.polyfit(np.log(h), np.log(error), 1)[0]
+            fitted = -np.polyfit(np.log(M), np.log(error), 1)[0]
             text = f"{label}, order {fitted:.2f}"
-            axes.plot(h, error, marker=MARKERS[k], color=COLOURS[k], label=text)
-            lowest = min(lowest, error[np.argmin(h)])
-        for slope in slopes:
-            guide = 0.5 * lowest * (h / h.min()) ** slope
-            axes.plot(h, guide, ":", color="#808080", label=f"order {slope:g}")
+            axes.plot(M, error, marker=MARKERS[k], color=COLOURS[k], label=text)
+            finest = min(finest, error[np.argmax(M)])
+        for slope, style in zip(expected, ("--", ":", "-."), strict=False):
+            axes.plot(
+                M, 0.6 * finest * (M.max() / M) ** slope, style, color=INK, label=f"order {slope:g}"
+            )
+        axes.set_xticks(M, [f"{m:g}" for m in M], minor=False)
+        axes.minorticks_off()
         axes.legend()
 
     return draw

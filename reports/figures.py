@@ -1,14 +1,26 @@
-"""Which case has which figure. A case without an entry has none; an entry without its data says so."""
+"""Which case has which figures.
+
+`DECLARED` goes by the case's id: where its data are missing, the report says so. `OFFERED` goes by the names of
+the recorded series alone, so that a new case gets a figure by recording its series under these names.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fnmatch import fnmatchcase
+from typing import Any
 
-from reports.drawing import Figure, dots, lines, maps, order, svg
+from reports.drawing import Figure, dots, lines, maps, order
 
-__all__ = ["FIGURES", "Figure", "declared_for", "maps", "order", "svg"]
 
-FIGURES = (
+def _order(cases: str, what: str, expected: float) -> Figure:
+    draw = order({"error": what}, ylabel="relative error", expected=(expected,))
+    return Figure(
+        cases, ("M", "error"), draw, f"Error of the {what} over the grid, and the order expected."
+    )
+
+
+DECLARED = (
     Figure(
         "kernels/textbook-*-fails",
         ("offset", "textbook", "production"),
@@ -33,10 +45,11 @@ FIGURES = (
         ("lag / l", "estimate", "eq9", "standard error"),
         lines(
             "lag / l",
-            {"estimate": "ensemble", "eq9": "Eq. (9)"},
+            {"estimate": "ensemble"},
+            exact={"eq9": "Eq. (9)"},
+            errors="standard error",
             xlabel="lag / correlation length",
             ylabel="autocorrelation",
-            errors="standard error",
         ),
         "Autocorrelation of an ensemble of rough surfaces and of Eq. (9).",
     ),
@@ -46,15 +59,104 @@ FIGURES = (
         lines(
             "k l",
             {"power / eq9": "ensemble"},
+            errors="standard error",
             xlabel="wavenumber x correlation length",
             ylabel="power / that of Eq. (9)",
-            errors="standard error",
         ),
         "Power of the periodic rough surface by wavenumber, over the Fourier transform of Eq. (9).",
+    ),
+    _order("reference/square-punch-order", "stiffness", 1.0),
+    _order("reference/*-approach-order", "approach", 2.0),
+    Figure(
+        "reference/sliding-wave-shift",
+        ("x", "p/p*", "exact p/p*"),
+        lines(
+            "x",
+            {"p/p*": "this code"},
+            exact={"exact p/p*": "exact, singular exponent"},
+            xlabel="x (m)",
+            ylabel="pressure / that of full contact",
+        ),
+        "Pressure of a sliding wave of dissimilar materials and its exact solution.",
+    ),
+    Figure(
+        "reference/greenwood-tripp-*",
+        ("r/a0", "p/p0", "Greenwood-Tripp p/p0", "standard error"),
+        lines(
+            "r/a0",
+            {"p/p0": "rough spheres, mean"},
+            exact={"Greenwood-Tripp p/p0": "Greenwood and Tripp 1967"},
+            errors="standard error",
+            xlabel="distance from the axis / Hertz radius",
+            ylabel="pressure / Hertz peak",
+        ),
+        "Mean pressure of rough spheres and of the asperity model of Greenwood and Tripp.",
+    ),
+    Figure(
+        "reference/rough-plane-slope",
+        ("p/(E* h')", "A/A0", "Persson"),
+        lines(
+            "p/(E* h')",
+            {"A/A0": "this code, mean"},
+            exact={"Persson": "Persson"},
+            xlabel="mean pressure / (E* rms slope)",
+            ylabel="contact fraction",
+            marker=True,
+        ),
+        "Contact fraction of a rough plane over the load.",
+    ),
+    Figure(
+        "reference/jgh-area",
+        ("load/p*", "area", "table", "light asymptote", "nearly full asymptote"),
+        lines(
+            "load/p*",
+            {"area": "this code, perimeter-corrected"},
+            exact={
+                "table": "extrapolated",
+                "light asymptote": "light",
+                "nearly full asymptote": "nearly full",
+            },
+            xlabel="load / that of full contact",
+            ylabel="contact fraction",
+            marker=True,
+        ),
+        "Contact fraction of a two-dimensional wave between its asymptotes.",
+    ),
+)
+
+OFFERED = (
+    Figure(
+        "*",
+        ("pressure map", "traction map", "side (mm)"),
+        maps({"pressure map": "Pressure", "traction map": "Traction"}, side="side (mm)", unit="MPa"),
+        "Maps of contact pressure and traction.",
+        (8.6, 3.8),
+    ),
+    Figure(
+        "*",
+        ("x (mm)", "pressure (MPa)", "hertz (MPa)"),
+        lines(
+            "x (mm)",
+            {"pressure (MPa)": "this code"},
+            exact={"hertz (MPa)": "Hertz"},
+            xlabel="x from the centre (mm)",
+            ylabel="pressure (MPa)",
+        ),
+        "Profile of the pressure through the centre, against Hertz.",
+    ),
+    Figure(
+        "*", ("M", "error"), order({"error": "error"}), "Error over the grid, with the fitted order."
+    ),
+    Figure(
+        "*",
+        ("difference by scene",),
+        dots("difference by scene", xlabel="largest difference between the solvers"),
+        "Agreement of the solvers, scene by scene.",
     ),
 )
 
 
-def declared_for(case_id: str) -> Figure | None:
-    """The first figure whose glob matches the case's id."""
-    return next((figure for figure in FIGURES if fnmatchcase(case_id, figure.cases)), None)
+def figures_of(case_id: str, data: Mapping[str, Any]) -> list[Figure]:
+    """The figures declared for the case; when there is none, those offered for the series it recorded."""
+    declared = [figure for figure in DECLARED if fnmatchcase(case_id, figure.cases)]
+    return declared or [figure for figure in OFFERED if figure.available(data)]

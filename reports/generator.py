@@ -9,7 +9,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import figures
+from reports import drawing, figures
 from reports.results import Case, by, by_subject, check, worst
 
 
@@ -34,7 +34,7 @@ def render(results: object) -> str:
         judgement=judgement,
         facts=facts,
         rerun=rerun,
-        pictures={case["id"]: picture(case) for case in cases},
+        pictures=pictures,
     )
 
 
@@ -90,15 +90,12 @@ def rerun(case: Case) -> str:
     return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"
 
 
-def picture(case: Case) -> Mapping[str, Any] | None:
-    """The case's figure as a data address with its caption; `address` is None where its data are missing.
-
-    None for a case that declares no figure.
-    """
-    declared = figures.declared_for(case["id"])
-    if declared is None:
-        return None
-    svg = figures.svg(declared, case["data"])
-    encoded = None if svg is None else base64.b64encode(svg.encode()).decode()
-    address = None if encoded is None else f"data:image/svg+xml;base64,{encoded}"
-    return {"caption": declared.caption, "address": address}
+def pictures(case: Case) -> list[Mapping[str, Any]]:
+    """The case's figures as data addresses with captions; an `address` is None where the data are missing."""
+    found: list[Mapping[str, Any]] = []
+    for figure in figures.figures_of(case["id"], case["data"]):
+        svg = drawing.svg(figure, case["data"])
+        encoded = None if svg is None else base64.b64encode(svg.encode()).decode()
+        address = None if encoded is None else f"data:image/svg+xml;base64,{encoded}"
+        found.append({"caption": figure.caption, "address": address})
+    return found

@@ -11,8 +11,6 @@ from matplotlib.figure import Figure as Canvas
 
 from reports.drawing import INK, Draw, Figure, dots, lines, maps, order, svg
 
-H = [0.4, 0.2, 0.1]
-
 
 def drawn(draw: Draw, data: dict[str, Any]) -> Canvas:
     canvas = Canvas()
@@ -21,8 +19,8 @@ def drawn(draw: Draw, data: dict[str, Any]) -> Canvas:
 
 
 def test_an_order_figure_states_the_fitted_order() -> None:
-    draw = order("h", {"e": "peak"}, xlabel="h", ylabel="error", slopes=(2.0,))
-    axes = drawn(draw, {"h": H, "e": [3 * h**1.5 for h in H]}).axes[0]
+    draw = order({"e": "peak"}, expected=(2.0,))
+    axes = drawn(draw, {"M": [32, 64, 128], "e": [3 * M**-1.5 for M in (32, 64, 128)]}).axes[0]
     legend = axes.get_legend()
     assert legend is not None
     assert [t.get_text() for t in legend.get_texts()] == ["peak, order 1.50", "order 2"]
@@ -30,7 +28,7 @@ def test_an_order_figure_states_the_fitted_order() -> None:
 
 
 def test_lines_hold_the_series() -> None:
-    axes = drawn(lines("x", {"p": "pressure", "hertz": "Hertz"}, xlabel="x (mm)", ylabel="MPa"),
+    axes = drawn(lines("x", {"p": "pressure"}, exact={"hertz": "Hertz"}, xlabel="x (mm)", ylabel="MPa"),
                  {"x": [0, 1], "p": [1, None], "hertz": [1, 2]}).axes[0]  # fmt: skip
     np.testing.assert_array_equal(axes.lines[1].get_ydata(), [1, 2])
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), [1, np.nan])

@@ -97,6 +97,12 @@ def test_a_figure_without_data_is_not_available(data: dict[str, object]) -> None
     assert "Figure not available" in page.text
 
 
+def test_a_new_case_gets_a_figure_by_the_names_of_its_series() -> None:
+    page = Page(render(results(case("new/1", data={"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}))))
+    assert len(page.images) == 1
+    assert Page(render(results(case("new/1", data={"M": [32], "other": [1.0]})))).images == []
+
+
 def test_unjudged_numbers_are_not_zero() -> None:
     page = Page(render(results(case("a/1", "error", note="RuntimeError: broken", **UNJUDGED))))
     assert "not judged" in page.text
