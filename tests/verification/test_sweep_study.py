@@ -1,0 +1,154 @@
+"""Study files: what they expand to, what identifies a run, and what is refused before any work."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.errors import InputError
+from refimpl.scene_file import scene_from_dict
+from verification.sweep import study as study_module
+from verification.sweep.run import COORDINATES, OUTCOMES, execute
+from verification.sweep.study import Study, read_study, shipped_studies, study_from_dict
+
+BASE: dict[str, Any] = {"scene": "table1-rough", "realisations": 2, "vary": {"grid": [16]}}
+
+
+def varied(**axes: list[float]) -> Study:
+    return study_from_dict(BASE | {"vary": {"grid": [16], **axes}})
+
+
+def test_every_combination_once() -> None:
+    study = varied(load=[14, 70.0], lower_rms=[0.0, 1e-6, 2e-6])
+    runs = list(study.runs())
+    assert len(runs) == len(study) == 2 * 2 * 3
+    assert len({run.key for run in runs}) == len(runs)
+    points = {(r.coordinates["realisation"], r.coordinates["load"], r.coordinates["lower_rms"]) for r in runs}
+    assert points == {(k, P, s) for k in (0, 1) for P in (14.0, 70.0) for s in (0.0, 1e-6, 2e-6)}
+
+
+def test_realisations_differ_in_their_seeds_only_and_keep_them_over_the_axes() -> None:
+    runs = list(varied(lower_rms=[1e-6, 2e-6]).runs())
+    seeds = [[part.get("seed") for part in run.inputs["scene"]["lower"]["surface"]] for run in runs]
+    assert seeds == [[2], [2], [4], [4]]
+    assert runs[0].inputs["scene"]["upper"]["surface"][-1]["seed"] == 1
+
+
+def test_no_roughness_leaves_the_shape() -> None:
+    (run,) = study_from_dict(
+        BASE | {"realisations": 1, "vary": {"grid": [8], "upper_rms": [0], "lower_rms": [0]}}
+    ).runs()
+    assert [part["kind"] for part in run.inputs["scene"]["upper"]["surface"]] == ["sphere"]
+    assert run.inputs["scene"]["lower"]["surface"] == [{"kind": "flat"}]
+    assert run.coordinates["correlation_length"] is None
+
+
+def test_a_run_is_what_solve_gives_for_its_scene() -> None:
+    (run,) = study_from_dict(
+        BASE | {"realisations": 1, "normalise": True, "vary": {"grid": [32], "sliding_direction": [0.7]}}
+    ).runs()
+    row, seconds = execute(run.inputs)
+    direct = rf.solve(scene_from_dict(run.inputs["scene"], Path()), grid=32)
+    assert seconds > 0
+    assert set(row) == set(OUTCOMES)
+    for name in ("friction_coefficient", "contact_area", "max_pressure", "binormal_force", "approach"):
+        assert row[name] == getattr(direct, name)
+    local = direct.traction * direct.slopes.cos_x * direct.slopes.cos_y
+    assert row["elastic_friction"] == pytest.approx(
+        direct.friction_force - float(np.sum(local)) * direct.grid.element_area, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize(
+    "change", [{"grid": [24]}, {"load": [69.0]}, {"beta": [0.0]}, {"sliding_offset": [1e-6]}]
+)
+def test_every_input_changes_the_key(change: dict[str, list[float]]) -> None:
+    (first, *_), (other, *_) = (
+        varied().runs(),
+        study_from_dict(BASE | {"vary": {"grid": [16]} | change}).runs(),
+    )
+    assert first.key != other.key
+
+
+def test_the_code_is_an_input(monkeypatch: pytest.MonkeyPatch) -> None:
+    (before, *_) = varied().runs()
+    monkeypatch.setattr(study_module, "code_digest", lambda: "another version")
+    (after, *_) = varied().runs()
+    assert before.key != after.key
+    with pytest.raises(RuntimeError, match="differs"):
+        execute(after.inputs)
+
+
+def test_a_whole_number_and_its_float_are_one_run() -> None:
+    assert [r.key for r in varied(load=[14]).runs()] == [r.key for r in varied(load=[14.0]).runs()]
+
+
+def test_a_measured_surface_counts_by_its_content(tmp_path: Path) -> None:
+    file = tmp_path / "heights.npy"
+    scene = tmp_path / "scene.toml"
+    surface = 'kind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 1e-6'
+    scene.write_text(
+        "load = 1e-3\nside = 8e-6\n[upper.material]\nE = 1e9\nnu = 0.3\n[upper.surface]\nkind='sphere'\nradius=1e-4\n"
+        f"[lower.material]\nE = 1e9\nnu = 0.3\n[lower.surface]\n{surface}\n"
+    )
+    keys = []
+    for scale in (1e-9, 2e-9):
+        np.save(file, scale * np.random.default_rng(1).standard_normal((16, 16)))
+        (run,) = study_from_dict({"scene": "scene.toml", "vary": {"grid": [8]}}, tmp_path).runs()
+        assert execute(run.inputs)[0]["contact_area"] > 0
+        keys.append(run.key)
+    assert keys[0] != keys[1]
+
+
+@pytest.mark.parametrize("name", shipped_studies())
+def test_shipped_studies_are_good(name: str) -> None:
+    assert tuple(next(iter(read_study(name).runs())).coordinates) == COORDINATES
+
+
+REFUSED: list[tuple[str, dict[str, Any]]] = [
+    ("study.colour", {"colour": 1}),
+    ("scene", {"scene": None}),
+    ("scene", {"scene": "nowhere.toml"}),
+    ("realisations", {"realisations": 0}),
+    ("realisations", {"realisations": True}),
+    ("first_seed", {"first_seed": -1}),
+    ("first_seed", {"first_seed": 2**63 - 2}),
+    ("normalise", {"normalise": 1}),
+    ("vary", {"vary": [1]}),
+    ("vary.grid", {"vary": {}}),
+    ("vary.grid", {"vary": {"grid": [16.5]}}),
+    ("vary.grid", {"vary": {"grid": [16, 16]}}),
+    ("vary.grid", {"vary": {"grid": 16}}),
+    ("vary.colour", {"vary": {"grid": [16], "colour": [1]}}),
+    ("load", {"vary": {"grid": [16], "load": [-1]}}),
+    ("vary.load", {"vary": {"grid": [16], "load": [float("nan")]}}),
+    ("vary.lower_rms", {"scene": "table1-smooth", "vary": {"grid": [16], "lower_rms": [1e-6]}}),
+    ("rms", {"vary": {"grid": [16], "lower_rms": [-1e-6]}}),
+    ("solve.speed", {"solve": {"speed": 1}}),
+    ("vary", {"realisations": 10**6, "vary": {"grid": [16], "load": [1, 2]}}),
+]
+
+
+@pytest.mark.parametrize(("field", "change"), REFUSED)
+def test_bad_studies_are_refused_by_name(field: str, change: dict[str, Any]) -> None:
+    with pytest.raises(InputError) as refused:
+        study_from_dict(BASE | change)
+    assert refused.value.field == field
+
+
+def test_files_that_are_no_study(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.toml"
+    bad.write_text("= 1")
+    for path in (bad, tmp_path / "none.toml", "no-such-study"):
+        with pytest.raises(InputError, match="study"):
+            read_study(path)
+
+
+def test_studies_are_frozen() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        varied().realisations = 3  # type: ignore[misc]  # the point of the test

@@ -1,0 +1,143 @@
+"""`rough-friction sweep`: the runs of a study, kept in a store, resumable, and exported as a table."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from verification.cli.output import Parsers, add_json, columns, emit, output_file
+
+if TYPE_CHECKING:
+    from verification.sweep.engine import Progress, Sweep
+
+EPILOG = """examples:
+  rough-friction sweep table3 --store table3.sqlite --workers 4 --csv table3.csv
+  rough-friction sweep study.toml --parquet study.parquet
+  rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
+
+A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on where it
+was; runs that the store has are not done again. Exit status 1 when a run failed; its message is shown.
+
+  scene = "table1-rough"      # a shipped scene, or a scene file relative to this file
+  realisations = 75           # of every Gaussian roughness; seeds from first_seed (default 1)
+  normalise = true            # scale each realisation to its rms (default: as the scene says)
+  [vary]                      # any of: grid load upper_rms lower_rms correlation_length
+  grid = [128, 256]           #         sliding_direction sliding_offset tau beta (SI, rad); grid is needed
+  lower_rms = [0.504e-6, 1.68e-6]
+  [solve]                     # optional: method, oblique, slope_correction, tolerance
+"""
+
+
+def add_parser(commands: Parsers) -> None:
+    """Declare the subcommand."""
+    parser = commands.add_parser(
+        "sweep",
+        help="solve the runs of a study: realisations x roughness x load x direction x grid",
+        description="Solve the runs of a study in worker processes, resumably, and export the table.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add = parser.add_argument
+    add("study", metavar="STUDY", help="a study's TOML file, or the name of a shipped study")
+    add("--store", metavar="FILE.sqlite", type=output_file, help="default: the study's name, .sqlite, here")
+    add("--workers", metavar="N", type=int, default=2, help="worker processes (default 2)")
+    add("--scheduler", metavar="ADDRESS", help="use the workers of this dask.distributed scheduler instead")
+    add("--csv", metavar="FILE", type=output_file, help="export the study's rows as CSV")
+    add("--parquet", metavar="FILE", type=output_file, help="export the study's rows as Parquet")
+    add_json(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run what is missing and export; status 1 when a run failed or a worker was lost."""
+    from refimpl.errors import InputError
+    from verification.sweep import engine, export
+    from verification.sweep.study import read_study
+
+    if options.workers < 1:
+        raise InputError("--workers", options.workers, "at least one worker process")
+    if options.parquet is not None:
+        export.require_parquet(options.parquet)
+    store = options.store or Path(Path(options.study).stem + ".sqlite")
+    line = _Line()
+    try:
+        done = engine.sweep(
+            read_study(options.study),
+            store,
+            workers=options.workers,
+            scheduler=options.scheduler,
+            tick=line.show,
+        )
+    except engine.WorkersLost as lost:
+        print(f"rough-friction sweep: {lost}", file=sys.stderr)
+        return 1
+    finally:
+        line.close()
+    if options.csv is not None:
+        export.write_csv(done.rows, options.csv)
+    if options.parquet is not None:
+        export.write_parquet(done.rows, options.parquet)
+    emit(_document(done, store), options.json, _table(done, store))
+    return 1 if done.failures else 0
+
+
+def _document(done: Sweep, store: Path) -> dict[str, object]:
+    from verification.cli.solve import plain
+    from verification.provenance import provenance
+
+    return {
+        "store": str(store),
+        "found": done.found,
+        "finished": done.finished,
+        "failures": done.failures,
+        "seconds": round(done.seconds, 3),
+        "rows": plain(done.rows),
+        "provenance": provenance(),
+    }
+
+
+def _table(done: Sweep, store: Path) -> str:
+    rows = [
+        ["found in the store", str(done.found)],
+        ["finished now", str(done.finished)],
+        ["failed", str(len(done.failures))],
+    ]
+    messages = sorted(set(done.failures.values()))
+    parts = [f"{store}, {done.seconds:.0f} s", columns(rows), *(f"failed: {text}" for text in messages)]
+    return "\n\n".join(parts)
+
+
+class _Line:
+    """One progress line on stderr, rewritten; nothing at all when stderr is no terminal."""
+
+    def __init__(self) -> None:
+        self._shown = sys.stderr.isatty()
+
+    def show(self, progress: Progress) -> None:
+        """Rewrite the line."""
+        if self._shown:
+            failed = f", {progress.failed} failed" if progress.failed else ""
+            text = f"[{progress.done}/{progress.total}]{failed} {time_left(progress.seconds_left)}"
+            sys.stderr.write(f"\r\x1b[K{text}")
+            sys.stderr.flush()
+
+    def close(self) -> None:
+        """Clear the line."""
+        if self._shown:
+            sys.stderr.write("\r\x1b[K")
+
+
+def time_left(seconds: float | None) -> str:
+    """The time left in words.
+
+    >>> time_left(None), time_left(59.4), time_left(3725)
+    ('', '59 s left', '1 h 02 min left')
+    """
+    if seconds is None:
+        return ""
+    if seconds < 90:
+        return f"{seconds:.0f} s left"
+    hours, minutes = divmod(round(seconds / 60), 60)
+    return f"{hours} h {minutes:02d} min left" if hours else f"{minutes} min left"

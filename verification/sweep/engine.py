@@ -1,0 +1,206 @@
+"""Runs what a store lacks of a study: in this process, in worker processes, or on a dask cluster.
+
+Only the process that called `sweep` writes. A run's numbers depend on its inputs alone (one BLAS and FFT
+thread everywhere), so how many workers there are, and how often they were killed, changes no result.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import multiprocessing.connection
+import os
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from refimpl.errors import InputError
+from verification.sweep.run import Row, Run, execute
+from verification.sweep.store import open_store
+from verification.sweep.study import Study
+from verification.workers import BLAS_THREADS
+
+PER_WORKER = 2  # runs submitted per worker: one at work, one waiting
+CONNECT_SECONDS = 10.0  # for a scheduler to answer
+
+
+@dataclass(frozen=True)
+class Progress:
+    """State of a sweep for its progress line; ``seconds_left`` is None until a run is finished."""
+
+    done: int
+    total: int
+    failed: int
+    seconds_left: float | None
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What a sweep did: runs found in the store, finished now, and failed (key to message).
+
+    ``rows`` are those of the study in its order; all of them exactly when nothing failed.
+    """
+
+    found: int
+    finished: int
+    failures: dict[str, str]
+    rows: list[Row]
+    seconds: float
+
+
+class WorkersLost(RuntimeError):
+    """A worker process died; what was finished is kept, and the same sweep goes on from there."""
+
+
+def sweep(
+    study: Study,
+    store: Path,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    tick: Callable[[Progress], None] = lambda _: None,
+) -> Sweep:
+    """Run the study's missing runs and keep each as it finishes.
+
+    ``workers`` processes, or with 0 this process itself, which then should have one BLAS thread;
+    ``scheduler`` is the address of a dask.distributed cluster to use instead. A run that raises is reported
+    in ``failures``, is not kept, and is tried again by the next sweep. Raises InputError for a store that
+    another sweep is using or a scheduler that cannot serve, WorkersLost when a worker process was killed.
+    """
+    started = time.perf_counter()
+    runs = list(study.runs())
+    with ExitStack() as stack:
+        kept = stack.enter_context(open_store(store))
+        present = kept.keys()
+        missing = [run for run in runs if run.key not in present]
+        meter = _Meter(len(runs), missing, tick)
+        failures: dict[str, str] = {}
+        if missing:
+            for run, done in _executed(stack, missing, workers, scheduler):
+                failure = done.exception()
+                if isinstance(failure, BrokenProcessPool):
+                    raise WorkersLost("a worker process died; run the same sweep again to go on")
+                if failure is None:
+                    kept.add(run, *done.result())
+                else:
+                    failures[run.key] = f"{type(failure).__name__}: {failure}"
+                meter.count(run, failed=failure is not None)
+        rows = list(kept.rows(runs))
+    found = len(runs) - len(missing)
+    return Sweep(found, len(missing) - len(failures), failures, rows, time.perf_counter() - started)
+
+
+Done = Iterator[tuple[Run, "Future[tuple[Row, float]]"]]
+
+
+def _executed(stack: ExitStack, runs: list[Run], workers: int, scheduler: str | None) -> Done:
+    if scheduler is not None:
+        executor, size = stack.enter_context(_cluster(scheduler))
+        return _through(executor, runs, PER_WORKER * size)
+    if workers == 0:
+        here = stack.enter_context(ThreadPoolExecutor(1))
+        return _through(here, runs, depth=1)
+    executor = stack.enter_context(_processes(workers))
+    return _through(executor, runs, PER_WORKER * workers)
+
+
+def _through(executor: Executor, runs: Iterable[Run], depth: int) -> Done:
+    """Runs as they finish, at most ``depth`` submitted at a time."""
+    waiting: dict[Future[tuple[Row, float]], Run] = {}
+    queue = iter(runs)
+    exhausted = False
+    while waiting or not exhausted:
+        while not exhausted and len(waiting) < depth:
+            run = next(queue, None)
+            if run is None:
+                exhausted = True
+            else:
+                waiting[executor.submit(execute, run.inputs)] = run
+        finished, _ = wait(waiting, return_when=FIRST_COMPLETED)
+        for future in finished:
+            yield waiting.pop(future), future
+
+
+@contextmanager
+def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Fresh interpreters ('spawn') with one BLAS thread each, that end when this process does."""
+    before = {name: os.environ.get(name) for name in BLAS_THREADS}
+    os.environ.update(dict.fromkeys(BLAS_THREADS, "1"))
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
+    try:
+        yield executor
+    finally:
+        executor.shutdown(cancel_futures=True)
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _end_with_parent() -> None:
+    """In a worker: leave when the parent is gone. A killed parent cannot tell its workers to stop."""
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+    sentinel = parent.sentinel
+
+    def watch() -> None:
+        multiprocessing.connection.wait([sentinel])
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
+    """The workers of a running dask.distributed scheduler as an executor, and their number."""
+    try:
+        import distributed
+
+        connect: Any = distributed.Client  # untyped
+    except ModuleNotFoundError as missing:
+        allowed = "dask.distributed installed: pip install 'rough-friction[cluster]'"
+        raise InputError("--scheduler", address, allowed) from missing
+    try:
+        client = connect(address, timeout=CONNECT_SECONDS)
+    except (OSError, ValueError) as unreachable:
+        raise InputError("--scheduler", address, f"a scheduler's address ({unreachable})") from unreachable
+    with client:
+        threads = client.nthreads()
+        if not threads or set(threads.values()) != {1}:
+            found = f"{address} with workers of {sorted(threads.values())} threads"
+            raise InputError("--scheduler", found, "workers of one thread each (dask worker --nthreads 1)")
+        yield client.get_executor(pure=False), len(threads)
+
+
+class _Meter:
+    """Counts finished runs and estimates the time left from the work done so far."""
+
+    def __init__(self, total: int, missing: list[Run], tick: Callable[[Progress], None]) -> None:
+        self._total, self._done, self._failed = total, total - len(missing), 0
+        self._left, self._worked = sum(run.weight for run in missing), 0.0
+        self._started, self._tick = time.perf_counter(), tick
+        tick(Progress(self._done, total, 0, None))
+
+    def count(self, run: Run, *, failed: bool) -> None:
+        """One run is finished."""
+        self._done += not failed
+        self._failed += failed
+        self._worked += run.weight
+        self._left -= run.weight
+        seconds = (time.perf_counter() - self._started) * self._left / self._worked
+        self._tick(Progress(self._done, self._total, self._failed, max(seconds, 0.0)))

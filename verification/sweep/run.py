@@ -1,0 +1,119 @@
+"""One run of a sweep: its inputs, their key, and the row of numbers that its solve gives."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.scene_file import scene_from_dict
+
+COORDINATES = (
+    "realisation", "grid", "load", "upper_rms", "lower_rms", "correlation_length",
+    "sliding_direction", "sliding_offset", "tau", "beta",
+)  # fmt: skip
+"""What tells the runs of one study apart; SI units and rad, None where a scene has no such thing."""
+
+OUTCOMES = (
+    "status", "friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure",
+    "approach", "normal_force", "friction_force", "elastic_friction", "binormal_force", "residual",
+    "friction_coefficient_cycle", "contact_area_cycle", "border_elements",
+)  # fmt: skip
+"""What a run gives. ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
+that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` how far a settled cycle of
+tau's support reached; ``border_elements`` the elements in contact on the domain's border.
+"""
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One solve: ``coordinates`` for people, ``inputs`` for the machine.
+
+    ``inputs`` is a JSON table: the whole scene, grid and solver settings, and digests of the code and of the
+    measured files that it reads. So a changed program or file is another run.
+    """
+
+    coordinates: Mapping[str, float | int | None]
+    inputs: Mapping[str, Any]
+
+    @cached_property
+    def canonical(self) -> str:
+        """The inputs as JSON text, the same for equal inputs (floats by their shortest exact form)."""
+        return json.dumps(self.inputs, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+    @cached_property
+    def key(self) -> str:
+        """128 bits of the SHA-256 of the inputs, in hexadecimal."""
+        return hashlib.sha256(self.canonical.encode()).hexdigest()[:32]
+
+    @property
+    def weight(self) -> float:
+        """Expected work relative to other runs, for the time left: elements times their logarithm."""
+        M = int(self.inputs["grid"])
+        return float(M * M * np.log2(M))
+
+
+@cache
+def code_digest() -> str:
+    """Digest of every source file of `refimpl` in this process's installation."""
+    root = Path(rf.__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def file_digest(path: Path) -> str:
+    """Digest of a measured surface's file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
+    """Solve one run; the row of `OUTCOMES`, and the seconds it took.
+
+    Runs anywhere: in this process, a worker, or on a cluster. Raises RuntimeError where another version of
+    the code is installed than the one that the inputs name, and what `refimpl.solve` raises.
+    """
+    if inputs["code"] != code_digest():
+        raise RuntimeError("this worker's refimpl differs from the one that planned the sweep")
+    started = time.perf_counter()
+    settings = inputs["solve"]
+    solution = rf.solve(scene_from_dict(inputs["scene"], Path()), inputs["grid"], **settings)
+    return outcome(solution), time.perf_counter() - started
+
+
+def outcome(solution: rf.Solution) -> Row:
+    """The row of a solution."""
+    slopes, contact = solution.slopes, solution.contact
+    elastic = float(np.sum(solution.pressure * slopes.sin_x * slopes.cos_y)) * solution.grid.element_area
+    spread = solution.uncertainty
+
+    def cycle(name: str) -> float:
+        return float(spread.get(name, {}).get("tau support", 0.0))
+
+    return {
+        "status": solution.status.value,
+        "friction_coefficient": solution.friction_coefficient,
+        "contact_area": solution.contact_area,
+        "contact_area_corrected": solution.contact_area_corrected,
+        "max_pressure": solution.max_pressure,
+        "approach": solution.approach,
+        "normal_force": solution.normal_force,
+        "friction_force": solution.friction_force,
+        "elastic_friction": elastic,
+        "binormal_force": solution.binormal_force,
+        "residual": solution.certificate.worst,
+        "friction_coefficient_cycle": cycle("friction_coefficient"),
+        "contact_area_cycle": cycle("contact_area"),
+        "border_elements": int(contact.sum() - contact[1:-1, 1:-1].sum()),
+    }
