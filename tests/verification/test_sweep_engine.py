@@ -17,7 +17,6 @@ from refimpl.errors import InputError
 from verification.cli import main
 from verification.sweep import engine
 from verification.sweep.export import to_csv
-from verification.sweep.run import Run
 from verification.sweep.store import open_store
 from verification.sweep.study import Study, study_from_dict
 
@@ -117,7 +116,7 @@ def test_a_file_whose_creation_was_killed_is_new(tmp_path: Path) -> None:
     assert engine.sweep(small(1, (12,)), tmp_path / "s.sqlite", workers=0).finished == 1
 
 
-# Forks from an interpreter with everything imported, so that a kill hits the sweep and not the start of Python.
+# Forks an interpreter that has everything imported, so that kills hit the sweep and not the start of Python.
 KILLER = """
 import os, random, signal, sys, time
 from pathlib import Path

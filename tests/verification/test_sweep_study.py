@@ -93,7 +93,8 @@ def test_a_measured_surface_counts_by_its_content(tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     surface = 'kind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 1e-6'
     scene.write_text(
-        "load = 1e-3\nside = 8e-6\n[upper.material]\nE = 1e9\nnu = 0.3\n[upper.surface]\nkind='sphere'\nradius=1e-4\n"
+        "load = 1e-3\nside = 8e-6\n[upper.material]\nE = 1e9\nnu = 0.3\n"
+        "[upper.surface]\nkind='sphere'\nradius=1e-4\n"
         f"[lower.material]\nE = 1e9\nnu = 0.3\n[lower.surface]\n{surface}\n"
     )
     keys = []
