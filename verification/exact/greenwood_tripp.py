@@ -170,7 +170,7 @@ def solve(sphere: RoughSphere, panels: int = 24) -> EffectivePressure:
 
 
 def _first_guess(sphere: RoughSphere, r: Array) -> Array:
-    """Separation over sigma at the nodes, and d0: summits that carry Hertz' pressure, Hertz' gap beyond it."""
+    """Separation over sigma at the nodes, and d0: summits under Hertz' pressure, Hertz' gap beyond it."""
     smooth = sphere.smooth
     table = np.linspace(10, -40, 2001)
     log_F = np.log(overlap_integral(table, 1.5))

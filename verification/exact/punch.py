@@ -4,8 +4,8 @@ Circle: Boussinesq 1885; Johnson 1985, section 3.8. Square: the punch is the ele
 potential of p equal to pi E* delta on the plate, P = pi C E* (side) delta, where C is the capacitance of the
 unit square over 4 pi eps0. Published: 0.3667874 (Read 1997, J. Comput. Phys. 133, 1; as quoted by Hwang and
 Mascagni 2004, J. Appl. Phys. 95, 3798), so P = 1.1523 E* side delta. Our graded meshes extrapolate to
-0.3667880 with gradings 3 and 4 alike (0.36678805, 0.36678802), and the lower bound reaches 0.3667875 at n = 48,
-which the published last digit misses.
+0.3667880 with gradings 3 and 4 alike (0.36678805, 0.36678802), and the lower bound reaches 0.3667875 at n =
+48, which the published last digit misses.
 
 Orders to expect from square elements of edge h. Square punch: p ~ d^(-1/2) at an edge, so a row of elements
 along it misplaces a share h of the load: order 1 in the stiffness; the corner, p ~ r^(-0.7034) (Morrison and

@@ -4,8 +4,8 @@
 Two theories bracket, and simulations fill, the range:
 - Bush, Gibson and Thomas 1975 (Wear 35, 87): kappa = sqrt(2 pi) = 2.507, the limit of vanishing area.
 - Persson 2001 (J. Chem. Phys. 115, 3840): A/A0 = erf(sqrt(2) p/(E* h')), so kappa = sqrt(8/pi) = 1.596.
-- Simulations (Hyun, Pei, Molinari and Robbins 2004; Campana and Mueser 2007; Putignano, Afferrante, Carbone and
-  Demelio 2012; Prodanov, Dapp and Mueser 2014) lie between, from about 2 upwards; Yastrebov, Anciaux and
+- Simulations (Hyun, Pei, Molinari and Robbins 2004; Campana and Mueser 2007; Putignano, Afferrante, Carbone
+  and Demelio 2012; Prodanov, Dapp and Mueser 2014) lie between, from about 2 upwards; Yastrebov, Anciaux and
   Molinari 2017 find the slope to fall with Nayak's parameter and with the area itself, and coarse grids to
   count too much. The range discussed as a whole is 2.0 to 2.6.
 """

@@ -1,0 +1,71 @@
+"""Scenes for the reference cases: a gap between two half-spaces of given moduli, pressed by the solver under
+test.
+
+Holds no case. The gap is the upper body's surface and the lower one is flat; without friction both are of one
+material, so that nothing couples; with friction the upper body is (nearly) rigid and the lower one soft.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+import refimpl as rf
+from verification.exact.sliding_plane import dundurs
+
+Array = NDArray[np.float64]
+Gap = Callable[[Array, Array], Array]
+
+SOFT = (1e9, 0.2)
+"""E (Pa) and nu of the lower body where friction couples: Dundurs' constant 0.375 against a rigid body."""
+RIGID = (1e21, 0.2)
+MODULUS, COUPLING = dundurs(lower=SOFT, upper=RIGID)
+"""E* (Pa) and d of the pair."""
+
+
+def centres(side: float, M: int) -> tuple[Array, Array]:
+    """Element centres from the middle of the square: x ``(M, 1)`` and y ``(1, M)`` (m)."""
+    x = (np.arange(M) + 0.5) / M * side - side / 2
+    return x[:, None], x[None, :]
+
+
+def press(
+    gap: Gap,
+    side: float,
+    M: int,
+    *,
+    load: float = 1.0,
+    approach: float | None = None,
+    friction: rf.Friction | None = None,
+    direction: float = 0.0,
+    periodic: bool = False,
+    accept: Sequence[rf.Status] = (rf.Status.CONVERGED,),
+) -> rf.Solution:
+    """Solve the gap (m) of ``(x, y)`` (m, from the middle) on ``M x M`` elements; slope terms are off
+    throughout.
+
+    Without ``friction`` the two bodies share the reduced modulus `MODULUS` evenly. Raises RuntimeError for
+    a status that is not in ``accept``: a reference is compared with certified states only.
+    """
+    surface = gap(*centres(side, M)) * np.ones((M, M))
+    upper, lower = (RIGID, SOFT) if friction else ((2 * MODULUS, 0.0),) * 2
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(*upper), surface),
+        lower=rf.Body(rf.Material(*lower), rf.Flat()),
+        friction=friction or rf.Friction(),
+        load=load,
+        side=side,
+        sliding_direction=direction,
+        periodic=periodic,
+    )
+    solution = rf.solve(scene, grid=M, oblique=False, approach=approach)
+    if solution.status not in accept:
+        raise RuntimeError(f"the solver ended {solution.status.value} on {M} x {M} elements")
+    return solution
+
+
+def first_touch_approach(solution: rf.Solution, gap: Array) -> float:
+    """A periodic solution's approach counted from first touch (m); the solver counts from the mean planes."""
+    return solution.approach + float(np.mean(gap) - np.min(gap))

@@ -1,0 +1,208 @@
+"""Smooth indenters: Hertz' ellipse, Sneddon's cone, power laws, the rectangular patch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.operators.fft import FFTInfluence
+from verification.case import Measured
+from verification.cases.reference_scenes import MODULUS, Array, centres, press
+from verification.exact.hertz import UNCERTAINTY as HERTZ_UNCERTAINTY
+from verification.exact.hertz import Ellipse
+from verification.exact.patch import UNCERTAINTY as PATCH_UNCERTAINTY
+from verification.exact.patch import Patch
+from verification.exact.power_law import Cone, PowerLaw
+from verification.rates import fit_order
+from verification.registry import case
+
+ELLIPSE = Ellipse(load=1.0, curvature_x=2.0, curvature_y=6.0, modulus=MODULUS)
+CONE = Cone(load=1.0, slope=0.05, modulus=MODULUS)
+GRIDS = (48, 64, 80, 96, 128, 160, 192)
+
+
+def ellipsoid(x: Array, y: Array) -> Array:
+    """Gap of `ELLIPSE` (m)."""
+    return ELLIPSE.curvature_x / 2 * x**2 + ELLIPSE.curvature_y / 2 * y**2
+
+
+def cone(x: Array, y: Array) -> Array:
+    """Gap of `CONE` (m)."""
+    return CONE.slope * np.hypot(x, y)
+
+
+def press_ellipse(M: int) -> tuple[rf.Solution, Array, Array]:
+    """Solution and element centres (m); the square is 2.4 semi-axes wide along the longer one."""
+    side = 2.4 * ELLIPSE.semi_axes[0]
+    return press(ellipsoid, side, M), *centres(side, M)
+
+
+def relative_l2(found: Array, exact: Array) -> float:
+    """Euclidean norm of the difference over that of the exact array."""
+    return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
+
+
+@case(
+    "reference/hertz-ellipse-peak",
+    title="Elliptical Hertz contact: peak pressure",
+    claim="A paraboloid of curvature ratio 3 has its Hertz peak pressure; swapped axes would not change it",
+    source="Johnson 1985, section 4.2; Carlson's R_D for K and E",
+    metric="relative",
+    tolerance=5e-4,
+    tolerance_reason="order 2 with 4 h^2/a^2: 3.3e-4 measured at M = 96; 50 % on top",
+    tags=("reference", "hertz"),
+)
+def ellipse_peak() -> Measured:
+    solution, x, _ = press_ellipse(96)
+    along = solution.pressure[:, 48] / ELLIPSE.peak_pressure
+    data = {"x/a": x[:, 0] / ELLIPSE.semi_axes[0], "p/p0": along}
+    peak = ELLIPSE.peak_pressure
+    return Measured(solution.max_pressure, peak, peak * HERTZ_UNCERTAINTY, "Pa", data)
+
+
+@case(
+    "reference/hertz-ellipse-pressure",
+    title="Elliptical Hertz contact: pressure element by element",
+    claim="The long semi-axis lies along x, where the curvature is smaller; axes exchanged would miss by 60 "
+    "%",
+    source="Johnson 1985, section 4.2",
+    metric="at_most",
+    tolerance=0.01,
+    tolerance_reason="an edge element errs by sqrt(h), so the norm by h: 6.3e-3 measured at M = 96",
+    tags=("reference", "hertz", "axes"),
+)
+def ellipse_pressure() -> Measured:
+    solution, x, y = press_ellipse(96)
+    return Measured(relative_l2(solution.pressure, ELLIPSE.pressure(x, y)))
+
+
+@case(
+    "reference/hertz-ellipse-approach-order",
+    title="Elliptical Hertz contact: order of the approach",
+    claim="The approach converges with order 2 although the pressure's edge is a square root",
+    source="Johnson 1985, section 4.2",
+    metric="absolute",
+    tolerance=0.3,
+    tolerance_reason="an edge row misplaces h^(3/2) of load, of either sign, which averages to h^2 over the "
+    "outline; the outline's fit to the grid scatters the points by some 5 %",
+    tags=("reference", "hertz", "order"),
+)
+def ellipse_order() -> Measured:
+    errors = []
+    for M in GRIDS:
+        solution, x, y = press_ellipse(M)
+        tip = float(ellipsoid(x, y).min())  # the paraboloid's lowest point lies between element centres
+        errors.append(abs((solution.approach + tip) / ELLIPSE.approach - 1))
+    fit = fit_order([1 / M for M in GRIDS], errors)
+    return Measured(fit.order, 2.0, data={"M": list(GRIDS), "error": errors, "local": list(fit.local)})
+
+
+@case(
+    "reference/hertz-ellipse-outside",
+    title="Elliptical Hertz contact: separation of the surfaces outside",
+    claim="Outside the contact the deformed surfaces part as the potential of the Hertz pressure says",
+    source="Johnson 1985, Eq. (3.35); ellipsoidal potential from the confocal ellipse outwards",
+    metric="at_most",
+    tolerance=8e-4,
+    tolerance_reason="over the approach; 5.0e-4 measured at M = 96, at the elements beside the edge",
+    tags=("reference", "hertz"),
+)
+def ellipse_outside() -> Measured:
+    solution, x, y = press_ellipse(96)
+    exact = ellipsoid(x, y) + ELLIPSE.displacement(x, y) - ELLIPSE.approach
+    outside = ELLIPSE.pressure(x, y) == 0
+    misfit = np.abs(solution.separation - exact)[outside] / ELLIPSE.approach
+    return Measured(float(misfit.max()), data={"mean": float(misfit.mean())})
+
+
+def press_cone(M: int) -> tuple[rf.Solution, Array]:
+    """Solution and distance of the element centres from the axis (m)."""
+    side = 2.4 * CONE.contact_radius
+    x, y = centres(side, M)
+    return press(cone, side, M), np.hypot(x, y)
+
+
+@case(
+    "reference/cone-approach-order",
+    title="Cone: order of the approach",
+    claim="Counted from the tip, which lies between element centres, the approach converges with order 2; "
+    "counted from the lowest centre it would have order 1",
+    source="Sneddon 1965; Johnson 1985, section 5.2",
+    metric="absolute",
+    tolerance=0.3,
+    tolerance_reason="the tip's logarithmic peak and the edge's root misplace h^2 of load; the outline's fit "
+    "to the grid scatters the points",
+    tags=("reference", "cone", "order"),
+)
+def cone_order() -> Measured:
+    errors = []
+    for M in GRIDS:
+        solution, r = press_cone(M)
+        errors.append(abs((solution.approach + CONE.slope * float(r.min())) / CONE.approach - 1))
+    fit = fit_order([1 / M for M in GRIDS], errors)
+    return Measured(fit.order, 2.0, data={"M": list(GRIDS), "error": errors, "local": list(fit.local)})
+
+
+@case(
+    "reference/cone-pressure",
+    title="Cone: pressure element by element",
+    claim="The pressure is E* slope/2 arccosh(a/r), logarithmic at the tip",
+    source="Sneddon 1965; Johnson 1985, section 5.2",
+    metric="at_most",
+    tolerance=6e-3,
+    tolerance_reason="h (edge and tip alike): 3.9e-3 measured at M = 96",
+    tags=("reference", "cone"),
+)
+def cone_pressure() -> Measured:
+    solution, r = press_cone(96)
+    line = {"r/a": r[48:, 48] / CONE.contact_radius, "p/pm": solution.pressure[48:, 48] / CONE.mean_pressure}
+    return Measured(relative_l2(solution.pressure, CONE.pressure(r)), data=line)
+
+
+@case(
+    "reference/load-doubling",
+    title="Load doubling of power-law indenters",
+    claim="Twice the load multiplies the area of r, r^2, r^4 by 2^(2/(n+1)) = 2, 1.587, 1.320",
+    source="Galin 1961; Sneddon 1965; Archard 1957 for the meaning",
+    metric="at_most",
+    tolerance=0.01,
+    tolerance_reason="perimeter-corrected areas of 40 elements' radius scatter by some 0.3 % each",
+    tags=("reference", "archard"),
+)
+def load_doubling() -> Measured:
+    exponents, ratios, worst = (1.0, 2.0, 4.0), [], 0.0
+    for n in exponents:
+        indenter = PowerLaw(load=2.0, coefficient=0.05, exponent=n, modulus=MODULUS)
+        side = 2.4 * indenter.contact_radius
+
+        def gap(x: Array, y: Array, n: float = n) -> Array:
+            return 0.05 * np.hypot(x, y) ** n
+
+        single, double = (press(gap, side, 96, load=P).contact_area_corrected for P in (1.0, 2.0))
+        ratios.append(double / single)
+        worst = max(worst, abs(ratios[-1] / 2**indenter.area_exponent - 1))
+    return Measured(worst, data={"exponent": list(exponents), "area ratio": ratios})
+
+
+@case(
+    "reference/patch-displacement",
+    title="Uniform pressure on a rectangle: displacement inside and outside",
+    claim="The whole-grid convolution of a uniform block of elements is Love's displacement of the rectangle",
+    source="Love 1929; Johnson 1985, Eq. (3.25)",
+    metric="at_most",
+    tolerance=2e-13,
+    tolerance_reason="an FFT of 128^2 points loses 20 eps of its largest value; reference 1e-13. Measured "
+    "3e-15",
+    tags=("reference", "patch", "fft"),
+)
+def patch_displacement() -> Measured:
+    M, side = 48, 1.0
+    x, y = centres(side, M)
+    pressure = np.zeros((M, M))
+    pressure[8:32, 20:32] = 1.0
+    x0, y0 = float(x[8:32].mean()), float(y[:, 20:32].mean())
+    block = Patch(pressure=1.0, width=24 / M, height=12 / M, modulus=MODULUS)
+    found = FFTInfluence(rf.Grid(side, M), 0.0).normal(pressure) / (np.pi * MODULUS)
+    exact = block.displacement(x - x0, y - y0)
+    worst = float(np.max(np.abs(found - exact)) / exact.max())
+    return Measured(worst, reference_uncertainty=PATCH_UNCERTAINTY)
