@@ -49,7 +49,7 @@ class Run:
             "counts": self.counts,
             "seconds": round(self.seconds, 3),
             "cases": [asdict(r) for r in self.results],
-            "errata": errata(),
+            "errata": errata(self.tier),
             "provenance": provenance(),
         }
 
@@ -73,17 +73,26 @@ def run(
     return Run(tier, globs, tuple(results), time.perf_counter() - start)
 
 
-def errata() -> list[dict[str, object]]:
-    """Entries of the modules' `ERRATA` (dataclasses or mappings), where these modules exist."""
+def errata(tier: Tier) -> list[dict[str, object]]:
+    """Entries of the modules' `ERRATA` (dataclasses or mappings), where these modules exist.
+
+    A field that is a function measures evidence, which can take minutes: it is called in the full tier only.
+    """
     entries: list[dict[str, object]] = []
     for name in ERRATA_MODULES:
         if importlib.util.find_spec(name) is not None:
-            entries += [_fields(entry) for entry in importlib.import_module(name).ERRATA]
+            entries += [_fields(entry, tier) for entry in importlib.import_module(name).ERRATA]
     return entries
 
 
-def _fields(entry: object) -> dict[str, object]:
-    fields = asdict(entry) if is_dataclass(entry) and not isinstance(entry, type) else entry
+def _fields(entry: object, tier: Tier) -> dict[str, object]:
+    fields = vars(entry) if is_dataclass(entry) else entry
     if not isinstance(fields, Mapping):
         raise TypeError(f"an erratum is a dataclass or a mapping, not a {type(entry).__name__}")
-    return {str(key): jsonable(value) for key, value in fields.items()}
+    return {str(key): jsonable(_measured(value, tier)) for key, value in fields.items()}
+
+
+def _measured(value: object, tier: Tier) -> object:
+    if not callable(value):
+        return value
+    return value() if tier is Tier.FULL else "measured in the full tier"

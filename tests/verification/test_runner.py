@@ -137,7 +137,9 @@ def test_the_command_names_no_directory(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_errata_are_gathered_where_they_exist(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "sample_errata.py").write_text("ERRATA = ({'where': 'Eq. (0)', 'evidence': 0.5},)\n")
+    source = "ERRATA = ({'where': 'Eq. (0)', 'evidence': lambda: 0.5},)\n"
+    (tmp_path / "sample_errata.py").write_text(source)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(runner, "ERRATA_MODULES", ("sample_errata", "verification.surely_no_errata"))
-    assert runner.errata() == [{"where": "Eq. (0)", "evidence": 0.5}]
+    assert runner.errata(Tier.FULL) == [{"where": "Eq. (0)", "evidence": 0.5}]
+    assert runner.errata(Tier.QUICK) == [{"where": "Eq. (0)", "evidence": "measured in the full tier"}]
