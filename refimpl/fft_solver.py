@@ -8,7 +8,6 @@ while CG reduces the residual tenfold and are then brought up to date; their own
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,8 @@ from refimpl.contact.certificate import State, certify
 from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.friction import Mask, TauSupport, local_friction
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array
+from refimpl.nesting import foundation_pressure, levels, likely_contact, prolonged
 from refimpl.operators.base import Influence
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -28,8 +28,8 @@ from refimpl.problem import Problem, visit
 from refimpl.slopes import Slopes
 
 _REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
-_COARSEST = 64  # elements per side where nesting starts
 _COARSE_TOLERANCE = 1e-4  # a coarse state is only a start: its own grid error is larger than this
+_MARGIN = 3  # elements by which a window exceeds the contact that it is expected to hold
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 _STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
@@ -42,15 +42,13 @@ def solve_fft(problem: Problem, tolerance: float, counter: Counter) -> tuple[Out
 
     The outcome's status speaks of the loops only; the certificate is of the full grid.
     """
-    pressure: Array | None = None
     iterations: dict[str, int] = {}
-    *coarse, _ = levels = _levels(problem)
-    for level in coarse:
-        solver = _LevelSolver(level, counter, _window_for(level, pressure), pressure)
+    nested = levels(problem)
+    solver = _LevelSolver(nested[0], counter, Window.full(nested[0].grid.M), foundation_pressure(nested[0]))
+    for fine in nested[1:]:
         solver.settle(_COARSE_TOLERANCE)
-        iterations[f"CG at {level.grid.M}"] = solver.cg_iterations
-        pressure = _prolonged(solver.full(solver.cg.pressure))
-    solver = _LevelSolver(levels[-1], counter, _window_for(problem, pressure), pressure)
+        iterations[f"CG at {solver.whole.grid.M}"] = solver.cg_iterations
+        solver = solver.refined(fine)
     while True:
         outcome = solver.solve(tolerance)
         state = _certified(problem, outcome, counter)
@@ -77,64 +75,35 @@ def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
     return certify(problem, operator, outcome.pressure, outcome.traction, outcome.slopes)
 
 
-def _levels(problem: Problem) -> list[Problem]:
-    """The problem on halved grids, coarsest first; each coarse gap is the mean of four."""
-    levels = [problem]
-    while levels[0].grid.M % 2 == 0 and levels[0].grid.M // 2 >= _COARSEST:
-        fine = levels[0]
-        coarse = replace(
-            fine,
-            grid=Grid(fine.grid.side, fine.grid.M // 2),
-            gap=_halved(fine.gap),
-            mean_surface=_halved(fine.mean_surface),
-        )
-        levels.insert(0, coarse)
-    return levels
-
-
-def _halved(values: Array) -> Array:
-    return 0.25 * (values[::2, ::2] + values[1::2, ::2] + values[::2, 1::2] + values[1::2, 1::2])
-
-
-def _prolonged(coarse: Array) -> Array:
-    """Bilinear interpolation from element centres to those of the twice finer grid."""
-    for _ in range(2):
-        padded = np.pad(coarse, ((1, 1), (0, 0)), mode="edge")
-        fine = np.empty((2 * len(coarse), coarse.shape[1]))
-        fine[::2] = 0.75 * coarse + 0.25 * padded[:-2]
-        fine[1::2] = 0.75 * coarse + 0.25 * padded[2:]
-        coarse = fine.T
-    return coarse
-
-
-def _window_for(problem: Problem, pressure: Array | None) -> Window:
-    if pressure is None or problem.periodic:
-        return Window.full(problem.grid.M)
-    return Window.around(pressure > 0, margin=max(3, problem.grid.M // 64))
-
-
-def _start(problem: Problem) -> Array:
-    """Pressure to start from: that of a springy foundation on the part that interferes, or the lowest."""
-    depth = problem.approach if problem.approach is not None else float(np.quantile(problem.gap, 0.3))
-    interference = np.maximum(depth - problem.gap, 0.0)
-    if not interference.any():
-        interference = (problem.gap <= problem.gap.min()).astype(float)
-    pressure = interference / (problem.pair.normal_compliance * problem.grid.side)
-    if problem.load is not None:
-        pressure *= problem.load / (problem.grid.element_area * pressure.sum())
-    return pressure
-
-
 class _LevelSolver:
     """One grid level: CG on a window, with slopes, shear and tau's support brought up to date."""
 
-    def __init__(
-        self, problem: Problem, counter: Counter, window: Window, pressure: Array | None
-    ) -> None:
+    def __init__(self, problem: Problem, counter: Counter, window: Window, pressure: Array) -> None:
         self.whole = problem
         self.counter = counter
         self.cg_iterations = 0
-        self._open(window, _start(problem) if pressure is None else pressure)
+        self._open(window, pressure)
+
+    def refined(self, fine: Problem) -> _LevelSolver:
+        """The solver of the twice finer level, started from this one's pressure and likely contact."""
+        pressure = prolonged(self.full(self.cg.pressure))
+        window = Window.full(fine.grid.M)
+        if not fine.periodic:
+            operator = self._onto_whole_grid()
+            displacement = fine.pair.normal_compliance * operator.normal(self.full(self.cg.pressure))
+            likely = likely_contact(displacement, self.cg.approach(self.cg.separation), fine)
+            window = Window.around((pressure > 0) | likely, margin=_MARGIN)
+        return _LevelSolver(fine, self.counter, window, pressure)
+
+    def _onto_whole_grid(self) -> WholeGridInfluence:
+        grid = self.whole.grid
+        return WholeGridInfluence(
+            grid,
+            self.whole.direction,
+            source=self.window,
+            target=Window.full(grid.M),
+            counter=self.counter,
+        )
 
     def _open(self, window: Window, pressure: Array) -> None:
         """Set up operator, preconditioner and CG on a window, starting from a full-grid pressure."""
@@ -285,7 +254,7 @@ class _LevelSolver:
     def widen(self, outside: Mask) -> None:
         """Start again from the present pressure on a window that also holds the penetrating elements."""
         pressure = self.full(self.cg.pressure)
-        self._open(Window.around((pressure > 0) | outside, margin=max(3, self.whole.grid.M // 64)), pressure)
+        self._open(Window.around((pressure > 0) | outside, margin=_MARGIN), pressure)
 
     def full(self, values: NDArray[Any]) -> NDArray[Any]:
         """A window array on the whole grid."""

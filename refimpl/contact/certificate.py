@@ -67,7 +67,9 @@ def certify(
     ``slopes`` enter only through the facet tractions of the slope correction and through the
     residual ``slope``; the cosines are those of the recomputed displacements.
     """
-    lower, upper = problem.displacements(operator, pressure, traction, slopes)
+    normal = problem.pair.normal_compliance * operator.normal(pressure)
+    known = None if problem.terms.slope_correction else normal
+    lower, upper = problem.displacements(operator, pressure, traction, slopes, normal_displacement=known)
     found = problem.slopes(lower, upper)
     dA = problem.grid.element_area
     v = (lower + upper) / found.obliqueness + problem.gap
@@ -80,7 +82,6 @@ def certify(
         balance = abs(forces.normal - problem.load) / problem.load
     else:
         balance = abs(mean_v - approach) / approach if total > 0 else 0.0
-    normal = problem.pair.normal_compliance * operator.normal(pressure)
     energy = 0.5 * float(np.sum(pressure * normal)) * dA
     duality = float(np.sum(pressure * (v - v.min()))) * dA
     peak = max(float(pressure.max()), np.finfo(float).tiny)

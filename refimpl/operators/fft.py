@@ -58,8 +58,9 @@ class FFTInfluence:
         self.source = source or Window.full(grid.M)
         self.target = target or self.source
         self.counter = counter if counter is not None else Counter()
-        lengths = [n + m for n, m in zip(self.source.shape, self.target.shape, strict=True)]
-        self._padded = tuple(sfft.next_fast_len(n, real=True) for n in lengths)
+        rows, columns = (n + m for n, m in zip(self.source.shape, self.target.shape, strict=True))
+        # the transform along columns is real, the one along rows complex, with more fast lengths
+        self._padded = sfft.next_fast_len(rows), sfft.next_fast_len(columns, real=True)
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""
