@@ -1,0 +1,255 @@
+"""The paper's own scheme: section 5 and the flow chart of Fig. 3, step by step.
+
+Three nested iterations. The first finds the contact for an assumed approach, inverting [a] by a
+periodic FFT, excluding pressures that are not positive, and removing the periodicity error by
+residual correction against the true aperiodic operator. The second adjusts the approach until N
+balances P. The third refines the grid, starting from cubic interpolation.
+
+What the paper leaves open is settled like this. The periodic FFT inverts [a] on the whole square,
+but displacements are known only in contact; keeping those and taking the displacements outside
+from the pressures found so far is one step ``f += B (u - a f)`` on the contact, with ``B`` the
+periodic inverse, which is the residual correction as well. As ``B`` restricted to the contact
+exceeds the inverse that is sought, full steps may diverge; each step gets its exact length. Elements
+excluded too early are taken back when they break inequality (6b). The approach moves by the secant rule.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft as sfft
+from scipy.ndimage import map_coordinates
+
+from refimpl.contact.certificate import State, certify
+from refimpl.friction import Mask, TauSupport, local_friction
+from refimpl.grid import Array
+from refimpl.nesting import coarsened
+from refimpl.operators.fft import Counter, FFTInfluence
+from refimpl.operators.tables import unit_table
+from refimpl.outcome import Outcome, Status, Visited
+from refimpl.problem import Problem, visit
+from refimpl.slopes import Slopes
+
+PAPER_TOLERANCE = 1e-4  # |(P - N) / P|, section 5
+_PRESSURE_SHARE = 0.1  # |df| / |f| may be this share of the load tolerance: 1e-5, section 5
+_STEPS, _PASSES, _APPROACHES, _SUPPORTS = 2000, 60, 60, 100
+
+
+@dataclass(eq=False)
+class Trace:
+    """What the scheme went through on one grid of ``M x M`` elements; ``coarser`` are the grids before it.
+
+    ``approaches`` counts iteration two, ``passes`` iteration one, and the steps are those within it.
+    ``periodicity_before`` and ``periodicity_after`` are the relative residuals ``|u - a f| / |u|`` of
+    Eq. (7) on the contact against the true operator, once the periodic iteration has converged and
+    once the residual correction has; ``periodic_pressure`` (Pa) is what the former left. All three
+    belong to the last approach.
+    """
+
+    M: int
+    approaches: int = 0
+    passes: int = 0
+    periodic_steps: int = 0
+    correction_steps: int = 0
+    periodicity_before: float = math.nan
+    periodicity_after: float = math.nan
+    periodic_pressure: Array | None = None
+    coarser: tuple[Trace, ...] = ()
+
+
+def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[Outcome, State, Trace]:
+    """Outcome, certified state and the finest grid's trace.
+
+    ``tolerance`` is the load's, the pressure's is a tenth of it.
+    """
+    pressure: Array | None = None
+    approach = problem.approach
+    traces: list[Trace] = []
+    *coarse, finest = _refinements(problem)
+    for level in coarse:  # (3) iteration three: from coarse to fine
+        scheme = _Scheme(level, tolerance, counter, pressure)
+        approach = scheme.balance(approach, support=None)
+        pressure = _interpolated(scheme.pressure)
+        traces.append(scheme.trace)
+    scheme = _Scheme(finest, tolerance, counter, pressure)
+    scheme.trace.coarser = tuple(traces)
+    outcome = scheme.settle_tau(approach)
+    state = certify(finest, scheme.operator, outcome.pressure, outcome.traction, outcome.slopes)
+    return outcome, state, scheme.trace
+
+
+def _refinements(problem: Problem) -> list[Problem]:
+    """The problem on M/4, M/2 and M elements per side, as far as they divide (128, 256, 512)."""
+    levels = [problem]
+    while len(levels) < 3 and levels[0].grid.M % 2 == 0 and levels[0].grid.M >= 32:
+        levels.insert(0, coarsened(levels[0]))
+    return levels
+
+
+def _interpolated(coarse: Array) -> Array:
+    """Cubic interpolation to the twice finer element centres; negative overshoot is cut off."""
+    at = (np.arange(2 * len(coarse)) + 0.5) / 2 - 0.5
+    fine: Array = map_coordinates(coarse, np.meshgrid(at, at, indexing="ij"), order=3, mode="nearest")
+    return np.maximum(fine, 0.0)
+
+
+class _Scheme:
+    """Iterations one and two on one grid."""
+
+    def __init__(
+        self, problem: Problem, tolerance: float, counter: Counter, pressure: Array | None
+    ) -> None:
+        self.problem = problem
+        self.tolerance = tolerance
+        self.trace = Trace(problem.grid.M)
+        self.operator = FFTInfluence(problem.grid, problem.direction, counter=counter)
+        self.pressure = np.zeros(problem.gap.shape) if pressure is None else pressure
+        self.slopes = Slopes.flat(problem.gap.shape)
+        self.settled = True
+        self._compliance = problem.pair.normal_compliance
+        # (1) [a] by the moving-grid argument: one row of it, translated; here on the FFT's circle
+        steps = np.arange(problem.grid.M)
+        circle = np.minimum(steps, problem.grid.M - steps)
+        row = unit_table("normal", 1 + problem.grid.M // 2)[np.ix_(circle, circle)] * problem.grid.spacing
+        self._periodic_hat: Array = self._compliance * sfft.rfft2(row).real
+
+    def settle_tau(self, approach: float | None) -> Outcome:
+        """Balance under the rule for tau's support that all solvers share (`refimpl.friction`)."""
+        rule = TauSupport(self.problem.gap.shape)
+        states: list[Visited] = []
+        in_cycles: list[Visited] = []
+        tau = self.problem.friction.tau
+        for _ in range(_SUPPORTS):
+            approach = self.balance(approach, support=rule.current)
+            traction = local_friction(self.problem.friction, self.pressure, rule.current)
+            states.append(visit(self.problem, self.pressure, traction, self.slopes))
+            if tau > 0:
+                rule.next(self.pressure > 0)
+                in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
+            if tau == 0 or rule.settled:
+                break
+        lawful = not np.any(rule.withheld & (self.pressure > 0))
+        ended = self.settled and (tau == 0 or rule.settled)
+        every = (*self.trace.coarser, self.trace)
+        counts = {
+            "periodic": sum(t.periodic_steps for t in every),
+            "correction": sum(t.correction_steps for t in every),
+            "passes": sum(t.passes for t in every),
+            "approaches": sum(t.approaches for t in every),
+        }
+        return Outcome(
+            pressure=self.pressure,
+            traction=traction,
+            slopes=self.slopes,
+            status=Status.ITERATION_LIMIT if not ended else Status.CONVERGED if lawful else Status.CYCLED,
+            withheld=rule.withheld,
+            visited=tuple(in_cycles),
+            iterations=counts | {"tau supports": len(states)},
+        )
+
+    def balance(self, approach: float | None, support: Mask | None) -> float:
+        """(2) Iteration two: the approach at which N = P, by secants within a bracket; returns it (m)."""
+        if self.problem.approach is not None:
+            self.contact(self.problem.approach, support)
+            return self.problem.approach
+        assert self.problem.load is not None
+        load = self.problem.load
+        approach = approach or 0.05 * float(self.problem.gap.max()) or self.problem.grid.spacing
+        low, high, last = 0.0, math.inf, None
+        for _ in range(_APPROACHES):
+            normal = self.contact(approach, support)
+            if abs(load - normal) <= self.tolerance * load:
+                return approach
+            low, high = (approach, high) if normal < load else (low, approach)
+            step = approach * max(0.25, min(4.0, (load / max(normal, 1e-12 * load)) ** (2 / 3)))
+            if last is not None and normal != last[1]:
+                step = approach + (load - normal) * (approach - last[0]) / (normal - last[1])
+            if not low < step < high:
+                step = 0.5 * (low + high) if math.isfinite(high) else 2 * approach
+            last, approach = (approach, normal), step
+        self.settled = False
+        return approach
+
+    def contact(self, approach: float, support: Mask | None) -> float:
+        """(1) Iteration one: the contact at an assumed approach; returns N, Eq. (2)."""
+        self.trace.approaches += 1
+        problem = self.problem
+        inside: Mask = problem.gap < approach  # (1a) contact lies within kinematic interference
+        if self.pressure.any():
+            inside &= self.pressure > 0
+        before = self.pressure
+        for first in (True, *(_PASSES - 1) * (False,)):
+            self.trace.passes += 1
+            shear, tau_on = self._bring_up_to_date(support)
+            u = self.slopes.obliqueness * (approach - problem.gap) - shear  # Eqs (6a), (7)
+            if first:  # later passes only mend: the periodic contact would throw returned elements out again
+                inside = self._iterate(u, inside, periodic=True)
+                self.trace.periodicity_before = self._residual(u, inside)
+                self.trace.periodic_pressure = self.pressure
+            inside = self._iterate(u, inside, periodic=False)
+            self.trace.periodicity_after = self._residual(u, inside)
+            # (1d) inequality (6b): what penetrates comes back
+            returning = ~inside & (self._compliance * self.operator.normal(self.pressure) < u)
+            inside = inside | returning
+            change = float(np.abs(self.pressure - before).max()) / max(float(self.pressure.max()), 1e-300)
+            before = self.pressure
+            if not returning.any() and change <= _PRESSURE_SHARE * self.tolerance:
+                break
+        else:
+            self.settled = False
+        weights, offset = problem.load_weights(self.slopes, tau_on)
+        return float(np.vdot(weights, self.pressure)) * problem.grid.element_area - offset
+
+    def _bring_up_to_date(self, support: Mask | None) -> tuple[Array, Mask]:
+        """Slopes, and the displacement of everything but ``a f``, from the pressure so far."""
+        tau_on = self.pressure > 0 if support is None else support
+        traction = local_friction(self.problem.friction, self.pressure, tau_on)
+        lower, upper = self.problem.displacements(self.operator, self.pressure, traction, self.slopes)
+        self.slopes = self.problem.slopes(lower, upper)
+        return lower + upper - self._compliance * self.operator.normal(self.pressure), tau_on
+
+    def _iterate(self, u: Array, inside: Mask, *, periodic: bool) -> Mask:
+        """(1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact left."""
+        flexibility = self._apply_periodic if periodic else self._apply
+        pressure = self.pressure * inside
+        answer = flexibility(pressure)
+        for _ in range(_STEPS):
+            residual = (u - answer) * inside
+            step = self._invert(residual) * inside
+            moved = flexibility(step)
+            curvature = float(np.vdot(step, moved))
+            if curvature <= 0:
+                break
+            length = float(np.vdot(step, residual)) / curvature
+            found = pressure + length * step
+            excluded = inside & (found <= 0)
+            inside = inside & ~excluded
+            found *= inside
+            answer = flexibility(found) if excluded.any() else answer + length * moved
+            change = float(np.linalg.norm(found - pressure))
+            pressure = found
+            self.trace.periodic_steps += periodic
+            self.trace.correction_steps += not periodic
+            if change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found)):
+                break
+        else:
+            self.settled = False
+        self.pressure = pressure
+        return inside
+
+    def _residual(self, u: Array, inside: Mask) -> float:
+        norm = float(np.linalg.norm(u * inside))
+        return float(np.linalg.norm((u - self._apply(self.pressure)) * inside)) / norm if norm > 0 else 0.0
+
+    def _apply(self, pressure: Array) -> Array:
+        return self._compliance * self.operator.normal(pressure)
+
+    def _apply_periodic(self, pressure: Array) -> Array:
+        result: Array = sfft.irfft2(sfft.rfft2(pressure) * self._periodic_hat, s=pressure.shape)
+        return result
+
+    def _invert(self, residual: Array) -> Array:
+        result: Array = sfft.irfft2(sfft.rfft2(residual) / self._periodic_hat, s=residual.shape)
+        return result
