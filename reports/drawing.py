@@ -11,6 +11,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
+from matplotlib.ticker import NullLocator
 
 Data = Mapping[str, Any]
 Draw = Callable[[Canvas, Data], None]
@@ -114,7 +115,7 @@ def order(
                 M, 0.6 * finest * (M.max() / M) ** slope, style, color=INK, label=f"order {slope:g}"
             )
         axes.set_xticks(M, [f"{m:g}" for m in M], minor=False)
-        axes.minorticks_off()
+        axes.xaxis.set_minor_locator(NullLocator())
         axes.legend()
 
     return draw

@@ -64,9 +64,17 @@ def test_the_table_names_what_was_found(scene: str, capsys: Capture) -> None:
     assert main(["solve", scene, "--grid", "48", "--no-oblique"]) == 0
     printed = capsys.readouterr()
     solution = refimpl.solve(refimpl.read_scene(scene), grid=48, oblique=False)
-    row = re.search(r"friction coefficient mu +(\S+)", printed.out)
-    assert row is not None
-    assert float(row[1]) == pytest.approx(solution.friction_coefficient, rel=1e-5)
+    rows = {
+        r"friction coefficient mu +(\S+)": solution.friction_coefficient,
+        r"contact area A +(\S+) +mm\^2": solution.contact_area / 1e-3**2,
+        r"largest pressure f_max +(\S+) +MPa": solution.max_pressure / 1e6,
+        r"approach +(\S+) +um": solution.approach / 1e-6,
+        r"friction force F +(\S+) +N": solution.friction_force,
+    }
+    for pattern, value in rows.items():
+        row = re.search(pattern, printed.out)
+        assert row is not None, pattern
+        assert float(row[1]) == pytest.approx(value, rel=1e-5)
     for text in ("48 x 48", "CONVERGED", "A, perimeter-corrected", "f_max", "approach", "penetration"):
         assert text in printed.out
     assert "obliqueness" in printed.out.partition("left out")[2]

@@ -84,6 +84,30 @@ def test_an_order_that_is_not_credible_costs_a_factor_of_three(values: list[floa
     assert found.uncertainty >= 3.0 * np.ptp(values)
 
 
+def test_the_misfit_is_part_of_the_uncertainty() -> None:
+    noisy = [1.0 + h**2 for h in H]
+    noisy[-1] += 3e-4
+    found = extrapolate(H, noisy, expected_order=2.0)
+    assert found.credible
+    assert found.order is not None
+    assert found.order > 2.0  # so that the expected order's fit, which is linear, is the one that counts
+    slope, limit = np.polyfit(np.square(H), noisy, 1)
+    misfit = abs(noisy[-1] - limit - slope * H[-1] ** 2)
+    assert misfit > 1e-5
+    assert found.uncertainty == pytest.approx(1.25 * slope * H[-1] ** 2 + misfit, rel=1e-9)
+
+
+def test_one_local_order_off_is_enough_to_doubt() -> None:
+    errors = [h**2 for h in H]
+    errors[2] *= 1.6
+    assert abs(fit_order(H, errors).order - 2.0) < 0.3
+    assert not fit_order(H, errors).credible(2.0)
+    found = extrapolate(H, [1.0 + e for e in errors], expected_order=2.0)
+    assert found.order is not None
+    assert abs(found.order - 2.0) < 0.5
+    assert not found.credible
+
+
 @pytest.mark.parametrize("order", [1.0, 2.0])
 def test_the_uncertainty_covers_the_true_error(order: float) -> None:
     """Series with a higher-order tail: the limit lies within the stated uncertainty of the finest value."""

@@ -131,6 +131,13 @@ def test_provenance_says_what_is_not_installed(monkeypatch: pytest.MonkeyPatch) 
     assert found["surely-not-installed"] is None
 
 
+def test_a_commit_is_that_of_our_own_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
+    for prefix, found in (("vendored/", (None, None)), ("", ("x", True))):
+        answers = {"--show-prefix": prefix}
+        monkeypatch.setattr(provenance, "_git", lambda _, *asked, a=answers: a.get(asked[-1], "x"))
+        assert tuple(provenance.revision().values()) == found
+
+
 def test_the_command_names_no_directory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["/some/where/rough-friction", "verify", "--only", "hertz/*"])
     assert provenance.command() == "rough-friction verify --only 'hertz/*'"
