@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 import refimpl
+from refimpl.plan import METHODS
 from tests.verification.test_cli import Capture, refused
 from verification.cli import main, solve
 from verification.cli.plot import hertz_of
@@ -47,6 +48,10 @@ def test_help_names_the_shipped_scenes() -> None:
     named = re.search(r"Shipped scenes: (.*)\.", solve.EPILOG)
     assert named is not None
     assert tuple(named[1].split(", ")) == refimpl.shipped_scenes()
+
+
+def test_the_methods_are_those_of_the_solver() -> None:
+    assert set(solve.METHODS) == set(METHODS)
 
 
 def test_json_has_the_solutions_numbers(scene: str, capsys: Capture) -> None:
@@ -122,6 +127,10 @@ def test_vtk_holds_both_surfaces_and_the_whole_load(scene: str, suffix: str, tmp
     # Without obliqueness N is the plain sum of the pressures, and balances the load to rounding.
     force = fields["pressure"][fields["body"] == 0].sum() * (1e-3 / 32) ** 2
     assert force == pytest.approx(5.0, rel=1e-12)
+    # Each square joins four neighbours of one sheet: its corners span one spacing along x and along y.
+    corners = mesh.cells_dict["quad"]
+    assert np.ptp(fields["body"][corners], axis=1).max() == 0
+    np.testing.assert_allclose(np.ptp(mesh.points[corners][..., :2], axis=1), 1e-3 / 32, rtol=1e-9)
     peak = int(np.argmax(fields["pressure"][fields["body"] == 0]))
     touching = fields["pressure"][fields["body"] == 0] > 0
     gap = (upper - lower)[:, 2]

@@ -21,6 +21,8 @@ EPILOG = """examples:
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
+METHODS = ("fft", "dense", "paper")  # those of refimpl, which --help does not wait for
+
 # attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 QUANTITIES = (
     ("friction_coefficient", "friction coefficient mu", 1.0, ""),
@@ -47,7 +49,10 @@ def add_parser(commands: Parsers) -> None:
     add("scene", metavar="SCENE", help="a scene's TOML file, or the name of a shipped scene")
     add("--grid", metavar="N", type=int, default=256, help="N x N elements (default 256)")
     add(
-        "--method", choices=("fft", "dense"), default="fft", help="default fft; dense is for small grids"
+        "--method",
+        choices=METHODS,
+        default="fft",
+        help="production solver (default), plain reference for small grids, or the paper's scheme",
     )
     add("--approach", metavar="D", type=float, help="prescribe the approach (m) instead of the load")
     add(
@@ -56,7 +61,8 @@ def add_parser(commands: Parsers) -> None:
         default=None,
         help="keep or drop every slope term (default: the scene decides)",
     )
-    add("--tolerance", metavar="T", type=float, default=1e-8, help="for the certificate (default 1e-8)")
+    add("--slope-correction", action="store_true", help="exact tractions of oblique facets in Eq. (7)")
+    add("--tolerance", metavar="T", type=float, help="for the certificate (default 1e-8; paper 1e-4)")
     add("--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture")
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
     add_json(parser)
@@ -77,6 +83,7 @@ def run(options: argparse.Namespace) -> int:
         method=options.method,
         approach=options.approach,
         oblique=options.oblique,
+        slope_correction=options.slope_correction,
         tolerance=options.tolerance,
     )
     if options.plot is not None:
