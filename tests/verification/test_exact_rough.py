@@ -80,6 +80,25 @@ def test_roughness_lowers_the_peak_and_spreads_the_load() -> None:
     assert sphere().smooth.contact_radius < radii[0] < radii[1] < radii[2]
 
 
+def test_summits_of_a_gaussian_surface_by_counting() -> None:
+    """Local maxima among eight neighbours of one periodic realisation, 230 of them."""
+    M, length = 768, 33.0
+    k = 2 * np.pi * np.fft.fftfreq(M)
+    # the ACF exp(-2.3 r^2/l^2) has the spectrum exp(-q^2 l^2/9.2); its root filters white noise
+    amplitude = np.exp(-(k[:, None] ** 2 + k[None, :] ** 2) * length**2 / 18.4)
+    noise = np.fft.fft2(np.random.default_rng(7).standard_normal((M, M)))
+    z = np.fft.ifft2(noise * amplitude).real
+    z /= np.std(z)
+    around = [np.roll(z, (i, j), axis=(0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+    top = np.all([z > neighbour for neighbour in around], axis=0)
+    curvature = 2 * z - (sum(np.roll(z, s, axis=a) for s in (-1, 1) for a in (0, 1)) / 2)
+    rms, density, radius = gaussian_summits(1.0, length)
+    # a count of 230 is good to 7 %, its means and deviations to 5 %; at 1024^2 four seeds gave 2 % throughout
+    assert np.sum(top) / M**2 == pytest.approx(density, rel=0.15)
+    assert np.std(z[top]) == pytest.approx(rms, rel=0.1)
+    assert 1 / np.mean(curvature[top]) == pytest.approx(radius, rel=0.1)
+
+
 def test_rough_sphere_refuses_nonsense() -> None:
     with pytest.raises(InputError, match="summit_rms"):
         dataclasses.replace(sphere(), summit_rms=0.0)

@@ -192,7 +192,7 @@ def load_doubling() -> Measured:
     metric="at_most",
     tolerance=2e-13,
     tolerance_reason="an FFT of 128^2 points loses 20 eps of its largest value; reference 1e-13. Measured "
-    "3e-15",
+    "1e-15",
     tags=("reference", "patch", "fft"),
 )
 def patch_displacement() -> Measured:

@@ -10,7 +10,8 @@ constant). Lines of the kernels 1/rho and s/rho^2 integrate to -2 ln|x| and pi s
     PV integral of p(s)/(x - s) ds - pi d q(x) = pi E* x/(2R).
 
 With S(z) the integral of p(s)/(z - s) and contact on -l < x < t,
-S = (pi E*/2R) [z - (z + l)^g (z - t)^(1-g)] solves it for tau = 0 and cot(pi g) = d beta. S must vanish at infinity like P/z, which asks
+S = (pi E*/2R) [z - (z + l)^g (z - t)^(1-g)] solves it for tau = 0 and cot(pi g) = d beta. S must vanish at
+infinity like P/z, which asks
 
     g l = (1 - g) t,   P = (pi E*/2R) g (1 - g) (l + t)^2/2,   p = (E*/2R) sin(pi g) (x + l)^g (t - x)^(1-g).
 
