@@ -1,0 +1,39 @@
+"""The printed equations of Appendix A that fail: a number against each, and the same for its correction."""
+
+from __future__ import annotations
+
+from appendix_a.errata import ERRATA, Erratum
+from verification.case import Measured
+from verification.registry import case
+
+
+def declare(erratum: Erratum, slug: str) -> None:
+    """A case: the correction holds, and the printed form misses by a hundred times its tolerance at least."""
+
+    @case(
+        f"appendix-errata/{slug}",
+        title=f"Erratum to ({erratum.equation})",
+        claim=f"{erratum.measure}: zero for the corrected form, {erratum.corrected}",
+        source=f"paper Eq. ({erratum.equation}), derived anew",
+        metric="at_most",
+        tolerance=erratum.tolerance,
+        tolerance_reason=erratum.tolerance_reason,
+        tags=("appendix", "errata"),
+    )
+    def holds() -> Measured:
+        against, remains = erratum.evidence(), erratum.check()
+        if not against > 100 * erratum.tolerance:
+            raise ArithmeticError(f"the printed form misses by {against:.3g} only: no erratum")
+        data = {
+            "equation": erratum.equation,
+            "printed": erratum.printed,
+            "corrected": erratum.corrected,
+            "measure": erratum.measure,
+            "printed_error": against,
+            "corrected_error": remains,
+        }
+        return Measured(value=remains, data=data, note=f"as printed: {against:.3g}")
+
+
+for _erratum in ERRATA:
+    declare(_erratum, "".join(c if c.isalnum() else "-" for c in _erratum.equation.lower()).strip("-"))

@@ -1,0 +1,177 @@
+"""Strip on a wavy boundary (Appendix A, (A1)-(A3)): the half-plane's stresses, first order, Fig. 12."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+
+from appendix_a import wedge
+from appendix_a.strip import Theta, field, first_order, printed
+from verification.case import Measured
+from verification.registry import case
+
+SOURCE = "boundary perturbation to first order in the slope, derived in appendix_a.strip.perturbation"
+DIGITS = 40
+
+
+def printed_stresses(x: Any, y: Any) -> tuple[Any, Any, Any]:
+    """(A1) in mpmath, p = a = 1: (sigma_x, sigma_y, tau)."""
+    first, second = mp.atan2(y, x - 1), mp.atan2(y, x + 1)
+    angle, sines = 2 * (first - second), mp.sin(2 * first) - mp.sin(2 * second)
+    tau = (mp.cos(2 * first) - mp.cos(2 * second)) / (2 * mp.pi)
+    return -(angle + sines) / (2 * mp.pi), -(angle - sines) / (2 * mp.pi), tau
+
+
+def component(n: int) -> Callable[[Any, Any], Any]:
+    """The n-th of (A1) as a function of (x, y)."""
+    return lambda x, y: printed_stresses(x, y)[n]
+
+
+def trace(x: Any, y: Any) -> Any:
+    """sigma_x + sigma_y."""
+    return sum(printed_stresses(x, y)[:2])
+
+
+@case(
+    "appendix-strip/a1-field",
+    title="(A1) is a stress field",
+    claim="(A1) satisfies both equations of equilibrium and compatibility at random points of the half-plane",
+    source="paper Eq. (A1); Johnson 1985, section 2.5",
+    metric="at_most",
+    tolerance=1e-30,
+    tolerance_reason="mpmath raises its precision for differences: rounding at 40 digits is expected",
+    tags=("appendix", "strip"),
+)
+def a1_field() -> Measured:
+    rng = np.random.default_rng(2001)
+    worst = mp.mpf(0)
+    with mp.workdps(DIGITS):
+        for _ in range(20):
+            x, y = mp.mpf(rng.uniform(-4, 4)), mp.mpf(rng.uniform(0.05, 4))
+            sigma_x, sigma_y, tau = component(0), component(1), component(2)
+            along = mp.diff(sigma_x, (x, y), (1, 0)) + mp.diff(tau, (x, y), (0, 1))
+            down = mp.diff(tau, (x, y), (1, 0)) + mp.diff(sigma_y, (x, y), (0, 1))
+            harmonic = mp.diff(trace, (x, y), (2, 0)) + mp.diff(trace, (x, y), (0, 2))
+            worst = max(worst, abs(along), abs(down), abs(harmonic))
+    return Measured(value=float(worst))
+
+
+@case(
+    "appendix-strip/a1-tractions",
+    title="(A1) carries the strip's load",
+    claim="towards the boundary (A1) tends to sigma_y = -p under the strip, 0 beside it, and to no shear",
+    source="paper Eq. (A1)",
+    metric="at_most",
+    tolerance=1e-14,
+    tolerance_reason="shear goes like the square of the depth, 1e-9 a, over 0.1 a from the ends",
+    tags=("appendix", "strip"),
+)
+def a1_tractions() -> Measured:
+    x = np.array([-30.0, -1.1, -0.9, -0.3, 0.0, 0.6, 0.9, 1.1, 2.0])
+    depths = [1e-3, 1e-5, 1e-7, 1e-9]
+    errors = []
+    for y in depths:
+        _, sigma_y, tau = field.stresses(x, y)
+        errors.append(float(np.max(np.abs(np.concatenate([sigma_y + (np.abs(x) < 1), tau])))))
+    return Measured(value=errors[-1], data={"depth over a": depths, "largest departure": errors})
+
+
+@case(
+    "appendix-strip/first-order-wedge",
+    title="First-order theory against the exact wedge",
+    claim="the faces of a wedge of slope gamma -> 0 move as the first-order theory says for |x| tan(gamma): "
+    "-(1+nu)(1-2nu) (p/E) gamma x up to the strip's end, and constant beyond",
+    source=SOURCE + "; wedge displacements from the Mellin transform",
+    metric="at_most",
+    tolerance=1e-3,
+    tolerance_reason="what is left is of second order: gamma = 1e-5 times a coefficient below 100",
+    tags=("appendix", "strip", "wedge"),
+)
+def first_order_wedge() -> Measured:
+    x = np.array([0.05, 0.3, 0.7, 1.0, 1.5, 3.0, 10.0])
+    series: dict[str, object] = {"x over a": x}
+    worst = []
+    for nu in (0.0, 0.3, 0.45):
+        for gamma in (1e-3, 1e-5):
+            # the pressed length lies along the face, the offset is horizontal
+            along, _ = wedge.displacements(x / np.cos(gamma), np.full_like(x, np.pi / 2 - gamma), gamma, nu)
+            change = (along - field.flat_displacement(x, nu)) / gamma
+            expected = -(1 + nu) * (1 - 2 * nu) * np.minimum(x, 1.0)
+            series[f"nu {nu:g}, slope {gamma:g}"] = change
+            worst.append(float(np.max(np.abs(change - expected))) if gamma < 1e-4 else 0.0)
+    return Measured(value=max(worst), data=series)
+
+
+@case(
+    "appendix-strip/superposition",
+    title="Pseudo tractions of (A3) against the first-order theory",
+    claim="with theta the direction of the normal and the load added, (A1)-(A3) and Flamant's superposition "
+    "give the first-order change of the displacement beside the strip, on a crest",
+    source="paper Eqs (A1)-(A3); " + SOURCE,
+    metric="at_most",
+    tolerance=2e-3,
+    tolerance_reason="second order: the slope of 1.7e-4 rad over the first order's pi a/lambda = 0.16",
+    tags=("appendix", "strip"),
+)
+def superposition() -> Measured:
+    offsets = np.array([-5.0, -2.0, -1.2, 1.2, 2.0, 5.0])
+    slopes, errors = [0.01, 0.1, 1.0], []
+    for slope in slopes:
+        by_paper, flat = printed(slope, 20.0, 0.3, offsets=offsets)
+        expanded, _ = first_order(slope, 20.0, 0.0, 0.3, offsets=offsets)
+        errors.append(float(np.max(np.abs((by_paper - flat) / (expanded - flat) - 1))))
+    return Measured(value=errors[0], data={"slope in degrees": slopes, "largest relative departure": errors})
+
+
+@case(
+    "appendix-strip/crest-small",
+    title="Fig. 12: a strip on a crest",
+    claim="on a crest (6.5 degrees, lambda = 100 a, nu = 0.3) strip theory moves the surface between a and "
+    "15 a by less than 2 % of the flat boundary's displacement relative to the centre",
+    source="paper Fig. 12 and its 2 %",
+    metric="at_most",
+    tolerance=0.02,
+    tolerance_reason="the paper's own bound",
+    tags=("appendix", "strip", "fig12"),
+)
+def fig12() -> Measured:
+    x = np.linspace(-15.0, 15.0, 61)
+    data: dict[str, object] = {"x over a": x, "flat": field.flat_displacement(x, 0.3)}
+    change = np.zeros_like(x)
+    for slope in (2.5, 6.5, 15.0):
+        by_paper, flat = printed(slope, 100.0, 0.3, offsets=x)
+        expanded, _ = first_order(slope, 100.0, 0.0, 0.3, offsets=x)
+        data[f"{slope:g} degrees, superposition"] = by_paper
+        data[f"{slope:g} degrees, first order"] = expanded
+        if slope == 6.5:
+            literal, _ = printed(slope, 100.0, 0.3, offsets=x, theta=Theta.SLOPE)
+            data["6.5 degrees, (A3) with theta the slope"] = literal
+            change = np.maximum(np.abs(by_paper - flat), np.abs(expanded - flat))
+    away = np.abs(x) >= 1
+    value = float(np.max(change[away] / np.abs(field.flat_displacement(x[away], 0.3))))
+    return Measured(value=value, data=data, note="a flank's change is larger: see flank-first-order")
+
+
+@case(
+    "appendix-strip/flank-first-order",
+    title="A strip on a flank, to first order",
+    claim="on a flank the neighbours change by (1+nu)(1-2nu) tan(slope) p a / E relative to the centre, "
+    "those downhill rise and those uphill sink: at 6.5 degrees and nu = 0.3 by more than 2 % of their coefficient",
+    source=SOURCE,
+    metric="at_least",
+    tolerance=0.02,
+    tolerance_reason="the paper's bound for the maximum slope, which first-order theory exceeds here",
+    tags=("appendix", "strip", "fig12"),
+)
+def flank() -> Measured:
+    slopes = np.array([0.125, 0.5, 1.0, 2.5, 4.0, 6.5])
+    offsets = np.array([-6.0, -4.0, -2.0, 2.0, 4.0, 6.0])
+    relative = []
+    for slope in slopes:
+        wavy, flat = first_order(float(slope), 100.0, 0.25, 0.3, offsets=offsets)
+        relative.append((wavy - flat) / flat)
+    data = {"slope in degrees": slopes, "offset over a": offsets, "relative change": np.array(relative)}
+    return Measured(value=float(np.max(np.abs(relative[-1]))), data=data)

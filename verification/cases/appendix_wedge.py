@@ -1,0 +1,319 @@
+"""Wedge pressed on both faces (Appendix A, Tranter): limits, residuals, agreement of four formulations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from appendix_a import wedge, wedge_tip
+from appendix_a.strip import field
+from appendix_a.wedge import enclosure, printed, reference, residues
+from verification.case import Measured, Unavailable
+from verification.exact.wedge_residuals import residuals
+from verification.registry import case
+
+SOURCE = "Tranter 1948; paper Eqs (A4)-(A9), derived anew"
+SEED = 2001
+FLOOR = 1e-12
+"""The digits asked for in the limits towards the faces."""
+
+
+def random_points(count: int) -> Iterator[tuple[float, float, float]]:
+    """(r, theta, gamma): r/a in [1e-4, 1e4], gamma in [1e-6, 1.5], every other one even in its logarithm."""
+    rng = np.random.default_rng(SEED)
+    for n in range(count):
+        gamma = rng.uniform(1e-6, 1.5) if n % 2 else np.exp(rng.uniform(np.log(1e-6), np.log(1.5)))
+        yield np.exp(rng.uniform(-1, 1) * np.log(1e4)), rng.uniform(-1, 1) * (np.pi / 2 - gamma), float(gamma)
+
+
+def departure(r: float, theta: float, gamma: float, expected: tuple[float, ...]) -> float:
+    """Largest difference of the fast path's components from ``expected``, over the largest component."""
+    values = np.array(wedge.stresses(r, theta, gamma))
+    return float(np.max(np.abs(values - np.array(expected))) / np.max(np.abs(values)))
+
+
+@case(
+    "appendix-wedge/faces",
+    title="Wedge: boundary values as limits of the integrals",
+    claim="at 1 - 10^-k of a face, k = 2 ... 8, the transform integrals themselves (nothing subtracted, no "
+    "special case) tend to sigma_theta = -1 on the pressed and 0 on the free part, and to zero shear",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-6,
+    tolerance_reason="sigma_theta and tau leave their boundary values like the distance from the face, "
+    "1e-8 (pi/2 - gamma), times an angular derivative of the stresses below 10 at these points",
+    tags=("appendix", "wedge"),
+)
+def faces() -> Measured:
+    powers = list(range(2, 9))
+    series: dict[str, list[float]] = {}
+    for gamma in (1e-6, 0.3, 1.5):
+        for r, pressed in ((0.3, 1.0), (4.0, 0.0)):
+            errors = []
+            for k in powers:
+                theta = (1 - 10.0**-k) * (np.pi / 2 - gamma)
+                _, sigma_theta, tau = map(float, reference.stresses(r, theta, gamma, digits=12).values)
+                errors.append(max(abs(sigma_theta + pressed), abs(tau), FLOOR))
+            if any(later > max(0.2 * earlier, FLOOR) for earlier, later in pairwise(errors)):
+                raise ArithmeticError(f"gamma {gamma:g}, r {r:g}: ten times nearer, not five times closer")
+            series[f"gamma {gamma:g}, r {r:g} a"] = errors
+    return Measured(value=max(e[-1] for e in series.values()), data={"k": powers, **series})
+
+
+@case(
+    "appendix-wedge/residuals",
+    title="Wedge: equilibrium and compatibility",
+    claim="r |div sigma| / max |sigma| and the departure of sigma_r + sigma_theta from its mean over a "
+    "circle, over max |sigma|, are at most 1e-10 at 200 random points: gamma in [1e-6, 1.5], r/a in [1e-4, 1e4]",
+    source="equilibrium and compatibility, by differences of order 16 and the mean value property",
+    metric="at_most",
+    tolerance=1e-10,
+    tolerance_reason="as asked for; rounding of 1e-15 over a step of at least 1e-4 gives 1e-11",
+    tags=("appendix", "wedge"),
+)
+def balance() -> Measured:
+    pairs = [residuals(*point) for point in random_points(200)]
+    equilibrium, compatibility = map(list, zip(*pairs, strict=True))
+    worst = {"equilibrium": max(equilibrium), "compatibility": max(compatibility)}
+    return Measured(value=max(worst.values()), data=worst, note=f"200 points, seed {SEED}")
+
+
+@case(
+    "appendix-wedge/double-precision",
+    title="Wedge: double precision against 15 digits by another path",
+    claim="the fast path (half-planes and a trapezoidal remainder on a line) is within 1e-10 of the "
+    "unsubtracted polar integrals on a hyperbola, at random points and close to the faces",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-10,
+    tolerance_reason="as asked for; expected 1e-13, the rounding 1e-15 times (a/r)^(1/2) <= 100",
+    tags=("appendix", "wedge"),
+)
+def double_precision() -> Measured:
+    errors = []
+    for n, (r, theta, gamma) in enumerate(random_points(24)):
+        near = np.copysign(np.pi / 2 - gamma, theta) * (1 - 10.0 ** -(2 + n % 7)) if n % 3 == 0 else theta
+        exact = reference.stresses(r, near, gamma, digits=15).values
+        errors.append(departure(r, near, gamma, tuple(map(float, exact))))
+    return Measured(value=max(errors), data={"error": errors}, note=f"24 points, seed {SEED}")
+
+
+@case(
+    "appendix-wedge/two-precisions",
+    title="Wedge: reference at two precisions and by residues",
+    claim="the hyperbola's integrals to 20 and to 40 digits, and the residue series to 30, agree to 19",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-19,
+    tolerance_reason="the coarser run is asked for 1e-20",
+    tags=("appendix", "wedge"),
+)
+def two_precisions() -> Measured:
+    changes, series = [0.0], [0.0]
+    for r, share, gamma in ((0.8, 1.0, 0.7), (3.0, -0.9, 1.2), (20.0, 0.2, 0.05)):
+        theta = share * (np.pi / 2 - gamma)
+        coarse, fine = (reference.stresses(r, theta, gamma, digits).values for digits in (20, 40))
+        summed = residues.stresses(r, theta, gamma, digits=30)
+        changes += [float(abs(c - f)) for c, f in zip(coarse, fine, strict=True)]
+        series += [float(abs(s - f)) for s, f in zip(summed, fine, strict=True)]
+    worst = {"20 against 40 digits": max(changes), "residues against 40 digits": max(series)}
+    return Measured(value=max(worst.values()), data=worst)
+
+
+@case(
+    "appendix-wedge/corrected-series",
+    title="Wedge: (A4)-(A9) with the sign of (A5) corrected",
+    claim="the paper's integrals, (A5) beginning with a minus and xi inside cosh and sinh, give the stresses",
+    source="paper Eqs (A4)-(A9)",
+    metric="at_most",
+    tolerance=1e-12,
+    tolerance_reason="20-point Gauss panels and the rounding of up to 1e3 oscillations",
+    tags=("appendix", "wedge", "errata"),
+)
+def corrected_series() -> Measured:
+    errors: list[float] = []
+    as_printed: list[float] = []
+    for gamma in (0.05, 0.6, 1.2, 1.5):
+        for r in (0.01, 0.5, 1.0, 3.0, 100.0):
+            theta = 0.7 * (np.pi / 2 - gamma)
+            for sign, kept in ((printed.CORRECT_SIGN, errors), (printed.PRINTED_SIGN, as_printed)):
+                s = printed.stresses(r, theta, gamma, sign)
+                kept.append(departure(r, theta, gamma, (s.sigma_r, s.sigma_theta, s.tau)))
+    return Measured(value=max(errors), data={"corrected": errors, "as printed": as_printed})
+
+
+@case(
+    "appendix-wedge/enclosures",
+    title="Wedge: rigorous enclosures",
+    claim="balls of radius below 1e-18 enclose the stresses, and double precision is within 1e-13 of them",
+    source="Arb (Johansson 2017), acb.integral with a bounded tail; " + SOURCE,
+    metric="at_most",
+    tolerance=1e-13,
+    tolerance_reason="rounding of the fast path; the enclosure's own radius is part of the value",
+    tags=("appendix", "wedge"),
+)
+def enclosures() -> Measured:
+    errors, radii = [], []
+    for r, share, gamma in ((0.5, -0.6, 0.1), (0.9, 0.6, 1.3), (30.0, 0.0, 0.04)):
+        theta = share * (np.pi / 2 - gamma)
+        try:
+            balls = enclosure.stresses(r, theta, gamma)
+        except ImportError as missing:
+            raise Unavailable("python-flint is not installed") from missing
+        values = wedge.stresses(r, theta, gamma)
+        scale = max(abs(float(v)) for v in values)
+        errors += [float(abs(ball - float(v)).upper()) / scale for ball, v in zip(balls, values, strict=True)]
+        radii += [float(ball.rad()) for ball in balls]
+    if max(radii) > 1e-18:
+        raise ArithmeticError(f"an enclosure of radius {max(radii):.1e} says too little")
+    return Measured(value=max(errors), data={"distance over largest stress": errors, "radius": radii})
+
+
+@case(
+    "appendix-wedge/tip",
+    title="Wedge: uniform pressure at the tip",
+    claim="sigma_r, sigma_theta, tau tend to -1, -1, 0 at the tip",
+    source="residue at z = -1; Williams 1952",
+    metric="at_most",
+    tolerance=2e-5,
+    tolerance_reason="the next power of r is 0.77 at gamma = 0.3 and higher beyond: 1e-8^0.77 = 7e-7, times "
+    "a coefficient; at gamma = 1e-6 it is nearly zero, with a coefficient of a few gamma",
+    tags=("appendix", "wedge"),
+)
+def tip() -> Measured:
+    radii = [1e-2, 1e-4, 1e-6, 1e-8]
+    series = {}
+    for gamma in (1e-6, 0.3, 1.0, 1.5):
+        theta = np.linspace(-1, 1, 7) * (np.pi / 2 - gamma)
+        sigma_r, sigma_theta, tau = wedge.stresses(np.array(radii)[:, None], theta, gamma)
+        away = np.maximum(np.abs(sigma_r + 1), np.maximum(np.abs(sigma_theta + 1), np.abs(tau)))
+        series[f"gamma {gamma:g}"] = away.max(axis=1).tolist()
+    return Measured(value=max(s[-1] for s in series.values()), data={"r over a": radii, **series})
+
+
+@case(
+    "appendix-wedge/far-field",
+    title="Wedge: radial field of the resultant far away",
+    claim="r sigma_r tends to -4 a cos(gamma) cos(theta) / (pi - 2 gamma + sin 2 gamma), the rest to zero",
+    source="Michell 1900; the resultant is 2 a p cos(gamma)",
+    metric="at_most",
+    tolerance=1e-7,
+    tolerance_reason="the next term falls like (a/r)^2 or faster against a/r, with a coefficient below 10",
+    tags=("appendix", "wedge"),
+)
+def far_field() -> Measured:
+    radii = [1e2, 1e4, 1e6, 1e8]
+    series = {}
+    for gamma in (1e-6, 0.3, 1.0, 1.5):
+        theta = np.linspace(-1, 1, 7) * (np.pi / 2 - gamma)
+        r = np.array(radii)[:, None]
+        radial = -4 * np.cos(gamma) * np.cos(theta) / (np.pi - 2 * gamma + np.sin(2 * gamma))
+        sigma_r, sigma_theta, tau = (r * s for s in wedge.stresses(r, theta, gamma))
+        away = np.maximum(np.abs(sigma_r - radial), np.maximum(np.abs(sigma_theta), np.abs(tau)))
+        series[f"gamma {gamma:g}"] = away.max(axis=1).tolist()
+    return Measured(value=max(s[-1] for s in series.values()), data={"r over a": radii, **series})
+
+
+@case(
+    "appendix-wedge/half-plane",
+    title="Wedge: gamma -> 0 is the half-plane under a strip",
+    claim="at gamma = 1e-8 the stresses are those of (A1) on both sides of the strip's ends and below them",
+    source="paper Eq. (A1); Johnson 1985, section 2.5",
+    metric="at_most",
+    tolerance=1e-7,
+    tolerance_reason="first order in gamma, 1e-8, times a coefficient below 10 at these points",
+    tags=("appendix", "wedge"),
+)
+def half_plane() -> Measured:
+    x, y = np.meshgrid([-5.0, -1.3, -0.4, 0.2, 0.8, 2.0, 40.0], [1e-3, 0.1, 1.0, 7.0])
+    differences = {}
+    for gamma in (1e-4, 1e-6, 1e-8):
+        r, theta = np.hypot(x, y), np.arctan2(x, y) * (1 - 2 * gamma / np.pi)
+        sin, cos = np.sin(theta), np.cos(theta)
+        sigma_r, sigma_theta, tau = wedge.stresses(r, theta, gamma)
+        sigma_x, sigma_y, tau_xy = field.stresses(r * sin, r * cos)
+        expected = (
+            sigma_y * cos**2 + sigma_x * sin**2 + 2 * tau_xy * sin * cos,
+            sigma_y * sin**2 + sigma_x * cos**2 - 2 * tau_xy * sin * cos,
+            (sigma_x - sigma_y) * sin * cos + tau_xy * (cos**2 - sin**2),
+        )
+        pairs = zip((sigma_r, sigma_theta, tau), expected, strict=True)
+        differences[f"gamma {gamma:g}"] = max(float(np.max(np.abs(a - b))) for a, b in pairs)
+    return Measured(value=differences["gamma 1e-08"], data=differences)
+
+
+@case(
+    "appendix-wedge/slender",
+    title="Wedge: gamma -> pi/2 is a slender strut",
+    claim="at gamma = 1.5 (half-angle 4 degrees) the wedge is under uniform pressure at r = 0.4 a, and under "
+    "the radial field at 2.5 a",
+    source="Saint-Venant; decay exponents of the wedge's eigenfunctions (Williams 1952)",
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason="eigenfunctions fall like (r/a)^(4.2/(2 alpha)) = (r/a)^29.7: 2e-12 at both points, "
+    "times a coefficient of some tens",
+    tags=("appendix", "wedge"),
+)
+def slender() -> Measured:
+    gamma = 1.5
+    theta = np.linspace(-1, 1, 9) * (np.pi / 2 - gamma)
+    inner = np.array(wedge.stresses(0.4, theta, gamma)) - np.array([[-1.0], [-1.0], [0.0]])
+    outer = np.array(wedge.stresses(2.5, theta, gamma))
+    outer[0] += 4 * np.cos(gamma) * np.cos(theta) / (np.pi - 2 * gamma + np.sin(2 * gamma)) / 2.5
+    worst = {"r = 0.4 a": float(np.max(np.abs(inner))), "r = 2.5 a": float(np.max(np.abs(outer)))}
+    return Measured(value=max(worst.values()), data=worst)
+
+
+@case(
+    "appendix-wedge/base-load",
+    title="Wedge tip: its base carries the load",
+    claim="the base tractions of the wedge tip add up to 2 a p cos(gamma), the load on its faces",
+    source="equilibrium of the tip",
+    metric="at_most",
+    tolerance=1e-12,
+    tolerance_reason="graded Gauss panels, and rounding over some 2000 nodes",
+    tags=("appendix", "wedge", "fig13"),
+)
+def base_load() -> Measured:
+    slopes, errors = [0.1, 2.5, 6.5, 20.0, 45.0], []
+    for slope in slopes:
+        gamma, half_base = np.radians(slope), 10.0
+        s, weights = wedge_tip.graded_nodes([0.0, np.cos(gamma), half_base], half_base)
+        _, down = wedge_tip.base_tractions(s, gamma, half_base)
+        errors.append(float(abs(np.sum(weights * down) / np.cos(gamma) - 1)))
+    return Measured(value=max(errors), data={"slope in degrees": slopes, "relative difference": errors})
+
+
+FIG13_SLOPES = (0.125, 1.0, 2.5, 6.5, 15.0)
+DATUM = 100.0
+
+
+@case(
+    "appendix-wedge/fig13",
+    title="Fig. 13: wedge tip against flat strip",
+    claim="for nu = 0.3 and slopes up to 6.5 degrees the displacement beyond 3 a, counted from a datum at "
+    "100 a, differs from a flat strip's by less than 2 %",
+    source="paper Fig. 13 and its 2 %; load matched at the base, half-base 10 a",
+    metric="at_most",
+    tolerance=0.02,
+    tolerance_reason="the paper's own bound",
+    tags=("appendix", "wedge", "fig13"),
+)
+def fig13() -> Measured:
+    x = np.concatenate([np.linspace(0.0, 4.0, 21), [5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0]])
+    flat = field.flat_displacement(x, 0.3)
+    from_datum = flat - field.flat_displacement(DATUM, 0.3)
+    data: dict[str, object] = {"x over a": x}
+    beyond = []
+    for slope in FIG13_SLOPES:
+        tip = wedge_tip.tip_displacement(x, np.radians(slope), 0.3, half_base=10.0, datum=DATUM)
+        far = (tip - from_datum) / from_datum
+        data[f"{slope:g} degrees, datum 100 a"] = far
+        data[f"{slope:g} degrees, datum at the apex"] = (tip - tip[0])[1:] / flat[1:] - 1
+        if slope <= 6.5:
+            beyond.append(float(np.max(np.abs(far[x > 3]))))
+    data["x over a, datum at the apex"] = x[1:]
+    note = "the paper's figure states neither datum nor base width"
+    return Measured(value=max(beyond), data=data, note=note)
