@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import time
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, is_dataclass
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
 
-from verification.case import Result, Status, Tier, jsonable
+from verification.case import Result, Status, Tier
 from verification.files import Progress
 from verification.provenance import provenance
 from verification.registry import CASES_PACKAGE, load, select
 from verification.workers import run_all
 
 FORMAT = "rough-friction results, version 1"
-ERRATA_MODULES = ("appendix_a.errata", "verification.errata")
+ERRATUM = ("equation", "printed", "corrected", "measure", "printed_error", "corrected_error")
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,7 @@ class Run:
             "counts": self.counts,
             "seconds": round(self.seconds, 3),
             "cases": [asdict(r) for r in self.results],
-            "errata": errata(self.tier),
+            "errata": errata(self.results),
             "provenance": provenance(),
         }
 
@@ -73,26 +71,7 @@ def run(
     return Run(tier, globs, tuple(results), time.perf_counter() - start)
 
 
-def errata(tier: Tier) -> list[dict[str, object]]:
-    """Entries of the modules' `ERRATA` (dataclasses or mappings), where these modules exist.
-
-    A field that is a function measures evidence, which can take minutes: it is called in the full tier only.
-    """
-    entries: list[dict[str, object]] = []
-    for name in ERRATA_MODULES:
-        if importlib.util.find_spec(name) is not None:
-            entries += [_fields(entry, tier) for entry in importlib.import_module(name).ERRATA]
-    return entries
-
-
-def _fields(entry: object, tier: Tier) -> dict[str, object]:
-    fields = vars(entry) if is_dataclass(entry) else entry
-    if not isinstance(fields, Mapping):
-        raise TypeError(f"an erratum is a dataclass or a mapping, not a {type(entry).__name__}")
-    return {str(key): jsonable(_measured(value, tier)) for key, value in fields.items()}
-
-
-def _measured(value: object, tier: Tier) -> object:
-    if not callable(value):
-        return value
-    return value() if tier is Tier.FULL else "measured in the full tier"
+def errata(results: Iterable[Result]) -> list[dict[str, object]]:
+    """The errata that the results hold evidence for: a case is about one when its data has all of ERRATUM."""
+    about = [r for r in results if set(ERRATUM) <= set(r.data)]
+    return [{"case": r.id, "status": r.status, **{name: r.data[name] for name in ERRATUM}} for r in about]

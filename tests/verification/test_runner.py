@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from verification import files, provenance, runner
-from verification.case import Case, Measured, Metric, Status, Tier
+from verification.case import Case, Measured, Metric, Result, Status, Tier
 
 Make = Callable[..., str]
 
@@ -143,10 +143,13 @@ def test_the_command_names_no_directory(monkeypatch: pytest.MonkeyPatch) -> None
     assert provenance.command() == "rough-friction verify --only 'hertz/*'"
 
 
-def test_errata_are_gathered_where_they_exist(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    source = "ERRATA = ({'where': 'Eq. (0)', 'evidence': lambda: 0.5},)\n"
-    (tmp_path / "sample_errata.py").write_text(source)
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(runner, "ERRATA_MODULES", ("sample_errata", "verification.surely_no_errata"))
-    assert runner.errata(Tier.FULL) == [{"where": "Eq. (0)", "evidence": 0.5}]
-    assert runner.errata(Tier.QUICK) == [{"where": "Eq. (0)", "evidence": "measured in the full tier"}]
+def test_errata_are_the_cases_that_record_them() -> None:
+    data = {"equation": "0", "printed": "a", "corrected": "b", "measure": "m", "printed_error": 1.0}
+    complete = {**data, "corrected_error": 0.0}
+
+    def result(id: str, data: dict[str, object]) -> Result:
+        measured = Measured(0.0, data=data)
+        return Case(id, "t", "c", "s", Metric.AT_MOST, 0.0, "exact", lambda: measured).run()
+
+    found = runner.errata([result("a/half", {**data}), result("a/whole", {**complete, "more": 2})])
+    assert found == [{"case": "a/whole", "status": "pass", **complete}]
