@@ -14,6 +14,7 @@ from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.outcome import Status
 from refimpl.plan import Plan
+from refimpl.scene import Friction
 from refimpl.slopes import Slopes
 
 
@@ -54,6 +55,7 @@ class Solution:
     separation: Array
     withheld: Mask
     grid: Grid
+    friction: Friction
     sliding_direction: float
     certificate: Certificate
     tolerance: float

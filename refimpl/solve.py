@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 import time
 import warnings
+from dataclasses import replace
 
 import numpy as np
 
 from refimpl.contact.certificate import State, certify
 from refimpl.dense_solver import solve_dense
-from refimpl.errors import require_number
+from refimpl.errors import InputError, require_number
 from refimpl.fft_solver import solve_fft
 from refimpl.forces import perimeter_corrected_area
 from refimpl.friction import Mask
@@ -22,47 +23,76 @@ from refimpl.outcome import Outcome, Status, Visited
 from refimpl.paper import PAPER_TOLERANCE, solve_paper
 from refimpl.plan import Method, Plan, make_plan
 from refimpl.problem import Problem, pose
+from refimpl.refine import Quantity, check_accuracy, deserved_tolerance, refine
 from refimpl.scene import Scene
 from refimpl.solution import Cost, Solution
 from refimpl.surfaces import SurfaceWarning
+from refimpl.uncertainty import iteration_parts, merged, one_grid
 
 
 def solve(
     scene: Scene,
-    grid: int,
+    grid: int | None = None,
     *,
     method: Method = "fft",
+    accuracy: float | None = None,
+    quantity: Quantity | None = None,
     approach: float | None = None,
     oblique: bool | None = None,
     slope_correction: bool = False,
     tolerance: float | None = None,
 ) -> Solution:
-    """Solve a scene on ``grid x grid`` elements.
+    """Solve a scene on ``grid x grid`` elements, or to a relative ``accuracy``; exactly one of them.
 
     Parameters
     ----------
     method : "fft" the production solver, "dense" the plain reference for small grids, "paper" the
         paper's own scheme
+    accuracy : refine until the error bar of ``quantity`` is this share of its value
+    quantity : "friction_coefficient" (the default with friction), "contact_area" (without) or
+        "max_pressure"
     approach : prescribe the approach (m) instead of the scene's load
     oblique : False drops every slope term; None lets the scene decide
     slope_correction : exact facet tractions in Eq. (7) (SPEC 2)
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
-        1e-8, and for "paper" its own load tolerance of 1e-4 (its pressure tolerance is a tenth of it)
+        1e-8 (with ``accuracy``, what that deserves), and for "paper" its own load tolerance of 1e-4
+        (its pressure tolerance is a tenth of it)
 
     Raises `InputError` for input that is out of range, before anything large is allocated.
     """
-    if tolerance is None:
-        tolerance = PAPER_TOLERANCE if method == "paper" else 1e-8
-    require_number("tolerance", tolerance, "a number between 0 and 1", above=0, below=1)
     if approach is not None:
         allowed = "an approach below 0 m (mean planes)" if scene.periodic else "a finite approach in m"
         require_number("approach", approach, allowed, below=0 if scene.periodic else None)
-    elements = Grid(scene.side, grid)
-    plan = make_plan(scene, elements.M, method, oblique=oblique, slope_correction=slope_correction)
+    quantity = quantity or ("contact_area" if scene.friction.is_zero else "friction_coefficient")
+    if accuracy is not None:
+        check_accuracy(accuracy, quantity)
+    if tolerance is None:
+        default = 1e-8 if accuracy is None else deserved_tolerance(accuracy)
+        tolerance = PAPER_TOLERANCE if method == "paper" else default
+    require_number("tolerance", tolerance, "a number between 0 and 1", above=0, below=1)
+
+    def solve_at(M: int) -> Solution:
+        plan = make_plan(
+            scene, Grid(scene.side, M).M, method, oblique=oblique, slope_correction=slope_correction
+        )
+        return _solve_planned(scene, plan, approach, tolerance)
+
+    if accuracy is not None and grid is None:
+        return refine(solve_at, accuracy, quantity)
+    if grid is None or accuracy is not None:
+        raise InputError("grid", grid, "a number of elements per side, or an accuracy, and not both")
+    solution = solve_at(grid)
+    return replace(
+        solution, uncertainty=merged(iteration_parts(solution), solution.uncertainty, one_grid(solution))
+    )
+
+
+def _solve_planned(scene: Scene, plan: Plan, approach: float | None, tolerance: float) -> Solution:
+    """Pose, solve, certify and gather on one grid."""
     started, counter = time.perf_counter(), Counter()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SurfaceWarning)
-        problem = pose(scene, elements, plan.switches, approach)
+        problem = pose(scene, Grid(scene.side, plan.M), plan.switches, approach)
     outcome, state = _solve_posed(problem, plan, tolerance, counter)
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, outcome.iterations)
     notes = tuple(dict.fromkeys(str(w.message) for w in caught))
@@ -131,6 +161,7 @@ def _solution(
         separation=surface_upper - surface_lower,
         withheld=outcome.withheld,
         grid=grid,
+        friction=problem.friction,
         sliding_direction=problem.direction,
         certificate=state.certificate,
         tolerance=tolerance,

@@ -1,0 +1,96 @@
+"""Error bars: how far each reported number may be from the exact solution of the model, in parts.
+
+Parts are absolute, in the number's unit, and meant as 95 % bounds that add. ``iteration`` follows
+from the certificate; ``tau support`` from the states of a settled cycle; ``discretisation`` from
+the contact's perimeter on one grid, or from the change between two grids.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from refimpl.solution import Solution
+
+Parts = dict[str, float]
+Uncertainty = dict[str, Parts]
+
+_SAFETY = 1.25  # Roache's factor for a grid sequence whose order is known
+
+
+def iteration_parts(solution: Solution) -> Uncertainty:
+    """What the certificate leaves open.
+
+    Forces and lengths are uncertain by the worst residual. The area is uncertain by the elements
+    whose pressure or separation is within ten worst residuals of zero.
+    """
+    worst = solution.certificate.worst
+    margin = 10 * worst
+    marginal = (solution.pressure > 0) & (solution.pressure <= margin * solution.max_pressure)
+    lift = abs(solution.approach) or solution.grid.spacing
+    marginal |= (solution.pressure == 0) & (solution.separation <= margin * lift)
+    area = float(np.count_nonzero(marginal)) * solution.grid.element_area
+    relative = ("max_pressure", "approach", "normal_force", "friction_force")
+    parts: Uncertainty = {name: {"iteration": worst * abs(getattr(solution, name))} for name in relative}
+    parts["binormal_force"] = {"iteration": worst * solution.normal_force}
+    parts["contact_area"] = {"iteration": area}
+    slip = adhesive_share(solution)
+    friction = worst * abs(solution.friction_coefficient) + slip * area
+    parts["friction_coefficient"] = {"iteration": friction}
+    return parts
+
+
+def adhesive_share(solution: Solution) -> float:
+    """``d mu / d A = tau / N`` of Eq. (10): what a change of area does to friction (1/m^2)."""
+    return solution.friction.tau / solution.normal_force if solution.normal_force > 0 else 0.0
+
+
+def edge_excess(solution: Solution) -> float:
+    """Area that whole elements add along the contact's edge, ``A - A_corrected`` (m^2)."""
+    return solution.contact_area - solution.contact_area_corrected
+
+
+def one_grid(solution: Solution) -> Uncertainty:
+    """Discretisation parts that a single grid can tell: the edge's, in the area and through tau in mu."""
+    excess = abs(edge_excess(solution))
+    return {
+        "contact_area": {"discretisation": excess},
+        "friction_coefficient": {"discretisation": excess * adhesive_share(solution)},
+    }
+
+
+def two_grids(coarse: Solution, fine: Solution) -> Uncertainty:
+    """Discretisation parts of the fine solution, from the change since a grid of half its elements.
+
+    The edge's excess is known and first order; what is left of area and friction without it, and
+    every other number, is taken to converge with order one at least, so that the change between
+    the grids bounds it.
+    """
+    parts = one_grid(fine)
+    for name in ("max_pressure", "approach", "friction_force", "binormal_force"):
+        parts[name] = {"discretisation": _SAFETY * abs(getattr(fine, name) - getattr(coarse, name))}
+    area = abs(fine.contact_area_corrected - coarse.contact_area_corrected)
+    parts["contact_area"]["discretisation"] += _SAFETY * area
+    friction = _bulk_friction(fine) - _bulk_friction(coarse)
+    parts["friction_coefficient"]["discretisation"] += _SAFETY * abs(friction)
+    parts["contact_area_corrected"] = {"discretisation": _SAFETY * area}
+    return parts
+
+
+def _bulk_friction(solution: Solution) -> float:
+    """Friction coefficient without the share of the edge's excess area."""
+    return solution.friction_coefficient - adhesive_share(solution) * edge_excess(solution)
+
+
+def merged(*several: Mapping[str, Mapping[str, float]]) -> Uncertainty:
+    """All parts of all numbers; of parts with one name the last is kept.
+
+    >>> merged({"approach": {"iteration": 1.0}}, {"approach": {"discretisation": 2.0}})
+    {'approach': {'iteration': 1.0, 'discretisation': 2.0}}
+    """
+    result: Uncertainty = {}
+    for parts in several:
+        for name, values in parts.items():
+            result.setdefault(name, {}).update(values)
+    return result
