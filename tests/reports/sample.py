@@ -43,3 +43,7 @@ TEXTBOOK = {
     "textbook": [1e-15, 1e-13, 1e-11],
     "production": [1e-16, 2e-16, 1e-16],
 }
+ERRATUM = {
+    "case": "a/1", "status": "pass", "equation": "A4", "printed": "sin xi", "corrected": "cos xi",
+    "measure": "residual", "printed_error": 0.3, "corrected_error": 1e-12,
+}  # fmt: skip

@@ -10,12 +10,13 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 import refimpl
 from refimpl.plan import METHODS
 from tests.verification.test_cli import Capture, refused
-from verification.cli import main, solve
+from verification.cli import main, plot, solve
 from verification.cli.plot import hertz_of
 
 SCENE = """
@@ -203,3 +204,19 @@ def test_a_bad_scene_is_refused_and_nothing_is_written(
     path.write_text(SCENE.replace(old, new))
     assert says in refused(capsys, "solve", str(path), "--json", str(tmp_path / "s.json"))
     assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
+
+
+def test_maps_and_profiles_have_x_to_the_right(scene: str) -> None:
+    solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
+    pressure = np.zeros((8, 8))
+    pressure[6, 4] = 3e6  # i = 6 along x, j = 4 along y: on the line through the centre along x
+    marked = dataclasses.replace(solution, pressure=pressure, max_pressure=3e6)
+    over, along_x, along_y = Figure().subplots(1, 3)
+    plot._map(over, marked, "pressure", "viridis")
+    shown = over.images[0].get_array()
+    assert shown is not None
+    assert np.unravel_index(np.argmax(shown), shown.shape) == (4, 6)  # row y, column x
+    plot._profile(along_x, marked, None, axis=0)
+    plot._profile(along_y, marked, None, axis=1)
+    assert np.argmax(along_x.lines[0].get_ydata()) == 6
+    assert np.max(along_y.lines[0].get_ydata()) == 0
