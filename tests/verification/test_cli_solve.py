@@ -215,7 +215,8 @@ def test_maps_and_profiles_have_x_to_the_right(scene: str) -> None:
     plot._map(over, marked, "pressure", "viridis")
     shown = over.images[0].get_array()
     assert shown is not None
-    assert np.unravel_index(np.argmax(shown), shown.shape) == (4, 6)  # row y, column x
+    row, column = np.unravel_index(np.argmax(shown), shown.shape)
+    assert (int(row), int(column)) == (4, 6)  # y down the rows, x along the columns
     plot._profile(along_x, marked, None, axis=0)
     plot._profile(along_y, marked, None, axis=1)
     assert np.argmax(along_x.lines[0].get_ydata()) == 6
