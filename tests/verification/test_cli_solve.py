@@ -6,6 +6,7 @@ import dataclasses
 import json
 import re
 from pathlib import Path
+from typing import get_args
 
 import meshio
 import numpy as np
@@ -15,6 +16,7 @@ from PIL import Image
 
 import refimpl
 from refimpl.plan import METHODS
+from refimpl.refine import Quantity
 from tests.verification.test_cli import Capture, refused
 from verification.cli import main, plot, solve
 from verification.cli.plot import hertz_of
@@ -53,6 +55,23 @@ def test_help_names_the_shipped_scenes() -> None:
 
 def test_the_methods_are_those_of_the_solver() -> None:
     assert set(solve.METHODS) == set(METHODS)
+    assert set(solve.ACCURATE) == set(get_args(Quantity))
+
+
+def test_accuracy_that_is_reached_and_that_is_not(
+    scene: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    assert main(["solve", scene, "--accuracy", "0.05"]) == 0
+    printed = capsys.readouterr().out
+    bar = re.search(r"friction coefficient mu +(\S+) +\+- (\S+)", printed)
+    assert bar is not None
+    assert 0 < float(bar[2]) <= 0.055 * float(bar[1])  # the table rounds the bar to one digit
+    coarse = refimpl.solve(refimpl.read_scene(scene), grid=8)
+    parts = {"iteration": 0.03 * coarse.contact_area, "discretisation": 0.03 * coarse.contact_area}
+    doubtful = dataclasses.replace(coarse, uncertainty={"contact_area": parts})
+    monkeypatch.setattr(refimpl, "solve", lambda *_, **__: doubtful)
+    assert main(["solve", scene, "--accuracy", "0.05", "--quantity", "contact_area"]) == 1
+    assert main(["solve", scene, "--accuracy", "0.07", "--quantity", "contact_area"]) == 0
 
 
 def test_json_has_the_solutions_numbers(scene: str, capsys: Capture) -> None:
@@ -175,6 +194,8 @@ def test_hertz_of_a_ball_in_a_cup_and_of_no_ball() -> None:
         (["hertz", "--grid", "1000000"], "GB"),
         (["hertz", "--grid", "8", "--method", "exact"], "exact"),
         (["hertz", "--grid", "8", "--tolerance", "-1"], "tolerance"),
+        (["hertz", "--grid", "8", "--accuracy", "0.1"], "not allowed with"),
+        (["hertz", "--accuracy", "2"], "accuracy"),
         (["hertz", "--grid", "8", "--approach", "nan"], "approach"),
         (["hertz", "--grid", "8", "--plot", "picture.jpg"], ".png"),
         (["hertz", "--grid", "8", "--vtk", "surfaces.stl"], ".vtu"),

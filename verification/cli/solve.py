@@ -16,12 +16,16 @@ EPILOG = """examples:
   rough-friction solve table1-smooth
   rough-friction solve scene.toml --grid 512 --json result.json --plot result.png --vtk result.vtu
   rough-friction solve hertz --grid 48 --method dense
+  rough-friction solve scene.toml --accuracy 0.01
   rough-friction solve scene.toml --approach 1.2e-6
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
-METHODS = ("fft", "dense", "paper")  # those of refimpl, which --help does not wait for
+DEFAULT_GRID = 256
+# Those of refimpl, which --help does not wait for.
+METHODS = ("fft", "dense", "paper")
+ACCURATE = ("friction_coefficient", "contact_area", "max_pressure")
 
 # attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 QUANTITIES = (
@@ -47,7 +51,12 @@ def add_parser(commands: Parsers) -> None:
     )
     add = parser.add_argument
     add("scene", metavar="SCENE", help="a scene's TOML file, or the name of a shipped scene")
-    add("--grid", metavar="N", type=int, default=256, help="N x N elements (default 256)")
+    size = parser.add_mutually_exclusive_group().add_argument
+    size("--grid", metavar="N", type=int, help=f"N x N elements (default {DEFAULT_GRID})")
+    size("--accuracy", metavar="A", type=float, help="refine until the error bar is this share of mu")
+    add(
+        "--quantity", choices=ACCURATE, help="what --accuracy is about (default mu; without friction, A)"
+    )
     add(
         "--method",
         choices=METHODS,
@@ -77,9 +86,12 @@ def run(options: argparse.Namespace) -> int:
     plot.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     scene = refimpl.read_scene(options.scene)
+    quantity = options.quantity or ("contact_area" if scene.friction.is_zero else "friction_coefficient")
     solution = refimpl.solve(
         scene,
-        grid=options.grid,
+        grid=DEFAULT_GRID if options.grid is None and options.accuracy is None else options.grid,
+        accuracy=options.accuracy,
+        quantity=quantity,
         method=options.method,
         approach=options.approach,
         oblique=options.oblique,
@@ -92,7 +104,10 @@ def run(options: argparse.Namespace) -> int:
         vtk.write(solution, options.vtk)
     emit(document(solution, options.scene), options.json, table(solution, options.scene))
     good = refimpl.Status.CONVERGED, refimpl.Status.CYCLED  # a settled cycle is certified as well
-    return 0 if solution.status in good else 1
+    wanted = (
+        math.inf if options.accuracy is None else options.accuracy * abs(getattr(solution, quantity))
+    )
+    return 0 if solution.status in good and error_bar(solution, quantity) <= wanted else 1
 
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
@@ -107,8 +122,13 @@ def table(solution: Solution, scene: str) -> str:
     """What was found, how well it converged, what was left out, and the warnings."""
     size = f"{solution.grid.M} x {solution.grid.M}"
     found = [
-        [name, _shown(getattr(solution, attribute) * factor), unit]
-        for attribute, name, factor, unit in QUANTITIES
+        [
+            name,
+            _shown(getattr(solution, name_) * factor),
+            _bar(error_bar(solution, name_) * factor),
+            unit,
+        ]
+        for name_, name, factor, unit in QUANTITIES
     ]
     summary = solution.summary()
     certificate = [
@@ -124,6 +144,15 @@ def table(solution: Solution, scene: str) -> str:
         *(f"warning: {text}" for text in solution.warnings),
     ]
     return "\n\n".join(part for part in parts if part)
+
+
+def error_bar(solution: Solution, quantity: str) -> float:
+    """The sum of the parts of a number's uncertainty, in its unit; 0 where none is stated."""
+    return math.fsum(solution.uncertainty.get(quantity, {}).values())
+
+
+def _bar(value: float) -> str:
+    return f"+- {value:.1g}" if value else ""
 
 
 def _shown(value: float) -> str:

@@ -41,9 +41,18 @@ def add_parser(commands: Parsers) -> None:
     )
     add = parser.add_argument
     add("study", metavar="STUDY", help="a study's TOML file, or the name of a shipped study")
-    add("--store", metavar="FILE.sqlite", type=output_file, help="default: the study's name, .sqlite, here")
+    add(
+        "--store",
+        metavar="FILE.sqlite",
+        type=output_file,
+        help="default: the study's name, .sqlite, here",
+    )
     add("--workers", metavar="N", type=int, default=2, help="worker processes (default 2)")
-    add("--scheduler", metavar="ADDRESS", help="use the workers of this dask.distributed scheduler instead")
+    add(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="use the workers of this dask.distributed scheduler instead",
+    )
     add("--csv", metavar="FILE", type=output_file, help="export the study's rows as CSV")
     add("--parquet", metavar="FILE", type=output_file, help="export the study's rows as Parquet")
     add_json(parser)
