@@ -247,9 +247,11 @@ class _Scheme:
         return self._compliance * self.operator.normal(pressure)
 
     def _apply_periodic(self, pressure: Array) -> Array:
+        self.operator.counter.add("periodic", pressure.size)
         result: Array = sfft.irfft2(sfft.rfft2(pressure) * self._periodic_hat, s=pressure.shape)
         return result
 
     def _invert(self, residual: Array) -> Array:
+        self.operator.counter.add("periodic", residual.size)
         result: Array = sfft.irfft2(sfft.rfft2(residual) / self._periodic_hat, s=residual.shape)
         return result
