@@ -28,7 +28,7 @@ def document(rounds: int, budget: float) -> object:
         "clock": "cpu: time.process_time of one process with one thread; wall: time.perf_counter",
         "machine": "shared with other work while this ran: compare processor times, within one grid",
         "load average": {"before": load_before, "after": os.getloadavg()},
-        "order": "the methods take turns on every grid; the least of the rounds counts",
+        "order": "the methods take turns on every grid; the least of the rounds counts; over 20 s: one round",
         "rounds": rounds,
         "budget (s)": budget,
         "kernel tables": "computed once beforehand and shared by all methods",
