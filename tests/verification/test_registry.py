@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Callable
+from textwrap import indent
 
 import pytest
 
@@ -32,8 +33,12 @@ def test_all_modules_are_found_and_ordered_by_module_and_line(make_package: Make
 
 @pytest.mark.parametrize(
     "modules",
-    [{"alpha": source("a/1") + source("a/1")}, {"alpha": source("a/1"), "beta": source("a/1")}],
-    ids=["one module", "two modules"],
+    [
+        {"alpha": source("a/1") + source("a/1")},
+        {"alpha": source("a/1"), "beta": source("a/1")},
+        {"alpha": "for _ in range(2):\n" + indent(source("a/1"), "    ")},
+    ],
+    ids=["one module", "two modules", "a loop"],
 )
 def test_an_id_declared_twice_is_refused(make_package: Make, modules: dict[str, str]) -> None:
     package = make_package(**modules)
