@@ -68,17 +68,25 @@ def printed(
     return flat + np.array(change) - centre, flat
 
 
+def flamant(x: float, s: Real, along: Real, down: Real, nu: float) -> float:
+    """Vertical displacement at x of a half-plane's boundary under forces (along, down) (n,) at s, E = 1.
+
+    Up to the constant of the datum; Johnson 1985, Eqs (2.19) and (2.22).
+    """
+    normal = -2 * (1 - nu**2) / np.pi * down * np.log(np.abs(x - s))
+    tangential = (1 + nu) * (1 - 2 * nu) / 2 * along * np.sign(x - s)
+    return float(np.sum(normal + tangential))
+
+
 def _surface(x: float, profile: Sinusoid, theta: Theta, nu: float) -> float:
     """Flamant superposition of the net pseudo tractions at x, up to the datum's constant."""
-    s, weights = _graded_nodes([-1.0, 1.0, x, 0.0], profile.wavelength)
+    s, weights = graded_nodes([-1.0, 1.0, x, 0.0], profile.wavelength)
     along, down = pseudo_tractions(s, profile, theta)
     load_along, load_down = applied(s, profile)
-    normal = -2 * (1 - nu**2) / np.pi * (down + load_down) * np.log(np.abs(x - s))
-    tangential = (1 + nu) * (1 - 2 * nu) / 2 * (along + load_along) * np.sign(x - s)
-    return float(np.sum(weights * (normal + tangential)))
+    return flamant(x, s, weights * (along + load_along), weights * (down + load_down), nu)
 
 
-def _graded_nodes(centres: list[float], wavelength: float) -> tuple[Real, Real]:
+def graded_nodes(centres: list[float], wavelength: float) -> tuple[Real, Real]:
     """Gauss nodes and weights on panels that resolve the waves and shrink towards ``centres``."""
     waves = np.arange(-REACH, REACH + 0.5 / PANELS_PER_WAVE, 1 / PANELS_PER_WAVE) * wavelength
     halves = 2.0 ** np.arange(np.ceil(np.log2(wavelength)), -FINEST, -1)

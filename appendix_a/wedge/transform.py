@@ -34,7 +34,7 @@ def remainders(z: Complex, gamma: float) -> tuple[Complex, Complex]:
         R_T = {sin(alpha (1-z)) sin(2 gamma z) - z sin(2 gamma) sin(alpha (1-z) + pi z)} / (D sin(pi z))
 
     Every sine is written with its growing exponential taken out (they multiply to exp(3i alpha z)), so
-    nothing overflows; expm1 keeps full relative accuracy for gamma -> 0 and for gamma -> pi/2.
+    nothing overflows; expm1 keeps the error proportional to gamma for gamma -> 0 and small for gamma -> pi/2.
     """
     alpha = np.pi / 2 - gamma
     iz = 1j * z

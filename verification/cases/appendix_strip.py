@@ -159,7 +159,7 @@ def fig12() -> Measured:
     "appendix-strip/flank-first-order",
     title="A strip on a flank, to first order",
     claim="on a flank the neighbours change by (1+nu)(1-2nu) tan(slope) p a / E relative to the centre, "
-    "those downhill rise and those uphill sink: at 6.5 degrees and nu = 0.3 by more than 2 % of their coefficient",
+    "those downhill rise, those uphill sink: at 6.5 degrees, nu = 0.3 by over 2 % of their coefficient",
     source=SOURCE,
     metric="at_least",
     tolerance=0.02,

@@ -66,7 +66,7 @@ def faces() -> Measured:
     "appendix-wedge/residuals",
     title="Wedge: equilibrium and compatibility",
     claim="r |div sigma| / max |sigma| and the departure of sigma_r + sigma_theta from its mean over a "
-    "circle, over max |sigma|, are at most 1e-10 at 200 random points: gamma in [1e-6, 1.5], r/a in [1e-4, 1e4]",
+    "circle, over max |sigma|, are at most 1e-10 at 200 random points (gamma 1e-6 ... 1.5, r/a 1e-4 ... 1e4)",
     source="equilibrium and compatibility, by differences of order 16 and the mean value property",
     metric="at_most",
     tolerance=1e-10,

@@ -1,0 +1,120 @@
+"""Strip on a wavy boundary: (A1)'s field, the first-order theory, the paper's superposition."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from appendix_a.errata import ERRATA, Erratum
+from appendix_a.errors import InputError
+from appendix_a.strip import Theta, first_order, printed, superposition
+from appendix_a.strip.field import flat_displacement, stresses
+from appendix_a.strip.profile import Sinusoid
+
+OFFSETS = np.array([-10.0, -3.0, -1.0, -0.5, 0.0, 0.5, 1.0, 3.0, 10.0])
+
+
+def test_stresses_on_the_axis() -> None:
+    """Johnson 1985, Eq. (2.30): with half-angle alpha = atan(1/y), -(2 alpha +- sin 2 alpha)/pi."""
+    y = np.array([0.1, 1.0, 5.0])
+    alpha = np.arctan(1 / y)
+    sigma_x, sigma_y, tau = stresses(0.0, y)
+    np.testing.assert_allclose(sigma_x, -(2 * alpha - np.sin(2 * alpha)) / np.pi, rtol=1e-13)
+    np.testing.assert_allclose(sigma_y, -(2 * alpha + np.sin(2 * alpha)) / np.pi, rtol=1e-13)
+    np.testing.assert_allclose(tau, 0, atol=1e-16)
+
+
+def test_load_on_any_depth() -> None:
+    x, weights = np.polynomial.legendre.leggauss(400)
+    _, sigma_y, _ = stresses(np.tan(x * np.pi / 2), 1.0)
+    carried = np.sum(weights * sigma_y * np.pi / 2 / np.cos(x * np.pi / 2) ** 2)
+    assert carried == pytest.approx(-2, rel=1e-10)
+
+
+def test_flat_displacement_is_that_of_johnson() -> None:
+    # Johnson 1985, Eq. (2.30b), at x = 2 a: -(1-nu^2)/(pi E) p a {3 ln 9 - 1 ln 1}
+    assert flat_displacement(2.0, 0.3) == pytest.approx(-0.91 / np.pi * 3 * np.log(9), rel=1e-14)
+
+
+def test_profile() -> None:
+    crest = Sinusoid(6.5, 100.0, 0.0)
+    x = np.linspace(-70, 70, 29)
+    np.testing.assert_allclose(crest.depth(x), 2 * crest.amplitude * np.sin(np.pi * x / 100) ** 2, atol=1e-14)
+    assert crest.depth(50.0) == pytest.approx(2 * crest.amplitude)
+    flank = Sinusoid(6.5, 100.0, 0.25)
+    assert np.degrees(flank.slope(0.0)) == pytest.approx(6.5, rel=1e-14)
+    assert flank.depth(1.0) > 0 > flank.depth(-1.0)  # +x is downhill
+
+
+def test_first_order_by_hand() -> None:
+    wavy, flat = first_order(2.0, 1e6, 0.25, 0.0, offsets=[-5.0, -0.5, 0.0, 0.5, 5.0])
+    slope = np.tan(np.radians(2.0))
+    np.testing.assert_allclose(wavy - flat, slope * np.array([1, 0.5, 0, -0.5, -1]), rtol=1e-9, atol=1e-15)
+
+
+def test_first_order_vanishes_for_an_incompressible_body() -> None:
+    wavy, flat = first_order(6.5, 50.0, 0.2, 0.5, offsets=OFFSETS)
+    np.testing.assert_array_equal(wavy, flat)
+
+
+def test_crest_and_trough_are_opposite() -> None:
+    crest, flat = first_order(3.0, 30.0, 0.0, 0.3, offsets=OFFSETS)
+    trough, _ = first_order(3.0, 30.0, 0.5, 0.3, offsets=OFFSETS)
+    np.testing.assert_allclose(crest - flat, flat - trough, rtol=1e-9, atol=1e-15)
+    assert np.all((crest - flat)[np.abs(OFFSETS) > 0] < 0)  # beside a crest the surface sinks less
+
+
+def test_superposition_is_the_first_order_beside_the_strip() -> None:
+    x = np.array([-4.0, -1.5, 1.5, 4.0])
+    by_paper, flat = printed(0.01, 20.0, 0.3, offsets=x)
+    expanded, _ = first_order(0.01, 20.0, 0.0, 0.3, offsets=x)
+    # second order, 1.7e-4 rad over pi a / lambda
+    np.testing.assert_allclose(by_paper - flat, expanded - flat, rtol=2e-3)
+
+
+def test_superposition_reaches_far_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    x = np.array([0.5, 3.0, 20.0])
+    once, _ = printed(15.0, 10.0, 0.3, offsets=x)
+    monkeypatch.setattr(superposition, "REACH", 2 * superposition.REACH)
+    twice, _ = printed(15.0, 10.0, 0.3, offsets=x)
+    np.testing.assert_allclose(once, twice, rtol=0, atol=2e-9)
+
+
+def test_flamant_superposition_of_a_uniform_strip() -> None:
+    nu, x = 0.3, 2.5
+    s, weights = superposition.graded_nodes([-1.0, 1.0, x, 0.0], 20.0)
+    weights = np.where(np.abs(s) < 1, weights, 0)
+    down = [superposition.flamant(at, s, 0 * s, weights, nu) for at in (x, 0.0)]
+    assert down[0] - down[1] == pytest.approx(flat_displacement(x, nu), rel=1e-9)
+    # a traction along +x on |s| < 1 pushes the boundary in ahead of it: Johnson 1985, Eq. (2.22)
+    along = [superposition.flamant(at, s, weights, 0 * s, nu) for at in (x, 0.0)]
+    assert along[0] - along[1] == pytest.approx((1 + nu) * (1 - 2 * nu), rel=1e-9)
+
+
+def test_slope_as_theta_moves_even_a_flat_boundary() -> None:
+    """Literally, (A3) asks for a shear traction p under the strip, worth (1+nu)(1-2nu) p a/E beside it."""
+    literal, flat = printed(0.0, 100.0, 0.3, offsets=[-3.0, 3.0], theta=Theta.SLOPE)
+    antisymmetric = (literal - flat)[1] - (literal - flat)[0]
+    assert antisymmetric == pytest.approx(2 * 1.3 * 0.4, rel=1e-9)
+
+
+@pytest.mark.parametrize("erratum", ERRATA, ids=lambda e: e.equation)
+def test_errata(erratum: Erratum) -> None:
+    assert erratum.check() <= erratum.tolerance
+    assert erratum.evidence() > 0.4
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        ((90.0, 10.0, 0.0, 0.3), "slope_deg"),
+        ((-1.0, 10.0, 0.0, 0.3), "slope_deg"),
+        ((1.0, 0.0, 0.0, 0.3), "wavelength"),
+        ((1.0, 10.0, np.inf, 0.3), "position"),
+        ((1.0, 10.0, 0.0, 0.7), "nu"),
+    ],
+)
+def test_input_is_refused(arguments: tuple[float, float, float, float], field: str) -> None:
+    with pytest.raises(InputError) as refused:
+        first_order(*arguments, offsets=[1.0])
+    assert refused.value.field == field

@@ -1,0 +1,62 @@
+"""Wedge tip on a half-space: the load at its base, the limit without a tip, the first-order change."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from appendix_a.errors import InputError
+from appendix_a.strip.field import flat_displacement
+from appendix_a.wedge_tip import base_tractions, graded_nodes, relative_difference, tip_displacement
+
+X = np.array([0.0, 0.5, 0.9, 1.2, 3.0, 9.99, 10.01, 40.0])
+
+
+@pytest.mark.parametrize("slope", [0.1, 6.5, 30.0])
+def test_base_carries_the_load(slope: float) -> None:
+    gamma = np.radians(slope)
+    s, weights = graded_nodes([0.0, np.cos(gamma), 10.0], 10.0)
+    _, down = base_tractions(s, gamma, 10.0)
+    assert np.sum(weights * down) == pytest.approx(np.cos(gamma), rel=1e-12)  # half of 2 a cos(gamma)
+
+
+def test_no_slope_no_difference() -> None:
+    # graded panels leave 2e-8 at half the depth of grading; 1e-10 here
+    np.testing.assert_allclose(relative_difference(X, 0.0, 0.3), 0, atol=1e-9)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_first_order_in_the_slope(nu: float) -> None:
+    """Relative to the apex the change is -(1+nu)(1-2nu) gamma min(x, 1), as strip theory has it."""
+    gamma, x = 1e-4, np.array([0.5, 0.9, 1.2, 3.0])
+    tip = tip_displacement(x, gamma, nu, half_base=10.0, datum=0.0)
+    change = (tip - flat_displacement(x, nu)) / gamma
+    # second order: gamma over the distance to the strip's end
+    np.testing.assert_allclose(change, -(1 + nu) * (1 - 2 * nu) * np.minimum(x, 1), rtol=0, atol=5e-3)
+
+
+def test_displacement_is_continuous_at_the_foot_of_the_tip() -> None:
+    inner, outer = tip_displacement([10 - 1e-7, 10 + 1e-7], np.radians(6.5), 0.3, half_base=10.0, datum=100.0)
+    assert inner == pytest.approx(outer, abs=1e-5)
+
+
+def test_far_away_only_the_resultant_counts() -> None:
+    """The tip carries 2 a cos(gamma), the flat strip 2 a: far from both, that is the whole difference."""
+    gamma = np.radians(20.0)
+    far = relative_difference(2000.0, gamma, 0.3, datum=4000.0)
+    assert far == pytest.approx(np.cos(gamma) - 1, abs=1e-4)
+
+
+def test_datum_is_not_a_number_there() -> None:
+    assert np.isnan(relative_difference(100.0, 0.1, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("keywords", "field"),
+    [({"gamma": 2.0}, "gamma"), ({"nu": -0.1}, "nu"), ({"half_base": 0.5}, "half_base")],
+)
+def test_input_is_refused(keywords: dict[str, float], field: str) -> None:
+    arguments = {"gamma": 0.1, "nu": 0.3} | keywords
+    with pytest.raises(InputError) as refused:
+        relative_difference(2.0, **arguments)
+    assert refused.value.field == field
