@@ -91,7 +91,7 @@ def _half_space(x: float, gamma: float, nu: float, half_base: float) -> float:
 
     The pressure is even and the shear odd in s, so both sums run over 0 < s < half_base.
     """
-    s, weights = _graded_nodes([0.0, np.cos(gamma), min(x, half_base), half_base], half_base)
+    s, weights = graded_nodes([0.0, np.cos(gamma), min(x, half_base), half_base], half_base)
     along, down = base_tractions(s, gamma, half_base)
     logs = np.log(np.abs(x - s)) + np.log(x + s)
     normal = -2 * (1 - nu**2) / np.pi * down * logs
@@ -99,7 +99,7 @@ def _half_space(x: float, gamma: float, nu: float, half_base: float) -> float:
     return float(np.sum(weights * (normal + tangential)))
 
 
-def _graded_nodes(centres: list[float], end: float) -> tuple[Real, Real]:
+def graded_nodes(centres: list[float], end: float) -> tuple[Real, Real]:
     """Gauss nodes and weights on (0, end), on panels that shrink towards ``centres``."""
     halves = end * 2.0 ** np.arange(0, -FINEST, -1)
     graded = [c + side * halves for c in centres for side in (-1, 1)]
