@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from appendix_a.errata import ERRATA, Erratum
 from verification.case import Measured
 from verification.registry import case
@@ -36,4 +38,4 @@ def declare(erratum: Erratum, slug: str) -> None:
 
 
 for _erratum in ERRATA:
-    declare(_erratum, "".join(c if c.isalnum() else "-" for c in _erratum.equation.lower()).strip("-"))
+    declare(_erratum, "-".join(re.findall(r"\w+", _erratum.equation.lower())))
