@@ -19,15 +19,16 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import MeshTri
 
-from appendix_a.fem.elasticity import PlaneStrain, plane_strain
+from appendix_a.fem.elasticity import PlaneStrain
 from appendix_a.fem.geometry import Boundary, bend, flat
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source, graded_mesh
+from appendix_a.fem.result import WavyResult
 
 Array = NDArray[np.float64]
 SOLVED_NU = (0.0, 0.3)  # kappa = 3 and 1.8; nu = 1/2 (kappa = 1) is extrapolated with a gain of 7/3
 # (cell size over distance to the next source, fans about centres); each level has about twice the unknowns
-LEVELS = ((1.0, False), (1.0, True), (0.5, False), (0.5, True), (0.25, False), (0.25, True))
+LEVELS = ((1.0, False), (1.0, True), (0.5, False), (0.5, True), (0.25, False), (0.25, True), (0.125, True))
 ORDER = 3  # at equal error quadratics need five times the unknowns; the sides are quadratic
 
 
@@ -54,7 +55,7 @@ def _mesh(setup: Setup, level: int) -> MeshTri:
 def body_of(setup: Setup, level: int, boundary: Boundary) -> PlaneStrain:
     """The elastic body under `boundary` on the reference mesh of `level`."""
     mesh = setup.mesh(level)
-    return plane_strain(mesh, bend(mesh, boundary), setup.order)
+    return PlaneStrain.on(mesh, bend(mesh, boundary), setup.order)
 
 
 @lru_cache(maxsize=24)
@@ -76,6 +77,20 @@ class Departure:
         share = (nu - SOLVED_NU[0]) / (SOLVED_NU[1] - SOLVED_NU[0])
         first, second = self.first / (1.0 + SOLVED_NU[0]), self.second / (1.0 + SOLVED_NU[1])
         return (1.0 + nu) * ((1.0 - share) * first + share * second)
+
+
+@dataclass(frozen=True)
+class Departures:
+    """Rough minus flat displacement of one geometry, for every nu: three meshes, three outer radii."""
+
+    offsets: Array
+    meshes: tuple[Departure, ...]
+    radii: tuple[Departure, ...]
+
+    def result(self, nu: float) -> WavyResult:
+        """The displacements at one Poisson ratio and their error."""
+        meshes, radii = [d.at(nu) for d in self.meshes], [d.at(nu) for d in self.radii]
+        return WavyResult.of(self.offsets, pressed_strip(self.offsets, nu), meshes, radii)
 
 
 def departure(setup: Setup, level: int, boundary: Boundary, offsets: Array) -> Departure:

@@ -76,6 +76,17 @@ def ridge_boundary(slope_deg: float, half_base: float) -> Boundary:
     return Boundary(height, -end, end, depth=half_base)
 
 
+def cap_boundary(slope_deg: float, half_base: float) -> Boundary:
+    """A parabolic cap of slope `slope_deg` at its rim |x| = half_base, on a flat body; its top at x = 0."""
+    curvature = math.tan(math.radians(slope_deg)) / half_base
+
+    def height(x: Array) -> Array:
+        return curvature / 2 * np.minimum(np.abs(x), half_base) ** 2
+
+    end = strip_end(lambda x: curvature * x, +1)
+    return Boundary(height, -end, end, depth=half_base)
+
+
 def _smooth_step(t: Array) -> Array:
     """0 for t <= 0, 1 for t >= 1, twice continuously differentiable between."""
     t = np.clip(t, 0.0, 1.0)
@@ -86,9 +97,8 @@ def bend(mesh: MeshTri, boundary: Boundary) -> MeshTri2:
     """The reference mesh on the boundary's body, with quadratic sides whose nodes lie on the profile."""
     curved = MeshTri2.from_mesh(mesh)
     xi, eta = curved.doflocs
-    # a + b xi carries +-1 to the strip's ends; the carrier fades like xi^-4, so far away x = xi + O(xi^-3)
-    shift, stretch = (boundary.right + boundary.left) / 2, (boundary.right - boundary.left) / 2 - 1.0
-    fade = ((1.0 + 1.0 / 16.0) / (1.0 + (xi / 4.0) ** 2)) ** 2
-    x = xi + (shift + stretch * xi) * fade
+    # linear between vertices of the mesh: +-1 to the strip's ends, beyond +-4 nothing moves
+    x = np.interp(xi, [-4.0, -1.0, 1.0, 4.0], [-4.0, boundary.left, boundary.right, 4.0])
+    x = np.where(np.abs(xi) > 4.0, xi, x)
     y = eta + boundary.height(x) * np.exp(-eta / boundary.depth)
     return MeshTri2(np.array([x, y]), curved.t)

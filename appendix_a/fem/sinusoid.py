@@ -3,70 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from appendix_a.errors import InputError
-from appendix_a.fem.departure import Departure, Setup, departure
+from appendix_a.fem.departure import Departure, Departures, Setup, departure
 from appendix_a.fem.geometry import sinusoid_boundary
-from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source
+from appendix_a.fem.result import WavyResult
 
 Array = NDArray[np.float64]
 END_SIZE = 2.0**-7  # cell at the strip's ends; 2^-10 changes displacements by less than 1e-4 % of flat
 REACH = 3.0  # wavelengths kept on either side; 4 and 8 change less than 0.001 % of flat
 OUTER = 8.0  # outer boundary over reach; 64 changes less than 0.001 % of flat
 REACHES = (0.5, 0.5**0.5, 1.0)  # the three outer radii, in units of the one used
-
-
-@dataclass(frozen=True)
-class WavyResult:
-    """Vertical surface displacements at `offsets` (m,) from the strip's centre, relative to the centre's.
-
-    `wavy` (m,) and the exact `flat` (m,) are in units of p a / E, positive into the body.
-    `discretisation_error` is the estimated error of `wavy`, hence of `wavy - flat`, in the same units, the
-    largest over the offsets: per offset the change between the two finest of three meshes (`mesh_error`)
-    plus that between the two largest of three outer radii (`truncation_error`).
-    `mesh_values` (3, m) are `wavy` on the three meshes, coarse to fine.
-    """
-
-    offsets: Array
-    wavy: Array
-    flat: Array
-    discretisation_error: float
-    mesh_error: Array
-    truncation_error: Array
-    mesh_values: Array
-
-    @property
-    def percentage_points(self) -> Array:
-        """(m,) estimated error as a percentage of the flat coefficient at the same offset; nan where zero."""
-        away = self.flat != 0.0
-        relative = np.full(self.flat.shape, np.nan)
-        relative[away] = 100.0 * (self.mesh_error + self.truncation_error)[away] / np.abs(self.flat[away])
-        return relative
-
-
-@dataclass(frozen=True)
-class Departures:
-    """Wavy minus flat displacement of one geometry, for every nu: three meshes, three outer radii."""
-
-    offsets: Array
-    meshes: tuple[Departure, ...]
-    radii: tuple[Departure, ...]
-
-    def result(self, nu: float) -> WavyResult:
-        """The displacements at one Poisson ratio and their error."""
-        meshes = [d.at(nu) for d in self.meshes]
-        radii = [d.at(nu) for d in self.radii]
-        flat = pressed_strip(self.offsets, nu)
-        mesh_error, truncation = np.abs(meshes[-1] - meshes[-2]), np.abs(radii[-1] - radii[-2])
-        largest = float(np.max(mesh_error + truncation, initial=0.0))
-        return WavyResult(
-            self.offsets, flat + meshes[-1], flat, largest, mesh_error, truncation, flat + np.array(meshes)
-        )
 
 
 def sinusoid(

@@ -1,0 +1,147 @@
+"""Table of the error of neighbour coefficients in line with a slope: reading it, for one body and for a pair.
+
+Axes: slope, wavelength, position; every nu, since 2 mu u is linear in kappa = 3 - 4 nu.  The first-order
+part is known (`leading_order`).  What is tabulated is the rest, from the second order on:
+
+    rough - flat = first order + tan(slope)^2 (1 + nu) [(3 - 4 nu) A + B],
+
+A and B per slope, wavelength, position and offset; smooth enough to interpolate.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+
+from appendix_a.errors import InputError
+from appendix_a.fem.halfplane import pressed_strip
+from appendix_a.leading_order import coupling
+
+Array = NDArray[np.float64]
+VERSION = 1
+COMMAND = "rough-friction appendix-a map"
+AXES = ("slope_deg", "wavelength", "position", "offset")
+ARRAYS = ("kappa_part", "constant_part", "error_percentage_points")
+
+
+@dataclass(frozen=True)
+class CoefficientMap:
+    """The table: axes (lengths in units of the strip's half-width a) and what stands there.
+
+    `kappa_part` A and `constant_part` B are [slope, wavelength, position, offset].  `error_percentage_points`
+    [slope, wavelength, position] is the estimated error (three meshes, three outer radii) as a percentage of
+    the flat coefficient, the largest over offsets and nu.
+    """
+
+    slope_deg: tuple[float, ...]
+    wavelength: tuple[float, ...]
+    position: tuple[float, ...]
+    offset: tuple[float, ...]
+    kappa_part: Array
+    constant_part: Array
+    error_percentage_points: Array
+
+    def departure(self, slope_deg: float, wavelength: float, position: float, nu: float) -> Array:
+        """Rough minus flat u(x) - u(0) (m,) at the table's offsets, one body, in units of p a / E.
+
+        slope_deg: 0 to the largest tabulated; wavelength: at least the smallest (beyond the largest the
+        rest is taken from there); position: any.  Raises InputError.
+        """
+        if not 0.0 <= slope_deg <= self.slope_deg[-1]:
+            raise InputError("slope_deg", slope_deg, f"0 to {self.slope_deg[-1]:g} degrees")
+        if not wavelength >= self.wavelength[0]:
+            raise InputError("wavelength", wavelength, f"at least {self.wavelength[0]:g} half-widths")
+        turn = position % 1.0
+        mirrored = turn > 0.5
+        tangent = math.tan(math.radians(slope_deg))
+        where = (
+            max(tangent, math.tan(math.radians(self.slope_deg[0]))),
+            math.log(min(wavelength, self.wavelength[-1])),
+            1.0 - turn if mirrored else turn,
+        )
+        rest_a, rest_b = (self._interpolated(p, where) for p in (self.kappa_part, self.constant_part))
+        rest = tangent**2 * (1.0 + nu) * ((3.0 - 4.0 * nu) * rest_a + rest_b)
+        if mirrored:  # the offsets are symmetric: x -> -x reverses them
+            rest = rest[::-1]
+        climb = height_change(slope_deg, wavelength, position, np.array(self.offset))
+        return rest - coupling(nu) * climb
+
+    def _interpolated(self, part: Array, where: tuple[float, float, float]) -> Array:
+        values = part
+        axes = (np.tan(np.radians(self.slope_deg)), np.log(self.wavelength), np.array(self.position))
+        for axis, point in zip(axes, where, strict=True):  # cubic splines, one axis after the other
+            values = make_interp_spline(axis, values)(point)
+        return values
+
+    def percent(self, slope_deg: float, wavelength: float, position: float, nu: float) -> Array:
+        """Error (m,) of the flat coefficient of one body: (flat - rough) as a percentage of |flat|."""
+        flat = pressed_strip(np.array(self.offset), nu)
+        return -100.0 * self.departure(slope_deg, wavelength, position, nu) / np.abs(flat)
+
+    def pair_percent(
+        self,
+        slope_deg: float,
+        wavelength: float,
+        position: float,
+        lower: tuple[float, float],
+        upper: tuple[float, float],
+    ) -> Array:
+        """As `percent` for two bodies (E, nu) meeting on one wavy surface; `position` as the lower sees it.
+
+        What is a crest to one is a valley to the other: half a wavelength apart.  The first-order parts
+        enter as lower minus upper, and cancel for equal materials.
+        """
+        (modulus, nu), (modulus_upper, nu_upper) = lower, upper
+        below = self.departure(slope_deg, wavelength, position, nu)
+        above = self.departure(slope_deg, wavelength, position + 0.5, nu_upper)
+        offset = np.array(self.offset)
+        flat = pressed_strip(offset, nu) / modulus + pressed_strip(offset, nu_upper) / modulus_upper
+        return -100.0 * (below / modulus + above / modulus_upper) / np.abs(flat)
+
+    def write(self, path: Path) -> None:
+        """The table as JSON, with what it means and how it was made."""
+        document = {
+            "version": VERSION,
+            "what": (
+                "Vertical displacement u(x) - u(0) of a sinusoidal boundary, rough minus flat, under "
+                "pressure p along the normal on a strip of arc length 2 a; plane strain, p a / E, inwards"
+            ),
+            "formula": (
+                "rough - flat = -(1 + nu)(1 - 2 nu) [s(clip(x, -1, 1)) - s(0)] "
+                "+ tan(slope)^2 (1 + nu) [(3 - 4 nu) kappa_part + constant_part], "
+                "s(x) = -tan(slope) wavelength / (2 pi) cos(2 pi (x / wavelength + position)), into the body"
+            ),
+            "axes": "arrays are [slope_deg][wavelength][position][offset]; lengths in units of a",
+            "symmetry": "position -> 1 - position reverses the offsets",
+            "pair": "lower at position / E_lower plus upper at position + 1/2 / E_upper",
+            "provenance": COMMAND,
+            "stated_error_percentage_points": float(self.error_percentage_points.max()),
+        }
+        arrays = {
+            key: np.round(value, 7).tolist() if isinstance(value, np.ndarray) else value
+            for key, value in asdict(self).items()
+        }
+        path.write_text(json.dumps(document | arrays, indent=None) + "\n")
+
+    @classmethod
+    def read(cls, path: Path) -> CoefficientMap:
+        """The table that `write` wrote. Raises InputError for another version."""
+        document = json.loads(path.read_text())
+        if document["version"] != VERSION:
+            raise InputError("version", document["version"], f"{VERSION}")
+        slope, wavelength, position, offset = (tuple(document[name]) for name in AXES)
+        kappa, constant, error = (np.array(document[name]) for name in ARRAYS)
+        return cls(slope, wavelength, position, offset, kappa, constant, error)
+
+
+def height_change(slope_deg: float, wavelength: float, position: float, offsets: Array) -> Array:
+    """s(clip(x, -1, 1)) - s(0) of the sinusoid."""
+    amplitude = math.tan(math.radians(slope_deg)) * wavelength / (2 * math.pi)
+    phase = 2 * math.pi * (np.clip(offsets, -1.0, 1.0) / wavelength + position)
+    return amplitude * (math.cos(2 * math.pi * position) - np.cos(phase))

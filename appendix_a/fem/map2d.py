@@ -1,0 +1,65 @@
+"""Computes the map of `coefficient_map`: a FEM solve per slope, wavelength and position, in processes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from appendix_a.fem.coefficient_map import CoefficientMap, height_change
+from appendix_a.fem.sinusoid import departures
+
+Array = NDArray[np.float64]
+SLOPES_DEG = (2.5, 6.5, 10.0, 15.0, 20.0, 30.0)
+WAVELENGTHS = (8.0, 16.0, 32.0, 64.0, 128.0, 256.0)
+POSITIONS = (0.0, 0.125, 0.25, 0.375, 0.5)
+OFFSETS = (-20.0, -10.0, -8.0, -6.0, -4.0, -2.0, 2.0, 4.0, 6.0, 8.0, 10.0, 20.0)  # centres of other elements
+JUDGED_NU = (0.0, 0.3, 0.5)  # the error is linear in kappa too, so its ends bound it
+
+
+def compute(
+    slopes_deg: tuple[float, ...] = SLOPES_DEG,
+    wavelengths: tuple[float, ...] = WAVELENGTHS,
+    positions: tuple[float, ...] = POSITIONS,
+    *,
+    workers: int = 2,
+    progress: Callable[[int, int], None] | None = None,
+) -> CoefficientMap:
+    """Solve every geometry in `workers` processes; `progress(done, all)` after each slope and wavelength."""
+    jobs = [(slope, wavelength, positions) for wavelength, slope in product(wavelengths, slopes_deg)]
+    shape = (len(slopes_deg), len(wavelengths), len(positions), len(OFFSETS))
+    arrays = np.zeros(shape), np.zeros(shape), np.zeros(shape[:3])
+    table = CoefficientMap(slopes_deg, wavelengths, positions, OFFSETS, *arrays)
+    with ProcessPoolExecutor(workers) as pool:
+        for done, (job, found) in enumerate(zip(jobs, pool.map(_batch, jobs), strict=True), start=1):
+            i, j = slopes_deg.index(job[0]), wavelengths.index(job[1])
+            table.kappa_part[i, j], table.constant_part[i, j], table.error_percentage_points[i, j] = found
+            if progress is not None:
+                progress(done, len(jobs))
+    return table
+
+
+def _batch(job: tuple[float, float, tuple[float, ...]]) -> tuple[Array, Array, Array]:
+    slope, wavelength, positions = job
+    found = [_geometry(slope, wavelength, position) for position in positions]
+    parts_a, parts_b, errors = zip(*found, strict=True)
+    return np.array(parts_a), np.array(parts_b), np.array(errors)
+
+
+def _geometry(slope: float, wavelength: float, position: float) -> tuple[Array, Array, float]:
+    """A and B (m,) beyond the first order over tan(slope)^2, and the error in percentage points."""
+    offsets = np.array(OFFSETS)
+    easy = wavelength > 16.0 and slope < 25.0  # short waves bend the strip itself
+    levels = (0, 1, 2) if easy else (1, 2, 3)
+    solved = departures(slope, wavelength, position, offsets, levels)
+    at_zero, at_half = solved.meshes[-1].at(0.0), solved.meshes[-1].at(0.5) / 1.5
+    kappa_part = (at_zero - at_half) / 2.0  # kappa = 3 and 1
+    constant_part = at_half - kappa_part
+    first = height_change(slope, wavelength, position, offsets) / 2.0  # (1 - 2 nu) = (kappa - 1) / 2
+    square = math.tan(math.radians(slope)) ** 2
+    worst = max(float(np.max(solved.result(nu).percentage_points)) for nu in JUDGED_NU)
+    return (kappa_part + first) / square, (constant_part - first) / square, worst

@@ -1,0 +1,170 @@
+"""The flat half-space's exact fields and the first-order theory, against quadrature and the equations of elasticity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from appendix_a.fem3d import patch
+from appendix_a.fem3d.leading_order import GAUSS, far_part, growth, wave_kernel
+from appendix_a.fem3d.surface import X, Y
+from appendix_a.fem3d.wavy import Kind, Waviness
+
+NU = 0.3
+SHEAR, LAME = 0.5 / (1 + NU), NU / ((1 + NU) * (1 - 2 * NU))
+Field = Callable[[np.ndarray], np.ndarray]
+
+
+def one(value: float) -> np.ndarray:
+    return np.array([value])
+
+
+@pytest.mark.parametrize(("x", "y", "half_x"), [(0.0, 0.0, 1.0), (2.0, 0.0, 1.0), (-4.0, 1.5, 0.9), (1.0, 6.0, 1.1)])
+def test_love_integral_against_quadrature(x: float, y: float, half_x: float) -> None:
+    """In polar form about the field point the integrand of 1/rho is smooth; here by nested mpmath quadrature."""
+    strips = sorted({-1.0, 1.0, *([y] if -1 < y < 1 else [])})
+    inner = [-half_x, *([x] if -half_x < x < half_x else []), half_x]
+    expected = mp.quad(
+        lambda t: mp.asinh((inner[-1] - x) / abs(t - y)) - mp.asinh((inner[0] - x) / abs(t - y)), strips
+    )
+    assert patch.normal_integral(one(x), one(y), half_x)[0] == pytest.approx(float(expected), rel=1e-12)
+
+
+@pytest.mark.parametrize(("x", "y"), [(2.0, 0.0), (-4.0, 1.5), (3.0, 6.0)])
+def test_cerruti_integral_against_quadrature(x: float, y: float) -> None:
+    expected = mp.quad(lambda s, t: (x - s) / ((x - s) ** 2 + (y - t) ** 2), [-1, 1], [-1, 1])
+    assert patch.tangential_integral(one(x), one(y))[0] == pytest.approx(float(expected), rel=1e-12)
+
+
+def gradient(field: Field, at: np.ndarray) -> np.ndarray:
+    """du_i/dx_j (3, 3, n) by fourth-order differences; rounding and step leave about 1e-10."""
+    step = 1e-3
+    columns = []
+    for j in range(3):
+        e = np.zeros((3, 1))
+        e[j] = step
+        near, far = field(at + e) - field(at - e), field(at + 2 * e) - field(at - 2 * e)
+        columns.append((8 * near - far) / (12 * step))
+    return np.stack(columns, axis=1)
+
+
+def stress(field: Field, at: np.ndarray) -> np.ndarray:
+    g = gradient(field, at)
+    trace = np.einsum("iin->n", g)
+    return SHEAR * (g + np.swapaxes(g, 0, 1)) + LAME * np.eye(3)[:, :, None] * trace
+
+
+@pytest.mark.parametrize(
+    ("field", "force"),
+    [(patch.boussinesq, (0.0, 0.0, -1.0)), (patch.cerruti, (1.0, 0.0, 0.0))],
+    ids=["boussinesq", "cerruti"],
+)
+def test_point_force_leaves_the_surface_free_and_is_carried_by_a_hemisphere(
+    field: Callable[..., np.ndarray], force: tuple[float, float, float]
+) -> None:
+    def displaced(p: np.ndarray) -> np.ndarray:
+        return field(p[0], p[1], p[2], NU)
+
+    surface_points = np.array([[1.0, -0.7, 0.3], [0.5, 0.9, -1.2], [0.0, 0.0, 0.0]])
+    assert np.abs(stress(displaced, surface_points)[:, 2]).max() < 1e-9
+
+    cosines, weights = np.polynomial.legendre.leggauss(12)
+    cosines, weights = 0.5 * (cosines - 1), 0.5 * weights  # z from -1 to 0 on the unit sphere
+    angles = 2 * np.pi * np.arange(12) / 12
+    z, phi = (c.ravel() for c in np.meshgrid(cosines, angles, indexing="ij"))
+    normal = np.array([np.sqrt(1 - z * z) * np.cos(phi), np.sqrt(1 - z * z) * np.sin(phi), z])
+    area = np.repeat(weights, 12) * 2 * np.pi / 12
+    carried = np.einsum("ijn,jn,n->i", stress(displaced, normal), normal, area)
+    assert carried + np.array(force) == pytest.approx(np.zeros(3), abs=1e-8)  # 12 x 12 points: square roots in z
+
+
+def test_far_field_joins_the_surface_coefficients() -> None:
+    """At z = 0 and 24 a, Gauss point forces against the closed forms of the patch."""
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    sources = np.stack([c.ravel() for c in np.meshgrid(nodes, nodes, indexing="ij")], axis=1)
+    area = np.outer(weights, weights).ravel()
+    x, y = np.array([24.0, -20.0, 3.0]), np.array([0.0, 14.0, 25.0])
+    points = np.stack([x, y, np.zeros(3)])
+    pressed = patch.far_field(points, np.stack([0 * area, area], axis=1), sources, NU)
+    dragged = patch.far_field(points, np.stack([area, 0 * area], axis=1), sources, NU)
+    assert -pressed[2] == pytest.approx(patch.normal_coefficient(x, y, NU), rel=1e-11)
+    assert -dragged[2] == pytest.approx(patch.tangential_coefficient(x, y, NU), rel=1e-11)
+
+
+def test_tilted_plane_is_the_facet_prediction_to_second_order() -> None:
+    """Their difference over slope^2 stays; its antisymmetric part is of third order, slope^2 of the first-order one."""
+    slopes = np.array([0.5, 1.0, 2.0])
+    gaps = [
+        patch.tilted_plane(X, Y, NU, s, projected=True) - patch.facet_prediction(X, Y, NU, s) for s in slopes
+    ]
+    worst = [np.abs(gap).max() for gap in gaps]
+    assert worst[1] / worst[0] == pytest.approx(4.0, rel=1e-2)
+    antisymmetric = [np.abs(gap[1:4] - gap[4:7]).max() for gap in gaps]
+    assert antisymmetric[2] / antisymmetric[1] == pytest.approx(8.0, rel=1e-2)
+
+
+def test_self_coefficient_of_a_tilted_plane() -> None:
+    """cos(theta) when the element is 2a along the facet; theta^2 / 4 less, not / 2, when it is 2a in projection."""
+    slope = np.radians(1.0)
+    flat = patch.normal_coefficient(one(0.0), one(0.0), NU)
+    facet = patch.tilted_plane(one(0.0), one(0.0), NU, 1.0, projected=False) / flat
+    projected = patch.tilted_plane(one(0.0), one(0.0), NU, 1.0, projected=True) / flat
+    assert facet[0] == pytest.approx(np.cos(slope), rel=1e-14)
+    assert 1 - projected[0] == pytest.approx(slope**2 / 4, rel=1e-3)
+
+
+@pytest.mark.parametrize(("x", "y"), [(2.0, 1.0), (-2.0, 1.0), (1.0, -3.0), (0.5, 0.0)])
+def test_wave_kernel_against_quadrature(x: float, y: float) -> None:
+    """One step before the closed form: the integral over q that the residues leave."""
+    k = 0.3
+    ahead, behind = (mp.expj(k * x), 1) if x > 0 else (1, mp.expj(k * x))
+
+    def integrand(q: mp.mpf) -> mp.mpc:
+        return q * mp.cos(q * y) * mp.exp(-q * abs(x)) * (ahead / (k + 2j * q) + behind / (k - 2j * q))
+
+    expected = k / (2 * mp.pi) * mp.quad(integrand, mp.linspace(0, 80, 81))
+    assert complex(wave_kernel(one(x), one(y), k)[0]) == pytest.approx(complex(expected), rel=1e-10)
+
+
+def test_wave_kernel_against_its_double_integral() -> None:
+    """The residues themselves: sin^2 of the angle summed over both wavenumbers, under a Gaussian source of width w.
+
+    The source's transform exp(-w^2 q^2 / 2) makes the double sum converge; at 3 w and beyond the smoothed kernel's
+    first correction, w^2 / 2 of its Laplacian, is within the 3 % allowed.
+    """
+    k, width = 0.5, 0.6
+    q = (np.arange(-400, 400) + 0.5) * 0.025
+    kx, ky = np.meshgrid(q, q, indexing="ij")
+    sine2 = k * k * ky**2 / ((kx**2 + ky**2) * ((kx + k) ** 2 + ky**2))
+    weight = sine2 * np.exp(-0.5 * width**2 * (kx**2 + ky**2)) * (0.025 / (2 * np.pi)) ** 2
+    for x, y in ((2.0, 0.0), (-2.0, 0.0), (0.0, 2.0), (2.0, 2.0)):
+        smoothed = np.sum(weight * np.exp(1j * (kx * x + ky * y))) * np.exp(1j * k * x)
+        exact = complex(wave_kernel(one(x), one(y), k)[0])
+        assert smoothed == pytest.approx(exact, rel=0.03)
+
+
+def test_kernel_is_real_but_for_the_phase_of_the_midpoint() -> None:
+    kernel = wave_kernel(X[1:7], Y[1:7], 0.3) * np.exp(-0.15j * X[1:7])
+    assert np.abs(kernel.imag).max() < 1e-14 * np.abs(kernel.real).max() + 1e-17
+
+
+def test_growth_is_the_small_wavenumber_limit() -> None:
+    """Corrections are (k r) times it, and (a / r)^2 for the patch: 5 % at k r = 0.025 ... 0.05 and r = 20 a, 40 a."""
+    long_wave = Waviness(1.0, 2 * np.pi / 1.25e-3, 0.1)
+    x, y = np.array([20.0, -40.0, 0.0, 20.0]), np.array([0.0, 0.0, 40.0, 20.0])
+    measured = far_part(long_wave, x, y, NU) / patch.normal_coefficient(x, y, NU)
+    assert measured == pytest.approx(growth(long_wave, x, y, NU), rel=0.05)
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_far_part_is_settled_and_vanishes_with_long_waves(kind: Kind, monkeypatch: pytest.MonkeyPatch) -> None:
+    surface = Waviness(1.0, 20.0, 0.1, kind)
+    coarse = far_part(surface, X, Y, NU)
+    monkeypatch.setattr("appendix_a.fem3d.leading_order.GAUSS", 2 * GAUSS)
+    scale = np.abs(coarse).max()
+    assert np.abs(far_part(surface, X, Y, NU) - coarse).max() < 1e-3 * scale
+    assert np.abs(far_part(Waviness(1.0, 1e5, 0.1, kind), X, Y, NU)).max() < 1e-2 * scale
+    assert np.abs(far_part(surface, X, Y, 0.5)).max() == 0.0

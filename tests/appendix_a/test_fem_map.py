@@ -1,0 +1,77 @@
+"""The map of coefficient errors: small table computed, written, read, looked up; pairs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from appendix_a.errors import InputError
+from appendix_a.fem.coefficient_map import CoefficientMap
+from appendix_a.fem.map2d import OFFSETS, compute
+from appendix_a.fem.sinusoid import departures
+from appendix_a.leading_order import coupling
+
+
+def invented(seed=4):
+    """A table of random numbers with all axes long enough to interpolate."""
+    slopes, wavelengths = (5.0, 10.0, 20.0, 30.0), (8.0, 16.0, 32.0, 64.0)
+    axes = slopes, wavelengths, (0.0, 0.125, 0.25, 0.375, 0.5), (-4.0, -2.0, 2.0, 4.0)
+    shape = tuple(map(len, axes))
+    rng = np.random.default_rng(seed)
+    return CoefficientMap(*axes, *rng.uniform(-1, 1, (2, *shape)), rng.uniform(0, 0.02, shape[:3]))
+
+
+def test_a_computed_entry_is_the_solve_it_came_from():
+    table = compute((10.0,), (32.0,), (0.125,), workers=1)
+    direct = departures(10.0, 32.0, 0.125, OFFSETS, (0, 1, 2))
+    square = np.tan(np.radians(10.0)) ** 2
+    amplitude = np.tan(np.radians(10.0)) * 32.0 / (2 * np.pi)
+    ends = np.sign(OFFSETS) / 32.0 + 0.125
+    climb = amplitude * (np.cos(2 * np.pi * 0.125) - np.cos(2 * np.pi * ends))
+    for nu in (0.0, 0.2, 0.4999):
+        rest = square * (1 + nu) * ((3 - 4 * nu) * table.kappa_part + table.constant_part)[0, 0, 0]
+        assert rest - coupling(nu) * climb == pytest.approx(direct.meshes[-1].at(nu), abs=1e-12)
+    assert 0.0 < table.error_percentage_points.max() < 0.02
+
+
+def test_written_table_reads_back(tmp_path):
+    table = invented()
+    table.write(tmp_path / "map.json")
+    again = CoefficientMap.read(tmp_path / "map.json")
+    assert again.offset == table.offset
+    found, kept = (t.departure(12.0, 20.0, 0.3, 0.3) for t in (again, table))
+    assert found == pytest.approx(kept, abs=1e-6)  # seven decimals are written
+    text = (tmp_path / "map.json").read_text()
+    (tmp_path / "map.json").write_text(text.replace('"version": 1', '"version": 99'))
+    with pytest.raises(InputError):
+        CoefficientMap.read(tmp_path / "map.json")
+
+
+def test_lookup_meets_the_nodes_and_mirrors():
+    table = invented()
+    nu, tangent = 0.3, np.tan(np.radians(10.0))
+    node = tangent**2 * (1 + nu) * ((3 - 4 * nu) * table.kappa_part + table.constant_part)[1, 2, 0]
+    crest = table.departure(10.0, 32.0, 0.0, nu)
+    climb = tangent * 32.0 / (2 * np.pi) * (1 - np.cos(2 * np.pi / 32.0))
+    assert crest == pytest.approx(node - coupling(nu) * climb, abs=1e-12)
+    downhill, uphill = table.departure(10.0, 32.0, 0.2, nu), table.departure(10.0, 32.0, 0.8, nu)
+    assert uphill == pytest.approx(downhill[::-1], abs=1e-12)
+
+
+def test_first_order_cancels_in_a_pair_of_equal_materials_and_is_lower_minus_upper():
+    table = invented()
+    no_rest = {"kappa_part": 0 * table.kappa_part, "constant_part": 0 * table.constant_part}
+    flat_table = replace(table, **no_rest)
+    body = (2.0, 0.3)
+    assert flat_table.pair_percent(6.0, 20.0, 0.25, body, body) == pytest.approx(0.0, abs=1e-12)
+    alone = flat_table.percent(6.0, 20.0, 0.25, 0.3)
+    stiff_upper = flat_table.pair_percent(6.0, 20.0, 0.25, body, (1e12, 0.2))
+    stiff_lower = flat_table.pair_percent(6.0, 20.0, 0.25, (1e12, 0.2), body)
+    assert stiff_upper == pytest.approx(alone, rel=1e-9)  # a rigid upper body leaves the lower one's error
+    assert stiff_lower == pytest.approx(-alone, rel=1e-9)
+
+
+def test_outside_the_table_is_refused():
+    for arguments in ((31.0, 20.0), (-1.0, 20.0), (5.0, 7.0), (5.0, float("nan"))):
+        with pytest.raises(InputError):
+            invented().departure(*arguments, 0.25, 0.3)
