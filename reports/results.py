@@ -11,6 +11,17 @@ CASE_KEYS = (
     "id", "title", "claim", "source", "metric", "value", "reference", "reference_uncertainty", "error",
     "tolerance", "tolerance_reason", "status", "seconds", "unit", "note", "tier", "tags", "data",
 )  # fmt: skip
+ERRATUM_KEYS = (
+    "case",
+    "status",
+    "equation",
+    "printed",
+    "corrected",
+    "measure",
+    "printed_error",
+    "corrected_error",
+)
+PROVENANCE_KEYS = ("command", "date", "commit", "dirty", "versions", "machine")
 STATUSES = ("pass", "fail", "error", "unavailable")
 
 Case = Mapping[str, Any]
@@ -28,6 +39,9 @@ def check(results: object) -> Mapping[str, Any]:
     if not isinstance(results, Mapping) or results.get("format") != FORMAT:
         raise ResultFileError(f"not a file of the format {FORMAT!r}")
     _require(results, TOP_KEYS, "the file")
+    _require(results["provenance"], PROVENANCE_KEYS, "the provenance")
+    for erratum in results["errata"]:
+        _require(erratum, ERRATUM_KEYS, f"erratum {erratum.get('equation', '?')!r}")
     for case in results["cases"]:
         _require(case, CASE_KEYS, f"case {case.get('id', '?')!r}")
         if case["status"] not in STATUSES:

@@ -150,6 +150,8 @@ def test_the_same_results_make_the_same_page() -> None:
         {k: v for k, v in results().items() if k != "cases"},
         results({k: v for k, v in case("a/1").items() if k != "tolerance_reason"}),
         results(case("a/1", "passed")),
+        results(case("a/1"), errata=[{"equation": "A4"}]),
+        results(case("a/1"), provenance={}),
         results(case("a/1", "fail"), counts={"pass": 1, "fail": 0, "error": 0, "unavailable": 0}),
     ],
 )
