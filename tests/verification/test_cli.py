@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from appendix_a.fem.coefficient_map import CoefficientMap
 from verification import registry, runner
 from verification.case import Case, Measured, Metric, Status, Tier
 from verification.cli import main, parser
@@ -90,6 +91,10 @@ def test_help_does_not_wait_for_numpy() -> None:
         ([*WEDGE, "--gamma-deg", "10", "--r", "x"], "'x'"),
         ([*WEDGE, "--gamma-deg", "95"], "gamma"),
         ([*FEM, "--nu", "0.6"], "nu = 0.6"),
+        (["appendix-a", "map", "--slopes-deg", "0"], "--slopes-deg"),
+        (["appendix-a", "map", "--wavelengths", "1,10"], "--wavelengths"),
+        (["appendix-a", "map", "--positions", "nan"], "--positions"),
+        (["appendix-a", "map", "--jobs", "0"], "--jobs"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(arguments: list[str], says: str, capsys: Capture) -> None:
@@ -151,6 +156,15 @@ def test_fem_prints_the_four_keys_and_agrees_with_the_strip_on_a_gentle_slope(ca
     assert change["fem"][0] > 0 > change["fem"][1]
     # Second order in a slope of 0.0087 is 1 % of the first, times the wave's curvature over the strip.
     np.testing.assert_allclose(change["strip"], change["fem"], rtol=0.03)
+
+
+def test_map_writes_the_table_that_its_package_reads(tmp_path: Path, capsys: Capture) -> None:
+    path = tmp_path / "map.json"
+    axes = ["--slopes-deg", "6.5", "--wavelengths", "64", "--positions", "0.25", "--jobs", "1"]
+    assert main(["appendix-a", "map", *axes, "--json", str(path)]) == 0
+    assert "percentage points" in capsys.readouterr().out
+    table = CoefficientMap.read(path)
+    assert (table.slope_deg, table.wavelength, table.position) == ((6.5,), (64.0,), (0.25,))
 
 
 def test_wedge_of_no_slope_is_the_half_plane(capsys: Capture) -> None:

@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import json
+import tempfile
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from verification.cli.output import Parsers, add_json, columns, emit
+
+# A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
+MAP_RANGES = {"slopes-deg": (0.1, 45.0), "wavelengths": (4.0, 1e4), "positions": (0.0, 0.5)}
+MAP_AXES = ("slope_deg", "wavelength", "position", "offset")
 
 EPILOG = """examples:
   rough-friction appendix-a fem --slope-deg 6.5 --wavelength 100 --position 0.25 --nu 0.3 --offsets=-3,3
@@ -29,6 +36,7 @@ def add_parser(commands: Parsers) -> None:
     _add_strip(problems)
     _add_wedge(problems)
     _add_fem(problems)
+    _add_map(problems)
 
 
 def numbers(text: str) -> list[float]:
@@ -51,6 +59,16 @@ def _add_strip(problems: Parsers) -> None:
 def _add_fem(problems: Parsers) -> None:
     parser = _problem(problems, "fem", fem, "pressed strip on a sinusoidal boundary, by finite elements")
     _wavy_options(parser)
+
+
+def _add_map(problems: Parsers) -> None:
+    text = "error of flat influence coefficients on sinusoidal waves, as a table; minutes"
+    parser = _problem(problems, "map", coefficient_map, text)
+    add = parser.add_argument
+    add("--slopes-deg", type=numbers, help="maximum slopes (degrees)")
+    add("--wavelengths", type=numbers, help="in half-widths of the strip")
+    add("--positions", type=numbers, help="of the strip's centre: crest 0 to valley 0.5")
+    add("--jobs", metavar="N", type=int, default=2, help="worker processes (default 2)")
 
 
 def _wavy_options(parser: argparse.ArgumentParser) -> None:
@@ -113,6 +131,39 @@ def fem(options: argparse.Namespace) -> int:
     }
     remark = f"discretisation error {found.discretisation_error:.1g}"
     emit(document, options.json, _displacements(document, remark))
+    return 0
+
+
+def coefficient_map(options: argparse.Namespace) -> int:
+    """The versioned table of the error of flat coefficients, every Poisson ratio in it."""
+    from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
+    from refimpl.errors import InputError
+    from verification.files import Progress
+
+    if options.jobs < 1:
+        raise InputError("--jobs", options.jobs, "at least one worker process")
+    axes = {
+        "slopes-deg": tuple(options.slopes_deg or SLOPES_DEG),
+        "wavelengths": tuple(options.wavelengths or WAVELENGTHS),
+        "positions": tuple(options.positions or POSITIONS),
+    }
+    for name, (low, high) in MAP_RANGES.items():
+        if not all(low <= value <= high for value in axes[name]):
+            raise InputError(f"--{name}", axes[name], f"numbers from {low:g} to {high:g}")
+    progress = Progress(len(axes["slopes-deg"]) * len(axes["wavelengths"]))
+    found = compute(
+        *axes.values(), workers=options.jobs, progress=lambda *_: progress.tick("slopes and wavelengths")
+    )
+    progress.close()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "map.json"
+        found.write(path)
+        document = json.loads(path.read_text(encoding="utf-8"))
+    rows = [
+        [axis.replace("_", " "), " ".join(f"{x:g}" for x in getattr(found, axis))] for axis in MAP_AXES
+    ]
+    error = f"stated error, percentage points: {found.error_percentage_points.max():.2g}"
+    emit(document, options.json, f"{columns(rows, indent='')}\n{error}")
     return 0
 
 
