@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from refimpl.coefficient_error import SlopeError
 from refimpl.contact.certificate import Certificate
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
@@ -35,7 +36,8 @@ class Solution:
     ``approach`` counts from first touch, or from the mean planes when periodic. ``pressure`` is the
     local ``f`` and ``traction`` the local ``r`` of Eq. (1). ``surface_lower`` and ``surface_upper``
     are the deformed heights; ``separation`` is the gap left between them. ``uncertainty`` maps each
-    reported number to its parts, absolute, in the number's unit.
+    reported number to its parts, absolute, in the number's unit. ``slope_error`` quotes what Appendix
+    A's table says of flat-surface influence coefficients at this contact's slopes.
     """
 
     status: Status
@@ -54,6 +56,7 @@ class Solution:
     surface_upper: Array
     separation: Array
     withheld: Mask
+    slope_error: SlopeError
     grid: Grid
     friction: Friction
     sliding_direction: float
@@ -90,6 +93,7 @@ class Solution:
             "tolerance": self.tolerance,
             "certificate": asdict(self.certificate),
             "uncertainty": {name: dict(parts) for name, parts in self.uncertainty.items()},
+            "slope_error": asdict(self.slope_error),
             "plan": [
                 {"term": term.name, "included": term.included, "reason": term.reason}
                 for term in self.plan.terms

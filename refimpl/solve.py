@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from refimpl.coefficient_error import slope_error
 from refimpl.contact.certificate import State, certify
 from refimpl.dense_solver import solve_dense
 from refimpl.errors import InputError, require_number
@@ -160,6 +161,9 @@ def _solution(
         surface_upper=surface_upper,
         separation=surface_upper - surface_lower,
         withheld=outcome.withheld,
+        slope_error=slope_error(
+            state.slopes.tan_x, state.slopes.tan_y, state.pressure, problem.pair.lower, problem.pair.upper
+        ),
         grid=grid,
         friction=problem.friction,
         sliding_direction=problem.direction,

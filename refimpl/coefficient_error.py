@@ -1,0 +1,141 @@
+"""How wrong a flat half-space's influence coefficients are on a slope: the table of Appendix A's answer.
+
+The table (``data/coefficient_error.json``, made by ``rough-friction appendix-a map``) holds what
+finite elements found for a strip of half-width ``a`` on a sinusoidal boundary in plane strain. The
+first-order part is known in closed form; the table has the rest. Displacements count from the
+strip's own centre, in units of ``p a / E``, because a plane displacement has no datum.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+
+from refimpl.errors import InputError, require_number
+from refimpl.grid import Array
+from refimpl.materials import Material
+
+_VERSION = 1
+_NEIGHBOUR = 2.0  # offset of the next element in half-widths
+
+
+@dataclass(frozen=True)
+class SlopeError:
+    """Slopes of a contact (rad) and the coefficient error at each; None beyond the table."""
+
+    rms_slope: float
+    max_slope: float
+    at_rms: float | None
+    at_max: float | None
+
+
+def coefficient_error(
+    slope: float,
+    lower: Material,
+    upper: Material | None = None,
+    *,
+    wavelength: float | None = None,
+    position: float | None = None,
+) -> float:
+    """Largest relative error of the two neighbour coefficients in line with a slope.
+
+    Parameters
+    ----------
+    slope : maximum slope of the waviness (rad), up to the table's 30 degrees
+    lower, upper : the pair; one body alone when ``upper`` is None. In a pair the first-order parts
+        enter as lower minus upper.
+    wavelength : of the waviness in element half-widths; the table's largest by default
+    position : of the element on the waviness, 0 crest to 0.5 valley as the lower body sees it; the
+        worst one by default
+
+    Raises `InputError` outside the table.
+
+    >>> steel = Material(E=200e9, nu=0.3)
+    >>> coefficient_error(0.02, steel) > coefficient_error(0.02, steel, steel)
+    True
+    """
+    table = _table()
+    top = math.radians(table["slope_deg"][-1])
+    require_number("slope", slope, f"an angle of 0 to {top:.4g} rad", at_least=0, at_most=top)
+    wavelength = table["wavelength"][-1] if wavelength is None else wavelength
+    least = table["wavelength"][0]
+    require_number("wavelength", wavelength, f"at least {least:g} half-widths", at_least=least)
+    wavelength = min(wavelength, table["wavelength"][-1])
+    if position is not None:
+        require_number("position", position, "a share of the wavelength, 0 to 1", at_least=0, at_most=1)
+    positions = table["position"] if position is None else [position]
+    return max(_error(slope, wavelength, place, lower, upper) for place in positions)
+
+
+def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, upper: Material) -> SlopeError:
+    """The error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
+    if not np.any(pressure > 0):
+        return SlopeError(0.0, 0.0, 0.0, 0.0)
+    squared = tan_x**2 + tan_y**2
+    rms = math.atan(math.sqrt(float(np.average(squared, weights=pressure))))
+    steepest = math.atan(math.sqrt(float(squared[pressure > 0].max())))
+    top = math.radians(_table()["slope_deg"][-1])
+    at_rms, at_max = (
+        coefficient_error(slope, lower, upper) if slope <= top else None for slope in (rms, steepest)
+    )
+    return SlopeError(rms, steepest, at_rms, at_max)
+
+
+def _error(
+    slope: float, wavelength: float, position: float, lower: Material, upper: Material | None
+) -> float:
+    """Worst of both neighbours: ``|flat - rough| / |flat|``, bodies weighted by ``1 / E``."""
+    rough = _departure(slope, wavelength, position, lower.nu) / lower.E
+    flat = _flat(lower.nu) / lower.E
+    if upper is not None:  # a crest of one body is a valley of the other
+        rough = rough + _departure(slope, wavelength, (position + 0.5) % 1.0, upper.nu) / upper.E
+        flat += _flat(upper.nu) / upper.E
+    return float(np.abs(rough).max() / abs(flat))
+
+
+def _departure(slope: float, wavelength: float, position: float, nu: float) -> Array:
+    """Rough minus flat displacement of both neighbours, ``(2,)``, in units of ``p a / E``."""
+    tangent = math.tan(slope)
+    amplitude = tangent * wavelength / (2 * math.pi)
+    ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + position)
+    climb = amplitude * (math.cos(2 * math.pi * position) - np.cos(ends))
+    place = min(position, 1 - position)
+    first = math.tan(math.radians(_table()["slope_deg"][0]))
+    parts = _rest()((max(tangent, first), math.log(wavelength), place)).ravel()
+    rest = tangent**2 * (1 + nu) * ((3 - 4 * nu) * parts[:2] + parts[2:])
+    if position > 0.5:  # mirrored: the neighbours change places
+        rest = rest[::-1]
+    departure: Array = rest - (1 + nu) * (1 - 2 * nu) * climb
+    return departure
+
+
+def _flat(nu: float) -> float:
+    """``u(x) - u(0)`` of a strip on a flat half-plane at the neighbour, ``p a / E`` (Johnson 1985, 2.30)."""
+    x = _NEIGHBOUR
+    return -2 * (1 - nu**2) / math.pi * ((x + 1) * math.log(x + 1) - (x - 1) * math.log(x - 1))
+
+
+@cache
+def _table() -> dict[str, Any]:
+    text = resources.files("refimpl").joinpath("data", "coefficient_error.json").read_text(encoding="utf-8")
+    table: dict[str, Any] = json.loads(text)
+    if table["version"] != _VERSION:
+        raise InputError("coefficient_error.json", table["version"], f"version {_VERSION}")
+    return table
+
+
+@cache
+def _rest() -> RegularGridInterpolator:
+    """Both parts of the rest at both neighbours over (tan slope, ln wavelength, position)."""
+    table = _table()
+    neighbours = [table["offset"].index(side * _NEIGHBOUR) for side in (-1, 1)]
+    values = [np.array(table[part])[..., neighbours] for part in ("kappa_part", "constant_part")]
+    axes = (np.tan(np.radians(table["slope_deg"])), np.log(table["wavelength"]), np.array(table["position"]))
+    return RegularGridInterpolator(axes, np.concatenate(values, axis=-1))
