@@ -16,7 +16,6 @@ from appendix_a.fem3d.wavy import Kind, Waviness
 Array = NDArray[np.float64]
 
 LABELS = ("self", "+x 1", "+x 2", "+x 3", "-x 1", "-x 2", "-x 3", "across 1", "across 2", "across 3")
-RADII = (1.5, 2.0, 3.0)  # outer boundary, in wavelengths
 RADIUS_LEVEL = 2  # the mesh on which they are compared: four quadratic elements a wave
 # Observed: 3 at the neighbours, 3 to 5 under the load; the jump of pressure limits it
 MESH_ORDER = 3
@@ -25,15 +24,20 @@ RADIUS_ORDER = 2
 
 
 class Quality(StrEnum):
-    """Which three meshes: elements along half the loaded element's edge."""
+    """Which three meshes and which three outer boundaries."""
 
     QUICK = "quick"
     FULL = "full"
 
     @property
     def levels(self) -> tuple[int, int, int]:
-        """Coarse to fine."""
+        """Elements along half the loaded element's edge."""
         return (1, 2, 3) if self is Quality.QUICK else (2, 3, 4)
+
+    @property
+    def radii(self) -> tuple[float, float, float]:
+        """Outer radii in wavelengths; the meshes are compared at the first."""
+        return (1.5, 2.0, 3.0) if self is Quality.QUICK else (1.5, 2.5, 4.0)
 
 
 class Width(StrEnum):
@@ -121,8 +125,8 @@ def coefficients(
     """
     _check(slope_deg, wavelength, position, nu, kind, width, quality)
     surface = Waviness(slope_deg, wavelength, position, Kind(kind))
-    levels = Quality(quality).levels
-    near = RADII[0] * wavelength
+    levels, radii = Quality(quality).levels, Quality(quality).radii
+    near = radii[0] * wavelength
     edges = surface.facet_edges() if Width(width) is Width.FACET else (-1.0, 1.0)
     exact = normal_coefficient(X, Y, nu)
 
@@ -131,7 +135,7 @@ def coefficients(
         return sample(surface, nu, radius, level, edges), flat
 
     meshes = {level: pair(near, level) for level in {*levels, RADIUS_LEVEL}}
-    beyond = {r * wavelength: pair(r * wavelength, RADIUS_LEVEL) for r in RADII[1:]}
+    beyond = {r * wavelength: pair(r * wavelength, RADIUS_LEVEL) for r in radii[1:]}
     boxes = {near: meshes[RADIUS_LEVEL], **beyond}
     by_mesh = [(meshes[level][0].down - meshes[level][1].down) / exact for level in levels]
     by_box = [(wavy.down - flat.down) / exact for wavy, flat in boxes.values()]

@@ -20,7 +20,7 @@ MARKS = (0.0, 1.0, 2.0, 4.0, 6.0)
 
 @dataclass(frozen=True)
 class Sizes:
-    """Interval length wanted at distance s: `core` up to `even`, then `growth` more per unit, at most `cap`."""
+    """Interval length wanted at distance s: `core` up to `even`, then `growth` more per unit, up to `cap`."""
 
     core: float
     even: float

@@ -93,7 +93,7 @@ def row(point: Point, result: Coefficients3D, seconds: float) -> dict[str, objec
     surface, nu = point.surface, point.nu
 
     def listed(values: np.ndarray) -> list[float]:
-        return [float(f"{v:.6g}") for v in values]
+        return [float(f"{v:.6g}") + 0.0 for v in values]  # + 0.0 makes -0.0 a 0.0
 
     return {
         **asdict(point),
@@ -144,7 +144,9 @@ def load(path: Path) -> list[dict[str, object]]:
 def save(path: Path, command: str, rows: list[dict[str, object]]) -> None:
     """Replace the table in one step: a reader sees the old one or the new one."""
     part = path.with_suffix(".part")
-    part.write_text(json.dumps({**header(command), "points": rows}, indent=1) + "\n")
+    lines = ",\n".join(json.dumps(line) for line in rows)
+    top = json.dumps(header(command), indent=1).removesuffix("\n}")
+    part.write_text(f'{top},\n "points": [\n{lines}\n]}}\n')
     os.replace(part, path)
 
 
@@ -155,7 +157,7 @@ def run(
     command: str = "",
     compute: Callable[..., Coefficients3D] = coefficients,
 ) -> int:
-    """Add the `wanted` points that the table lacks, until `seconds` have passed; returns how many it added."""
+    """Add the `wanted` points that the table lacks, until `seconds` have passed; returns how many."""
     rows, start, added = load(path), time.monotonic(), 0
     known = {tuple(line[name] for name in asdict(wanted[0])) for line in rows} if wanted else set()
     for point in wanted:
