@@ -163,4 +163,9 @@ class _DenseSolver:
         elif problem.terms.coupled:
             G = self._symmetric + beta * C * operator.shear_matrix
             g = C * (operator.shear_matrix @ chi)
+        if problem.periodic and problem.load is not None:
+            # A mean pressure displaces nothing, so near full contact G is singular. Under a load any
+            # compliance of the mean will do: it moves the approach by itself, and the pressure not at all.
+            mean_compliance = problem.pair.normal_compliance * problem.grid.side / K.size
+            G = G + mean_compliance * np.outer(K, K)
         return _Frozen(G, g, K, weights.ravel(), offset)
