@@ -43,7 +43,7 @@ def test_full_contact_is_westergaards(method: str, excess: float) -> None:
     assert abs(solution.approach) <= 1e-11 * 1e-6
 
 
-@pytest.mark.parametrize("share", [0.3, 0.9, 0.999])
+@pytest.mark.parametrize("share", [0.3, 0.9, 0.96])  # the lowest centre lies at cos(165 deg) = -0.966
 def test_both_solvers_agree_up_to_full_contact(share: float) -> None:
     _, _, part = wavy(1.0)
     scene, _, _ = wavy(share * part)
