@@ -1,0 +1,103 @@
+"""accuracy=: the bar is met, it holds the error against a far finer grid, and its parts are what they say."""
+
+from __future__ import annotations
+
+import pytest
+
+import refimpl as rf
+from refimpl.uncertainty import iteration_parts, merged, two_grids
+
+STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
+
+
+def sliding_ball(rms: float, seed: int, load: float = 70.0) -> rf.Scene:
+    rough = rf.GaussianRoughness(rms=rms, correlation_length=200e-6, seed=seed)
+    return rf.Scene(
+        upper=rf.Body(STEEL, rf.Sphere(radius=0.14)),
+        lower=rf.Body(COPPER, rough),
+        friction=rf.Friction(tau=15e6, beta=0.08),
+        load=load,
+        side=1.61e-3,
+    )
+
+
+def bar(solution: rf.Solution, name: str) -> float:
+    return sum(solution.uncertainty[name].values())
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_bar_is_met_and_holds_the_error(seed: int) -> None:
+    scene = sliding_ball(0.3e-6, seed)
+    found = rf.solve(scene, accuracy=0.03)
+    assert found.status in (rf.Status.CONVERGED, rf.Status.CYCLED)
+    assert bar(found, "friction_coefficient") <= 0.03 * found.friction_coefficient
+    finer = rf.solve(scene, grid=8 * found.grid.M if found.grid.M <= 128 else 1024)
+    for name in ("friction_coefficient", "contact_area", "max_pressure"):
+        assert abs(getattr(found, name) - getattr(finer, name)) <= bar(found, name), name
+
+
+def test_a_tighter_accuracy_takes_a_finer_grid() -> None:
+    scene = sliding_ball(0.3e-6, 1)
+    rough, fine = rf.solve(scene, accuracy=0.1), rf.solve(scene, accuracy=0.02)
+    assert rough.grid.M < fine.grid.M
+    assert fine.cost.seconds > 0
+    assert set(rough.cost.iterations) < set(fine.cost.iterations)
+
+
+def test_another_quantity_can_be_asked_for() -> None:
+    found = rf.solve(sliding_ball(0.3e-6, 1), accuracy=0.2, quantity="contact_area")
+    assert bar(found, "contact_area") <= 0.2 * found.contact_area
+
+
+def test_without_friction_the_area_counts() -> None:
+    found = rf.solve(rf.read_scene("hertz"), accuracy=0.02)
+    assert bar(found, "contact_area") <= 0.02 * found.contact_area
+
+
+@pytest.mark.parametrize("arguments", [{}, {"grid": 64, "accuracy": 0.1}])
+def test_grid_or_accuracy_and_not_both(arguments: dict[str, float]) -> None:
+    with pytest.raises(rf.InputError, match="grid"):
+        rf.solve(sliding_ball(0.3e-6, 1), **arguments)
+
+
+@pytest.mark.parametrize(
+    "arguments", [{"accuracy": 0.0}, {"accuracy": 2}, {"accuracy": 0.1, "quantity": "F"}]
+)
+def test_bad_accuracies_are_refused(arguments: dict[str, object]) -> None:
+    with pytest.raises(rf.InputError):
+        rf.solve(sliding_ball(0.3e-6, 1), **arguments)
+
+
+def test_parts_of_one_grid_are_iteration_and_edge() -> None:
+    found = rf.solve(sliding_ball(0.3e-6, 1), grid=64)
+    edge = found.contact_area - found.contact_area_corrected
+    assert found.uncertainty["contact_area"]["discretisation"] == pytest.approx(edge)
+    through_tau = edge * 15e6 / found.normal_force
+    assert found.uncertainty["friction_coefficient"]["discretisation"] == pytest.approx(through_tau)
+    assert found.uncertainty["approach"]["iteration"] <= 1e-8 * found.approach
+
+
+def test_a_looser_certificate_has_a_larger_iteration_part() -> None:
+    scene = sliding_ball(0.3e-6, 1)
+    loose, tight = (rf.solve(scene, grid=64, tolerance=t) for t in (1e-3, 1e-10))
+    assert loose.certificate.worst > tight.certificate.worst
+    for name, parts in iteration_parts(tight).items():
+        assert parts["iteration"] <= iteration_parts(loose)[name]["iteration"]
+    # the loose state lies within its own bar of the tight one
+    for name, parts in iteration_parts(loose).items():
+        assert abs(getattr(loose, name) - getattr(tight, name)) <= parts["iteration"] + 1e-8 * abs(
+            getattr(tight, name)
+        ), name
+
+
+def test_between_equal_solutions_only_the_edge_is_uncertain() -> None:
+    found = rf.solve(sliding_ball(0.3e-6, 1), grid=64)
+    parts = two_grids(found, found)
+    assert parts["max_pressure"]["discretisation"] == 0
+    edge = found.contact_area - found.contact_area_corrected
+    assert parts["contact_area"]["discretisation"] == pytest.approx(edge)
+
+
+def test_parts_are_merged_by_number_and_name() -> None:
+    first, second = {"A": {"x": 1.0, "y": 2.0}}, {"A": {"y": 3.0}, "B": {"x": 4.0}}
+    assert merged(first, second) == {"A": {"x": 1.0, "y": 3.0}, "B": {"x": 4.0}}
