@@ -82,8 +82,9 @@ def lines(
     def draw(canvas: Canvas, data: Data) -> None:
         axes = _axes(canvas, xlabel, ylabel, log)
         for k, (key, label) in enumerate(series.items()):
-            mark = MARKERS[k] if marker else None
-            axes.plot(data[x], _numbers(data[key]), marker=mark, color=COLOURS[k], label=label)
+            mark, colour = MARKERS[k % 6] if marker else None, COLOURS[k % 6]
+            style = ("-", "--")[k // 6 % 2]
+            axes.plot(data[x], _numbers(data[key]), style, marker=mark, color=colour, label=label)
         for style, (key, label) in zip(("--", ":", "-."), (exact or {}).items(), strict=False):
             axes.plot(data[x], _numbers(data[key]), style, color=INK, label=label)
         if errors is not None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
+from itertools import pairwise
 from typing import Any
 
 from reports.drawing import Figure, dots, lines, maps, order
@@ -157,6 +158,42 @@ OFFERED = (
 
 
 def figures_of(case_id: str, data: Mapping[str, Any]) -> list[Figure]:
-    """The figures declared for the case; when there is none, those offered for the series it recorded."""
+    """The figures declared for the case, else those offered for its series, else a plain plot of them."""
     declared = [figure for figure in DECLARED if fnmatchcase(case_id, figure.cases)]
-    return declared or [figure for figure in OFFERED if figure.available(data)]
+    return declared or [figure for figure in OFFERED if figure.available(data)] or _plain(data)
+
+
+def _plain(data: Mapping[str, Any], most: int = 12) -> list[Figure]:
+    """All series over the first one, where that one rises or falls and the others are as long."""
+    series = {name: values for name, values in data.items() if _is_series(values)}
+    x = next(iter(series), None)
+    if x is None or not (_rises(series[x]) or _rises(series[x][::-1])):
+        return []
+    others = {
+        name: name for name, values in series.items() if name != x and len(values) == len(series[x])
+    }
+    if not 0 < len(others) <= most:
+        return []
+    log = ("x" if _wide(series[x]) else "") + (
+        "y" if all(_wide(series[name]) for name in others) else ""
+    )
+    draw = lines(x, others, xlabel=x, ylabel="", log=log, marker=True)
+    return [Figure("*", (x, *others), draw, "The series that the case recorded.")]
+
+
+def _is_series(values: object) -> bool:
+    return (
+        isinstance(values, list)
+        and len(values) >= 3
+        and all(isinstance(v, int | float | None) for v in values)
+    )
+
+
+def _rises(values: list[float | None]) -> bool:
+    return all(a is not None and b is not None and a < b for a, b in pairwise(values))
+
+
+def _wide(values: list[float | None]) -> bool:
+    """Whether the known values are positive and span more than a factor of thirty."""
+    known = [value for value in values if value is not None]
+    return bool(known) and min(known) > 0 and max(known) > 30 * min(known)

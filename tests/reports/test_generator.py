@@ -97,10 +97,28 @@ def test_a_figure_without_data_is_not_available(data: dict[str, object]) -> None
     assert "Figure not available" in page.text
 
 
-def test_a_new_case_gets_a_figure_by_the_names_of_its_series() -> None:
-    page = Page(render(results(case("new/1", data={"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}))))
-    assert len(page.images) == 1
-    assert Page(render(results(case("new/1", data={"M": [32], "other": [1.0]})))).images == []
+def pictures_of(data: dict[str, object]) -> int:
+    return len(Page(render(results(case("new/1", data=data)))).images)
+
+
+def test_a_new_case_gets_a_figure_by_its_series() -> None:
+    assert pictures_of({"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}) == 1
+    assert pictures_of({"load": [1, 2, 3], "area": [1.0, None, 3.0], "law": [1.0, 2.0, 3.0]}) == 1
+    assert pictures_of({"load": [3, 2, 1], "area": [1e-9, 1e-6, 1e-3]}) == 1
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"load": [1, 2, 3]},
+        {"load": [1, 3, 2], "area": [1, 2, 3]},
+        {"load": [1, 2, 3], "area": [1, 2]},
+        {"load": [1, 2, 3], "area": ["a", "b", "c"]},
+        {"load": [1, 2, 3], **{f"area {k}": [1, 2, 3] for k in range(13)}},
+    ],
+)
+def test_series_that_are_no_figure_make_none(data: dict[str, object]) -> None:
+    assert pictures_of(data) == 0
 
 
 def test_unjudged_numbers_are_not_zero() -> None:
