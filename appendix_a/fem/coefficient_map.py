@@ -57,32 +57,34 @@ class CoefficientMap:
             raise InputError("slope_deg", slope_deg, f"0 to {self.slope_deg[-1]:g} degrees")
         if not wavelength >= self.wavelength[0]:
             raise InputError("wavelength", wavelength, f"at least {self.wavelength[0]:g} half-widths")
-        turn = position % 1.0
-        mirrored = turn > 0.5
         tangent = math.tan(math.radians(slope_deg))
-        where = (
-            max(tangent, math.tan(math.radians(self.slope_deg[0]))),
-            math.log(min(wavelength, self.wavelength[-1])),
-            1.0 - turn if mirrored else turn,
-        )
-        rest_a, rest_b = (self._interpolated(p, where) for p in (self.kappa_part, self.constant_part))
+        smallest = math.tan(math.radians(self.slope_deg[0]))
+        where = max(tangent, smallest), math.log(min(wavelength, self.wavelength[-1]))
+        rest_a, rest_b = (self._rest(part, where, position) for part in (self.kappa_part, self.constant_part))
         rest = tangent**2 * (1.0 + nu) * ((3.0 - 4.0 * nu) * rest_a + rest_b)
-        if mirrored:  # the offsets are symmetric: x -> -x reverses them
-            rest = rest[::-1]
         climb = height_change(slope_deg, wavelength, position, np.array(self.offset))
         return rest - coupling(nu) * climb
 
-    def _interpolated(self, part: Array, where: tuple[float, float, float]) -> Array:
+    def _rest(self, part: Array, where: tuple[float, float], position: float) -> Array:
+        """Splines over slope and wavelength, then the trigonometric polynomial through the positions (m,)."""
         values = part
-        axes = (np.tan(np.radians(self.slope_deg)), np.log(self.wavelength), np.array(self.position))
-        for axis, point in zip(axes, where, strict=True):  # cubic splines, one axis after the other
+        axes = (np.tan(np.radians(self.slope_deg)), np.log(self.wavelength))
+        for axis, point in zip(axes, where, strict=True):
             values = make_interp_spline(axis, values)(point)
-        return values
+        # 1 - position reverses the offsets: the other half of the turn
+        turn = np.concatenate([values, values[-2:0:-1, ::-1]])
+        order = len(turn) // 2
+        harmonics = np.fft.rfft(turn, axis=0) / len(turn)
+        weight = np.full(order + 1, 2.0)
+        weight[[0, -1]] = 1.0
+        phase = np.exp(2j * np.pi * position * np.arange(order + 1))
+        mixed: Array = np.real((weight * phase) @ harmonics)
+        return mixed
 
     def percent(self, slope_deg: float, wavelength: float, position: float, nu: float) -> Array:
-        """Error (m,) of the flat coefficient of one body: (flat - rough) as a percentage of |flat|."""
+        """(rough - flat) / flat of one body (m,), in percent."""
         flat = pressed_strip(np.array(self.offset), nu)
-        return -100.0 * self.departure(slope_deg, wavelength, position, nu) / np.abs(flat)
+        return 100.0 * self.departure(slope_deg, wavelength, position, nu) / flat
 
     def pair_percent(
         self,
@@ -102,7 +104,7 @@ class CoefficientMap:
         above = self.departure(slope_deg, wavelength, position + 0.5, nu_upper)
         offset = np.array(self.offset)
         flat = pressed_strip(offset, nu) / modulus + pressed_strip(offset, nu_upper) / modulus_upper
-        return -100.0 * (below / modulus + above / modulus_upper) / np.abs(flat)
+        return 100.0 * (below / modulus + above / modulus_upper) / flat
 
     def write(self, path: Path) -> None:
         """The table as JSON, with what it means and how it was made."""

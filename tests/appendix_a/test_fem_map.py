@@ -18,7 +18,10 @@ def invented(seed=4):
     axes = slopes, wavelengths, (0.0, 0.125, 0.25, 0.375, 0.5), (-4.0, -2.0, 2.0, 4.0)
     shape = tuple(map(len, axes))
     rng = np.random.default_rng(seed)
-    return CoefficientMap(*axes, *rng.uniform(-1, 1, (2, *shape)), rng.uniform(0, 0.02, shape[:3]))
+    parts = rng.uniform(-1, 1, (2, *shape))
+    for end in (0, -1):  # crest and valley are symmetric
+        parts[..., end, :] += parts[..., end, ::-1].copy()
+    return CoefficientMap(*axes, *parts, rng.uniform(0, 0.02, shape[:3]))
 
 
 def test_a_computed_entry_is_the_solve_it_came_from():
