@@ -69,13 +69,13 @@ def lines(
     xlabel: str,
     ylabel: str,
     exact: Mapping[str, str] | None = None,
-    errors: str | None = None,
+    band: tuple[str, str] | None = None,
     log: str = "",
     marker: bool = False,
 ) -> Draw:
     """Series (key to legend text) over `x`, and those of `exact` dashed.
 
-    `errors` is the key of the first series' standard error, drawn as a band of two of them; `log` names the
+    `band` is the key and the legend text of the first series' half width, drawn around it; `log` names the
     logarithmic axes, "", "x", "y" or "xy".
     """
 
@@ -87,10 +87,11 @@ def lines(
             axes.plot(data[x], _numbers(data[key]), style, marker=mark, color=colour, label=label)
         for style, (key, label) in zip(("--", ":", "-."), (exact or {}).items(), strict=False):
             axes.plot(data[x], _numbers(data[key]), style, color=INK, label=label)
-        if errors is not None:
-            middle, width = _numbers(data[next(iter(series))]), 2 * _numbers(data[errors])
-            band: dict[str, Any] = {"color": COLOURS[0], "alpha": 0.2, "label": "two standard errors"}
-            axes.fill_between(data[x], middle - width, middle + width, **band)
+        if band is not None:
+            middle, width = _numbers(data[next(iter(series))]), _numbers(data[band[0]])
+            axes.fill_between(
+                data[x], middle - width, middle + width, color=COLOURS[0], alpha=0.2, label=band[1]
+            )
         axes.legend()
 
     return draw

@@ -48,7 +48,7 @@ DECLARED = (
             "lag / l",
             {"estimate": "ensemble"},
             exact={"eq9": "Eq. (9)"},
-            errors="standard error",
+            band=("standard error", "one standard error"),
             xlabel="lag / correlation length",
             ylabel="autocorrelation",
         ),
@@ -60,7 +60,7 @@ DECLARED = (
         lines(
             "k l",
             {"power / eq9": "ensemble"},
-            errors="standard error",
+            band=("standard error", "one standard error"),
             xlabel="wavenumber x correlation length",
             ylabel="power / that of Eq. (9)",
         ),
@@ -87,7 +87,7 @@ DECLARED = (
             "r/a0",
             {"p/p0": "rough spheres, mean"},
             exact={"Greenwood-Tripp p/p0": "Greenwood and Tripp 1967"},
-            errors="standard error",
+            band=("standard error", "one standard error"),
             xlabel="distance from the axis / Hertz radius",
             ylabel="pressure / Hertz peak",
         ),
@@ -105,6 +105,34 @@ DECLARED = (
             marker=True,
         ),
         "Contact fraction of a rough plane over the load.",
+    ),
+    Figure(
+        "appendix-strip/crest-small",
+        ("x over a", "flat", "15 degrees, superposition", "15 degrees, first order"),
+        lines(
+            "x over a",
+            {
+                "15 degrees, superposition": "wavy, superposition",
+                "15 degrees, first order": "wavy, first order",
+            },
+            exact={"flat": "flat boundary"},
+            xlabel="distance from the centre / half-width of the strip",
+            ylabel="displacement, units of p a / E",
+        ),
+        "Surface displacement of a strip on a crest of 15 degrees and on a flat boundary (Fig. 12).",
+    ),
+    Figure(
+        "reproduction/table3-*",
+        ("sigma_e (um)", "printed", "ours", "half width 95 %"),
+        lines(
+            "sigma_e (um)",
+            {"ours": "this code, mean", "printed": "as printed"},
+            band=("half width 95 %", "95 % of the mean"),
+            xlabel="rms height (um)",
+            ylabel="value of Table 3",
+            marker=True,
+        ),
+        "Table 3 as printed and as computed.",
     ),
     Figure(
         "reference/jgh-area",
@@ -163,30 +191,32 @@ def figures_of(case_id: str, data: Mapping[str, Any]) -> list[Figure]:
     return declared or [figure for figure in OFFERED if figure.available(data)] or _plain(data)
 
 
-def _plain(data: Mapping[str, Any], most: int = 12) -> list[Figure]:
-    """All series over the first one, where that one rises or falls and the others are as long."""
-    series = {name: values for name, values in data.items() if _is_series(values)}
-    x = next(iter(series), None)
-    if x is None or not (_rises(series[x]) or _rises(series[x][::-1])):
+def _plain(data: Mapping[str, Any], most: int = 6) -> list[Figure]:
+    """All lists over the first one, where that reads as one picture.
+
+    That is: it rises or falls, and the others are few, as long, and of comparable size or on a logarithmic
+    axis.
+    """
+    x, *others = [name for name, values in data.items() if isinstance(values, list)] or [""]
+    if not (0 < len(others) <= most and all(_is_series(data[name]) for name in (x, *others))):
         return []
-    others = {
-        name: name for name, values in series.items() if name != x and len(values) == len(series[x])
-    }
-    if not 0 < len(others) <= most:
+    if not (_rises(data[x]) or _rises(data[x][::-1])) or {len(data[name]) for name in others} != {
+        len(data[x])
+    }:
         return []
-    log = ("x" if _wide(series[x]) else "") + (
-        "y" if all(_wide(series[name]) for name in others) else ""
-    )
-    draw = lines(x, others, xlabel=x, ylabel="", log=log, marker=True)
+    log = ("x" if _wide(data[x]) else "") + ("y" if all(_wide(data[name]) for name in others) else "")
+    sizes = [max(abs(value) for value in data[name] if value is not None) for name in others]
+    if "y" not in log and not max(sizes) <= 100 * min(sizes):
+        return []
+    draw = lines(x, dict(zip(others, others, strict=True)), xlabel=x, ylabel="", log=log, marker=True)
     return [Figure("*", (x, *others), draw, "The series that the case recorded.")]
 
 
 def _is_series(values: object) -> bool:
-    return (
-        isinstance(values, list)
-        and len(values) >= 3
-        and all(isinstance(v, int | float | None) for v in values)
-    )
+    """A list of three numbers or more, of which some may be unknown."""
+    if not isinstance(values, list) or len(values) < 3 or all(value is None for value in values):
+        return False
+    return all(isinstance(value, int | float | None) for value in values)
 
 
 def _rises(values: list[float | None]) -> bool:

@@ -114,7 +114,10 @@ def test_a_new_case_gets_a_figure_by_its_series() -> None:
         {"load": [1, 3, 2], "area": [1, 2, 3]},
         {"load": [1, 2, 3], "area": [1, 2]},
         {"load": [1, 2, 3], "area": ["a", "b", "c"]},
-        {"load": [1, 2, 3], **{f"area {k}": [1, 2, 3] for k in range(13)}},
+        {"load": [1, 2, 3], **{f"area {k}": [1, 2, 3] for k in range(7)}},
+        {"load": [1, 2, 3], "area": [1, 2, 3], "elements": [400, 500, 600]},
+        {"load": [1, 2, 3], "area": [1, 2, 3], "maps": [[1, 2], [3, 4], [5, 6]]},
+        {"load": [1, 2, 3], "area": [None, None, None]},
     ],
 )
 def test_series_that_are_no_figure_make_none(data: dict[str, object]) -> None:
