@@ -129,7 +129,7 @@ class _LevelSolver:
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
         # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
         sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
-        self._relaxation = 1 / (1 + sigma**2)
+        self._first_relaxation = self._relaxation = 1 / (1 + sigma**2)
         self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
     def solve(self, tolerance: float) -> Outcome:
@@ -137,6 +137,7 @@ class _LevelSolver:
         if self.settle(tolerance) or self.problem.friction.tau == 0:
             return self._outcome(self._ended(), TauSupport((1, 1)), [])
         rule = TauSupport(self.window.shape)
+        self._relaxation = self._first_relaxation  # what the cycle wore down is not its supports' own
         states: list[Visited] = []
         in_cycles: list[Visited] = []
         for _ in range(_SUPPORT_ITERATIONS):
@@ -156,14 +157,18 @@ class _LevelSolver:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
         self._tolerance, self._budget = tolerance, self.cg_iterations + _CG_LIMIT
         self.residual = best = self._update(support)
-        stalled = 0
+        stalled, changed = 0, False
         while self.residual > tolerance and self.cg_iterations < self._budget:
             before = self.support
             self._reduce(max(_REDUCTION * self.residual, 0.3 * tolerance))
             self.residual = self._update(support) if self._lags else max(self.cg.residuals())
-            best, stalled = (self.residual, 0) if self.residual < 0.5 * best else (best, stalled + 1)
+            changed = changed or not np.array_equal(before, self.support)
+            if self.residual < 0.5 * best:
+                best, stalled, changed = self.residual, 0, False
+            else:
+                stalled += 1
             if stalled >= self._patience:
-                cycling = self.problem.friction.tau > 0 and not np.array_equal(before, self.support)
+                cycling = self.problem.friction.tau > 0 and changed
                 if cycling or not self._lags or self._relaxation < _LEAST_RELAXATION:
                     break
                 self._relaxation, stalled = 0.5 * self._relaxation, 0
