@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from importlib.metadata import version
 
 from refimpl import scene_to_toml
@@ -20,10 +21,11 @@ from verification.variational.timing import (
 )
 
 
-def document(rounds: int, budget: float) -> object:
-    """Measure everything and say how; ready for JSON."""
+def document(rounds: int, budget: float, grids: Sequence[int] | None = None) -> object:
+    """Measure everything on the paper's grids, or on those given, and say how; ready for JSON."""
     load_before = os.getloadavg()
-    rows = measure(SMALLER_GRIDS + PAPER_GRIDS, (*UNDER_LOAD, *AT_APPROACH, *MINIMISERS), rounds, budget)
+    methods = (*UNDER_LOAD, *AT_APPROACH, *MINIMISERS)
+    rows = measure(grids or SMALLER_GRIDS + PAPER_GRIDS, methods, rounds, budget)
     conditions = {
         "clock": "cpu: time.process_time of one process with one thread; wall: time.perf_counter",
         "machine": "shared with other work while this ran: compare processor times, within one grid",

@@ -115,7 +115,7 @@ class Contact:
 
 
 def timed(call: Callable[[], Result]) -> tuple[Result, float, float]:
-    """A call's result, its processor and its wall seconds: the mean of calls that fill a fifth of a second."""
+    """Result, processor and wall seconds of a call; the mean of as many as fill a fifth of a second."""
     cpu, wall, calls = time.process_time(), time.perf_counter(), 0
     while calls == 0 or time.process_time() - cpu < _SHORTEST:
         result = call()
