@@ -80,10 +80,13 @@ class FFTInfluence:
     @cached_property
     def _offsets(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
         """Signed element offsets, target minus source, around the circle of each axis."""
-        return (
-            _circle(self._padded[0], self.target.shape[0], self.target.i0 - self.source.i0),
-            _circle(self._padded[1], self.target.shape[1], self.target.j0 - self.source.j0),
+        shifts = (self.target.i0 - self.source.i0, self.target.j0 - self.source.j0)
+        even = self.source == self.target
+        rows, columns = (
+            _circle(n, targets, shift, even=even)
+            for n, targets, shift in zip(self._padded, self.target.shape, shifts, strict=True)
         )
+        return rows, columns
 
     @cached_property
     def _normal_hat(self) -> Array | Complex:
@@ -129,9 +132,12 @@ class WholeGridInfluence(FFTInfluence):
         return super()._convolve(source[self.source.slices], hat)
 
 
-def _circle(n: int, targets: int, shift: int) -> NDArray[np.int_]:
-    """Offsets met around a circle of ``n`` points: ``0 ... targets - 1``, then the negative ones."""
+def _circle(n: int, targets: int, shift: int, *, even: bool) -> NDArray[np.int_]:
+    """Offsets met around a circle of ``n`` points: ``0 ... targets - 1``, then the negative ones.
+
+    ``even`` splits the circle in halves, so that an even kernel has a real transform: for equal windows.
+    """
     steps = np.arange(n)
-    if shift == 0:  # keep the circle even, so that an even kernel has a real transform
+    if even:
         return np.where(steps <= n // 2, steps, steps - n)
     return np.where(steps < targets, steps, steps - n) + shift
