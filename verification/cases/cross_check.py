@@ -1,0 +1,171 @@
+"""Dense reference against production solver on `verification.scenes`: one row per reported quantity."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from functools import cache
+
+import numpy as np
+
+import refimpl as rf
+from verification.case import Measured
+from verification.registry import case
+from verification.scenes import Trial, cross_checks
+
+SOURCE = "principal pivoting on dense matrices (Murty 1974; Judice and Pires 1994)"
+REASON = "asked of both solvers is 1e-12; a thousand times that is still below what any grid resolves"
+ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
+
+
+@cache
+def trials() -> tuple[Trial, ...]:
+    """The scenes, each solved once for all rows."""
+    found = cross_checks()
+    for trial in found:
+        for solution in (trial.dense, trial.fft):
+            if solution.status not in ENDED_WELL:
+                raise RuntimeError(f"{trial.name}: {solution.plan.method} ended {solution.status.value}")
+    return found
+
+
+def by_scene(difference: Callable[[Trial], float]) -> Mapping[str, float]:
+    """The difference of both solvers on each scene."""
+    return {trial.name: difference(trial) for trial in trials()}
+
+
+def worst_of(differences: Mapping[str, float]) -> Measured:
+    """The largest difference, with all of them as the figure's series."""
+    name = max(differences, key=lambda key: differences[key])
+    return Measured(
+        value=differences[name],
+        data={"worst": differences},
+        note=f"largest on {name}; {len(differences)} scenes",
+    )
+
+
+def pressure_difference(trial: Trial) -> float:
+    """Largest difference of the pressures over the peak."""
+    off = np.abs(trial.dense.pressure - trial.fft.pressure).max()
+    return float(off) / trial.dense.max_pressure
+
+
+def approach_difference(trial: Trial) -> float:
+    """Difference of the approaches, relative and from first touch, where a periodic one is never zero."""
+    dense, fft = trial.dense, trial.fft
+    datum = 0.0
+    if trial.scene.periodic:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", rf.SurfaceWarning)  # coarse on purpose
+            lower, upper = trial.scene.heights(dense.grid)
+        datum = float((upper - lower).mean() - (upper - lower).min())
+    return abs(dense.approach - fft.approach) / abs(dense.approach + datum)
+
+
+@case(
+    "cross-check/contact-sets",
+    title="Contact sets of both solvers",
+    claim="dense and fft find the same elements in contact, and the same withheld from tau, on every scene",
+    source=SOURCE,
+    metric="equal",
+    tolerance=0.0,
+    tolerance_reason="the contact problem has one solution, and tau's rule is the same for both",
+    tags=("solvers",),
+)
+def contact_sets() -> Measured:
+    differing = [
+        trial.name
+        for trial in trials()
+        if not np.array_equal(trial.dense.contact, trial.fft.contact)
+        or not np.array_equal(trial.dense.withheld, trial.fft.withheld)
+        or trial.dense.status is not trial.fft.status
+    ]
+    cycled = [trial.name for trial in trials() if trial.dense.status is rf.Status.CYCLED]
+    data = {
+        "scene": [trial.name for trial in trials()],
+        "grid": [trial.M for trial in trials()],
+        "in contact": [int(trial.dense.contact.sum()) for trial in trials()],
+        "withheld": [int(trial.dense.withheld.sum()) for trial in trials()],
+    }
+    note = f"differing: {', '.join(differing) or 'none'}; cycled: {', '.join(cycled)}"
+    return Measured(value=len(differing), reference=0.0, data=data, note=note)
+
+
+@case(
+    "cross-check/pressure",
+    title="Pressures of both solvers",
+    claim="dense and fft agree in every element's pressure to 1e-9 of the peak",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason=REASON,
+    tags=("solvers",),
+)
+def pressure() -> Measured:
+    measured = worst_of(by_scene(pressure_difference))
+    rough = next(trial for trial in trials() if trial.name == "rough")
+    peak, touching = rough.dense.max_pressure, rough.dense.contact
+    scatter = {
+        "dense": rough.dense.pressure[touching] / peak,
+        "fft": rough.fft.pressure[touching] / peak,
+        "difference": np.abs(rough.dense.pressure - rough.fft.pressure)[touching] / peak,
+    }
+    return Measured(value=measured.value, data={**measured.data, **scatter}, note=measured.note)
+
+
+@case(
+    "cross-check/area",
+    title="Contact areas of both solvers",
+    claim="dense and fft report one contact area, to 1e-9",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason="equal sets have equal areas",
+    tags=("solvers",),
+)
+def area() -> Measured:
+    return worst_of(by_scene(lambda t: abs(t.fft.contact_area / t.dense.contact_area - 1)))
+
+
+@case(
+    "cross-check/approach",
+    title="Approaches of both solvers",
+    claim="dense and fft report one approach, to 1e-9 of it",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason=REASON,
+    tags=("solvers",),
+)
+def approach() -> Measured:
+    return worst_of(by_scene(approach_difference))
+
+
+@case(
+    "cross-check/friction",
+    title="Friction coefficients of both solvers",
+    claim="dense and fft report one mu, to 1e-9 absolute",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason=REASON,
+    tags=("solvers",),
+)
+def friction() -> Measured:
+    return worst_of(by_scene(lambda t: abs(t.dense.friction_coefficient - t.fft.friction_coefficient)))
+
+
+@case(
+    "cross-check/binormal",
+    title="Binormal forces of both solvers",
+    claim="dense and fft report one Q / P, to 1e-9 absolute",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason=REASON,
+    tags=("solvers",),
+)
+def binormal() -> Measured:
+    return worst_of(
+        by_scene(lambda t: abs(t.dense.binormal_force - t.fft.binormal_force) / t.dense.normal_force)
+    )

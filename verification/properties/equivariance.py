@@ -1,0 +1,145 @@
+"""Invariants under changes of the frame, of the units, and of which body is called the upper one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.grid import Array
+from verification.properties.registry import Solver, invariant
+from verification.properties.samples import Sample, heights, samples, with_heights
+from verification.properties.states import ENDED_WELL, RESIDUAL, from_first_touch, solved
+
+FORCES = ("normal_force", "friction_force")
+
+
+def equal_states(moved: rf.Solution, pressure: Array, base: rf.Solution, sample: Sample, sign: float) -> None:
+    """Moved pressures equal ``pressure``, forces and approach those of ``base``; Q times ``sign``."""
+    assert moved.status in ENDED_WELL
+    assert np.array_equal(moved.pressure > 0, pressure > 0)
+    assert np.abs(moved.pressure - pressure).max() <= RESIDUAL * base.max_pressure
+    load = sample.scene.load
+    for name in FORCES:
+        assert abs(getattr(moved, name) - getattr(base, name)) <= RESIDUAL * load
+    assert abs(moved.binormal_force - sign * base.binormal_force) <= RESIDUAL * load
+    assert abs(moved.approach - base.approach) <= RESIDUAL * from_first_touch(sample, base)
+
+
+@invariant("the mirror image slides like the original", samples())
+def mirror(solver: Solver, sample: Sample) -> None:
+    """x -> -x: the direction becomes pi - phi, and the binormal force changes its sign."""
+    scene, base = sample.scene, solved(solver, sample)
+    flipped = with_heights(scene, sample.grid, np.flipud, sliding_direction=math.pi - scene.sliding_direction)
+    equal_states(solver(flipped, sample.M), np.flipud(base.pressure), base, sample, -1.0)
+
+
+@invariant("a scene turned by 90 degrees slides like the original", samples())
+def quarter_turn(solver: Solver, sample: Sample) -> None:
+    """(x, y) -> (-y, x), anticlockwise: i of the new array is M - 1 - j of the old."""
+    scene, base = sample.scene, solved(solver, sample)
+
+    def turn(z: Array) -> Array:
+        return np.ascontiguousarray(z.T[::-1])
+
+    turned = with_heights(scene, sample.grid, turn, sliding_direction=scene.sliding_direction + math.pi / 2)
+    equal_states(solver(turned, sample.M), turn(base.pressure), base, sample, 1.0)
+
+
+@invariant("a periodic scene shifted by whole elements slides like the original", samples(periodic=True))
+def periodic_translation(solver: Solver, sample: Sample) -> None:
+    """Rolling both surfaces rolls the state."""
+    base, shift = solved(solver, sample), (1, sample.M // 2)
+
+    def roll(z: Array) -> Array:
+        return np.roll(z, shift, axis=(0, 1))
+
+    rolled = with_heights(sample.scene, sample.grid, roll)
+    equal_states(solver(rolled, sample.M), roll(base.pressure), base, sample, 1.0)
+
+
+@invariant("where contact lies on a free half-space does not matter", samples(periodic=False, largest=6))
+def translation(solver: Solver, sample: Sample) -> None:
+    """The scene in the middle and in a corner of a larger square, amid a moat too deep to touch.
+
+    Slopes are off: the moat's walls would change those of the elements beside them.
+    """
+    M, scene = sample.M, sample.scene
+    found = []
+    for before in (0, 1, 3):
+        padding = (before, 3 - before)
+
+        def widened(z: Array, fill: float, pad: tuple[int, int] = padding) -> Array:
+            return np.pad(z, (pad, pad), constant_values=fill)
+
+        deep = 0.4 * scene.side
+        lower = widened(heights(scene.lower, sample.grid), -deep)
+        upper = widened(heights(scene.upper, sample.grid), 0.0)
+        wide = replace(
+            scene,
+            side=scene.side * (M + 3) / M,
+            lower=rf.Body(scene.lower.material, lower),
+            upper=rf.Body(scene.upper.material, upper),
+        )
+        state = solver(wide, M + 3, oblique=False)
+        assert state.status in ENDED_WELL
+        found.append(state.pressure[before : before + M, before : before + M])
+    for other in found[1:]:
+        # the moat's depth, half the side, costs the heights about five digits
+        assert np.abs(other - found[0]).max() <= 1e-8 * found[0].max()
+
+
+@invariant("turned upside down it is the same contact", samples())
+def swapped_bodies(solver: Solver, sample: Sample) -> None:
+    """z -> -z: the bodies change places and heights their sign; the new upper body slides the other way.
+
+    Both slope angles keep their sign, since height and direction change theirs: N, F and Q stay.
+    """
+    scene, grid, base = sample.scene, sample.grid, solved(solver, sample)
+    overturned = replace(
+        scene,
+        upper=rf.Body(scene.lower.material, -heights(scene.lower, grid)),
+        lower=rf.Body(scene.upper.material, -heights(scene.upper, grid)),
+        sliding_direction=scene.sliding_direction + math.pi,
+    )
+    equal_states(solver(overturned, sample.M), base.pressure, base, sample, 1.0)
+
+
+@invariant("the height's datum does not matter", samples())
+def datum(solver: Solver, sample: Sample) -> None:
+    """A body may be lifted, or lowered, by any length, here a power of two of some ten times the gap."""
+    base = solved(solver, sample)
+    scene, lift = sample.scene, sample.scene.side / 64
+    lifted = replace(scene, upper=rf.Body(scene.upper.material, heights(scene.upper, sample.grid) + lift))
+    equal_states(solver(lifted, sample.M), base.pressure, base, sample, 1.0)
+
+
+@invariant("lengths in another unit", samples())
+def length_unit(solver: Solver, sample: Sample) -> None:
+    """All lengths times 2^10, the load times 2^20: pressures keep every bit, forces follow the load."""
+    scene, base, factor = sample.scene, solved(solver, sample), 2.0**10
+    large = with_heights(
+        scene, sample.grid, lambda z: factor * z, side=factor * scene.side, load=factor**2 * scene.load
+    )
+    moved = solver(large, sample.M)
+    assert np.array_equal(moved.pressure, base.pressure)
+    assert moved.approach == factor * base.approach
+    assert moved.friction_coefficient == base.friction_coefficient
+
+
+@invariant("stresses in another unit", samples())
+def stress_unit(solver: Solver, sample: Sample) -> None:
+    """Moduli, tau and load times 2^-7: geometry keeps every bit, pressures follow the moduli."""
+    scene, base, factor = sample.scene, solved(solver, sample), 2.0**-7
+    lower, upper = (
+        rf.Body(rf.Material(factor * body.material.E, body.material.nu), body.surface)
+        for body in (scene.lower, scene.upper)
+    )
+    friction = rf.Friction(tau=factor * scene.friction.tau, beta=scene.friction.beta)
+    soft = replace(scene, friction=friction, load=factor * scene.load, lower=lower, upper=upper)
+    moved = solver(soft, sample.M)
+    assert np.array_equal(moved.pressure, factor * base.pressure)
+    assert moved.approach == base.approach
+    assert moved.friction_coefficient == base.friction_coefficient

@@ -1,0 +1,168 @@
+"""Invariants of one state: Eqs (1), (2), (6) and (7) recomputed from the returned arrays by other means."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.grid import Array
+from verification.properties.registry import Solver, invariant
+from verification.properties.samples import Sample, samples
+from verification.properties.textbook import normal_matrix, shear_matrix
+
+RESIDUAL = 1e-9
+"""Relative; solvers are asked for 1e-12, and a thousand times that covers what separates a state's residual
+from its error on grids this small (condition number of the flexibility: below 100)."""
+ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
+
+
+def solved(solver: Solver, sample: Sample, *, oblique: bool | None = None) -> rf.Solution:
+    """The sample's solution; fails when the solver does not claim to have solved it."""
+    solution = solver(sample.scene, sample.M, oblique=oblique)
+    assert solution.status in ENDED_WELL, f"ended {solution.status.value}"
+    return solution
+
+
+def from_first_touch(sample: Sample, solution: rf.Solution) -> float:
+    """Approach from first touch (m); a periodic one is reported from the mean planes."""
+    return solution.approach + (float(sample.gap.mean()) if sample.periodic else 0.0)
+
+
+def displacement(sample: Sample, solution: rf.Solution) -> Array:
+    """Normal displacement of both bodies (m), from the returned surfaces."""
+    return solution.separation - sample.gap + from_first_touch(sample, solution)
+
+
+def compliances(scene: rf.Scene) -> tuple[float, float]:
+    """Factors of ``I[1/rho]`` and ``I[s/rho^2]`` of the pair (1/Pa), written out anew from SPEC 1."""
+    lower, upper = scene.lower.material, scene.upper.material
+    a = (1 - lower.nu**2) / (math.pi * lower.E) + (1 - upper.nu**2) / (math.pi * upper.E)
+    c_lower = (1 + lower.nu) * (1 - 2 * lower.nu) / (2 * math.pi * lower.E)
+    c_upper = (1 + upper.nu) * (1 - 2 * upper.nu) / (2 * math.pi * upper.E)
+    return a, c_lower - c_upper
+
+
+def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array, Array]:
+    """Tangents of theta_x and theta_y of the mean of the returned surfaces, by differences written out."""
+    z = (solution.surface_lower + solution.surface_upper) / 2
+    M, spacing = sample.M, sample.grid.spacing
+    d = np.zeros((2, M, M))
+    for i in range(M):
+        for j in range(M):
+            if sample.periodic:
+                d[0, i, j] = (z[(i + 1) % M, j] - z[i - 1, j]) / (2 * spacing)
+                d[1, i, j] = (z[i, (j + 1) % M] - z[i, j - 1]) / (2 * spacing)
+            else:
+                i0, i1, j0, j1 = max(i - 1, 0), min(i + 1, M - 1), max(j - 1, 0), min(j + 1, M - 1)
+                d[0, i, j] = (z[i1, j] - z[i0, j]) / ((i1 - i0) * spacing)
+                d[1, i, j] = (z[i, j1] - z[i, j0]) / ((j1 - j0) * spacing)
+    cos, sin = math.cos(solution.sliding_direction), math.sin(solution.sliding_direction)
+    return cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]
+
+
+@invariant("pressure is never negative, and somewhere positive", samples())
+def positivity(solver: Solver, sample: Sample) -> None:
+    """No adhesion: f >= 0."""
+    pressure = solved(solver, sample).pressure
+    assert pressure.min() >= 0
+    assert pressure.max() > 0
+
+
+@invariant("r = tau + beta f in contact and 0 outside, but where tau is withheld", samples())
+def local_friction_law(solver: Solver, sample: Sample) -> None:
+    """Eq. (1), to the last bit but one."""
+    solution, friction = solved(solver, sample), sample.scene.friction
+    expected = np.where(solution.pressure > 0, friction.tau + friction.beta * solution.pressure, 0.0)
+    expected[solution.withheld] -= np.where(solution.pressure > 0, friction.tau, 0.0)[solution.withheld]
+    np.testing.assert_allclose(solution.traction, expected, rtol=4e-16, atol=1e-15 * friction.tau)
+
+
+@invariant("surfaces do not interpenetrate, and touch where there is pressure", samples())
+def complementarity(solver: Solver, sample: Sample) -> None:
+    """Both inequalities (6), with the cosines of the returned surfaces."""
+    solution = solved(solver, sample)
+    tan_x, tan_y = slope_along_and_across(sample, solution)
+    v = displacement(sample, solution) * np.sqrt((1 + tan_x**2) * (1 + tan_y**2)) + sample.gap
+    excess = v - from_first_touch(sample, solution)
+    scale = np.abs(v).max()
+    assert excess.min() >= -RESIDUAL * scale
+    assert np.abs(excess[solution.pressure > 0]).max() <= RESIDUAL * scale
+
+
+@invariant("N = P, recomputed term by term from Eq. (2); F and mu from Eq. (3); Q", samples())
+def load_balance(solver: Solver, sample: Sample) -> None:
+    """Force sums with trigonometric functions of the angles, in exactly rounded sums."""
+    solution = solved(solver, sample)
+    x, y = (np.arctan(t).ravel() for t in slope_along_and_across(sample, solution))
+    f, r = solution.pressure.ravel(), solution.traction.ravel()
+    dA, load = sample.grid.element_area, sample.scene.load
+    terms = {
+        "normal_force": (f * np.cos(x) - r * np.sin(x)) * np.cos(y),
+        "friction_force": (f * np.sin(x) + r * np.cos(x)) * np.cos(y),
+        "binormal_force": (f * np.cos(x) - r * np.sin(x)) * np.sin(y),
+    }
+    for name, term in terms.items():
+        assert abs(getattr(solution, name) - math.fsum(term) * dA) <= RESIDUAL * load
+    assert abs(solution.normal_force - load) <= RESIDUAL * load
+    assert abs(solution.friction_coefficient - solution.friction_force / load) <= RESIDUAL
+
+
+@invariant("the surfaces are where Eq. (7) puts them", samples(periodic=False))
+def displacements(solver: Solver, sample: Sample) -> None:
+    """u = [a] f + [c] r with matrices from the textbook's formulas; c is lower minus upper."""
+    solution = solved(solver, sample)
+    a, c = compliances(sample.scene)
+    u = a * normal_matrix(sample.grid) @ solution.pressure.ravel()
+    u += c * shear_matrix(sample.grid, sample.scene.sliding_direction) @ solution.traction.ravel()
+    found = displacement(sample, solution).ravel()
+    # the surfaces also carry the heights' own rounding, which is 1e-16 of the side at most
+    assert np.abs(found - u).max() <= 1e-11 * np.abs(u).max() + 1e-16 * sample.scene.side
+
+
+@invariant("the contact area is the number of loaded elements; the peak is the largest pressure", samples())
+def area_and_peak(solver: Solver, sample: Sample) -> None:
+    """Counted one by one."""
+    solution = solved(solver, sample)
+    count = sum(1 for f in solution.pressure.ravel() if f > 0)
+    assert math.isclose(solution.contact_area, count * sample.grid.element_area, rel_tol=1e-14)
+    assert solution.max_pressure == max(solution.pressure.ravel())
+    assert solution.contact_area_corrected <= solution.contact_area
+
+
+@invariant("the same scene gives the same bits", samples())
+def determinism(solver: Solver, sample: Sample) -> None:
+    """Nothing depends on the time, on memory or on what was solved before."""
+    first, second = solved(solver, sample), solved(solver, sample)
+    assert first.pressure.tobytes() == second.pressure.tobytes()
+    assert first.traction.tobytes() == second.traction.tobytes()
+    assert (first.approach, first.friction_coefficient) == (second.approach, second.friction_coefficient)
+
+
+@invariant("pressing to the approach that a load gave gives that load's state back", samples(tau=False))
+def load_and_approach(solver: Solver, sample: Sample) -> None:
+    """Load to approach and back; not near full periodic contact, where an approach fixes no load."""
+    by_load = solved(solver, sample)
+    if sample.periodic and by_load.contact.mean() > 0.9:
+        return
+    back = solver(sample.scene, sample.M, approach=by_load.approach)
+    assert back.status in ENDED_WELL
+    same_pressure(back, by_load, sample)
+    assert abs(back.normal_force - sample.scene.load) <= 1e-7 * sample.scene.load
+
+
+@invariant("dense reference and production solver agree", samples())
+def agrees_with_the_dense_reference(solver: Solver, sample: Sample) -> None:
+    """The reference of `refimpl`: principal pivoting on dense matrices."""
+    reference = rf.solve(sample.scene, sample.M, method="dense", tolerance=1e-12)
+    solution = solved(solver, sample)
+    same_pressure(solution, reference, sample)
+    assert np.array_equal(solution.withheld, reference.withheld)
+
+
+def same_pressure(one: rf.Solution, other: rf.Solution, sample: Sample) -> None:
+    """Equal contact sets, pressures to `RESIDUAL` of the peak; approaches to it from first touch."""
+    assert np.array_equal(one.contact, other.contact)
+    assert np.abs(one.pressure - other.pressure).max() <= RESIDUAL * other.max_pressure
+    assert abs(one.approach - other.approach) <= RESIDUAL * abs(from_first_touch(sample, other))
