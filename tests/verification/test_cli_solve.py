@@ -148,6 +148,7 @@ def test_vtk_holds_both_surfaces_and_the_whole_load(scene: str, suffix: str, tmp
     # Each square joins four neighbours of one sheet: its corners span one spacing along x and along y.
     corners = mesh.cells_dict["quad"]
     assert np.ptp(fields["body"][corners], axis=1).max() == 0
+    assert set(corners.ravel()) == set(range(2 * 32**2))
     np.testing.assert_allclose(np.ptp(mesh.points[corners][..., :2], axis=1), 1e-3 / 32, rtol=1e-9)
     peak = int(np.argmax(fields["pressure"][fields["body"] == 0]))
     touching = fields["pressure"][fields["body"] == 0] > 0
