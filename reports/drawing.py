@@ -98,25 +98,33 @@ def lines(
 
 
 def order(
-    series: Mapping[str, str], *, ylabel: str = "error", expected: Sequence[float] = (1.0, 2.0)
+    series: Mapping[str, str],
+    *,
+    spacing: str | None = None,
+    ylabel: str = "error",
+    expected: Sequence[float] = (1.0, 2.0),
 ) -> Draw:
-    """Errors over the elements per side `M`, log-log, with fitted orders and lines of the expected ones."""
+    """Errors over the grid, log-log, with the fitted orders and lines of the expected ones.
+
+    The grid is the series `spacing` (m) or else that of the elements per side, `M`.
+    """
 
     def draw(canvas: Canvas, data: Data) -> None:
-        axes = _axes(canvas, "elements per side", ylabel, "xy")
-        M = np.asarray(data["M"], dtype=float)
+        axes = _axes(canvas, "elements per side" if spacing is None else "element (um)", ylabel, "xy")
+        grid = np.asarray(data[spacing or "M"], dtype=float) * (1.0 if spacing is None else 1e6)
+        h = 1 / grid if spacing is None else grid
         finest = np.inf
         for k, (key, label) in enumerate(series.items()):
             error = np.abs(_numbers(data[key]))
-            fitted = -np.polyfit(np.log(M), np.log(error), 1)[0]
+            fitted = np.polyfit(np.log(h), np.log(error), 1)[0]
             text = f"{label}, order {fitted:.2f}"
-            axes.plot(M, error, marker=MARKERS[k], color=COLOURS[k], label=text)
-            finest = min(finest, error[np.argmax(M)])
+            axes.plot(grid, error, marker=MARKERS[k], color=COLOURS[k], label=text)
+            finest = min(finest, error[np.argmin(h)])
         for slope, style in zip(expected, ("--", ":", "-."), strict=False):
             axes.plot(
-                M, 0.6 * finest * (M.max() / M) ** slope, style, color=INK, label=f"order {slope:g}"
+                grid, 0.6 * finest * (h / h.min()) ** slope, style, color=INK, label=f"order {slope:g}"
             )
-        axes.set_xticks(M, [f"{m:g}" for m in M], minor=False)
+        axes.set_xticks(grid, [f"{g:.3g}" for g in grid])
         axes.xaxis.set_minor_locator(NullLocator())
         axes.legend()
 
@@ -136,7 +144,7 @@ def dots(values: str | None, *, xlabel: str, limit: float | None = None) -> Draw
         for k, size in enumerate(sizes):
             if size > 0:
                 axes.plot(size, k, marker="o", color=COLOURS[0])
-                axes.annotate(f"{size:.1e}", (size, k), (7, 5), textcoords="offset points", fontsize=9)
+                axes.annotate(f"{size:.1e}", (size, k), (8, -3), textcoords="offset points", fontsize=9)
             else:
                 axes.text(
                     axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center"

@@ -1,7 +1,7 @@
 """Which case has which figures.
 
-`DECLARED` goes by the case's id: where its data are missing, the report says so. `OFFERED` goes by the names
-of the recorded series alone, so that a new case gets a figure by recording its series under these names.
+The catalogue goes by the case's id: where its data are missing, the report says so. `OFFERED` goes by the
+names of the recorded series alone, so that a new case gets a figure by recording its series under these names.
 """
 
 from __future__ import annotations
@@ -11,147 +11,8 @@ from fnmatch import fnmatchcase
 from itertools import pairwise
 from typing import Any
 
+from reports.catalogue import DECLARED
 from reports.drawing import Figure, dots, lines, maps, order
-
-
-def _order(cases: str, what: str, expected: float) -> Figure:
-    draw = order({"error": what}, ylabel="relative error", expected=(expected,))
-    return Figure(
-        cases, ("M", "error"), draw, f"Error of the {what} over the grid, and the order expected."
-    )
-
-
-DECLARED = (
-    Figure(
-        "kernels/textbook-*-fails",
-        ("offset", "textbook", "production"),
-        lines(
-            "offset",
-            {"textbook": "textbook form, median", "production": "this code, largest"},
-            xlabel="distance (elements)",
-            ylabel="relative error",
-            log="xy",
-            marker=True,
-        ),
-        "Relative error of the textbook form and of this code, over the distance from the loaded element.",
-    ),
-    Figure(
-        "kernels/*-50-digits",
-        ("worst",),
-        dots("worst", xlabel="largest relative error", limit=1e-14),
-        "Largest relative error by group of points.",
-    ),
-    Figure(
-        "surfaces/ensemble",
-        ("lag / l", "estimate", "eq9", "standard error"),
-        lines(
-            "lag / l",
-            {"estimate": "ensemble"},
-            exact={"eq9": "Eq. (9)"},
-            band=("standard error", "one standard error"),
-            xlabel="lag / correlation length",
-            ylabel="autocorrelation",
-        ),
-        "Autocorrelation of an ensemble of rough surfaces and of Eq. (9).",
-    ),
-    Figure(
-        "surfaces/spectrum",
-        ("k l", "power / eq9", "standard error"),
-        lines(
-            "k l",
-            {"power / eq9": "ensemble"},
-            band=("standard error", "one standard error"),
-            xlabel="wavenumber x correlation length",
-            ylabel="power / that of Eq. (9)",
-        ),
-        "Power of the periodic rough surface by wavenumber, over the Fourier transform of Eq. (9).",
-    ),
-    _order("reference/square-punch-order", "stiffness", 1.0),
-    _order("reference/*-approach-order", "approach", 2.0),
-    Figure(
-        "reference/sliding-wave-shift",
-        ("x", "p/p*", "exact p/p*"),
-        lines(
-            "x",
-            {"p/p*": "this code"},
-            exact={"exact p/p*": "exact, singular exponent"},
-            xlabel="x (m)",
-            ylabel="pressure / that of full contact",
-        ),
-        "Pressure of a sliding wave of dissimilar materials and its exact solution.",
-    ),
-    Figure(
-        "reference/greenwood-tripp-*",
-        ("r/a0", "p/p0", "Greenwood-Tripp p/p0", "standard error"),
-        lines(
-            "r/a0",
-            {"p/p0": "rough spheres, mean"},
-            exact={"Greenwood-Tripp p/p0": "Greenwood and Tripp 1967"},
-            band=("standard error", "one standard error"),
-            xlabel="distance from the axis / Hertz radius",
-            ylabel="pressure / Hertz peak",
-        ),
-        "Mean pressure of rough spheres and of the asperity model of Greenwood and Tripp.",
-    ),
-    Figure(
-        "reference/rough-plane-slope",
-        ("p/(E* h')", "A/A0", "Persson"),
-        lines(
-            "p/(E* h')",
-            {"A/A0": "this code, mean"},
-            exact={"Persson": "Persson"},
-            xlabel="mean pressure / (E* rms slope)",
-            ylabel="contact fraction",
-            marker=True,
-        ),
-        "Contact fraction of a rough plane over the load.",
-    ),
-    Figure(
-        "appendix-strip/crest-small",
-        ("x over a", "flat", "15 degrees, superposition", "15 degrees, first order"),
-        lines(
-            "x over a",
-            {
-                "15 degrees, superposition": "wavy, superposition",
-                "15 degrees, first order": "wavy, first order",
-            },
-            exact={"flat": "flat boundary"},
-            xlabel="distance from the centre / half-width of the strip",
-            ylabel="displacement, units of p a / E",
-        ),
-        "Surface displacement of a strip on a crest of 15 degrees and on a flat boundary (Fig. 12).",
-    ),
-    Figure(
-        "reproduction/table3-*",
-        ("sigma_e (um)", "printed", "ours", "half width 95 %"),
-        lines(
-            "sigma_e (um)",
-            {"ours": "this code, mean", "printed": "as printed"},
-            band=("half width 95 %", "95 % of the mean"),
-            xlabel="rms height (um)",
-            ylabel="value of Table 3",
-            marker=True,
-        ),
-        "Table 3 as printed and as computed.",
-    ),
-    Figure(
-        "reference/jgh-area",
-        ("load/p*", "area", "table", "light asymptote", "nearly full asymptote"),
-        lines(
-            "load/p*",
-            {"area": "this code, perimeter-corrected"},
-            exact={
-                "table": "extrapolated",
-                "light asymptote": "light",
-                "nearly full asymptote": "nearly full",
-            },
-            xlabel="load / that of full contact",
-            ylabel="contact fraction",
-            marker=True,
-        ),
-        "Contact fraction of a two-dimensional wave between its asymptotes.",
-    ),
-)
 
 OFFERED = (
     Figure(

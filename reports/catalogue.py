@@ -1,0 +1,242 @@
+"""The figures of known cases, by id: one entry a figure, each with the series it needs."""
+
+from __future__ import annotations
+
+from reports.drawing import Figure, dots, lines, maps, order
+
+
+def _order(cases: str, what: str, expected: float) -> Figure:
+    draw = order({"error": what}, ylabel="relative error", expected=(expected,))
+    return Figure(
+        cases, ("M", "error"), draw, f"Error of the {what} over the grid, and the order expected."
+    )
+
+
+DECLARED = (
+    Figure(
+        "kernels/textbook-*-fails",
+        ("offset", "textbook", "production"),
+        lines(
+            "offset",
+            {"textbook": "textbook form, median", "production": "this code, largest"},
+            xlabel="distance (elements)",
+            ylabel="relative error",
+            log="xy",
+            marker=True,
+        ),
+        "Relative error of the textbook form and of this code, over the distance from the loaded element.",
+    ),
+    Figure(
+        "kernels/*-50-digits",
+        ("worst",),
+        dots("worst", xlabel="largest relative error", limit=1e-14),
+        "Largest relative error by group of points.",
+    ),
+    *(
+        Figure(cases, ("worst",), dots("worst", xlabel=what, limit=limit), caption, (6.4, 5.0))
+        for cases, what, limit, caption in (
+            (
+                "cross-check/[!c]*",
+                "difference of the solvers",
+                1e-9,
+                "Agreement of both solvers, scene by scene.",
+            ),
+            (
+                "manufactured/*",
+                "error",
+                1e-12,
+                "Error of both solvers on states whose answer was chosen.",
+            ),
+            (
+                "balance/normal-force",
+                "misfit of the load",
+                1e-8,
+                "Normal force against the load, by scene.",
+            ),
+            (
+                "balance/prescribed-approach",
+                "difference",
+                1e-9,
+                "Approach and load prescribed, by scene.",
+            ),
+        )
+    ),
+    Figure(
+        "hertz/peak-pressure",
+        ("x", "computed", "hertz"),
+        lines(
+            "x",
+            {"computed": "this code"},
+            exact={"hertz": "Hertz"},
+            xlabel="x from the centre (mm)",
+            ylabel="pressure (MPa)",
+        ),
+        "Profile of the pressure through the centre, against Hertz.",
+    ),
+    Figure(
+        "hertz/peak-pressure",
+        ("pressure", "side"),
+        maps({"pressure": "Pressure"}, side="side", unit="MPa"),
+        "Map of the contact pressure.",
+        (4.8, 3.8),
+    ),
+    *(
+        Figure(
+            f"hertz/{case}",
+            ("spacing", *series),
+            order(series, spacing="spacing", ylabel="relative error", expected=expected),
+            f"Error of the {what} over the grid, with fitted and expected order.",
+        )
+        for case, series, expected, what in (
+            ("peak-order", {"peak pressure": "peak pressure"}, (2.0,), "peak pressure"),
+            ("approach-order", {"approach": "approach"}, (2.0,), "approach"),
+            ("profile", {"profile": "pressure within 0.8 radii"}, (2.0,), "pressure"),
+            (
+                "radius-corrected",
+                {"raw": "raw area", "corrected": "corrected area"},
+                (1.0,),
+                "contact radius",
+            ),
+        )
+    ),
+    Figure(
+        "sliding/trailing-edge",
+        ("x", "pressure along", "traction along", "hertz pressure", "hertz traction"),
+        lines(
+            "x",
+            {"pressure along": "pressure", "traction along": "traction"},
+            exact={"hertz pressure": "Hertz", "hertz traction": "beta times Hertz"},
+            xlabel="x from the centre, along sliding (mm)",
+            ylabel="MPa",
+        ),
+        "Profiles along the sliding direction, against the contact without friction.",
+    ),
+    Figure(
+        "sliding/trailing-edge",
+        ("x", "change by friction"),
+        lines(
+            "x",
+            {"change by friction": "with friction less without"},
+            xlabel="x from the centre, along sliding (mm)",
+            ylabel="pressure (MPa)",
+        ),
+        "What friction changes: the pressure moves to the trailing edge, at negative x.",
+    ),
+    Figure(
+        "sliding/trailing-edge",
+        ("pressure", "traction", "side"),
+        maps({"pressure": "Pressure", "traction": "Traction"}, side="side", unit="MPa"),
+        "Maps of contact pressure and traction.",
+        (8.6, 3.8),
+    ),
+    Figure(
+        "surfaces/ensemble",
+        ("lag / l", "estimate", "eq9", "standard error"),
+        lines(
+            "lag / l",
+            {"estimate": "ensemble"},
+            exact={"eq9": "Eq. (9)"},
+            band=("standard error", "one standard error"),
+            xlabel="lag / correlation length",
+            ylabel="autocorrelation",
+        ),
+        "Autocorrelation of an ensemble of rough surfaces and of Eq. (9).",
+    ),
+    Figure(
+        "surfaces/spectrum",
+        ("k l", "power / eq9", "standard error"),
+        lines(
+            "k l",
+            {"power / eq9": "ensemble"},
+            band=("standard error", "one standard error"),
+            xlabel="wavenumber x correlation length",
+            ylabel="power / that of Eq. (9)",
+        ),
+        "Power of the periodic rough surface by wavenumber, over the Fourier transform of Eq. (9).",
+    ),
+    _order("reference/square-punch-order", "stiffness", 1.0),
+    _order("reference/*-approach-order", "approach", 2.0),
+    Figure(
+        "reference/sliding-wave-shift",
+        ("x", "p/p*", "exact p/p*"),
+        lines(
+            "x",
+            {"p/p*": "this code"},
+            exact={"exact p/p*": "exact, singular exponent"},
+            xlabel="x (m)",
+            ylabel="pressure / that of full contact",
+        ),
+        "Pressure of a sliding wave of dissimilar materials and its exact solution.",
+    ),
+    Figure(
+        "reference/greenwood-tripp-*",
+        ("r/a0", "p/p0", "Greenwood-Tripp p/p0", "standard error"),
+        lines(
+            "r/a0",
+            {"p/p0": "rough spheres, mean"},
+            exact={"Greenwood-Tripp p/p0": "Greenwood and Tripp 1967"},
+            band=("standard error", "one standard error"),
+            xlabel="distance from the axis / Hertz radius",
+            ylabel="pressure / Hertz peak",
+        ),
+        "Mean pressure of rough spheres and of the asperity model of Greenwood and Tripp.",
+    ),
+    Figure(
+        "reference/rough-plane-slope",
+        ("p/(E* h')", "A/A0", "Persson"),
+        lines(
+            "p/(E* h')",
+            {"A/A0": "this code, mean"},
+            exact={"Persson": "Persson"},
+            xlabel="mean pressure / (E* rms slope)",
+            ylabel="contact fraction",
+            marker=True,
+        ),
+        "Contact fraction of a rough plane over the load.",
+    ),
+    Figure(
+        "appendix-strip/crest-small",
+        ("x over a", "flat", "15 degrees, superposition", "15 degrees, first order"),
+        lines(
+            "x over a",
+            {
+                "15 degrees, superposition": "wavy, superposition",
+                "15 degrees, first order": "wavy, first order",
+            },
+            exact={"flat": "flat boundary"},
+            xlabel="distance from the centre / half-width of the strip",
+            ylabel="displacement, units of p a / E",
+        ),
+        "Surface displacement of a strip on a crest of 15 degrees and on a flat boundary (Fig. 12).",
+    ),
+    Figure(
+        "reproduction/table3-*",
+        ("sigma_e (um)", "printed", "ours", "half width 95 %"),
+        lines(
+            "sigma_e (um)",
+            {"ours": "this code, mean", "printed": "as printed"},
+            band=("half width 95 %", "95 % of the mean"),
+            xlabel="rms height (um)",
+            ylabel="value of Table 3",
+            marker=True,
+        ),
+        "Table 3 as printed and as computed.",
+    ),
+    Figure(
+        "reference/jgh-area",
+        ("load/p*", "area", "table", "light asymptote", "nearly full asymptote"),
+        lines(
+            "load/p*",
+            {"area": "this code, perimeter-corrected"},
+            exact={
+                "table": "extrapolated",
+                "light asymptote": "light",
+                "nearly full asymptote": "nearly full",
+            },
+            xlabel="load / that of full contact",
+            ylabel="contact fraction",
+            marker=True,
+        ),
+        "Contact fraction of a two-dimensional wave between its asymptotes.",
+    ),
+)
