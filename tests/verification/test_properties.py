@@ -7,7 +7,7 @@ from functools import partial
 import pytest
 
 import refimpl as rf
-from verification.properties import INVARIANTS, Sample, check_solver
+from verification.properties import INVARIANTS, check_solver
 
 SOLVERS = {
     "fft": partial(rf.solve, method="fft", tolerance=1e-12),
