@@ -1,7 +1,7 @@
 """Which case has which figures.
 
-The catalogue goes by the case's id: where its data are missing, the report says so. `OFFERED` goes by the
-names of the recorded series alone, so that a new case gets a figure by recording its series under these names.
+The catalogue goes by the case's id: where its data are missing, the report says so. `OFFERED` goes by names
+of recorded series alone, so that a new case gets a figure by recording its series under these names.
 """
 
 from __future__ import annotations
