@@ -1,0 +1,214 @@
+"""What does not hold in the paper's body: a number against each place, and the same for its correction.
+
+``evidence()`` measures the printed form and ``check()`` the corrected one, by the same ``measure``: zero is
+right. Appendix A's errata are `appendix_a.errata`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import refimpl as rf
+from refimpl.forces import plasticity_index, smooth_friction_coefficient
+from verification.reproduction import fig5, table3
+from verification.reproduction.ensemble import column, estimate
+from verification.reproduction.printed import (
+    CORRELATION_LENGTH,
+    CRITICAL_RMS,
+    FIG6_RMS,
+    FLAT_RMS,
+    HARDNESS,
+    HERTZ_PRESSURE,
+    HERTZ_RADIUS,
+    LENGTH_IN_ELEMENTS,
+    LOWEST_FRICTION,
+    QUOTED_SLOPES,
+    RESOLUTION,
+    SPHERE_RMS,
+    TABLE2,
+    TABLE3,
+)
+from verification.reproduction.table1 import RADIUS, SMOOTH, hertz
+
+ROUNDED_RADIUS = 0.1430  # m: printed as 0.14
+TAU, BETA = SMOOTH.friction.tau, SMOOTH.friction.beta
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """One fault; ``measure`` says what ``evidence`` and ``check`` compute, ``tolerance`` bounds ``check``."""
+
+    slug: str
+    equation: str
+    printed: str
+    corrected: str
+    measure: str
+    evidence: Callable[[], float]
+    check: Callable[[], float]
+    tolerance: float
+    tolerance_reason: str
+
+
+def _off(value: float, reference: float) -> float:
+    return abs(value / reference - 1)
+
+
+def _hertz_misfit(radius: float) -> float:
+    smooth = hertz(radius=radius)
+    return max(_off(HERTZ_RADIUS, smooth.contact_radius), _off(HERTZ_PRESSURE, smooth.peak_pressure))
+
+
+def _smooth_column_misfit(radius: float) -> float:
+    area = math.pi * hertz(radius=radius).contact_radius ** 2
+    mu = smooth_friction_coefficient(TAU, BETA, SMOOTH.load / area)
+    printed = TABLE3[0]
+    return max(_off(printed.contact_area[-1], area), _off(printed.friction_coefficient[-1], mu))
+
+
+def _slope_misfit(factor: float) -> float:
+    """Quoted slopes against ``factor`` times the component rms slope of Eq. (9), l = 33 elements."""
+    length = LENGTH_IN_ELEMENTS * RESOLUTION
+    slopes = {rms: rf.GaussianRoughness(rms, length, seed=0).rms_slope for rms in FLAT_RMS}
+    return max(_off(math.degrees(factor * slope), QUOTED_SLOPES[rms]) for rms, slope in slopes.items())
+
+
+def _spread_over_contact(term: str) -> float:
+    """Relative variation over Fig. 5's contact of one of the two terms of Eq. (1)."""
+    found = fig5.profiles(128).solution
+    lawful = found.contact & ~found.withheld
+    coulomb = BETA * found.pressure[lawful]
+    stress = coulomb if term == "beta" else found.traction[lawful] - coulomb
+    return float((stress.max() - stress.min()) / stress.max())
+
+
+def _plasticity_misfit(length: float) -> float:
+    return abs(plasticity_index(SMOOTH.materials.reduced_modulus, HARDNESS, CRITICAL_RMS, length) - 1)
+
+
+def _rough_column(quantity: str) -> float:
+    return estimate(column(table3.quick_rows(), quantity, lower_rms=TABLE3[-1].flat_rms)).mean
+
+
+def _limit_misfit(*, elastic: bool) -> float:
+    """Printed friction at 1.68 um against its lower limit, or against Eq. (10) at the pressure solved for."""
+    printed = TABLE3[-1].friction_coefficient[-1]
+    if not elastic:
+        return _off(printed, LOWEST_FRICTION)
+    return _off(printed, smooth_friction_coefficient(TAU, BETA, SMOOTH.load / _rough_column("contact_area")))
+
+
+def _initial_points_misfit(last: int) -> float:
+    """Initial contact points of the finest grid against four times those of the next (the same area)."""
+    return _off(last, 4 * TABLE2[2][1])
+
+
+def _fig6_outside(lowest: float, highest: float) -> float:
+    """How far Fig. 6's roughnesses lie outside a range, relative to it."""
+    return max(0.0, 1 - min(FIG6_RMS) / lowest, max(FIG6_RMS) / highest - 1)
+
+
+ERRATA = (
+    Erratum(
+        "hertz",
+        "Table 1, Fig. 6",
+        "R = 0.14 m with a0 = 0.452 mm, f0 = 163.9 MPa",
+        "R = 0.143 m, rounded in Table 1; R = 0.14 m gives 0.448 mm and 166.3 MPa",
+        "largest relative difference of the quoted radius and pressure from Hertz",
+        lambda: _hertz_misfit(RADIUS),
+        lambda: _hertz_misfit(ROUNDED_RADIUS),
+        0.0012,
+        "half a unit of a0's last printed digit, 0.11 %",
+    ),
+    Erratum(
+        "smooth-column",
+        "Table 3, sigma = 0",
+        "A = 0.643 mm^2, mu = 0.218 with R = 0.14 m",
+        "R = 0.143 m, as for Fig. 6",
+        "largest relative difference of A from pi a0^2 and of mu from Eq. (10)",
+        lambda: _smooth_column_misfit(RADIUS),
+        lambda: _smooth_column_misfit(ROUNDED_RADIUS),
+        0.006,
+        "a staircase of 450 elements about a circle of radius 143 elements: 0.5 % of A; and the printed "
+        "digits",
+    ),
+    Erratum(
+        "slopes",
+        "section 6.1",
+        "sigma_theta_x = sigma_theta_y = 0.125 and 2.5 degrees",
+        "the mean magnitude of the gradient, sqrt(pi / 2) times the rms of a component, which is 0.0995 and "
+        "1.99 degrees",
+        "largest relative difference of the quoted slopes from Eq. (9)'s",
+        lambda: _slope_misfit(1.0),
+        lambda: _slope_misfit(math.sqrt(math.pi / 2)),
+        0.0056,
+        "half a unit of 0.125's last digit, and as much of 3.15 um's",
+    ),
+    Erratum(
+        "bracket",
+        "(9)",
+        "exp(-2.3 [k/l]^2 + m/l]^2), read literally",
+        "exp(-2.3 ([k/l]^2 + [m/l]^2))",
+        "|R at the correlation radius along y - 10 %|",
+        lambda: abs(math.exp(1.0) - 0.1),
+        lambda: abs(math.exp(-2.3) - 0.1),
+        0.0003,
+        "2.3 is log 10 to two digits: exp(-2.3) = 0.10026",
+    ),
+    Erratum(
+        "constant-term",
+        "section 8",
+        "a constant shear adhesion term beta",
+        "tau is the constant adhesion term of (1); beta is constant in (10) only",
+        "relative variation of the named term of Eq. (1) over the smooth contact",
+        lambda: _spread_over_contact("beta"),
+        lambda: _spread_over_contact("tau"),
+        1e-8,
+        "rounding of (tau + beta f) - beta f: eps times r / tau",
+    ),
+    Erratum(
+        "plasticity-length",
+        "(12)",
+        "psi with epsilon = 3.15 um, 1 at sigma_e = 0.5 um",
+        "psi with the correlation length, 104 um",
+        "|psi(0.5 um) - 1|",
+        lambda: _plasticity_misfit(RESOLUTION),
+        lambda: _plasticity_misfit(CORRELATION_LENGTH),
+        0.1,
+        "'about 0.5 um' has one digit, 10 %",
+    ),
+    Erratum(
+        "lowest-friction",
+        "(11)",
+        "mu does not fall below tau / H + beta = 0.1",
+        "no such limit in an elastic model: Eq. (10) at the pressure solved for, 2 H at 1.68 um",
+        "relative difference of Table 3's mu = 0.089 from the limit, or from Eq. (10)",
+        lambda: _limit_misfit(elastic=False),
+        lambda: _limit_misfit(elastic=True),
+        0.01,
+        "the printed digit, 0.6 %, and the coarse mesh's area, 10 % of tau A / N: 1 % of mu",
+    ),
+    Erratum(
+        "table2-case4",
+        "Table 2, case 4",
+        "23715 initial contact points, fewer than the final 68951",
+        "a digit is missing, as in 237 150: four times case 3, as case 3 is of case 2",
+        "relative difference of the initial points from four times those of the grid half as fine",
+        lambda: _initial_points_misfit(TABLE2[3][1]),
+        lambda: _initial_points_misfit(10 * TABLE2[3][1]),
+        0.01,
+        "case 3 departs from four times case 2 by 0.65 %",
+    ),
+    Erratum(
+        "fig6-range",
+        "Fig. 6",
+        "sigma_e within 0.119 to 1.682 um (section 6.1)",
+        "0.068 to 2.69 um in Fig. 6, whose roughness is all on the flat",
+        "how far 0.068 and 2.69 um lie outside the range, relative to its ends",
+        lambda: _fig6_outside(math.hypot(SPHERE_RMS, FLAT_RMS[0]), math.hypot(SPHERE_RMS, FLAT_RMS[1])),
+        lambda: _fig6_outside(min(FIG6_RMS), max(FIG6_RMS)),
+        0.0,
+        "exact",
+    ),
+)

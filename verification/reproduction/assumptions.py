@@ -1,0 +1,97 @@
+"""The paper's silent assumptions, as measures of a solution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.forces import Forces, facet_resultants, resultants
+from verification.reproduction.table1 import rough
+from verification.reproduction.tangential import displacements, with_tangential
+
+
+def kinematic_margin(scene: rf.Scene, found: rf.Solution) -> float:
+    """Least of ``(approach - h) / approach`` on the contact; negative: no interference."""
+    lower, upper = scene.heights(found.grid)
+    gap = upper - lower
+    gap = gap - gap.min()
+    return float((1 - gap[found.contact] / found.approach).min())
+
+
+def adhesive_scene(ratio: float) -> rf.Scene:
+    """A steel ball on a polymer at 10 mN, its tau ``ratio`` times Hertz' peak pressure."""
+    polymer = rf.Material(E=1e9, nu=0.2)
+    steel = rf.Material(E=200e9, nu=0.3)
+    bare = rf.Scene(
+        upper=rf.Body(steel, rf.Sphere(radius=0.14)),
+        lower=rf.Body(polymer, rf.Flat()),
+        friction=rf.Friction(),
+        load=0.01,
+        side=4e-4,
+    )
+    radius = (3 * bare.load * 0.14 / (4 * bare.materials.reduced_modulus)) ** (1 / 3)
+    peak = 3 * bare.load / (2 * np.pi * radius**2)
+    return replace(bare, friction=rf.Friction(tau=ratio * peak))
+
+
+@dataclass(frozen=True)
+class TangentialEffect:
+    """What tangential displacements do: largest displacement and rms change of the gap on the contact over
+    the approach, and relative changes of mu, A and f_max when they are put into the surfaces.
+    """
+
+    displacement: float
+    gap: float
+    friction: float
+    area: float
+    peak: float
+
+    @property
+    def largest(self) -> float:
+        """The largest relative change of mu and A."""
+        return max(abs(self.friction), abs(self.area))
+
+
+def tangential_effect(flat_rms: float, ball_rms: float, realisation: int, grid: int) -> TangentialEffect:
+    """Solve, displace, solve again."""
+    scene = rough(flat_rms, ball_rms, realisation)
+    first = rf.solve(scene, grid)
+    moved, contact = displacements(scene, first), first.contact
+    second = rf.solve(with_tangential(scene, first), grid)
+    relative = np.hypot(*(moved.upper - moved.lower))
+    return TangentialEffect(
+        displacement=float(relative[contact].max()) / first.approach,
+        gap=float(np.sqrt(np.mean(moved.gap_change[contact] ** 2))) / first.approach,
+        friction=second.friction_coefficient / first.friction_coefficient - 1,
+        area=second.contact_area / first.contact_area - 1,
+        peak=second.max_pressure / first.max_pressure - 1,
+    )
+
+
+@dataclass(frozen=True)
+class FacetEffect:
+    """Printed cosines against facet tractions: rms slope on the contact, relative changes of N and F."""
+
+    slope: float
+    normal: float
+    friction: float
+
+    @property
+    def coefficient(self) -> float:
+        """Relative change of F / N."""
+        return (1 + self.friction) / (1 + self.normal) - 1
+
+
+def facet_effect(flat_rms: float, grid: int) -> FacetEffect:
+    """The same pressures and slopes summed both ways, for one realisation at P = 70 N."""
+    found = rf.solve(rough(flat_rms), grid)
+    sums: list[Forces] = [
+        how(found.pressure, found.traction, found.slopes, found.grid.element_area)
+        for how in (resultants, facet_resultants)
+    ]
+    printed, exact = sums
+    contact = found.contact
+    slope = np.sqrt(np.mean(found.slopes.tan_x[contact] ** 2 + found.slopes.tan_y[contact] ** 2) / 2)
+    return FacetEffect(float(slope), exact.normal / printed.normal - 1, exact.friction / printed.friction - 1)

@@ -1,0 +1,101 @@
+"""Ensembles of a shipped study: run (or taken up where a killed run left off), averaged, with intervals."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import t as student
+
+from refimpl.outcome import Status
+from verification.sweep.engine import sweep
+from verification.sweep.run import Row
+from verification.sweep.study import Study, read_study
+
+FOLDER = "ROUGH_FRICTION_SWEEPS"  # environment variable: keep stores there; they outlive a killed run
+CERTIFIED = (Status.CONVERGED.value, Status.CYCLED.value)
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Mean over ``n`` independent realisations, the half width of its 95 % interval (Student's t), and the
+    relative scatter of one realisation (standard deviation over mean).
+    """
+
+    mean: float
+    half_width: float
+    scatter: float
+    n: int
+
+
+def estimate(values: Sequence[float]) -> Estimate:
+    """Raises ValueError for fewer than two values or one that is not finite.
+
+    >>> e = estimate([1.0, 2.0, 3.0])
+    >>> e.mean, round(e.half_width, 3), e.scatter
+    (2.0, 2.484, 0.5)
+    """
+    v = np.asarray(values, dtype=float)
+    if len(v) < 2 or not np.all(np.isfinite(v)):
+        raise ValueError("an interval needs at least two finite values")
+    deviation = float(v.std(ddof=1))
+    half = float(student.ppf((1 + CONFIDENCE) / 2, len(v) - 1)) * deviation / np.sqrt(len(v))
+    mean = float(v.mean())
+    return Estimate(mean, float(half), deviation / abs(mean) if mean else np.inf, len(v))
+
+
+def reduced(study: Study, realisations: int, **vary: Iterable[float]) -> Study:
+    """The study with fewer realisations and other values on some axes: the quick tier's."""
+    return replace(
+        study, realisations=realisations, vary={**study.vary, **{k: tuple(v) for k, v in vary.items()}}
+    )
+
+
+@cache
+def rows_of(name: str) -> tuple[Row, ...]:
+    """All rows of a shipped study; see `rows`."""
+    return rows(read_study(name), name)
+
+
+def rows(study: Study, name: str) -> tuple[Row, ...]:
+    """All rows of a study, solved in this process.
+
+    Raises RuntimeError when a run failed or its certificate does not meet the tolerance: an ensemble with
+    gaps is no ensemble.
+    """
+    with _store(name) as path:
+        done = sweep(study, path, workers=0)
+    uncertified = [row["key"] for row in done.rows if row["status"] not in CERTIFIED]
+    if done.failures or uncertified:
+        first = next(iter(done.failures.values()), uncertified[:1])
+        raise RuntimeError(f"{len(done.failures)} runs failed, {len(uncertified)} uncertified: {first}")
+    return tuple(done.rows)
+
+
+def column(found: Iterable[Row], quantity: str, **where: float) -> list[float]:
+    """Values of a quantity in the rows whose coordinates equal those given, in order.
+
+    Raises LookupError when there are none.
+    """
+    chosen = [row[quantity] for row in found if all(row[k] == v for k, v in where.items())]
+    if not chosen:
+        raise LookupError(f"no run has {where}")
+    return chosen
+
+
+@contextmanager
+def _store(name: str) -> Iterator[Path]:
+    folder = os.environ.get(FOLDER)
+    if folder:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        yield Path(folder) / f"{name}.sqlite"
+        return
+    with tempfile.TemporaryDirectory() as temporary:
+        yield Path(temporary) / f"{name}.sqlite"

@@ -1,0 +1,65 @@
+"""Fig. 4: the generated surfaces and their measured statistics, and the slopes that section 6.1 quotes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.grid import Array
+from refimpl.surfaces import statistics
+from verification.reproduction.ensemble import Estimate, estimate
+from verification.reproduction.printed import CORRELATION_LENGTH, SIDE
+from verification.reproduction.table1 import FIRST_SEED
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Estimates over realisations of unit-rms surfaces: moments, correlation radius (m), slopes per unit rms
+    (1/m): component rms, mean magnitude of the gradient, and largest magnitude.
+    """
+
+    skewness: Estimate
+    kurtosis: Estimate
+    radius: Estimate
+    component_slope: Estimate
+    mean_gradient: Estimate
+    largest_gradient: Estimate
+
+
+def surface(realisation: int, grid: int, *, ball: bool = False) -> Array:
+    """Normalised heights (unit rms) of the flat's roughness, or the ball's."""
+    seed = FIRST_SEED + 2 * realisation + (not ball)
+    roughness = rf.GaussianRoughness(1.0e-6, CORRELATION_LENGTH, seed, normalise=True)
+    return roughness.heights(rf.Grid(SIDE, grid)) * 1e6
+
+
+def measured(realisations: int, grid: int) -> Statistics:
+    """Statistics of the flats' roughness."""
+    h = SIDE / grid
+    found = []
+    for k in range(realisations):
+        z = surface(k, grid)
+        radius = statistics.correlation_length(z, h)
+        slope_x, slope_y = statistics.slopes(z, h)
+        gradient = np.hypot(slope_x, slope_y)
+        rms = math.sqrt(float(np.mean(gradient**2)) / 2)
+        largest = float(gradient.max())
+        found.append(
+            (
+                statistics.skewness(z),
+                statistics.kurtosis(z),
+                math.nan if radius is None else radius,
+                rms,
+                float(gradient.mean()),
+                largest,
+            )
+        )
+    return Statistics(*(estimate(values) for values in zip(*found, strict=True)))
+
+
+def degrees(slope_per_rms: float, rms: float) -> float:
+    """Slope angle (degrees) of a surface of the given rms (m)."""
+    return math.degrees(math.atan(slope_per_rms * rms))

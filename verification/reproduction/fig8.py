@@ -1,0 +1,114 @@
+"""Fig. 8: friction, contact area and their rates of change over roughness and plasticity index."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from scipy.optimize import curve_fit
+
+import refimpl as rf
+from refimpl.forces import plasticity_index
+from refimpl.grid import Array
+from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
+from verification.reproduction.printed import CORRELATION_LENGTH, HARDNESS, LOADS, SPHERE_RMS
+from verification.reproduction.table1 import SMOOTH, rough
+from verification.sweep.run import Row
+from verification.sweep.study import read_study
+
+QUICK_REALISATIONS, QUICK_MESH = 3, 128
+QUICK_RMS = (0.0, 0.252e-6, 0.504e-6, 1.008e-6, 1.680e-6)  # m
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One load's curves over ``rms`` = sigma_e (m), the smooth contact first: means and 95 % half widths."""
+
+    load: float
+    rms: Array
+    friction: Array
+    friction_half: Array
+    area: Array
+    area_half: Array
+
+    @property
+    def middle(self) -> Array:
+        """sigma_e (m) of the rates: between neighbouring roughnesses."""
+        return (self.rms[1:] + self.rms[:-1]) / 2
+
+    def rate(self, values: Array) -> Array:
+        """Slope of a curve over sigma_e between neighbours, over its first one."""
+        slope = np.diff(values) / np.diff(self.rms)
+        return np.asarray(slope / slope[0])
+
+
+def plasticity(rms: Array, length: float = CORRELATION_LENGTH) -> Array:
+    """Eq. (12) with the given length (m) for its epsilon."""
+    modulus = SMOOTH.materials.reduced_modulus
+    return np.array([plasticity_index(modulus, HARDNESS, s, length) for s in rms])
+
+
+@cache
+def full_curves() -> tuple[Curve, ...]:
+    """The shipped study."""
+    return curves(rows_of("fig8"), 256)
+
+
+@cache
+def quick_curves() -> tuple[Curve, ...]:
+    """Three realisations of five roughnesses at 128 x 128."""
+    study = reduced(read_study("fig8"), QUICK_REALISATIONS, grid=(QUICK_MESH,), lower_rms=QUICK_RMS)
+    return curves(rows(study, "fig8-quick"), QUICK_MESH)
+
+
+def curves(found: Sequence[Row], mesh: int) -> tuple[Curve, ...]:
+    """One curve per load."""
+    return tuple(_curve(found, load, mesh) for load in LOADS)
+
+
+def _curve(found: Sequence[Row], load: float, mesh: int) -> Curve:
+    flats = sorted({row["lower_rms"] for row in found})
+    smooth = rf.solve(rough(0.0, load=load), mesh)
+    points = [(0.0, smooth.friction_coefficient, 0.0, smooth.contact_area, 0.0)]
+    for flat in flats:
+        where = {"load": load, "lower_rms": flat}
+        mu = estimate(column(found, "friction_coefficient", **where))
+        area = estimate(column(found, "contact_area", **where))
+        rms = float(np.hypot(flat, SPHERE_RMS))
+        points.append((rms, mu.mean, mu.half_width, area.mean, area.half_width))
+    return Curve(load, *np.array(points).T)
+
+
+@dataclass(frozen=True)
+class Decay:
+    """Misfits (rms, relative to the fall over the range) of ``mu - limit`` falling as an exponential and as a
+    hyperbola ``1 / (1 + sigma / scale)``, and the exponential's limit.
+    """
+
+    exponential: float
+    hyperbolic: float
+    limit: float
+    scale: float
+
+
+def decay(curve: Curve) -> Decay:
+    """Least-squares fits of three parameters each to mu over sigma_e."""
+    x, fall = curve.rms * 1e6, float(np.ptp(curve.friction))
+
+    def exponential(s: Array, limit: float, height: float, scale: float) -> Array:
+        return np.asarray(limit + height * np.exp(-s / scale))
+
+    def hyperbola(s: Array, limit: float, height: float, scale: float) -> Array:
+        return np.asarray(limit + height / (1 + s / scale))
+
+    start = (float(curve.friction[-1]), fall, 0.2)
+    bounds = ((0.0, 0.0, 1e-3), (1.0, 10.0, 10.0))
+    first, _ = curve_fit(exponential, x, curve.friction, start, bounds=bounds)
+    second, _ = curve_fit(hyperbola, x, curve.friction, start, bounds=bounds)
+    misfits = [
+        float(np.sqrt(np.mean((f(x, *p) - curve.friction) ** 2))) / fall
+        for f, p in ((exponential, first), (hyperbola, second))
+    ]
+    return Decay(misfits[0], misfits[1], float(first[0]), float(first[2]) * 1e-6)

@@ -1,0 +1,126 @@
+"""Figs 9 and 10 and steady sliding: forces over sliding distance and direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from refimpl.grid import Array
+from verification.reproduction.ensemble import reduced, rows, rows_of
+from verification.sweep.run import Row
+from verification.sweep.study import read_study
+
+QUICK_MESH = 128
+QUICK_OFFSETS = tuple(k * 50e-6 for k in range(8))  # m
+QUICK_DIRECTIONS = tuple(float(a) for a in np.radians([0, 60, 120, 180, 240, 300]))
+
+
+@cache
+def full_fig9() -> tuple[Row, ...]:
+    """Twelve directions, seventeen offsets."""
+    return rows_of("fig9")
+
+
+@cache
+def quick_fig9() -> tuple[Row, ...]:
+    """Two directions, eight offsets, at 128 x 128."""
+    study = reduced(
+        read_study("fig9"),
+        1,
+        grid=(QUICK_MESH,),
+        sliding_direction=(0.0, float(np.pi / 2)),
+        sliding_offset=QUICK_OFFSETS,
+    )
+    return rows(study, "fig9-quick")
+
+
+@cache
+def full_fig10() -> tuple[Row, ...]:
+    """Twenty-four directions, four roughnesses, six realisations."""
+    return rows_of("fig10")
+
+
+@cache
+def quick_fig10() -> tuple[Row, ...]:
+    """Six directions, two roughnesses, one realisation, at 128 x 128."""
+    study = reduced(
+        read_study("fig10"),
+        1,
+        grid=(QUICK_MESH,),
+        lower_rms=(0.504e-6, 1.680e-6),
+        sliding_direction=QUICK_DIRECTIONS,
+    )
+    return rows(study, "fig10-quick")
+
+
+@cache
+def full_slide() -> tuple[Row, ...]:
+    """4 mm along x in steps of 25 um."""
+    return rows_of("slide")
+
+
+@cache
+def quick_slide() -> tuple[Row, ...]:
+    """1.5 mm in steps of 100 um at 128 x 128."""
+    offsets = tuple(k * 100e-6 for k in range(16))
+    return rows(reduced(read_study("slide"), 1, grid=(QUICK_MESH,), sliding_offset=offsets), "slide-quick")
+
+
+@dataclass(frozen=True)
+class Turning:
+    """One roughness over the direction (rad): the elastic part of friction over friction, and friction over
+    its mean over the directions less 1. Shapes ``(realisations, directions)``.
+    """
+
+    flat_rms: float
+    direction: Array
+    elastic: Array
+    anisotropy: Array
+
+
+def turning(found: Sequence[Row]) -> list[Turning]:
+    """One entry per roughness."""
+    directions = sorted({row["sliding_direction"] for row in found})
+    result = []
+    for flat in sorted({row["lower_rms"] for row in found}):
+        chosen = [row for row in found if row["lower_rms"] == flat]
+        shape = (len(chosen) // len(directions), len(directions))
+        # a study's rows come realisation by realisation, with the directions in their order within
+        friction = np.array([row["friction_force"] for row in chosen]).reshape(shape)
+        elastic = np.array([row["elastic_friction"] for row in chosen]).reshape(shape)
+        mean = friction.mean(axis=1, keepdims=True)
+        result.append(Turning(flat, np.array(directions), elastic / friction, friction / mean - 1))
+    return result
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A quantity over the sliding offset (m): its values, its mean, the scatter of one position, the standard
+    error of the mean (from the series' own correlation) and the distance over which it decorrelates (m).
+    """
+
+    offset: Array
+    values: Array
+    mean: float
+    scatter: float
+    standard_error: float
+    correlated: float
+
+
+def trace(found: Sequence[Row], quantity: str) -> Trace:
+    """Statistics of a trace; ``correlated`` is the integral of its autocorrelation up to the first zero."""
+    offset = np.array([row["sliding_offset"] for row in found])
+    values = np.array([row[quantity] for row in found])
+    deviation = values - values.mean()
+    products = np.correlate(deviation, deviation, "full")[len(values) - 1 :]
+    correlation = products / products[0]
+    ends = int(np.argmax(correlation <= 0)) or len(correlation)
+    steps = 1 + 2 * float(correlation[1:ends].sum())
+    scatter = float(values.std(ddof=1))
+    error = scatter * float(np.sqrt(steps / len(values)))
+    return Trace(
+        offset, values, float(values.mean()), scatter, error, steps * float(offset[1] - offset[0]) / 2
+    )

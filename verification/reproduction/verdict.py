@@ -1,0 +1,37 @@
+"""The sentence that every reproduced claim ends with: the verdict and the number that decides."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+
+from verification.case import Measured
+
+
+class Verdict(StrEnum):
+    """On the paper's claim. A case passes when its verdict stands, whichever it is."""
+
+    CONFIRMED = "confirmed"
+    CONDITIONAL = "confirmed with conditions"
+    REFUTED = "refuted"
+
+
+def judged(
+    verdict: Verdict,
+    sentence: str,
+    value: float,
+    *,
+    data: Mapping[str, object],
+    reference: float | None = None,
+    reference_uncertainty: float = 0.0,
+    unit: str = "",
+) -> Measured:
+    """A measurement with its verdict, in the note for people and in ``data["verdict"]`` for programs."""
+    return Measured(
+        value=value,
+        reference=reference,
+        reference_uncertainty=reference_uncertainty,
+        unit=unit,
+        data={"verdict": verdict.value, **data},
+        note=f"{verdict.value}: {sentence}",
+    )
