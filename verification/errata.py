@@ -137,8 +137,8 @@ ERRATA = (
         "slopes",
         "section 6.1",
         "sigma_theta_x = sigma_theta_y = 0.125 and 2.5 degrees",
-        "the mean magnitude of the gradient, sqrt(pi / 2) times the rms of a component, which is 0.0995 and "
-        "1.99 degrees",
+        "the mean magnitude of the gradient, sqrt(pi / 2) times the rms of a component, which is 0.0995 "
+        "and 1.99 degrees",
         "largest relative difference of the quoted slopes from Eq. (9)'s",
         lambda: _slope_misfit(1.0),
         lambda: _slope_misfit(math.sqrt(math.pi / 2)),

@@ -35,8 +35,8 @@ def _solutions(tier: str) -> dict[float, list[tuple[rf.Scene, rf.Solution]]]:
     source="paper section 4, Eq. (6)",
     metric="at_least",
     tolerance=0.0,
-    tolerance_reason="least (approach - h) / approach on the contact: below 0 the surfaces touch without "
-    "interfering",
+    tolerance_reason="least (approach - h) / approach on the contact: below 0 the surfaces touch "
+    "without interfering",
     tags=("assumptions",),
 )
 def within(tier: str) -> Measured:
@@ -57,9 +57,8 @@ def within(tier: str) -> Measured:
     metric="at_most",
     tolerance=0.01,
     tolerance_reason="change of mu and A when the displacements are worked into the surfaces: first "
-    "order in the "
-    "displacement over the correlation length, 0.3 / 104, and two steps of A, one element in 290 at "
-    "1.68 um",
+    "order in the displacement over the correlation length, 0.3 / 104, and two steps of A, one element "
+    "in 290 at 1.68 um",
     tags=("assumptions",),
 )
 def tangential(tier: str) -> Measured:
@@ -68,8 +67,7 @@ def tangential(tier: str) -> Measured:
     worst = max(effect.largest for effect in found.values())
     sentence = "; ".join(
         f"at {flat * 1e6:g} um: displacement {e.displacement:.2f} of the approach, gap {e.gap:.2%} of "
-        "it, mu "
-        f"{e.friction:+.3%}, A {e.area:+.2%}, f_max {e.peak:+.2%}"
+        f"it, mu {e.friction:+.3%}, A {e.area:+.2%}, f_max {e.peak:+.2%}"
         for flat, e in found.items()
     )
     data = {
@@ -122,9 +120,8 @@ def _rms(along: Array, across: Array) -> float:
     source="paper section 4, Eqs (6) and (7)",
     metric="at_most",
     tolerance=0.0,
-    tolerance_reason="least (approach - h) / approach plus one percent, floored at 0: 0 says that there is "
-    "contact "
-    "without interference by more than rounding and grid",
+    tolerance_reason="least (approach - h) / approach plus one percent, floored at 0: 0 says that there "
+    "is contact without interference by more than rounding and grid",
     tags=TAGS,
 )
 def broken() -> Measured:
@@ -145,9 +142,9 @@ def broken() -> Measured:
     source="paper Eqs (2) and (3)",
     metric="relative",
     tolerance=0.2,
-    tolerance_reason="order of the difference of N in the rms slope, fitted over slopes of 0.003 to 0.15: "
-    "second, "
-    "since cosines differ from 1 at second order; realisations of four roughnesses leave 0.2",
+    tolerance_reason="order of the difference of N in the rms slope, fitted over slopes of 0.003 to "
+    "0.15: second, since cosines differ from 1 at second order; realisations of four roughnesses leave "
+    "0.2",
     tags=(*TAGS, "eq2", "eq3"),
 )
 def facets() -> Measured:

@@ -66,10 +66,8 @@ def shift(tier: str) -> Measured:
     metric="at_most",
     tolerance=0.35,
     tolerance_reason="mean traction of the edge's elements over tau, less 1: Hertz' pressure half an "
-    "element in, "
-    "p0 sqrt(h / a), is 0.17 p0 on 128 elements (0.08 on 512), which times beta / tau is 0.15, and "
-    "doubles "
-    "where the staircase sets the edge's element one further in",
+    "element in, p0 sqrt(h / a), is 0.17 p0 on 128 elements (0.08 on 512), which times beta / tau is "
+    "0.15, and doubles where the staircase sets the edge's element one further in",
     tags=("fig5", "eq1"),
 )
 def edge(tier: str) -> Measured:
@@ -123,10 +121,9 @@ def _declare_fig6(rms: float, panel: str) -> None:
         metric="at_most",
         tolerance=FIG6_TOLERANCE,
         tolerance_reason="rms difference over Hertz' peak, by area. The summit model makes every summit "
-        "yield alone; "
-        "here the Hertz circle holds 37 summits only, which touch as one: it is too soft by up to 20 % of "
-        "p0 at "
-        "the least roughness. The rest is sampling, 0.05 for 75 realisations and 0.2 for 4",
+        "yield alone; here the Hertz circle holds 37 summits only, which touch as one: it is too soft "
+        "by up to 20 % of p0 at the least roughness. The rest is sampling, 0.05 for 75 realisations and "
+        "0.2 for 4",
         tags=("fig6",),
     )
     def agreement(tier: str) -> Measured:
@@ -135,11 +132,10 @@ def _declare_fig6(rms: float, panel: str) -> None:
         misfit = found.misfit(found.greenwood_tripp)
         sentence = (
             f"rms difference {misfit:.3f} p0 (sampling {found.noise:.3f}; "
-            f"{found.misfit(found.textbook):.3f} from "
-            "the textbook's curve of mu = 4 and the caption's alpha, which these surfaces do not have); "
-            "over the "
-            f"inner half of the Hertz circle {ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; "
-            f"{found.outside.mean():.1%} of the load outside a0"
+            f"{found.misfit(found.textbook):.3f} from the textbook's curve of mu = 4 and the caption's "
+            "alpha, which these surfaces do not have); over the inner half of the Hertz circle "
+            f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
+            "load outside a0"
         )
         return judged(FIG6_VERDICTS[rms], sentence, misfit, data=_fig6_data(rms, tier))
 
@@ -177,8 +173,8 @@ def contact_map() -> Measured:
     source="paper Fig. 7, section 7",
     metric="at_most",
     tolerance=0.01,
-    tolerance_reason="largest change on the contact over the approach. Shear moves the flat by up to "
-    "(1 + nu)(1 - 2 nu) / 2E times the mean traction times the contact's width, 0.5 % of the approach",
+    tolerance_reason="largest change on the contact over the approach. Shear moves the flat by up to (1 "
+    "+ nu)(1 - 2 nu) / 2E times the mean traction times the contact's width, 0.5 % of the approach",
     tags=("fig7",),
 )
 def section(tier: str) -> Measured:
@@ -187,9 +183,8 @@ def section(tier: str) -> Measured:
     ratio = found.mean_contact_displacement / fig7.FLAT_RMS
     sentence = (
         f"largest change {found.difference * 1e9:.1f} nm, {change:.2%} of the approach; contact area "
-        "changes by "
-        f"{found.area_change:+.2%}; the flat's mean displacement in contact is {ratio:.2f} of its rms "
-        "height"
+        f"changes by {found.area_change:+.2%}; the flat's mean displacement in contact is {ratio:.2f} of "
+        "its rms height"
     )
     data = {
         "x (mm)": found.x * 1e3,

@@ -86,8 +86,7 @@ def exponential(tier: str) -> Measured:
     metric="at_most",
     tolerance=0.01,
     tolerance_reason="Eq. (10) makes them identical; what slopes add is of the order of the elastic "
-    "part of "
-    "friction, below 1 %",
+    "part of friction, below 1 %",
     tags=("fig8",),
 )
 def rates(tier: str) -> Measured:
@@ -104,8 +103,8 @@ def rates(tier: str) -> Measured:
     source="paper Fig. 8, Eq. (12), section 8",
     metric="at_least",
     tolerance=1.3,
-    tolerance_reason="psi does not know the load, so the ratio would be 1; the interpolated roughness is "
-    "good to 10 %",
+    tolerance_reason="psi does not know the load, so the ratio would be 1; the interpolated roughness "
+    "is good to 10 %",
     tags=("fig8",),
 )
 def threshold(tier: str) -> Measured:
@@ -136,8 +135,7 @@ def _levelled(curve: fig8.Curve) -> float:
     metric="at_most",
     tolerance=0.25,
     tolerance_reason="relative difference of mu's scatter from what Eq. (10) makes of A's, tau A / N / "
-    "mu "
-    "times it: at 1.68 um that is 1.0 % of mu, and the elastic part's own 0.7 % (measured) adds in "
+    "mu times it: at 1.68 um that is 1.0 % of mu, and the elastic part's own 0.7 % (measured) adds in "
     "squares: 19 %",
     tags=("section8", "eq10"),
 )
@@ -154,8 +152,7 @@ def scatter(tier: str) -> Measured:
     sentence = (
         f"A scatters by {_percent(area)}, mu by {_percent(mu)} (0.504, 1.008, 1.68 um); printed "
         f"{AREA_FLUCTUATION:.1%} and {FRICTION_FLUCTUATION:.1%}, roughness not stated; mu's scatter is "
-        "Eq. (10)'s "
-        f"share of A's to {worst:.0%}"
+        f"Eq. (10)'s share of A's to {worst:.0%}"
     )
     data = {
         "sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]],
@@ -176,8 +173,7 @@ def scatter(tier: str) -> Measured:
     metric="at_most",
     tolerance=0.25,
     tolerance_reason="difference of the two scatters over A's: at 1.68 um the elastic part's own "
-    "scatter, 0.7 % "
-    "of mu at beta = 0.08, is 6.6 % of mu at beta = 0 beside A's 10 %: 19 % in squares",
+    "scatter, 0.7 % of mu at beta = 0.08, is 6.6 % of mu at beta = 0 beside A's 10 %: 19 % in squares",
     tags=("section8", "eq10"),
 )
 def without_beta(tier: str) -> Measured:
@@ -232,8 +228,8 @@ def equation10(tier: str) -> Measured:
     source="paper Eq. (11), Table 3",
     metric="at_least",
     tolerance=1.5,
-    tolerance_reason="mean pressure over hardness at 1.68 um: above 1 the elastic model passes the limit "
-    "that (11) assumes; the mesh and the sample leave 10 %",
+    tolerance_reason="mean pressure over hardness at 1.68 um: above 1 the elastic model passes the "
+    "limit that (11) assumes; the mesh and the sample leave 10 %",
     tags=("eq11",),
 )
 def equation11(tier: str) -> Measured:

@@ -19,8 +19,7 @@ from verification.reproduction.verdict import Verdict, judged
     metric="at_most",
     tolerance=0.005,
     tolerance_reason="largest |Q| over P: the rms slope under load, 0.004, averaged over some 20 "
-    "contacts, "
-    "with three standard deviations",
+    "contacts, with three standard deviations",
     tags=("fig9",),
 )
 def binormal(tier: str) -> Measured:
@@ -52,8 +51,7 @@ def binormal(tier: str) -> Measured:
     metric="at_most",
     tolerance=0.03,
     tolerance_reason="largest share of F: at 1.68 um one realisation scatters by 0.7 % (Table 3's "
-    "ensemble), and "
-    "four standard deviations cover all directions of six realisations",
+    "ensemble), and four standard deviations cover all directions of six realisations",
     tags=("fig10",),
 )
 def elastic(tier: str) -> Measured:
@@ -74,8 +72,7 @@ def elastic(tier: str) -> Measured:
     metric="at_most",
     tolerance=0.03,
     tolerance_reason="largest departure from the mean over directions, which is that of the elastic "
-    "part: "
-    "see the case of Fig. 10(a)",
+    "part: see the case of Fig. 10(a)",
     tags=("fig10",),
 )
 def anisotropy(tier: str) -> Measured:
@@ -99,10 +96,9 @@ def anisotropy(tier: str) -> Measured:
     source="paper sections 5 to 8",
     metric="at_most",
     tolerance=4.0,
-    tolerance_reason="standard errors of the slide's mean elastic force: without loss of energy it "
-    "must vanish "
-    "along a slide, but for the coupling's own part, so a mean beyond 4 would be seen in 6e-5 of all "
-    "slides",
+    tolerance_reason="standard errors of the slide's mean elastic force: without loss of energy it must "
+    "vanish along a slide, but for the coupling's own part, so a mean beyond 4 would be seen in 6e-5 of "
+    "all slides",
     tags=("assumptions",),
 )
 def snapshot(tier: str) -> Measured:
@@ -114,14 +110,11 @@ def snapshot(tier: str) -> Measured:
     distance = abs(elastic.mean) / elastic.standard_error
     sentence = (
         f"along the slide mu scatters by {mu.scatter / mu.mean:.2%} and A by "
-        f"{area.scatter / area.mean:.1%} about "
-        f"their means, correlated over {area.correlated * 1e6:.0f} um; the elastic force "
-        f"{elastic.mean:+.4f} +- "
-        f"{2 * elastic.standard_error:.4f} N vanishes on average, a snapshot's is "
-        f"{elastic.scatter:.4f} N "
-        f"({elastic.scatter / (mu.mean * SMOOTH.load):.2%} of F): snapshots are fair for mu and A "
-        "within that "
-        "scatter, and not for the elastic and binormal parts, which are all fluctuation"
+        f"{area.scatter / area.mean:.1%} about their means, correlated over {area.correlated * 1e6:.0f} "
+        f"um; the elastic force {elastic.mean:+.4f} +- {2 * elastic.standard_error:.4f} N vanishes on "
+        f"average, a snapshot's is {elastic.scatter:.4f} N "
+        f"({elastic.scatter / (mu.mean * SMOOTH.load):.2%} of F): snapshots are fair for mu and A within "
+        "that scatter, and not for the elastic and binormal parts, which are all fluctuation"
     )
     data = {
         "offset (um)": mu.offset * 1e6,

@@ -36,10 +36,8 @@ def _panels(tier: str) -> list[fig11.Panel]:
     metric="at_most",
     tolerance=0.12,
     tolerance_reason="bias of the estimate on 15 correlation lengths, whose mean is taken from the "
-    "sample: "
-    "the correlation loses pi / 2.3 (l / side)^2 = 0.6 % everywhere, 1.3 % of the radius, beside the "
-    "sampling "
-    "error of 12 realisations, 3 standard errors of 3 % each",
+    "sample: the correlation loses pi / 2.3 (l / side)^2 = 0.6 % everywhere, 1.3 % of the radius, "
+    "beside the sampling error of 12 realisations, 3 standard errors of 3 % each",
     tags=("fig4", "eq9"),
 )
 def correlation(tier: str) -> Measured:
@@ -48,8 +46,7 @@ def correlation(tier: str) -> Measured:
     sentence = (
         f"radius {found.radius.mean * 1e6:.1f} +- {found.radius.half_width * 1e6:.1f} um, skewness "
         f"{found.skewness.mean:+.3f} +- {found.skewness.half_width:.3f}, kurtosis "
-        f"{found.kurtosis.mean:.3f} +- "
-        f"{found.kurtosis.half_width:.3f}, {found.radius.n} realisations"
+        f"{found.kurtosis.mean:.3f} +- {found.kurtosis.half_width:.3f}, {found.radius.n} realisations"
     )
     data = {
         "surface map": fig4.surface(0, DRAWN),
@@ -79,8 +76,7 @@ def quoted_slopes(tier: str) -> Measured:
     expected = fig4.degrees(_component_slope(SIDE / SIZES[tier][1]), FLAT_RMS[1])
     sentence = "; ".join(
         f"at {rms * 1e6:g} um: rms of a component {component[rms]:.3g} deg, mean magnitude of the "
-        "gradient "
-        f"{gradient[rms]:.3g} deg, printed {QUOTED_SLOPES[rms]:g}"
+        f"gradient {gradient[rms]:.3g} deg, printed {QUOTED_SLOPES[rms]:g}"
         for rms in FLAT_RMS
     )
     data = {
@@ -102,8 +98,8 @@ def quoted_slopes(tier: str) -> Measured:
     metric="at_most",
     tolerance=1.5,
     tolerance_reason="largest gradient of the undeformed 1.68 um surfaces over 6.5 degrees: the "
-    "expected maximum "
-    "of a Rayleigh variable of 2 degrees over n = 240 l^2 per surface, sqrt(2 log n), is 7 to 9 degrees",
+    "expected maximum of a Rayleigh variable of 2 degrees over n = 240 l^2 per surface, sqrt(2 log n), "
+    "is 7 to 9 degrees",
     tags=("appendix",),
 )
 def largest(tier: str) -> Measured:
@@ -112,8 +108,7 @@ def largest(tier: str) -> Measured:
     in_contact = float(np.abs(contact.centres[contact.density > 0]).max())
     sentence = (
         f"largest gradient of a 1.68 um surface: {mean:.2f} deg on average over {found.radius.n} "
-        "surfaces; in true "
-        f"contact, along sliding, at most {in_contact:.2f} deg"
+        f"surfaces; in true contact, along sliding, at most {in_contact:.2f} deg"
     )
     data = {"largest gradient (deg)": mean, "largest in contact (deg)": in_contact}
     return judged(Verdict.CONDITIONAL, sentence, mean / LARGEST_SLOPE, data=data)
@@ -146,8 +141,7 @@ def _fig11_data(tier: str) -> dict[str, object]:
     metric="at_most",
     tolerance=0.001,
     tolerance_reason="p value of zero mean skewness in contact, Student's t over realisations; each "
-    "realisation "
-    "is one observation, since a surface's points are correlated",
+    "realisation is one observation, since a surface's points are correlated",
     tags=("fig11",),
 )
 def heights(tier: str) -> Measured:
@@ -167,10 +161,8 @@ def heights(tier: str) -> Measured:
     metric="at_most",
     tolerance=0.25,
     tolerance_reason="magnitude of the mean skewness: with elastic, nearly uncoupled surfaces sliding "
-    "either way "
-    "is alike but for friction's own shift (0.7 % of the Hertz radius), so the mean is zero within "
-    "sampling, "
-    "3 standard errors of 0.07 for 12 realisations",
+    "either way is alike but for friction's own shift (0.7 % of the Hertz radius), so the mean is zero "
+    "within sampling, 3 standard errors of 0.07 for 12 realisations",
     tags=("fig11",),
 )
 def slopes(tier: str) -> Measured:
@@ -178,9 +170,7 @@ def slopes(tier: str) -> Measured:
     e = contact.skewness
     sentence = (
         f"mean skewness {e.mean:+.3f} +- {e.half_width:.3f} over {e.n} realisations, one of which "
-        "scatters by "
-        f"{abs(e.scatter * e.mean):.2f}: a single surface's sign is chance; kurtosis "
-        f"{contact.kurtosis.mean:.2f} +- "
-        f"{contact.kurtosis.half_width:.2f} (p {contact.p_kurtosis:.2g})"
+        f"scatters by {abs(e.scatter * e.mean):.2f}: a single surface's sign is chance; kurtosis "
+        f"{contact.kurtosis.mean:.2f} +- {contact.kurtosis.half_width:.2f} (p {contact.p_kurtosis:.2g})"
     )
     return judged(Verdict.REFUTED, sentence, abs(e.mean), data=_fig11_data(tier))

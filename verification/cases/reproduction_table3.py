@@ -22,11 +22,10 @@ NAMES = {
 FULL = {"friction_coefficient": 0.02, "contact_area": 0.06, "max_pressure": 0.08}
 QUICK = {"friction_coefficient": 0.08, "contact_area": 0.20, "max_pressure": 0.20}
 REASON = (
-    "full, 512 x 512 and 75 realisations: the task's, three times what sampling leaves between two ensembles "
-    "(mu 0.5 %, A 2 to 3 %, f_max 5 %), and the printed digits. Quick, 128 x 128 and six realisations: three "
-    "standard errors (mu 2, A 11, f_max 17 %), and the departure of the full ensemble on that mesh (mu 5, "
-    "A 7, "
-    "f_max 5 %)"
+    "full, 512 x 512 and 75 realisations: the task's, three times what sampling leaves between two "
+    "ensembles (mu 0.5 %, A 2 to 3 %, f_max 5 %), and the printed digits. Quick, 128 x 128 and six "
+    "realisations: three standard errors (mu 2, A 11, f_max 17 %), and the departure of the full "
+    "ensemble on that mesh (mu 5, A 7, f_max 5 %)"
 )
 
 
@@ -71,15 +70,13 @@ REALISATIONS, MESH, ROUGHER_BALL = 25, 256, 0.252e-6
 @case(
     "reproduction/table3-ball-roughness-full",
     title="Table 3: what would explain the trend of the deviations",
-    claim="The deviations of A from Table 3 fall with roughness; a ball of 0.252 um in place of 0.084 um "
-    "would "
-    "make them alike",
+    claim="The deviations of A from Table 3 fall with roughness; a ball of 0.252 um in place of 0.084 "
+    "um would make them alike",
     source="paper Table 3",
     metric="at_most",
     tolerance=0.5,
-    tolerance_reason="share of the trend (deviation of A at 0.504 um less that at 1.68 um) that is left; "
-    "paired "
-    "realisations leave 15 % of uncertainty in it",
+    tolerance_reason="share of the trend (deviation of A at 0.504 um less that at 1.68 um) that is "
+    "left; paired realisations leave 15 % of uncertainty in it",
     tier="full",
     tags=("reproduction", "table3"),
 )
@@ -112,8 +109,6 @@ def ball_roughness() -> Measured:
     }
     sentence = (
         f"trend of A's deviation {before:+.1%} over the columns as stated, {after:+.1%} with a ball of "
-        "0.252 um, "
-        "which changes f_max at 0.504 um by "
-        f"{float(np.mean(peaks[0.504e-6])) - 1:+.1%}"
+        f"0.252 um, which changes f_max at 0.504 um by {float(np.mean(peaks[0.504e-6])) - 1:+.1%}"
     )
     return judged(Verdict.CONDITIONAL, sentence, abs(after / before), data=data)
