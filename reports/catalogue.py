@@ -27,7 +27,13 @@ DECLARED = (
         "Relative error of the textbook form and of this code, over the distance from the loaded element.",
     ),
     Figure(
-        "kernels/*-50-digits",
+        "kernels/tables-50-digits",
+        ("normal, dy/dx = 1",),
+        dots(None, xlabel="largest relative error", limit=1e-14),
+        "Largest relative error of the convolution's tables, by kernel and shape of the elements.",
+    ),
+    Figure(
+        "kernels/*al-50-digits",
         ("worst",),
         dots("worst", xlabel="largest relative error", limit=1e-14),
         "Largest relative error by group of points.",
