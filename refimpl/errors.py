@@ -22,6 +22,9 @@ class InputError(ValueError):
             shown = shown[:117] + "..."
         super().__init__(f"{field} = {shown}: expected {allowed}")
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
+        return type(self), (self.field, self.value, self.allowed)  # so that it crosses process borders
+
 
 def require_number(
     field: str,
