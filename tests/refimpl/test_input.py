@@ -1,0 +1,215 @@
+"""Bad input is refused by one clear `InputError`, before anything large is allocated."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+import tracemalloc
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl import plan
+
+STEEL = rf.Material(200e9, 0.3)
+SCENE = rf.Scene(
+    upper=rf.Body(STEEL, rf.Sphere(0.14)),
+    lower=rf.Body(rf.Material(118e9, 0.3), rf.Flat()),
+    friction=rf.Friction(15e6, 0.08),
+    load=70.0,
+    side=1.61e-3,
+)
+TOML = rf.scene_to_toml(SCENE)
+METRES_OF_ROUGHNESS = np.random.default_rng(1).normal(0, 0.5, (8, 8))
+
+
+def on(heights: np.ndarray, **changes: Any) -> rf.Scene:
+    return replace(SCENE, lower=rf.Body(STEEL, heights), **changes)
+
+
+def with_nan() -> np.ndarray:
+    heights = np.zeros((8, 8))
+    heights[3, 4] = np.nan
+    return heights
+
+
+REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
+    "negative load": ("load", lambda: replace(SCENE, load=-1.0)),
+    "zero load": ("load", lambda: replace(SCENE, load=0.0)),
+    "load not finite": ("load", lambda: replace(SCENE, load=math.inf)),
+    "load as text": ("load", lambda: replace(SCENE, load="70")),
+    "load as truth value": ("load", lambda: replace(SCENE, load=True)),
+    "negative side": ("side", lambda: replace(SCENE, side=-1e-3)),
+    "direction not finite": ("sliding_direction", lambda: replace(SCENE, sliding_direction=math.nan)),
+    "offset not finite": ("sliding_offset", lambda: replace(SCENE, sliding_offset=math.inf)),
+    "periodic as number": ("periodic", lambda: replace(SCENE, periodic=1)),
+    "body missing": ("upper", lambda: replace(SCENE, upper=None)),
+    "friction as number": ("friction", lambda: replace(SCENE, friction=0.1)),
+    "negative tau": ("friction.tau", lambda: rf.Friction(tau=-1.0)),
+    "negative beta": ("friction.beta", lambda: rf.Friction(beta=-0.1)),
+    "tau NaN": ("friction.tau", lambda: rf.Friction(tau=math.nan)),
+    "zero modulus": ("E", lambda: rf.Material(0.0, 0.3)),
+    "negative modulus": ("E", lambda: rf.Material(-1e9, 0.3)),
+    "infinite modulus": ("E", lambda: rf.Material(math.inf, 0.3)),
+    "nu above a half": ("nu", lambda: rf.Material(1e9, 0.500001)),
+    "nu of minus one": ("nu", lambda: rf.Material(1e9, -1.0)),
+    "nu NaN": ("nu", lambda: rf.Material(1e9, math.nan)),
+    "material missing": ("material", lambda: rf.Body(200e9, rf.Flat())),
+    "surface as list": ("surface", lambda: rf.Body(STEEL, [[0.0, 1.0]])),
+    "NaN heights": ("heights", lambda: rf.Body(STEEL, with_nan())),
+    "infinite heights": ("heights", lambda: rf.Body(STEEL, np.full((8, 8), np.inf))),
+    "three-dimensional heights": ("heights", lambda: rf.Body(STEEL, np.zeros((4, 4, 4)))),
+    "one-dimensional heights": ("heights", lambda: rf.Body(STEEL, np.zeros(16))),
+    "empty heights": ("heights", lambda: rf.Body(STEEL, np.zeros((0, 0)))),
+    "complex heights": ("heights", lambda: rf.Body(STEEL, np.zeros((8, 8), dtype=complex))),
+    "array too small to resample": ("heights", lambda: rf.solve(on(np.zeros((3, 3))), 8)),
+    "roughness in metres": ("lower.surface", lambda: rf.solve(on(METRES_OF_ROUGHNESS), 8)),
+    "zero grid": ("grid", lambda: rf.solve(SCENE, 0)),
+    "negative grid": ("grid", lambda: rf.solve(SCENE, -8)),
+    "fractional grid": ("grid", lambda: rf.solve(SCENE, 8.5)),
+    "grid as truth value": ("grid", lambda: rf.solve(SCENE, True)),
+    "no grid": ("grid", lambda: rf.solve(SCENE)),
+    "unknown method": ("method", lambda: rf.solve(SCENE, 8, method="magic")),
+    "tolerance of zero": ("tolerance", lambda: rf.solve(SCENE, 8, tolerance=0.0)),
+    "tolerance NaN": ("tolerance", lambda: rf.solve(SCENE, 8, tolerance=math.nan)),
+    "approach NaN": ("approach", lambda: rf.solve(SCENE, 8, approach=math.nan)),
+    "approach beyond the mean planes": (
+        "approach",
+        lambda: rf.solve(replace(SCENE, periodic=True), 8, approach=1e-9),
+    ),
+    "correction without slopes": (
+        "oblique",
+        lambda: rf.solve(SCENE, 8, oblique=False, slope_correction=True),
+    ),
+    "dense grid beyond memory": ("grid", lambda: rf.solve(SCENE, 4096, method="dense")),
+    "fft grid beyond memory": ("grid", lambda: rf.solve(SCENE, 10_000_000)),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused_by_one_line_that_names_the_field(name: str) -> None:
+    field, act = REFUSED[name]
+    with pytest.raises(rf.InputError) as caught:
+        act()
+    assert caught.value.field == field
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 400
+
+
+def test_input_errors_are_value_errors() -> None:
+    assert issubclass(rf.InputError, ValueError)
+
+
+@pytest.mark.parametrize(("method", "grid"), [("dense", 3000), ("fft", 3_000_000)])
+def test_a_grid_beyond_memory_is_refused_before_anything_is_allocated(method: str, grid: int) -> None:
+    """One field of that grid would take 72 MB, or 72 TB; the refusal takes less than one."""
+    tracemalloc.start()
+    try:
+        with pytest.raises(rf.InputError, match=r"estimated .* GB"):
+            rf.solve(SCENE, grid, method=method)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 1e6
+
+
+def test_the_estimate_follows_the_free_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan, "free_memory", lambda: 1_000_000)
+    with pytest.raises(rf.InputError):
+        rf.solve(SCENE, 64)
+    assert rf.solve(SCENE, 16).status is rf.Status.CONVERGED
+
+
+@pytest.mark.parametrize("M", [64, 200])
+def test_the_estimate_holds_what_a_solve_allocates(M: int) -> None:
+    """Measured by tracemalloc, which sees numpy's arrays; the estimate is not to be many times too large."""
+    rf.solve(SCENE, M)  # imports and tables are not this solve's
+    tracemalloc.start()
+    try:
+        solution = rf.solve(SCENE, M)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert 0.1 * solution.plan.memory <= peak <= solution.plan.memory
+
+
+def test_absolute_height_is_never_judged() -> None:
+    """A datum of ten sides is no wrong unit; peak-to-valley is what counts."""
+    ball = rf.Sphere(0.14).heights(rf.Grid(SCENE.side, 16))
+    plain, lifted = (
+        rf.solve(replace(SCENE, upper=rf.Body(STEEL, ball + lift)), 16) for lift in (0.0, 10 * SCENE.side)
+    )
+    # the datum costs the heights four digits, of 1e-12 in all
+    np.testing.assert_allclose(lifted.pressure, plain.pressure, atol=1e-7 * plain.max_pressure, rtol=0)
+
+
+BAD_FILES = {
+    "unknown key": ("scene.laod", TOML.replace("load =", "laod =", 1)),
+    "unknown friction key": ("friction.mu", TOML.replace("tau =", "mu =", 1)),
+    "unknown material key": ("upper.material.G", TOML.replace("nu =", "G =", 1)),
+    "unknown body key": ("upper.colour", TOML.replace("[upper]", '[upper]\ncolour = "red"', 1)),
+    "unknown surface": ("surface.kind", TOML.replace('"sphere"', '"cube"', 1)),
+    "no load": ("load", TOML.replace("load = 70.0\n", "", 1)),
+    "no body": ("upper", TOML[: TOML.index("[upper")]),
+    "load as text": ("load", TOML.replace("70.0", '"70 N"', 1)),
+    "body as number": ("upper", "load = 1.0\nside = 1.0\nlower = 3\nupper = 4\n"),
+    "no TOML": ("scene", "load 70"),
+    "missing measured file": (
+        None,
+        TOML.replace('kind = "sphere", radius = 0.14', 'kind = "measured", path = "nowhere.x3p"', 1),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD_FILES)
+def test_a_bad_scene_file_is_refused(name: str, tmp_path: Path) -> None:
+    field, text = BAD_FILES[name]
+    assert text != TOML
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    with pytest.raises(rf.InputError) as caught:
+        rf.solve(rf.read_scene(path), 8)
+    assert field in (None, caught.value.field)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(rf.InputError, match="a TOML file, or one of"):
+        rf.read_scene(tmp_path / "nowhere.toml")
+
+
+def test_a_file_too_large_for_a_scene_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("#" * 2_000_000)
+    with pytest.raises(rf.InputError, match="at most"):
+        rf.read_scene(path)
+
+
+def test_binary_and_deeply_nested_files_are_refused(tmp_path: Path) -> None:
+    for content in (b"\xff\xfe\x00", b"a = " + b"[" * 5000):
+        path = tmp_path / "scene.toml"
+        path.write_bytes(content)
+        with pytest.raises(rf.InputError, match="valid TOML"):
+            rf.read_scene(path)
+
+
+def test_the_command_line_refuses_with_status_2_and_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(TOML.replace("70.0", "-70.0", 1))
+    ended = subprocess.run(
+        [str(Path(sys.executable).with_name("rough-friction")), "solve", str(path), "--grid", "8"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert ended.returncode == 2
+    assert ended.stdout == ""
+    assert len(ended.stderr.strip().splitlines()) == 1
+    assert "load" in ended.stderr
