@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reports.drawing import Figure, dots, lines, maps, order
+from reports.reproduction_figures import REPRODUCTION
 
 
 def _order(cases: str, what: str, expected: float) -> Figure:
@@ -13,6 +14,7 @@ def _order(cases: str, what: str, expected: float) -> Figure:
 
 
 DECLARED = (
+    *REPRODUCTION,
     Figure(
         "kernels/textbook-*-fails",
         ("offset", "textbook", "production"),
@@ -214,19 +216,6 @@ DECLARED = (
             ylabel="displacement, units of p a / E",
         ),
         "Surface displacement of a strip on a crest of 15 degrees and on a flat boundary (Fig. 12).",
-    ),
-    Figure(
-        "reproduction/table3-*",
-        ("sigma_e (um)", "printed", "ours", "half width 95 %"),
-        lines(
-            "sigma_e (um)",
-            {"ours": "this code, mean", "printed": "as printed"},
-            band=("half width 95 %", "95 % of the mean"),
-            xlabel="rms height (um)",
-            ylabel="value of Table 3",
-            marker=True,
-        ),
-        "Table 3 as printed and as computed.",
     ),
     Figure(
         "reference/jgh-area",

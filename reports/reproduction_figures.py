@@ -1,0 +1,299 @@
+"""The paper's figures again, with its axes: one drawing for each, from the reproduction cases' series."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Canvas
+
+from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, lines, maps
+
+DASHED, DOTTED, DASH_DOT = "--", ":", "-."
+LOADS = ("14 N", "42 N", "70 N")
+FIG11 = ("undeformed height", "undeformed slope", "deformed height in contact", "deformed slope in contact")
+
+
+def _row(canvas: Canvas, number: int, *, rows: int = 1) -> list[Axes]:
+    return list(canvas.subplots(rows, number, squeeze=False).ravel())
+
+
+def _label(axes: Axes, xlabel: str, ylabel: str, title: str = "") -> None:
+    axes.set(xlabel=xlabel, ylabel=ylabel, title=title)
+
+
+def _values(data: Data, name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    return np.array(data[name], dtype=float)
+
+
+def _table3(canvas: Canvas, data: Data) -> None:
+    """Ours over printed, mesh by mesh, with 95 % intervals."""
+    axes = canvas.add_subplot()
+    mesh, rms = _values(data, "mesh"), _values(data, "sigma_e (um)")
+    ratio = _values(data, "ours") / _values(data, "printed")
+    half = _values(data, "half width 95 %") / _values(data, "printed")
+    for k, sigma in enumerate(np.unique(rms)):
+        here = rms == sigma
+        x = np.log2(mesh[here]) + 0.06 * (k - 1.5)
+        style: dict[str, Any] = {"color": COLOURS[k], "marker": MARKERS[k], "capsize": 3}
+        label = f"$\\sigma_e$ = {sigma:.3g} µm"
+        axes.errorbar(x, ratio[here], half[here], label=label, **style)
+    axes.axhline(1.0, color=INK, linestyle=DASHED)
+    meshes = np.unique(mesh)
+    axes.set_xticks(np.log2(meshes), [f"{m:.0f}²" for m in meshes])
+    _label(axes, "mesh", "this code / printed")
+    axes.legend()
+
+
+def _fig4(canvas: Canvas, data: Data) -> None:
+    draw = maps(
+        {"surface map": "(a) half-space", "ball map": "(b) ball"}, side="side (mm)", unit="height / rms"
+    )
+    draw(canvas, data)
+
+
+def _fig5(canvas: Canvas, data: Data) -> None:
+    x = _values(data, "x (mm)")
+    for axes, suffix, title in zip(
+        _row(canvas, 2), ("", " across"), ("(a) along sliding", "(b) across"), strict=True
+    ):
+        axes.plot(x, data[f"pressure{suffix} (MPa)"], color=COLOURS[0], label="normal stress")
+        axes.plot(x, data[f"traction{suffix} (MPa)"], color=COLOURS[1], label="tangential stress")
+        axes.plot(x, data["hertz (MPa)"], DOTTED, color=INK, label="Hertz")
+        axes.plot(x, data["coulomb (MPa)"], DASHED, color=INK, label="Coulomb, same $\\mu$")
+        _label(axes, "distance from the centre (mm)", "stress (MPa)", title)
+        axes.legend(loc="upper right")
+
+
+def _fig6(canvas: Canvas, data: Data) -> None:
+    axes = canvas.add_subplot()
+    r, p, error = (_values(data, name) for name in ("r/a0", "p/p0", "standard error"))
+    axes.plot(r, p, color=COLOURS[0], label="this code, mean")
+    axes.fill_between(r, p - 2 * error, p + 2 * error, color=COLOURS[0], alpha=0.2, label="95 %")
+    axes.plot(r, data["Hertz p/p0"], DASHED, color=INK, label="Hertz")
+    label = "Greenwood and Tripp, summits of Eq. (9)"
+    axes.plot(r, data["Greenwood-Tripp p/p0"], DASH_DOT, color=COLOURS[1], label=label)
+    axes.plot(r, data["mu = 4 p/p0"], DOTTED, color=COLOURS[1], label="the same, textbook's $\\mu$ = 4")
+    _label(axes, "$r / a_0$", "effective pressure / $f_0$")
+    axes.legend()
+
+
+def _fig6d(canvas: Canvas, data: Data) -> None:
+    maps({"pressure map": "Contact pressure"}, side="side (mm)", unit="MPa")(canvas, data)
+    axes, side = canvas.axes[0], float(data["side (mm)"])
+    angle = np.linspace(0, 2 * np.pi, 200)
+    radius = float(data["Hertz radius (mm)"])
+    axes.plot(side / 2 + radius * np.cos(angle), side / 2 + radius * np.sin(angle), DASHED, color=COLOURS[1])
+
+
+def _fig7(canvas: Canvas, data: Data) -> None:
+    before, contact = _row(canvas, 2)
+    x = _values(data, "x (mm)")
+    before.plot(x, data["ball before (um)"], color=COLOURS[1], label="ball")
+    before.plot(x, data["flat before (um)"], color=COLOURS[0], label="half-space")
+    before.axhline(0.0, color=INK, linestyle=DASHED, label="mean plane")
+    contact.plot(x, data["ball deformed (um)"], color=COLOURS[1], label="ball")
+    contact.plot(x, data["flat deformed (um)"], color=COLOURS[0], label="half-space")
+    contact.plot(
+        x, data["flat deformed, frictionless (um)"], DOTTED, color=COLOURS[2], label="without friction"
+    )
+    contact.plot(x, data["mean plane (um)"], DASHED, color=INK, label="deformed mean plane")
+    flat = _values(data, "flat before (um)")
+    for axes, title in ((before, "(a) before contact"), (contact, "(b) in contact")):
+        axes.set_ylim(1.6 * flat.min(), 3.0 * flat.max())
+        _label(axes, "x from the centre (mm)", "height (µm)", title)
+        axes.legend()
+
+
+def _fig8(canvas: Canvas, data: Data) -> None:
+    friction, area, rates = _row(canvas, 3)
+    sigma = _values(data, "sigma_e (um)")
+    for k, load in enumerate(LOADS):
+        style: dict[str, Any] = {
+            "color": COLOURS[k],
+            "marker": MARKERS[k],
+            "capsize": 2,
+            "label": f"P = {load}",
+        }
+        friction.errorbar(sigma, data[f"mu, {load}"], data[f"mu half width, {load}"], **style)
+        area.errorbar(sigma, data[f"A (mm^2), {load}"], data[f"A half width (mm^2), {load}"], **style)
+        middle = data["sigma_e of rates (um)"]
+        rates.plot(middle, data[f"rate of mu, {load}"], color=COLOURS[k], label=f"$\\mu$, {load}")
+        rates.plot(middle, data[f"rate of A, {load}"], DASH_DOT, color=INK, linewidth=1)
+    _label(friction, "$\\sigma_e$ (µm)", "friction coefficient", "(a)")
+    _label(area, "$\\sigma_e$ (µm)", "contact area (mm²)", "(b)")
+    _label(rates, "$\\sigma_e$ (µm)", "rate of change / its first", "(c), A dash-dotted")
+    per_micron = _values(data, "psi")[-1] / sigma[-1]
+    for axes in (friction, area, rates):
+        above = axes.secondary_xaxis("top", (lambda s: s * per_micron, lambda p: p / per_micron))
+        above.set_xlabel("$\\psi$, Eq. (12) with the correlation length")
+        axes.legend()
+
+
+def _fig9(canvas: Canvas, data: Data) -> None:
+    axes = canvas.add_subplot()
+    Q = _values(data, "Q (N)")
+    largest = float(np.abs(Q).max())
+    image = axes.pcolormesh(
+        data["distance (um)"], data["direction (deg)"], Q, cmap="PuOr", vmin=-largest, vmax=largest
+    )
+    axes.grid(visible=False)
+    _label(axes, "sliding distance (µm)", "direction of sliding (degrees)")
+    canvas.colorbar(image, ax=axes, label="binormal force Q (N)")
+
+
+def _fig10(canvas: Canvas, data: Data) -> None:
+    above, below = _row(canvas, 1, rows=2)
+    x = _values(data, "direction (deg)")
+    for axes, start, ylabel in (
+        (above, "elastic / F, ", "elastic part / F"),
+        (below, "F / mean - 1, ", "F / mean over directions - 1"),
+    ):
+        for k, name in enumerate(name for name in data if name.startswith(start)):
+            label = f"$\\sigma$ = {name.removeprefix(start).replace('um', 'µm')}"
+            axes.plot(x, data[name], color=COLOURS[k], marker=MARKERS[k], label=label)
+        _label(axes, "direction of sliding (degrees)", ylabel)
+    above.legend(ncols=2)
+
+
+def _fig11(canvas: Canvas, data: Data) -> None:
+    units = ("height from the mean (µm)", "slope from the mean (degrees)") * 2
+    for axes, panel, letter, unit in zip(_row(canvas, 2, rows=2), FIG11, "abcd", units, strict=True):
+        x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")
+        axes.step(x, density, where="mid", color=COLOURS[0], label="all realisations")
+        rms = float(np.sqrt(np.sum(density * x**2) / np.sum(density)))
+        gauss = np.exp(-0.5 * (x / rms) ** 2) / (rms * np.sqrt(2 * np.pi))
+        axes.plot(x, gauss, DASHED, color=INK, label="Gaussian of the same rms")
+        (skew, half), (kurtosis, wide) = data[f"{panel}: skewness"], data[f"{panel}: kurtosis"]
+        title = f"({letter}) skewness {skew:+.2f} ± {half:.2f}, kurtosis {kurtosis:.2f} ± {wide:.2f}"
+        axes.set_title(title, fontsize=9)
+        axes.set(xlabel=unit, ylabel="density")
+    canvas.axes[0].legend(fontsize=8)
+
+
+def _traces(canvas: Canvas, data: Data) -> None:
+    x = _values(data, "offset (um)")
+    names = ("mu", "A (mm^2)", "elastic friction (N)", "Q (N)")
+    for axes, name, colour in zip(_row(canvas, 1, rows=4), names, COLOURS, strict=False):
+        values = _values(data, name)
+        axes.plot(x, values, color=colour)
+        axes.axhline(values.mean(), color=INK, linestyle=DASHED)
+        _label(axes, "", name)
+    canvas.axes[-1].set_xlabel("sliding distance (µm); means dashed")
+
+
+def _scatter(canvas: Canvas, data: Data) -> None:
+    axes = canvas.add_subplot()
+    x = _values(data, "sigma_e (um)")
+    names: Sequence[str] = ("scatter of A", "scatter of mu", "Eq. (10)")
+    for k, name in enumerate(name for name in names if name in data):
+        axes.plot(x, 100 * _values(data, name), marker=MARKERS[k], color=COLOURS[k], label=name)
+    for name, style in (("printed A", DASHED), ("printed mu", DOTTED)):
+        if name in data:
+            axes.axhline(100 * float(data[name]), color=INK, linestyle=style, label=name)
+    axes.set_ylim(bottom=0)
+    _label(axes, "$\\sigma_e$ (µm)", "standard deviation / mean (%)")
+    axes.legend()
+
+
+_FACETS = lines(
+    "rms slope",
+    {"change of N": "N", "change of F": "F"},
+    xlabel="rms slope on the contact",
+    ylabel="exact facets / printed cosines - 1",
+    log="xy",
+    marker=True,
+)
+_FIG8_NEEDS = ("sigma_e (um)", "psi", "sigma_e of rates (um)", *(f"mu, {load}" for load in LOADS))
+
+REPRODUCTION = (
+    Figure(
+        "reproduction/table3-[amp]*",
+        ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %"),
+        _table3,
+        "Table 3: this code over the printed value, with 95 % intervals.",
+    ),
+    Figure(
+        "reproduction/fig4-correlation*",
+        ("surface map", "ball map", "side (mm)"),
+        _fig4,
+        "Fig. 4: one realisation of both surfaces, normalised.",
+        (8.6, 3.8),
+    ),
+    Figure(
+        "reproduction/fig5-*",
+        ("x (mm)", "pressure (MPa)", "pressure across (MPa)", "traction (MPa)", "traction across (MPa)"),
+        _fig5,
+        "Fig. 5: normal and tangential stress of the smooth sliding sphere, P = 70 N.",
+        (8.6, 3.8),
+    ),
+    Figure(
+        "reproduction/fig6[abc]*",
+        ("r/a0", "p/p0", "standard error", "Hertz p/p0", "Greenwood-Tripp p/p0", "mu = 4 p/p0"),
+        _fig6,
+        "Fig. 6(a-c): effective pressure of the frictionless rough contact.",
+    ),
+    Figure(
+        "reproduction/fig6d",
+        ("pressure map", "side (mm)", "Hertz radius (mm)"),
+        _fig6d,
+        "Fig. 6(d): contact pressure and the Hertz circle (dashed).",
+        (5.4, 4.4),
+    ),
+    Figure(
+        "reproduction/fig7*",
+        ("x (mm)", "flat before (um)", "flat deformed (um)", "flat deformed, frictionless (um)"),
+        _fig7,
+        "Fig. 7: section of ball and half-space before contact and in contact.",
+        (8.6, 3.8),
+    ),
+    Figure(
+        "reproduction/fig8-*",
+        _FIG8_NEEDS,
+        _fig8,
+        "Fig. 8: friction, contact area and their rates of change; bars are 95 % intervals.",
+        (10.5, 4.2),
+    ),
+    Figure(
+        "reproduction/fig9*",
+        ("distance (um)", "direction (deg)", "Q (N)"),
+        _fig9,
+        "Fig. 9: binormal force over sliding distance and direction, P = 70 N.",
+    ),
+    Figure(
+        "reproduction/fig10-*",
+        ("direction (deg)",),
+        _fig10,
+        "Fig. 10: elastic part of friction, and friction, over the direction of sliding; one realisation.",
+        (6.4, 6.0),
+    ),
+    Figure(
+        "reproduction/fig11-*",
+        tuple(f"{panel}: density" for panel in FIG11),
+        _fig11,
+        "Fig. 11: heights and slopes within the nominal contact before, and in true contact; means over "
+        "realisations with 95 % intervals.",
+        (8.6, 6.4),
+    ),
+    Figure(
+        "reproduction/steady-sliding*",
+        ("offset (um)", "mu", "A (mm^2)", "elastic friction (N)", "Q (N)"),
+        _traces,
+        "Traces of a slide.",
+        (6.4, 7.2),
+    ),
+    Figure(
+        "reproduction/section8-*",
+        ("sigma_e (um)", "scatter of A", "scatter of mu"),
+        _scatter,
+        "Scatter between surface representations.",
+    ),
+    Figure(
+        "reproduction/facet-tractions",
+        ("rms slope", "change of N", "change of F"),
+        _FACETS,
+        "Resultants with exact facet tractions against the printed cosines.",
+    ),
+)
