@@ -1,0 +1,187 @@
+"""What the reproduction cases rest on: statistics, tangential kernels, printed numbers."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+import refimpl as rf
+from verification import registry
+from verification.errata import ERRATA
+from verification.reproduction import ensemble, fig6, fig8, slides, table3
+from verification.reproduction.printed import MESHES, SIDE, TABLE2, TABLE3
+from verification.reproduction.table1 import SMOOTH, hertz, rough
+from verification.reproduction.tangential import displacements, element_integrals
+from verification.reproduction.tiers import in_both_tiers
+from verification.sweep.run import Row
+from verification.sweep.study import study_from_dict
+
+
+def test_the_printed_table_is_consistent_with_eq_10_on_its_finest_mesh() -> None:
+    for column in TABLE3:
+        expected = 15e6 * column.contact_area[-1] / 70 + 0.08
+        # last digits: 0.0005 of mu, and 0.005e-7 m^2 of A, which is 0.0001 of mu
+        assert column.friction_coefficient[-1] == pytest.approx(expected, abs=0.0006)
+    assert TABLE3[1].equivalent_rms == pytest.approx(0.511e-6, rel=1e-3)
+    assert [grid for grid, *_ in TABLE2[1:]] == list(MESHES)
+
+
+def test_every_table_and_figure_has_a_case_in_both_tiers() -> None:
+    cases = {c.id: c.tier.value for c in registry.load() if c.id.startswith("reproduction/")}
+    for name in ("table3-mu", "table3-area", "table3-peak", *(f"fig{n}" for n in range(4, 12))):
+        quick = [i for i, tier in cases.items() if i.startswith(f"reproduction/{name}") and tier == "quick"]
+        assert quick, name
+        for i in quick:
+            assert i == "reproduction/fig6d" or cases[f"{i}-full"] == "full"
+
+
+def test_both_tiers_are_declared_where_the_function_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(registry, "_declared", {})
+    told: list[str] = []
+
+    @in_both_tiers(
+        "a/b", title="t", claim="c", source="s", metric="at_most", tolerance={"quick": 2.0, "full": 1.0},
+        tolerance_reason="r", tags=(),
+    )  # fmt: skip
+    def function(tier: str) -> ensemble.Estimate:  # type: ignore[return]  # only what it is told counts
+        told.append(tier)
+
+    for case_id, tolerance in (("a/b", 2.0), ("a/b-full", 1.0)):
+        case = registry.find(case_id)
+        assert (case.module, case.tolerance) == (__name__, tolerance)
+        case.run()
+    assert told == ["quick", "full"]
+
+
+def test_errata_are_of_different_places() -> None:
+    assert len({e.slug for e in ERRATA}) == len(ERRATA) >= 9
+
+
+def test_interval_covers_the_mean_as_often_as_it_says() -> None:
+    rng = np.random.default_rng(1)
+    samples = rng.standard_normal((2000, 6))
+    inside = sum(abs(e.mean) <= e.half_width for e in map(ensemble.estimate, samples))
+    assert inside / 2000 == pytest.approx(0.95, abs=3 * math.sqrt(0.95 * 0.05 / 2000))
+
+
+@pytest.mark.parametrize("values", [[1.0], [1.0, math.nan]])
+def test_no_interval_without_values(values: list[float]) -> None:
+    with pytest.raises(ValueError, match="two finite"):
+        ensemble.estimate(values)
+
+
+def test_rows_are_kept_where_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(ensemble.FOLDER, str(tmp_path / "stores"))
+    study = study_from_dict({"scene": "table1-rough", "vary": {"grid": [12]}, "realisations": 2})
+    first = ensemble.rows(study, "small")
+    assert (tmp_path / "stores" / "small.sqlite").exists()
+    assert ensemble.rows(study, "small") == first
+    assert len(ensemble.column(first, "contact_area", grid=12)) == 2
+    with pytest.raises(LookupError):
+        ensemble.column(first, "contact_area", grid=13)
+
+
+def test_an_ensemble_with_gaps_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    study = study_from_dict({"scene": "table1-rough", "vary": {"grid": [12]}})
+    monkeypatch.setattr(ensemble, "CERTIFIED", ())
+    with pytest.raises(RuntimeError, match="1 uncertified"):
+        ensemble.rows(study, "small")
+
+
+INTEGRANDS = {
+    "1/rho": lambda x, y: 1 / math.hypot(x, y),
+    "x^2/rho^3": lambda x, y: x * x / math.hypot(x, y) ** 3,
+    "y^2/rho^3": lambda x, y: y * y / math.hypot(x, y) ** 3,
+    "xy/rho^3": lambda x, y: x * y / math.hypot(x, y) ** 3,
+    "x/rho^2": lambda x, y: x / (x * x + y * y),
+    "y/rho^2": lambda x, y: y / (x * x + y * y),
+}
+
+
+@pytest.mark.parametrize("name", INTEGRANDS)
+def test_element_integrals_against_quadrature(name: str) -> None:
+    kernel, f = element_integrals(4, 0.5)[name], INTEGRANDS[name]
+    for i, j in ((1, 0), (-2, 1), (3, -3)):
+        x, y = 0.5 * i, 0.5 * j
+        exact, error = dblquad(lambda b, a: f(a, b), x - 0.25, x + 0.25, y - 0.25, y + 0.25, epsabs=1e-13)
+        assert kernel[3 + i, 3 + j] == pytest.approx(exact, abs=1e-12 + error)
+
+
+def test_tangential_displacement_of_hertz_pressure() -> None:
+    # Johnson 1985, Eq. (3.41b): u_r = -(1 - 2 nu)(1 + nu) / 3E a^2/r p0 (1 - (1 - r^2/a^2)^(3/2))
+    scene = rough(0.0, friction=rf.Friction())
+    found = rf.solve(scene, 96)
+    moved = displacements(scene, found)
+    smooth, copper = hertz(), SMOOTH.lower.material
+    x = found.grid.centres - SIDE / 2
+    middle = len(x) // 2
+    line = moved.lower[0][:, middle]
+    r = np.hypot(x, x[middle])
+    inside = (r < 0.9 * smooth.contact_radius) & (np.abs(x) > found.grid.spacing)
+    factor = (1 - 2 * copper.nu) * (1 + copper.nu) / (3 * copper.E)
+    u_r = -factor * smooth.contact_radius**2 / r * smooth.peak_pressure
+    u_r = u_r * (1 - np.maximum(0, 1 - (r / smooth.contact_radius) ** 2) ** 1.5)
+    expected = u_r * x / r
+    # the grid's pressure is Hertz' to one element in 27 along the radius
+    assert np.allclose(line[inside], expected[inside], atol=0.01 * np.abs(expected).max())
+
+
+def test_a_trace_knows_how_far_it_is_correlated() -> None:
+    # first-order autoregression: correlation a^k, so sum over k = (1 + a)/(1 - a) = 9 steps
+    rng, a = np.random.default_rng(3), 0.8
+    values = np.zeros(20000)
+    for k in range(1, len(values)):
+        values[k] = a * values[k - 1] + rng.standard_normal()
+    found: list[Row] = [{"sliding_offset": 2.0 * k, "mu": v} for k, v in enumerate(values)]
+    trace = slides.trace(found, "mu")
+    assert trace.correlated == pytest.approx(9 * 2.0 / 2, rel=0.15)
+    assert trace.standard_error == pytest.approx(trace.scatter * math.sqrt(9 / 20000), rel=0.1)
+
+
+def test_turning_keeps_realisations_and_directions_apart() -> None:
+    found: list[Row] = [
+        {
+            "lower_rms": 1e-6,
+            "sliding_direction": phi,
+            "friction_force": 10.0 + k + phi,
+            "elastic_friction": 1.0,
+        }
+        for k in range(2)
+        for phi in (0.0, 1.0, 2.0)
+    ]
+    (turned,) = slides.turning(found)
+    assert turned.anisotropy.shape == (2, 3)
+    assert np.allclose(turned.anisotropy[0], [-1 / 11, 0, 1 / 11])
+    assert np.allclose(turned.elastic[1], 1 / np.array([11, 12, 13]))
+
+
+def test_decay_finds_an_exponential() -> None:
+    rms = np.linspace(0, 1.7e-6, 8)
+    mu = 0.09 + 0.1 * np.exp(-rms / 0.25e-6)
+    found = fig8.decay(fig8.Curve(70.0, rms, mu, 0 * mu, mu, 0 * mu))
+    assert found.exponential < 1e-6 < found.hyperbolic
+    assert found.scale == pytest.approx(0.25e-6, rel=1e-5)
+
+
+def test_levels_of_the_effective_pressure() -> None:
+    profile = fig6.effective_pressure(0.511e-6, 2, 64)
+    rings = np.pi * fig6.BIN**2 * (2 * np.arange(len(profile.r)) + 1)
+    assert float(np.sum(rings * profile.hertz)) == pytest.approx(70.0, rel=1e-12)
+    assert float(np.sum(rings * profile.greenwood_tripp)) == pytest.approx(70.0, rel=0.02)
+    assert profile.central(profile.hertz) == 1.0
+
+
+def test_a_cell_compares_ours_with_print() -> None:
+    rows: list[Row] = [
+        {"lower_rms": c.flat_rms, "grid": 128, "contact_area": 1.1 * c.contact_area[0] * scale}
+        for c in TABLE3[1:]
+        for scale in (0.9, 1.1)
+    ]
+    cells = table3.cells(rows, "contact_area", (128,))
+    assert [round(cell.deviation, 12) for cell in cells[1:]] == [0.1, 0.1, 0.1]
+    assert cells[0].ours.n == 1
+    assert table3.series(cells)["realisations"] == [1, 2, 2, 2]
