@@ -133,13 +133,13 @@ def test_tangential_displacement_of_hertz_pressure() -> None:
 def test_a_trace_knows_how_far_it_is_correlated() -> None:
     # first-order autoregression: correlation a^k, so sum over k = (1 + a)/(1 - a) = 9 steps
     rng, a = np.random.default_rng(3), 0.8
-    values = np.zeros(20000)
+    values = np.zeros(6000)
     for k in range(1, len(values)):
         values[k] = a * values[k - 1] + rng.standard_normal()
     found: list[Row] = [{"sliding_offset": 2.0 * k, "mu": v} for k, v in enumerate(values)]
     trace = slides.trace(found, "mu")
-    assert trace.correlated == pytest.approx(9 * 2.0 / 2, rel=0.15)
-    assert trace.standard_error == pytest.approx(trace.scatter * math.sqrt(9 / 20000), rel=0.1)
+    assert trace.correlated == pytest.approx(9 * 2.0 / 2, rel=0.25)
+    assert trace.standard_error == pytest.approx(trace.scatter * math.sqrt(9 / 6000), rel=0.15)
 
 
 def test_turning_keeps_realisations_and_directions_apart() -> None:
