@@ -129,15 +129,16 @@ class _LevelSolver:
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
         # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
         sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
-        self._first_relaxation = self._relaxation = 1 / (1 + sigma**2)
+        self._relaxation = 1 / (1 + sigma**2)
         self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
     def solve(self, tolerance: float) -> Outcome:
-        """The settled state; tau's support follows the rule of `refimpl.friction` if it cycles."""
-        if self.settle(tolerance) or self.problem.friction.tau == 0:
+        """The settled state; tau's support follows the rule of `refimpl.friction`."""
+        if self.problem.friction.tau == 0:
+            self.settle(tolerance)
             return self._outcome(self._ended(), TauSupport((1, 1)), [])
+        # Where contact leads tau by itself may be another lawful state: only the rule is path-free.
         rule = TauSupport(self.window.shape)
-        self._relaxation = self._first_relaxation  # what the cycle wore down is not its supports' own
         states: list[Visited] = []
         in_cycles: list[Visited] = []
         for _ in range(_SUPPORT_ITERATIONS):

@@ -74,11 +74,6 @@ TWO_LAWFUL = Sample(
 """Two states satisfy everything, with seven and with six elements in contact; mu 1.27 and 0.91."""
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="the production solver first lets tau follow the contact set and accepts what that settles on; "
-    "the rule of `refimpl.friction`, which starts without tau, leads the dense one to the other lawful state",
-)
 def test_of_two_lawful_states_both_solvers_take_the_rules() -> None:
     dense, fft = (
         rf.solve(TWO_LAWFUL.scene, TWO_LAWFUL.M, method=method, oblique=False, tolerance=TOLERANCE)
