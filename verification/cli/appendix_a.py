@@ -120,16 +120,10 @@ def strip(options: argparse.Namespace) -> int:
 
 def fem(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary and of a flat one."""
-    from appendix_a.fem.sinusoid import sinusoid
+    from appendix_a.fem import fem_json
 
-    found = sinusoid(*_wave(options), offsets=options.offsets)
-    document = {
-        "offsets": found.offsets.tolist(),
-        "wavy": found.wavy.tolist(),
-        "flat": found.flat.tolist(),
-        "discretisation_error": found.discretisation_error,
-    }
-    remark = f"discretisation error {found.discretisation_error:.1g}"
+    document = fem_json(*_wave(options), offsets=options.offsets)
+    remark = f"discretisation error {document['discretisation_error']:.1g}"
     emit(document, options.json, _displacements(document, remark))
     return 0
 
