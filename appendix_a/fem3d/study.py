@@ -74,6 +74,8 @@ def points() -> list[Point]:
         *grid((6.5, 10.0), 100.0, 0.3, (FLANK,)),
         *grid((10.0,), 100.0, 0.3, (CREST,)),
         *grid((10.0,), 20.0, 0.3, (FLANK,), quality="full"),
+        *grid((30.0,), 20.0, 0.45, (FLANK,), quality="full"),
+        *grid((30.0,), 20.0, 0.3, (VALLEY,), quality="full"),
     ]
     rest = [
         *grid(SLOPES, 20.0, 0.0),
@@ -83,7 +85,6 @@ def points() -> list[Point]:
         *grid(SLOPES, 20.0, 0.3, kind="egg-box"),
         *grid(SLOPES, 20.0, 0.3, (FLANK,), width="facet"),
         *grid((10.0,), 20.0, 0.3, (0.125, 0.375)),
-        *grid((30.0,), 20.0, 0.45, (FLANK,), quality="full"),
     ]
     return list(dict.fromkeys(first + rest))
 
@@ -181,7 +182,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("table", type=Path)
     parser.add_argument("--seconds", type=float, default=1500.0, help="start no new point after this long")
     options = parser.parse_args(arguments)
-    command = f"python -m appendix_a.fem3d.study {options.table.name}"
+    command = f"python -m appendix_a.fem3d.study {options.table.as_posix()}"
     try:
         run(options.table, points(), options.seconds, command)
     except InputError as refused:
