@@ -89,7 +89,7 @@ class _DenseSolver:
         self.slopes_settled = False
         last = np.inf
         for _ in range(_SLOPE_ITERATIONS):
-            before = self.pressure
+            before, slopes_before = self.pressure, self.slopes
             self._solve_frozen(support)
             self.picard += 1
             traction = local_friction(self.problem.friction, self.pressure, support)
@@ -97,6 +97,7 @@ class _DenseSolver:
                 *self.problem.displacements(self.operator, self.pressure, traction, self.slopes)
             )
             change = float(np.abs(self.pressure - before).max() / self.pressure.max(initial=1e-300))
+            change = max(change, self.slopes.distance(slopes_before, np.ones_like(support)))
             at_floor = change <= _ROUNDING_FLOOR and change >= last
             if change <= _SLOPE_TOLERANCE or at_floor or not self.problem.terms.oblique:
                 self.slopes_settled = True

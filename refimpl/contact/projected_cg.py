@@ -67,7 +67,8 @@ class ProjectedCG:
         approach, lowest = self.approach(v), float(v.min())
         energy = 0.5 * float(np.vdot(self.pressure, self.normal_displacement))
         gap = float(np.vdot(self.pressure, v - lowest))
-        off = abs(float(np.vdot(self.pressure, v)) / float(self.pressure.sum()) - approach)
+        total = float(self.pressure.sum())  # zero where a step to a prescribed approach overshot
+        off = abs(float(np.vdot(self.pressure, v)) / total - approach) if total > 0 else 0.0
         scale = abs(approach) or 1.0
         return relative_gap(gap, energy), max(off, approach - lowest) / scale
 

@@ -1,0 +1,104 @@
+"""Principal pivoting on complementarity problems with known answers, easy, degenerate and hard."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from refimpl.contact.active_set import complementarity, restricted_solve
+
+
+def by_enumeration(G: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """The solution by trying all supports; the one for which both inequalities hold."""
+    n = len(q)
+    for support in itertools.product([False, True], repeat=n):
+        on = np.array(support)
+        f = np.zeros(n)
+        if on.any():
+            f[on] = np.linalg.solve(G[np.ix_(on, on)], -q[on])
+        if f.min() >= -1e-12 and (G @ f + q).min() >= -1e-12:
+            return f
+    raise AssertionError("no solution: not a P-matrix")
+
+
+def random_p_matrix(n: int, seed: int, skew: float) -> np.ndarray:
+    """A positive definite part and a skew one of any size: a P-matrix, as ``a + beta c`` is."""
+    random = np.random.default_rng(seed)
+    B, S = random.standard_normal((2, n, n))
+    return B @ B.T + 0.1 * np.eye(n) + skew * (S - S.T)
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(st.integers(1, 7), st.integers(0, 10**6), st.sampled_from([0.0, 1.0, 10.0]), st.integers(0, 127))
+@example(n=7, seed=0, skew=10.0, start=0)
+def test_random_problems(n: int, seed: int, skew: float, start: int) -> None:
+    G = random_p_matrix(n, seed, skew)
+    q = np.random.default_rng(seed + 1).standard_normal(n)
+    begin = np.array([bool(start >> k & 1) for k in range(n)])
+    found = complementarity(G, q, begin)
+    np.testing.assert_allclose(found.pressure, by_enumeration(G, q), atol=1e-9)
+    assert np.array_equal(found.active, found.active & (found.pressure >= 0))
+
+
+def test_nothing_to_do() -> None:
+    found = complementarity(np.eye(3), np.ones(3), np.zeros(3, dtype=bool))
+    assert found.solves == 1
+    assert not found.pressure.any()
+
+
+def test_everything_is_pressed() -> None:
+    found = complementarity(np.diag([1.0, 2.0]), -np.ones(2), np.zeros(2, dtype=bool))
+    np.testing.assert_allclose(found.pressure, [1.0, 0.5])
+
+
+@pytest.mark.parametrize("start", [0, 1, 2, 3])
+def test_degenerate_both_zero(start: int) -> None:
+    """An element with neither pressure nor gap belongs to either side; the pressure is the same."""
+    G, q = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-2.0, -1.0])
+    found = complementarity(G, q, np.array([bool(start & 1), bool(start & 2)]))
+    np.testing.assert_allclose(found.pressure, [1.0, 0.0], atol=1e-15)
+
+
+def test_all_zero() -> None:
+    found = complementarity(np.eye(4), np.zeros(4), np.ones(4, dtype=bool))
+    assert not found.pressure.any()
+
+
+@pytest.mark.parametrize("n", range(2, 9))
+def test_murtys_worst_case(n: int) -> None:
+    """Murty's (1978) example, on which single exchanges alone take 2^n steps: f = (0, ..., 0, 1)."""
+    G = np.eye(n) + 2 * np.triu(np.ones((n, n)), 1)
+    found = complementarity(G, -np.ones(n), np.zeros(n, dtype=bool))
+    expected = np.zeros(n)
+    expected[-1] = 1
+    np.testing.assert_allclose(found.pressure, expected, atol=1e-12)
+
+
+def test_block_exchanges_alone_would_cycle() -> None:
+    """From one element, exchanging all infeasible ones at once goes round the three; single ones end it."""
+    G = np.array([[1.0, 2.0, 0.0], [0.0, 1.0, 2.0], [2.0, 0.0, 1.0]])
+    q = -np.ones(3)
+    active, seen = np.array([True, False, False]), []
+    while active.tolist() not in seen:
+        seen.append(active.tolist())
+        f = restricted_solve(G, -q, active)
+        infeasible = np.where(active, f < 0, G @ f + q < 0)
+        assert infeasible.any()
+        active = active ^ infeasible
+    found = complementarity(G, q, np.array([True, False, False]))
+    np.testing.assert_allclose(found.pressure, np.ones(3) / 3, atol=1e-14)
+
+
+def test_a_matrix_without_the_property_is_named() -> None:
+    with pytest.raises(ArithmeticError, match="no P-matrix"):
+        complementarity(-np.eye(2), -np.ones(2), np.zeros(2, dtype=bool))
+
+
+def test_restricted_solve_takes_several_right_sides() -> None:
+    G, right = np.array([[4.0, 1.0], [1.0, 3.0]]), np.array([[8.0, 4.0], [5.0, 6.0]])
+    np.testing.assert_array_equal(restricted_solve(G, right, np.array([True, False])), [[2.0, 1.0], [0, 0]])
+    np.testing.assert_array_equal(restricted_solve(G, right, np.array([False, False])), np.zeros((2, 2)))

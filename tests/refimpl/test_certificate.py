@@ -1,0 +1,122 @@
+"""The certificate sees each kind of wrong state, from the returned arrays alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.contact.certificate import Certificate, State, certify
+from refimpl.operators.dense import DenseInfluence
+from refimpl.problem import Problem, Terms, pose
+from refimpl.slopes import Slopes
+
+M = 10
+SCENE = rf.Scene(
+    upper=rf.Body(rf.Material(50e9, 0.4), rf.Sphere(0.05)),
+    lower=rf.Body(rf.Material(2e9, 0.1), rf.GaussianRoughness(3e-7, 4e-4, seed=3)),
+    friction=rf.Friction(tau=3e5, beta=0.2),
+    load=2.0,
+    side=1e-3,
+    sliding_direction=0.7,
+)
+TERMS = Terms(coupled=True, oblique=True, slope_correction=False)
+SOLVED = rf.solve(SCENE, M, method="dense", tolerance=1e-12)
+
+
+def problem(approach: float | None = None) -> Problem:
+    return pose(SCENE, rf.Grid(SCENE.side, M), TERMS, approach)
+
+
+def judged(
+    pressure: np.ndarray = SOLVED.pressure,
+    traction: np.ndarray = SOLVED.traction,
+    slopes: Slopes = SOLVED.slopes,
+    approach: float | None = None,
+) -> State:
+    posed = problem(approach)
+    return certify(posed, DenseInfluence(posed.grid, posed.direction), pressure, traction, slopes)
+
+
+def lawful(pressure: np.ndarray) -> np.ndarray:
+    return np.where(pressure > 0, SCENE.friction.tau + SCENE.friction.beta * pressure, 0.0)
+
+
+def test_the_solved_state_is_certified() -> None:
+    assert SOLVED.status is rf.Status.CONVERGED
+    certificate = judged().certificate
+    assert certificate.worst < 1e-13
+    assert certificate.unlawful == 0
+    assert certificate.meets(1e-12)
+    assert judged(approach=SOLVED.approach).certificate.worst < 1e-13
+
+
+def test_the_numbers_are_spec_1s() -> None:
+    """Gap over energy, penetration, balance: written out once more."""
+    pressure = 1.01 * SOLVED.pressure
+    state = judged(pressure, lawful(pressure))
+    dA = (SCENE.side / M) ** 2
+    K = np.cos(np.arctan(state.slopes.tan_x)) * np.cos(np.arctan(state.slopes.tan_y))
+    v = (state.displacement_lower + state.displacement_upper) / K + problem().gap
+    a = (1 - 0.4**2) / (np.pi * 50e9) + (1 - 0.1**2) / (np.pi * 2e9)
+    af = a * DenseInfluence(rf.Grid(SCENE.side, M), 0.7).normal(pressure)
+    energy = (pressure * af).sum() / 2 * dA
+    assert state.certificate.gap == pytest.approx((pressure * (v - v.min())).sum() * dA / energy, rel=1e-9)
+    mean = (pressure * v).sum() / pressure.sum()
+    assert state.approach == pytest.approx(mean, rel=1e-13)
+    assert state.certificate.penetration == pytest.approx((mean - v.min()) / mean, rel=1e-9)
+    assert state.certificate.balance == pytest.approx(abs(state.forces.normal / SCENE.load - 1), rel=1e-9)
+    assert state.certificate.balance == pytest.approx(0.01, rel=0.01)
+
+
+def test_a_pressure_at_the_wrong_place_is_seen() -> None:
+    pressure = SOLVED.pressure.copy()
+    i, j = np.unravel_index(np.argmin(np.where(SOLVED.contact, np.inf, SOLVED.separation)), (M, M))
+    pressure[i, j] = 1e-3 * SOLVED.max_pressure
+    assert judged(pressure, lawful(pressure)).certificate.gap > 1e-6
+
+
+def test_a_missing_contact_is_seen() -> None:
+    pressure = SOLVED.pressure.copy()
+    pressure[np.unravel_index(np.argmax(pressure), (M, M))] = 0.0
+    assert judged(pressure, lawful(pressure)).certificate.penetration > 1e-2
+
+
+def test_a_negative_pressure_is_seen() -> None:
+    pressure = SOLVED.pressure.copy()
+    pressure[0, 0] = -1e-5 * SOLVED.max_pressure
+    assert judged(pressure).certificate.negative_pressure == pytest.approx(1e-5)
+
+
+def test_a_wrong_load_or_approach_is_seen() -> None:
+    assert judged((1 + 1e-6) * SOLVED.pressure).certificate.balance == pytest.approx(1e-6, rel=0.1)
+    assert judged(approach=1.001 * SOLVED.approach).certificate.balance == pytest.approx(1e-3, rel=0.01)
+    assert judged(approach=1.001 * SOLVED.approach).certificate.penetration == pytest.approx(1e-3, rel=0.01)
+
+
+def test_slopes_of_another_state_are_seen() -> None:
+    wrong = Slopes(SOLVED.slopes.tan_x + 1e-4 * SOLVED.contact, SOLVED.slopes.tan_y)
+    assert judged(slopes=wrong).certificate.slope == pytest.approx(1e-4, rel=1e-6)
+
+
+def test_unlawful_friction_in_contact_is_counted() -> None:
+    traction = np.where(SOLVED.pressure == SOLVED.max_pressure, 0.0, SOLVED.traction)
+    assert judged(traction=traction).certificate.unlawful == 1
+
+
+@pytest.mark.parametrize("field", ["gap", "penetration", "negative_pressure", "balance", "slope"])
+def test_each_residual_counts_and_nan_never_passes(field: str) -> None:
+    clean = Certificate(0.0, 0.0, 0.0, 0.0, 0.0, 0)
+    assert clean.meets(0.0)
+    assert not replace(clean, **{field: 1e-3}).meets(1e-4)
+    assert replace(clean, **{field: np.nan}).worst == np.inf
+    assert not replace(clean, **{field: np.nan}).meets(1.0)
+
+
+def test_no_pressure_carries_no_load() -> None:
+    zero = np.zeros((M, M))
+    certificate = judged(zero, zero).certificate
+    assert certificate.balance == 1
+    assert not certificate.meets(0.5)

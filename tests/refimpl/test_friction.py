@@ -1,0 +1,96 @@
+"""Local friction and the rule for tau's support: hand-made sequences, and that it always ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from refimpl.friction import TauSupport, local_friction
+from refimpl.scene import Friction
+
+
+def mask(text: str) -> np.ndarray:
+    return np.array([c == "x" for c in text])
+
+
+def play(*contacts: str) -> TauSupport:
+    rule = TauSupport((len(contacts[0]),))
+    for contact in contacts:
+        rule.next(mask(contact))
+    return rule
+
+
+def test_local_friction_is_eq_8() -> None:
+    f = np.array([0.0, 2.0, 3.0])
+    found = local_friction(Friction(tau=5.0, beta=0.5), f, np.array([False, True, False]))
+    np.testing.assert_array_equal(found, [0.0, 6.0, 1.5])
+
+
+def test_it_starts_without_tau_and_settles_on_a_contact_set_that_stays() -> None:
+    rule = TauSupport((3,))
+    assert not rule.current.any()
+    rule.next(mask("xx."))
+    assert not rule.settled
+    rule.next(mask("xx."))
+    assert rule.settled
+    assert rule.cycle_length == 0
+    assert not rule.withheld.any()
+
+
+def test_no_contact_settles_at_once() -> None:
+    assert play("...").settled
+
+
+def test_a_cycle_of_two_withholds_what_changed() -> None:
+    rule = play("xx.", "x..", "xx.")
+    assert rule.cycle_length == 2
+    np.testing.assert_array_equal(rule.withheld, mask(".x."))
+    np.testing.assert_array_equal(rule.current, mask("x.."))
+    rule.next(mask("xx."))
+    assert rule.settled
+
+
+def test_a_cycle_of_three_withholds_all_that_changed_within_it() -> None:
+    rule = play("xx..", "x.x.", "x..x", "xx..")
+    assert rule.cycle_length == 3
+    np.testing.assert_array_equal(rule.withheld, mask(".xxx"))
+
+
+def test_a_return_to_no_tau_counts_as_a_cycle() -> None:
+    """The state without tau, with which the rule starts, is one of the sequence."""
+    rule = play("x", ".")
+    assert rule.cycle_length == 2
+    np.testing.assert_array_equal(rule.withheld, mask("x"))
+
+
+def test_what_came_before_the_cycle_does_not_count() -> None:
+    rule = play("xxx.", "xx..", "x...", "xx..")
+    assert rule.cycle_length == 2
+    np.testing.assert_array_equal(rule.withheld, mask(".x.."))
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(st.integers(1, 5), st.integers(0, 2**32 - 1))
+def test_it_ends_whatever_contact_answers(n: int, seed: int) -> None:
+    """Contact as an arbitrary but fixed function of the support; withheld elements only grow in number."""
+    random = np.random.default_rng(seed)
+    answer = random.integers(0, 2, (2**n, n)).astype(bool)
+    rule, count = TauSupport((n,)), 0
+    # each of at most n + 1 withheld sets lasts for at most 2^n + 1 supports
+    for _ in range((n + 1) * (2**n + 1) + 1):
+        rule.next(answer[int(rule.current @ 2 ** np.arange(n))])
+        assert int(rule.withheld.sum()) >= count
+        assert not np.any(rule.current & rule.withheld)
+        count = int(rule.withheld.sum())
+        if rule.settled:
+            break
+    assert rule.settled
+
+
+def test_shapes_other_than_lines() -> None:
+    rule = TauSupport((2, 2))
+    rule.next(np.eye(2, dtype=bool))
+    with pytest.raises(ValueError, match=r"broadcast|shape"):
+        rule.next(np.ones((3, 3), dtype=bool))

@@ -1,0 +1,44 @@
+"""Compliances of a body and of a pair against Johnson's formulas in exact numbers."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from refimpl.materials import Material, Pair
+
+
+def test_hand_made_numbers() -> None:
+    # nu = 1/4: 1 - nu^2 = 15/16; (1 + nu)(1 - 2 nu) / 2 = 5/16
+    body = Material(E=1 / math.pi, nu=0.25)
+    assert body.normal_compliance == pytest.approx(15 / 16, rel=1e-15)
+    assert body.shear_compliance == pytest.approx(5 / 16, rel=1e-15)
+    assert body.plane_strain_modulus == pytest.approx(16 / 15 / math.pi, rel=1e-15)
+
+
+def test_an_incompressible_body_does_not_couple() -> None:
+    assert Material(E=1e9, nu=0.5).shear_compliance == 0
+
+
+def test_shear_and_normal_compliance_have_their_known_ratio() -> None:
+    """c / a = (1 - 2 nu) / (2 (1 - nu)): half of the ratio of wave speeds squared, Johnson (3.82)."""
+    for nu in (-0.9, 0.0, 0.2, 0.49):
+        body = Material(E=7e9, nu=nu)
+        ratio = body.shear_compliance / body.normal_compliance
+        assert ratio == pytest.approx((1 - 2 * nu) / (2 * (1 - nu)), rel=1e-14)
+
+
+def test_a_pair_adds_normal_and_subtracts_shear() -> None:
+    lower, upper = Material(E=2e9, nu=0.1), Material(E=5e9, nu=0.4)
+    pair = Pair(lower=lower, upper=upper)
+    assert pair.normal_compliance == lower.normal_compliance + upper.normal_compliance
+    assert pair.shear_compliance == lower.shear_compliance - upper.shear_compliance > 0
+    assert Pair(lower=upper, upper=lower).shear_compliance == -pair.shear_compliance
+    assert Pair(lower=lower, upper=lower).shear_compliance == 0
+    assert pair.normal_compliance * math.pi * pair.reduced_modulus == pytest.approx(1, rel=1e-15)
+
+
+@pytest.mark.parametrize("nu", [-0.999, 0.0, 0.5])
+def test_the_whole_range_of_nu_is_allowed(nu: float) -> None:
+    assert Material(E=1e9, nu=nu).normal_compliance > 0

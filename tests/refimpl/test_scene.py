@@ -1,0 +1,76 @@
+"""The scene: frame, datum, sliding offset, and what a body takes for a surface."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import FrozenInstanceError, replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+
+STEEL = rf.Material(200e9, 0.3)
+ROUGH = rf.GaussianRoughness(rms=1e-6, correlation_length=400e-6, seed=7)
+SCENE = rf.Scene(
+    upper=rf.Body(STEEL, rf.Sphere(0.14)),
+    lower=rf.Body(STEEL, ROUGH),
+    friction=rf.Friction(15e6, 0.08),
+    load=70.0,
+    side=1e-3,
+)
+GRID = rf.Grid(SCENE.side, 16)
+
+
+def test_heights_are_about_their_mid_height() -> None:
+    for z in SCENE.heights(GRID):
+        assert z.shape == (16, 16)
+        assert abs(z.min() + z.max()) <= 1e-15 * np.ptp(z)
+
+
+def test_x_is_the_first_axis() -> None:
+    z = np.arange(16.0)[:, None] * np.ones(16) * 1e-8
+    lower, _ = replace(SCENE, lower=rf.Body(STEEL, z)).heights(GRID)
+    np.testing.assert_allclose(np.diff(lower, axis=0), 1e-8, rtol=1e-9)
+    assert np.all(np.diff(lower, axis=1) == 0)
+
+
+@pytest.mark.parametrize("angle", [0.0, math.pi / 2, 0.7])
+def test_sliding_samples_the_lower_surface_ahead_and_leaves_the_upper(angle: float) -> None:
+    """The frame rides with the upper body; after one element along x the old row 1 is row 0."""
+    h = GRID.spacing
+    slid = replace(SCENE, sliding_direction=angle, sliding_offset=h)
+    lower, upper = slid.heights(GRID)
+    np.testing.assert_array_equal(upper, SCENE.heights(GRID)[1])
+    offset = (h * math.cos(angle), h * math.sin(angle))
+    expected = ROUGH.heights(GRID, offset)
+    np.testing.assert_allclose(np.diff(lower, axis=0), np.diff(expected, axis=0), atol=1e-20)
+    if angle == 0:
+        still = ROUGH.heights(GRID)
+        # the field is sampled at positions that differ by rounding, times its slope of 0.005
+        np.testing.assert_allclose(expected[:-1], still[1:], atol=1e-17)
+
+
+def test_bodies_take_arrays_and_sums() -> None:
+    z = np.ones((16, 16)) * 1e-6
+    together = rf.Body(STEEL, rf.Sphere(0.14) + ROUGH + z)
+    apart = rf.Sphere(0.14).heights(GRID) + ROUGH.heights(GRID) + z
+    np.testing.assert_allclose(together.surface.heights(GRID), apart, rtol=1e-15)
+
+
+def test_a_scene_is_frozen() -> None:
+    with pytest.raises(FrozenInstanceError):
+        SCENE.load = 1.0  # type: ignore[misc]  # the point of the test
+
+
+def test_a_body_does_not_follow_its_array() -> None:
+    z = np.zeros((16, 16))
+    body = rf.Body(STEEL, z)
+    z[0, 0] = 1.0
+    assert body.surface.heights(GRID).max() == 0
+
+
+def test_friction_defaults_to_none() -> None:
+    assert rf.Friction().is_zero
+    assert not rf.Friction(beta=1e-9).is_zero
+    assert not rf.Friction(tau=1.0).is_zero

@@ -1,0 +1,104 @@
+"""TOML in and out; the scenes that ship."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.scene_file import scene_from_dict, scene_to_dict
+
+SPEC_EXAMPLE = """
+load = 70.0            # N
+side = 1.61e-3         # m
+sliding_direction = 0.5
+[upper.material]
+E = 200e9
+nu = 0.30
+[[upper.surface]]
+kind = "sphere"
+radius = 0.14
+[[upper.surface]]
+kind = "gaussian"
+rms = 0.084e-6
+correlation_length = 104e-6
+seed = 1
+[lower.material]
+E = 118e9
+nu = 0.30
+[[lower.surface]]
+kind = "measured"
+path = "surface.npy"
+pixel_size = 31.25e-6
+unit = "um"
+[friction]
+tau = 15e6
+beta = 0.08
+"""
+
+
+def test_every_shipped_scene_survives_a_round_trip(tmp_path: Path) -> None:
+    for name in rf.shipped_scenes():
+        scene = rf.read_scene(name)
+        path = tmp_path / f"{name}.toml"
+        path.write_text(rf.scene_to_toml(scene))
+        again = rf.read_scene(path)
+        assert scene_to_dict(again) == scene_to_dict(scene)
+        grid = rf.Grid(scene.side, 128)
+        for one, two in zip(scene.heights(grid), again.heights(grid), strict=True):
+            assert np.array_equal(one, two)
+
+
+def test_what_ships_is_what_the_issue_names() -> None:
+    assert set(rf.shipped_scenes()) >= {
+        "hertz", "table1-smooth", "table1-rough", "metal-polymer", "rough-planes"
+    }  # fmt: skip
+    hertz, smooth, rough = (rf.read_scene(n) for n in ("hertz", "table1-smooth", "table1-rough"))
+    assert hertz.friction.is_zero
+    assert (smooth.load, smooth.side, smooth.friction) == (70.0, 1.61e-3, rf.Friction(15e6, 0.08))
+    assert smooth.upper.material == rf.Material(200e9, 0.3)
+    assert smooth.lower.material == rf.Material(118e9, 0.3)
+    parts = [*rough.upper.surface.parts, *rough.lower.surface.parts]
+    rms = [part.rms for part in parts if part.kind == "gaussian"]
+    assert np.hypot(*rms) == pytest.approx(0.511e-6, rel=1e-3)
+    assert rf.read_scene("rough-planes").periodic
+
+
+def test_a_name_gives_way_to_a_file_of_that_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = rf.scene_to_toml(rf.read_scene("hertz")).replace("load = 70.0", "load = 1.0")
+    (tmp_path / "hertz").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    assert rf.read_scene("hertz").load == 1.0
+
+
+def test_measured_surfaces_are_relative_to_the_file(tmp_path: Path) -> None:
+    random = np.random.default_rng(0)
+    np.save(tmp_path / "surface.npy", random.normal(0, 0.5, (64, 64)))
+    (tmp_path / "scene.toml").write_text(SPEC_EXAMPLE)
+    scene = rf.read_scene(tmp_path / "scene.toml")
+    lower, _ = scene.heights(rf.Grid(scene.side, 32))
+    assert 0.5e-6 < np.ptp(lower) < 10e-6
+    assert scene.sliding_direction == 0.5
+
+
+def test_optional_keys_have_their_defaults() -> None:
+    body = {"material": {"E": 1e9, "nu": 0.3}}
+    scene = scene_from_dict({"load": 1.0, "side": 1.0, "upper": body, "lower": body}, Path())
+    assert scene.friction.is_zero
+    assert (scene.sliding_direction, scene.sliding_offset, scene.periodic) == (0.0, 0.0, False)
+    assert isinstance(scene.lower.surface, rf.Flat)
+
+
+def test_one_surface_need_not_be_a_list() -> None:
+    body = {"material": {"E": 1e9, "nu": 0.3}, "surface": {"kind": "sphere", "radius": 2.0}}
+    scene = scene_from_dict({"load": 1.0, "side": 1.0, "upper": body, "lower": body}, Path())
+    assert scene.upper.surface == rf.Sphere(2.0)
+
+
+def test_arrays_have_no_toml() -> None:
+    scene = rf.read_scene("hertz")
+    body = rf.Body(scene.upper.material, np.zeros((4, 4)))
+    with pytest.raises(rf.InputError, match="TOML"):
+        rf.scene_to_toml(rf.Scene(body, body, rf.Friction(), 1.0, 1.0))

@@ -1,0 +1,166 @@
+"""What `solve` returns: statuses, options, reported numbers, warnings; small cases with known answers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl import fft_solver
+
+STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
+SMOOTH = rf.Scene(
+    upper=rf.Body(STEEL, rf.Sphere(0.14)),
+    lower=rf.Body(COPPER, rf.Flat()),
+    friction=rf.Friction(15e6, 0.08),
+    load=70.0,
+    side=1.61e-3,
+)
+METHODS = pytest.mark.parametrize("method", ["dense", "fft"])
+
+
+def one_spike(load: float = 0.01) -> rf.Scene:
+    """A single element of height 1 um, 5 x 5."""
+    z = np.zeros((5, 5))
+    z[2, 2] = 1e-6
+    return replace(SMOOTH, upper=rf.Body(STEEL, rf.Flat()), lower=rf.Body(COPPER, z), load=load, side=1e-3)
+
+
+@METHODS
+def test_one_element_by_hand(method: str) -> None:
+    """Without slopes: f = P / dA, and the approach is 4 asinh(1) h / (pi E*) f for a square of edge h."""
+    s = rf.solve(one_spike(), 5, method=method, oblique=False)
+    h = 2e-4
+    modulus = 1 / ((1 - 0.09) / 200e9 + (1 - 0.09) / 118e9)
+    assert s.contact.sum() == 1
+    assert s.max_pressure == pytest.approx(0.01 / h**2, rel=1e-14)
+    by_hand = s.max_pressure * 4 * math.asinh(1) * h / (math.pi * modulus)
+    assert s.approach == pytest.approx(by_hand, rel=1e-13)
+    assert s.friction_force == pytest.approx(15e6 * h**2 + 0.08 * 0.01, rel=1e-14)
+    assert s.friction_coefficient == pytest.approx(s.friction_force / 0.01, rel=1e-14)
+    assert s.normal_force == pytest.approx(0.01, rel=1e-14)
+    assert s.contact_area == pytest.approx(h**2, rel=1e-14)
+
+
+@METHODS
+@pytest.mark.parametrize("M", [1, 2, 3])
+def test_the_smallest_grids(method: str, M: int) -> None:
+    s = rf.solve(SMOOTH, M, method=method)
+    assert s.status is rf.Status.CONVERGED
+    assert s.pressure.shape == (M, M)
+    assert s.normal_force == pytest.approx(70.0, rel=1e-8)
+
+
+@METHODS
+def test_two_flats_are_a_square_punch(method: str) -> None:
+    """Full contact, symmetric, highest in the corners."""
+    flat = replace(SMOOTH, upper=rf.Body(STEEL, rf.Flat()), friction=rf.Friction())
+    s = rf.solve(flat, 8, method=method, tolerance=1e-12)
+    assert s.contact.all()
+    assert s.max_pressure == pytest.approx(s.pressure[0, 0], rel=1e-9)
+    np.testing.assert_allclose(s.pressure, s.pressure.T, rtol=1e-9)
+    assert "border" in " ".join(s.warnings)
+
+
+@METHODS
+@pytest.mark.parametrize("approach", [0.0, -1e-6])
+def test_an_approach_that_leaves_the_surfaces_apart(method: str, approach: float) -> None:
+    s = rf.solve(SMOOTH, 8, method=method, approach=approach)
+    assert s.status is rf.Status.NO_CONTACT
+    assert s.normal_force == s.friction_force == s.contact_area == s.max_pressure == 0
+    assert math.isnan(s.friction_coefficient)
+    assert s.separation.min() == pytest.approx(-approach, abs=1e-18)
+
+
+@METHODS
+def test_periodic_planes_too_far_apart(method: str) -> None:
+    z = 1e-7 * np.cos(2 * np.pi * (np.arange(8) + 0.5) / 8)[:, None] * np.ones(8)
+    apart = replace(SMOOTH, upper=rf.Body(STEEL, rf.Flat()), lower=rf.Body(COPPER, z), periodic=True)
+    assert rf.solve(apart, 8, method=method, approach=-1e-6).status is rf.Status.NO_CONTACT
+    assert rf.solve(apart, 8, method=method, approach=-0.5e-7).status is rf.Status.CONVERGED
+
+
+def test_surfaces_touch_where_there_is_pressure_without_slopes() -> None:
+    s = rf.solve(SMOOTH, 32, oblique=False, tolerance=1e-12)
+    assert np.abs(s.separation[s.contact]).max() <= 1e-11 * s.approach
+    assert s.separation.min() >= -1e-11 * s.approach
+    np.testing.assert_array_equal(s.separation, s.surface_upper - s.surface_lower)
+
+
+def test_without_slopes_friction_is_eq_10_and_q_vanishes() -> None:
+    s = rf.solve(SMOOTH, 32, oblique=False, tolerance=1e-12)
+    assert s.friction_coefficient == pytest.approx(15e6 * s.contact_area / 70.0 + 0.08, rel=1e-12)
+    assert s.binormal_force == 0
+    assert not s.theta_x.any()
+
+
+def test_slope_angles_are_of_the_returned_surface() -> None:
+    s = rf.solve(replace(SMOOTH, sliding_direction=0.7), 24)
+    dx, dy = np.gradient((s.surface_lower + s.surface_upper) / 2, s.grid.spacing)
+    np.testing.assert_allclose(np.tan(s.theta_x), math.cos(0.7) * dx + math.sin(0.7) * dy, atol=1e-8)
+    np.testing.assert_allclose(np.tan(s.theta_y), math.cos(0.7) * dy - math.sin(0.7) * dx, atol=1e-8)
+
+
+def test_the_plan_says_what_was_modelled() -> None:
+    coupled = rf.solve(SMOOTH, 8).plan
+    assert coupled.includes("shear coupling")
+    assert coupled.includes("obliqueness")
+    assert not coupled.includes("slope correction")
+    alike = rf.solve(replace(SMOOTH, lower=rf.Body(STEEL, rf.Flat())), 8, oblique=False).plan
+    assert not alike.includes("shear coupling")
+    assert not alike.includes("obliqueness")
+    still = rf.solve(replace(SMOOTH, friction=rf.Friction()), 8).plan
+    assert not still.includes("shear coupling")
+    assert not still.includes("tau support")
+
+
+def test_the_summary_is_plain() -> None:
+    s = rf.solve(SMOOTH, 16)
+    summary = s.summary()
+    assert summary["status"] == "converged"
+    assert summary["friction_coefficient"] == s.friction_coefficient
+    assert summary["grid"] == 16
+
+
+@pytest.mark.parametrize("limit", [0, 2])
+def test_a_starved_solver_never_claims_convergence(limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fft_solver, "_CG_LIMIT", limit)
+    scene = rf.read_scene("metal-polymer")
+    s = rf.solve(scene, 24)
+    assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)
+    assert not s.certificate.meets(s.tolerance)
+
+
+def test_a_tolerance_below_rounding_is_not_claimed() -> None:
+    s = rf.solve(SMOOTH, 24, tolerance=1e-18)
+    assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)
+    assert s.certificate.worst < 1e-11
+
+
+@METHODS
+def test_a_cycle_of_tau_is_named_and_its_reach_reported(method: str) -> None:
+    soft, hard = rf.Material(2.5e9, 0.38), STEEL
+    scene = replace(
+        SMOOTH,
+        upper=rf.Body(hard, rf.Sphere(0.14)),
+        lower=rf.Body(soft, rf.GaussianRoughness(0.504e-6, 104e-6, seed=2)),
+        friction=rf.Friction(60e6, 0.3),
+        load=30.0,
+    )
+    s = rf.solve(scene, 23, method=method, tolerance=1e-11)
+    assert s.status is rf.Status.CYCLED
+    assert s.certificate.meets(1e-11)
+    assert s.certificate.unlawful == np.count_nonzero(s.withheld & s.contact) > 0
+    np.testing.assert_allclose(s.traction[s.withheld], 0.3 * s.pressure[s.withheld])
+    assert s.uncertainty["friction_coefficient"]["tau support"] > 0
+    assert s.uncertainty["contact_area"]["tau support"] >= 0
+
+
+def test_numbers_repeat_after_other_solves() -> None:
+    first = rf.solve(SMOOTH, 24)
+    rf.solve(rf.read_scene("rough-planes"), 40)
+    again = rf.solve(SMOOTH, 24)
+    assert np.array_equal(first.pressure, again.pressure)
