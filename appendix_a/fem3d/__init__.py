@@ -6,6 +6,7 @@
     solver         conjugate gradients with a separable preconditioner
     patch          exact flat and tilted half-space fields
     surface        one solution on one mesh
+    fields         mesh and displacements through meshio
     coefficients   wavy against flat, extrapolated, with stated errors: start here
     leading_order  what first-order theory says
     study          the table of all points

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from appendix_a.fem3d.elasticity import Operator, mapped, patch_load, stiffness
 from appendix_a.fem3d.mesh import block
 from appendix_a.fem3d.patch import far_field
-from appendix_a.fem3d.solver import solve
+from appendix_a.fem3d.solver import LinearSolution, solve
 from appendix_a.fem3d.space import Space, space
 from appendix_a.fem3d.wavy import Kind, Waviness
 
@@ -32,18 +32,25 @@ class Sample:
     residual: float
 
 
-def sample(
+def solved(
     surface: Waviness, nu: float, radius: float, level: int, edges: tuple[float, float] = (-1.0, 1.0)
-) -> Sample:
+) -> tuple[Space, LinearSolution]:
     """Solve on one mesh, with the flat half-space's displacements on the outer boundary."""
     waves_across = surface.kind is Kind.EGG_BOX
     body = space(block(radius, surface.wavelength, level, waves_across=waves_across, edges=edges))
-    operator = Operator(stiffness(body, surface, nu), body)
     held = outer_displacements(body, surface, nu, edges)
-    solution = solve(operator, nu, patch_load(body, surface, edges), held)
+    operator = Operator(stiffness(body, surface, nu), body)
+    return body, solve(operator, nu, patch_load(body, surface, edges), held)
+
+
+def sample(
+    surface: Waviness, nu: float, radius: float, level: int, edges: tuple[float, float] = (-1.0, 1.0)
+) -> Sample:
+    """What `solved` says at the loaded element's centre and at its neighbours'."""
+    body, solution = solved(surface, nu, radius, level, edges)
     top = solution.field[2, :, :, -1]
     i, j = np.searchsorted(body.axes[0], X - 1e-9), np.searchsorted(body.axes[1], Y - 1e-9)
-    return Sample(-top[i, j], operator.matrices.shape[0], solution.iterations, solution.residual)
+    return Sample(-top[i, j], body.element_nodes.shape[0], solution.iterations, solution.residual)
 
 
 @cache

@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 
@@ -13,11 +14,12 @@ from appendix_a.errors import InputError
 from appendix_a.fem3d import study
 from appendix_a.fem3d.coefficients import Coefficients3D, coefficients, corrected
 from appendix_a.fem3d.elasticity import mapped
+from appendix_a.fem3d.fields import write_fields
 from appendix_a.fem3d.leading_order import facet_part, first_order
 from appendix_a.fem3d.mesh import block
 from appendix_a.fem3d.patch import boussinesq, cerruti, normal_coefficient
 from appendix_a.fem3d.space import space
-from appendix_a.fem3d.surface import X, Y, flat_sample, outer_displacements, sample
+from appendix_a.fem3d.surface import X, Y, flat_sample, outer_displacements, sample, solved
 from appendix_a.fem3d.wavy import Kind, Waviness
 
 NU = 0.3
@@ -88,7 +90,7 @@ def test_stated_errors_are_within_what_is_asked(flank: Coefficients3D) -> None:
 
 
 def test_the_box_is_taken_away(flank: Coefficients3D) -> None:
-    """A box of 3 wavelengths on mesh level 2, each within 0.015 % of flat; that of 1.5 alone is 0.05 % off."""
+    """A box of 3 wavelengths on mesh level 2, each within 0.015 % of flat; that of 1.5 is 0.05 % off."""
     flat = flat_sample(20.0, Kind.RIDGE, NU, 60.0, 2).down
     wide = (sample(Waviness(10.0, 20.0, 0.25), NU, 60.0, 2).down - flat) / flank.flat
     assert flank.error[[3, 6]] == pytest.approx(wide[[3, 6]], abs=3e-4)
@@ -170,6 +172,23 @@ def test_study_refuses_another_table(
     assert study.main([str(table), "--seconds", "0"]) == 2
     assert "table" in capsys.readouterr().err
     assert table.read_text() == content
+
+
+def test_fields_are_written_through_meshio(tmp_path: Path) -> None:
+    """Read back: the volume of half a box under whole waves, and the displacement under the load."""
+    surface = Waviness(15.0, 20.0, 0.25)
+    body, solution = solved(surface, NU, 30.0, 1)
+    path = tmp_path / "body.vtu"
+    write_fields(path, body, surface, solution.field)
+    mesh = meshio.read(path)
+    corners = mesh.points[mesh.cells_dict["hexahedron"]]
+    sides = [corners[:, i] - corners[:, 0] for i in (1, 3, 4)]
+    volume = np.einsum("ei,ei->e", np.cross(sides[0], sides[1]), sides[2])
+    assert np.all(volume > 0)
+    assert volume.sum() == pytest.approx(60.0 * 30.0 * 30.0, rel=0.02)  # parallelepipeds for curved cells
+    centre = np.argmin(np.linalg.norm(mesh.points - [0.0, 0.0, surface.height(X[:1], Y[:1])[0]], axis=1))
+    down = -mesh.point_data["displacement"][centre, 2]
+    assert down == pytest.approx(sample(surface, NU, 30.0, 1).down[0], rel=1e-12)
 
 
 def test_committed_table() -> None:
