@@ -1,0 +1,11 @@
+"""Two wavy elastic bodies in sliding contact by finite elements in plane strain: the model's judge.
+
+What is exact and what is linearised:
+
+- Each body is linear elastic with small strains, in equilibrium on its undeformed wavy shape: stiffness and
+  compliance are those of the true sinusoidal boundary, not of a half-plane.  Strains reach a third of the
+  slope, so a truly nonlinear body would differ by terms of that relative order, which no model here has.
+- The interface is not linearised.  Pressure acts along the normal and friction along the tangent of the
+  deformed surface, per unit of its deformed length; points touch where deformation has taken them, with
+  their tangential displacements; the resultants are those of these tractions.
+"""
