@@ -173,4 +173,6 @@ def slopes(tier: str) -> Measured:
         f"scatters by {abs(e.scatter * e.mean):.2f}: a single surface's sign is chance; kurtosis "
         f"{contact.kurtosis.mean:.2f} +- {contact.kurtosis.half_width:.2f} (p {contact.p_kurtosis:.2g})"
     )
-    return judged(Verdict.REFUTED, sentence, abs(e.mean), data=_fig11_data(tier))
+    negative = e.mean + e.half_width < 0
+    verdict = Verdict.CONDITIONAL if negative else Verdict.REFUTED
+    return judged(verdict, sentence, abs(e.mean), data=_fig11_data(tier))
