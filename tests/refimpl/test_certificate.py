@@ -120,3 +120,15 @@ def test_no_pressure_carries_no_load() -> None:
     certificate = judged(zero, zero).certificate
     assert certificate.balance == 1
     assert not certificate.meets(0.5)
+
+
+def test_traction_without_contact_is_unlawful() -> None:
+    outside = np.argwhere(~SOLVED.contact)[0]
+    traction = SOLVED.traction.copy()
+    traction[tuple(outside)] = 1.0
+    operator = DenseInfluence(SOLVED.grid, SCENE.sliding_direction)
+    lawful, unlawful = (
+        certify(problem(), operator, SOLVED.pressure, r, SOLVED.slopes) for r in (SOLVED.traction, traction)
+    )
+    assert lawful.certificate.unlawful == 0
+    assert unlawful.certificate.unlawful == 1
