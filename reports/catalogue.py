@@ -13,8 +13,33 @@ def _order(cases: str, what: str, expected: float) -> Figure:
     )
 
 
+FIG12 = {
+    "crest: finite elements (%)": "crest, finite elements",
+    "crest: first order (%)": "crest, first order",
+    "crest: the paper's superposition (%)": "crest, the paper's superposition",
+    "flank: finite elements (%)": "flank, finite elements",
+    "flank: first order (%)": "flank, first order",
+}
+FIG13 = {
+    f"{slope} degrees: {what} (%)": f"{slope} degrees, {what}"
+    for slope in ("2.5", "6.5", "15")
+    for what in ("wedge theory", "finite elements")
+}
+
 DECLARED = (
     *REPRODUCTION,
+    *(
+        Figure(
+            f"appendix-figures/{name}",
+            ("x over a", *series),
+            lines("x over a", series, xlabel="x / a", ylabel="change of the coefficient (%)", marker=True),
+            caption,
+        )
+        for name, series, caption in (
+            ("fig12", FIG12, "Strip theory and finite elements at 6.5 degrees, from the strip's centre."),
+            ("fig13", FIG13, "Wedge theory and finite elements, from the apex."),
+        )
+    ),
     Figure(
         "kernels/textbook-*-fails",
         ("offset", "textbook", "production"),
