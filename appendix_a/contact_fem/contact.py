@@ -144,7 +144,7 @@ def _updated(interface: Interface, state: _State, load: float, friction: Frictio
     weights = -on_lower[half:].sum(axis=0)
     needed = load + float(tau_lower[half:].sum())
     start = state.pressure > 0 if np.any(state.pressure > 0) else np.ones(len(gap), dtype=bool)
-    pressure, sink = _complementary(matrix, gap, width, weights, needed, start)
+    pressure, sink = complementary(matrix, gap, width, weights, needed, start)
     x = interface.lower_at[0][interface.vertices]
     return _State(
         pressure,
@@ -164,7 +164,7 @@ def _settled(
     return before
 
 
-def _complementary(
+def complementary(
     matrix: Array, gap: Array, width: Array, weights: Array, load: float, active: NDArray[np.bool_]
 ) -> tuple[Array, float]:
     """f >= 0, g = gap + matrix f - sink width >= 0, f g = 0, weights f = load; returns (f, sink)."""

@@ -1,0 +1,112 @@
+"""The whole model against finite elements in three dimensions: one pair of asperities, Coulomb friction.
+
+The meshes put six to ten elements across the contact, so absolute values carry half a percent of
+discretisation error, and the area, by whole nodes, ten to thirty: it is not judged.  Both sides are therefore
+taken relative to themselves at a vanishing slope, on the same mesh or grid and with the same share of p*:
+most of that error is common and goes.  What remains of it is read off three meshes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import refimpl as rf
+from appendix_a.contact_fem.scene import WAVENUMBER, Material, WavyPair
+from appendix_a.contact_fem.sequence import Estimate
+from appendix_a.contact_fem.solid import asperity
+from appendix_a.contact_fem.solid_contact import press
+from verification.case import Measured
+from verification.registry import case
+
+COPPER, STEEL = Material(118e9, 0.3), Material(200e9, 0.3)
+BETA, SHARE, SHIFT = 0.08, 0.05, -0.25
+SLIGHT, SLOPE = 0.1, 6.5
+MESHES, GRIDS = (3, 4, 5), (64, 128, 256)
+
+
+def scene_of(slope: float) -> tuple[WavyPair, float, float]:
+    """Two-dimensional namesake, mean planes' distance at first touch, and load per square wavelength."""
+    pair = WavyPair(slope, SHIFT, COPPER, STEEL, beta=BETA)
+    distance = pair.gap_amplitude + 2.0 * pair.amplitude
+    return pair, distance, SHARE * pair.full_contact_pressure
+
+
+def by_fem(slope: float, elements: int) -> tuple[float, float]:
+    """(approach / amplitude, mu) of bumps amplitude (cos k x + cos k y), crests SHIFT apart along sliding."""
+    pair, distance, load = scene_of(slope)
+    body = asperity(pair.amplitude, -SHIFT / 2.0, COPPER.nu, elements)
+    found = press(body.of_modulus(COPPER.E), body.mirrored().of_modulus(STEEL.E), distance, load, BETA)
+    return found.approach / pair.amplitude, found.friction_coefficient
+
+
+def by_model(
+    slope: float, M: int, *, correction: bool = False, approach: float | None = None
+) -> tuple[float, float, float]:
+    """(approach / amplitude, mu, N / load) of the same bumps; `approach` / amplitude replaces the load."""
+    pair, distance, load = scene_of(slope)
+    x = (np.arange(M) + 0.5) / M - 0.5
+    lower, upper = (
+        pair.amplitude * np.add.outer(np.cos(WAVENUMBER * (x - crest)), np.cos(WAVENUMBER * x))
+        for crest in (-SHIFT / 2.0, SHIFT / 2.0)
+    )
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(STEEL.E, STEEL.nu), -upper),
+        lower=rf.Body(rf.Material(COPPER.E, COPPER.nu), lower),
+        friction=rf.Friction(beta=BETA),
+        load=load,
+        side=1.0,
+        periodic=True,
+    )
+    depth = None if approach is None else approach * pair.amplitude - distance
+    solved = rf.solve(scene, grid=M, slope_correction=correction, approach=depth, tolerance=1e-6)
+    if solved.status is not rf.Status.CONVERGED:
+        raise RuntimeError(f"the model ended {solved.status.value} on {M} x {M} elements")
+    sunk = (solved.approach + distance) / pair.amplitude
+    return sunk, solved.friction_coefficient, solved.normal_force / load
+
+
+def differences(
+    approach: Estimate, friction: Estimate, *, correction: bool
+) -> dict[str, tuple[float, float]]:
+    """Model against finite elements and its uncertainty, as fractions; all relative to a vanishing slope."""
+    steep, slight = ([by_model(s, M, correction=correction) for M in GRIDS] for s in (SLOPE, SLIGHT))
+    sunk = Estimate.of(*(a[0] / b[0] for a, b in zip(steep, slight, strict=True)))
+    mu = Estimate.of(*(a[1] / b[1] for a, b in zip(steep, slight, strict=True)))
+    asked = [(M, b[0] * approach.value) for M, b in zip(GRIDS, slight, strict=True)]
+    load = Estimate.of(*(by_model(SLOPE, M, correction=correction, approach=d)[2] for M, d in asked))
+    # an error of the approach moves N by the contact's stiffness, d ln N / d ln approach < 2 (1.8 measured)
+    moved = 2.0 * approach.error / approach.value
+    return {
+        "approach": (sunk.value / approach.value - 1, (sunk.error + approach.error) / approach.value),
+        "mu": (mu.value / friction.value - 1, (mu.error + friction.error) / friction.value),
+        "normal": (load.value - 1, load.error + moved),
+    }
+
+
+@case(
+    "model-form/asperities-3d",
+    title="Model-form error of a pair of asperities in three dimensions",
+    claim="Steel climbing copper at 6.5 degrees: approach, N and mu are within 2 % of finite elements",
+    source="scikit-fem, triquadratic hexahedra, contact on the deformed facets",
+    metric="at_most",
+    tolerance=2.0,
+    tolerance_reason="percent: the paper's 'less than 2 %' for its coefficients, asked of the results",
+    tier="full",
+    tags=("appendix", "model form"),
+)
+def asperities() -> Measured:
+    steep, slight = ([by_fem(slope, n) for n in MESHES] for slope in (SLOPE, SLIGHT))
+    approach = Estimate.of(*(a / b for (a, _), (b, _) in zip(steep, slight, strict=True)))
+    friction = Estimate.of(*(a / b for (_, a), (_, b) in zip(steep, slight, strict=True)))
+    data: dict[str, object] = {
+        "FEM approach / that at 0.1 degrees": [approach.value, approach.error],
+        "FEM mu / that at 0.1 degrees": [friction.value, friction.error],
+        "FEM approach / amplitude at 0.1 degrees by mesh": [a for a, _ in slight],
+    }
+    for name, correction in (("as printed", False), ("slope correction", True)):
+        for quantity, (difference, error) in differences(approach, friction, correction=correction).items():
+            data[f"{quantity}, {name}"] = [100 * difference, 100 * error]
+    printed = [v for k, v in data.items() if k.endswith("as printed")]
+    worst = max(abs(v[0]) for v in printed if isinstance(v, list))
+    note = "data: percent and its uncertainty; area not judged"
+    return Measured(value=worst, unit="%", data=data, note=note)
