@@ -77,9 +77,10 @@ def test_no_interval_without_values(values: list[float]) -> None:
 def test_rows_are_kept_where_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(ensemble.FOLDER, str(tmp_path / "stores"))
     study = study_from_dict({"scene": "table1-rough", "vary": {"grid": [12]}, "realisations": 2})
-    first = ensemble.rows(study, "small")
+    monkeypatch.setattr(ensemble, "read_study", lambda name: study)
+    first = ensemble.rows_of.__wrapped__("small")
     assert (tmp_path / "stores" / "small.sqlite").exists()
-    assert ensemble.rows(study, "small") == first
+    assert ensemble.rows_of.__wrapped__("small") == first == ensemble.rows(study)
     assert len(ensemble.column(first, "contact_area", grid=12)) == 2
     with pytest.raises(LookupError):
         ensemble.column(first, "contact_area", grid=13)
@@ -89,7 +90,7 @@ def test_an_ensemble_with_gaps_is_refused(monkeypatch: pytest.MonkeyPatch) -> No
     study = study_from_dict({"scene": "table1-rough", "vary": {"grid": [12]}})
     monkeypatch.setattr(ensemble, "CERTIFIED", ())
     with pytest.raises(RuntimeError, match="1 uncertified"):
-        ensemble.rows(study, "small")
+        ensemble.rows(study)
 
 
 INTEGRANDS = {

@@ -1,4 +1,4 @@
-"""Fig. 8 and section 8: friction over roughness, what fluctuates, Eqs (10) and (11) against solutions."""
+"""Fig. 8 and section 8: friction over roughness, and its scatter without beta."""
 
 from __future__ import annotations
 
@@ -6,16 +6,10 @@ from functools import cache
 
 import numpy as np
 
-from refimpl.forces import smooth_friction_coefficient
-from refimpl.grid import Array
 from verification.case import Measured
 from verification.reproduction import fig8, table3
 from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
 from verification.reproduction.printed import (
-    AREA_FLUCTUATION,
-    FRICTION_FLUCTUATION,
-    HARDNESS,
-    LOWEST_FRICTION,
     RESOLUTION,
     TABLE3,
 )
@@ -25,16 +19,11 @@ from verification.reproduction.verdict import Verdict, judged
 from verification.sweep.run import Row
 from verification.sweep.study import read_study
 
-TAU, BETA = SMOOTH.friction.tau, SMOOTH.friction.beta
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
 
 
 def _curves(tier: str) -> tuple[fig8.Curve, ...]:
     return fig8.full_curves() if tier == "full" else fig8.quick_curves()
-
-
-def _table3(tier: str) -> tuple[tuple[Row, ...], int]:
-    return (table3.full_rows(), 512) if tier == "full" else (table3.quick_rows(), table3.QUICK_MESH)
 
 
 def _series(curves: tuple[fig8.Curve, ...]) -> dict[str, object]:
@@ -128,44 +117,6 @@ def _levelled(curve: fig8.Curve) -> float:
 
 
 @in_both_tiers(
-    "reproduction/section8-scatter",
-    title="Section 8: scatter of area and friction between surface representations",
-    claim="Section 8: A fluctuates by 7.5 % and mu by 1.0 %, less because of the constant term in Eq. (10)",
-    source="paper section 8, Eq. (10)",
-    metric="at_most",
-    tolerance=0.25,
-    tolerance_reason="relative difference of mu's scatter from what Eq. (10) makes of A's, tau A / N / "
-    "mu times it: at 1.68 um that is 1.0 % of mu, and the elastic part's own 0.7 % (measured) adds in "
-    "squares: 19 %",
-    tags=("section8", "eq10"),
-)
-def scatter(tier: str) -> Measured:
-    found, mesh = _table3(tier)
-    area, mu, expected = [], [], []
-    for flat in ROUGH:
-        a = estimate(column(found, "contact_area", lower_rms=flat, grid=mesh))
-        m = estimate(column(found, "friction_coefficient", lower_rms=flat, grid=mesh))
-        area.append(a.scatter)
-        mu.append(m.scatter)
-        expected.append(TAU * a.mean / SMOOTH.load / m.mean * a.scatter)
-    worst = float(np.max(np.abs(np.array(mu) / np.array(expected) - 1)))
-    sentence = (
-        f"A scatters by {_percent(area)}, mu by {_percent(mu)} (0.504, 1.008, 1.68 um); printed "
-        f"{AREA_FLUCTUATION:.1%} and {FRICTION_FLUCTUATION:.1%}, roughness not stated; mu's scatter is "
-        f"Eq. (10)'s share of A's to {worst:.0%}"
-    )
-    data = {
-        "sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]],
-        "scatter of A": area,
-        "scatter of mu": mu,
-        "Eq. (10)": expected,
-        "printed A": AREA_FLUCTUATION,
-        "printed mu": FRICTION_FLUCTUATION,
-    }
-    return judged(Verdict.CONDITIONAL, sentence, worst, data=data)
-
-
-@in_both_tiers(
     "reproduction/section8-beta0",
     title="Section 8: scatter of friction with beta = 0",
     claim="Section 8: with beta = 0 friction varies as much as the contact area",
@@ -192,71 +143,11 @@ def without_beta(tier: str) -> Measured:
     return judged(Verdict.CONDITIONAL, sentence, worst, data=data)
 
 
-@in_both_tiers(
-    "reproduction/eq10",
-    title="Eq. (10) against full solutions",
-    claim="Eq. (10): mu = tau A / N + beta approximates the friction of rough surfaces",
-    source="paper Eq. (10)",
-    metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="largest error of a single solution: what Eq. (10) leaves out is the elastic part, "
-    "first order in the mean slope under load, whose scatter is 1 % of mu",
-    tags=("eq10",),
-)
-def equation10(tier: str) -> Measured:
-    found, mesh = _table3(tier)
-    errors: dict[float, Array] = {}
-    for flat in ROUGH:
-        where = {"lower_rms": flat, "grid": mesh}
-        pressure = np.array(column(found, "normal_force", **where)) / column(found, "contact_area", **where)
-        simple = np.array([smooth_friction_coefficient(TAU, BETA, p) for p in pressure])
-        errors[flat] = simple / column(found, "friction_coefficient", **where) - 1
-    worst = max(float(np.abs(e).max()) for e in errors.values())
-    means = [float(e.mean()) for e in errors.values()]
-    sentence = (
-        f"largest error {worst:.2%} in one solution, mean errors {', '.join(f'{m:+.3%}' for m in means)}"
-    )
-    data = {"sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]], "mean error": means}
-    data["rms error"] = [float(np.sqrt(np.mean(e**2))) for e in errors.values()]
-    return judged(Verdict.CONFIRMED, sentence, worst, data=data)
-
-
-@in_both_tiers(
-    "reproduction/eq11",
-    title="Eq. (11): is tau / H + beta the lowest friction?",
-    claim="Eq. (11): mu falls to 0.1, where the mean pressure is the hardness",
-    source="paper Eq. (11), Table 3",
-    metric="at_least",
-    tolerance=1.5,
-    tolerance_reason="mean pressure over hardness at 1.68 um: above 1 the elastic model passes the "
-    "limit that (11) assumes; the mesh and the sample leave 10 %",
-    tags=("eq11",),
-)
-def equation11(tier: str) -> Measured:
-    found, mesh = _table3(tier)
-    area = [estimate(column(found, "contact_area", lower_rms=flat, grid=mesh)).mean for flat in ROUGH]
-    mu = [estimate(column(found, "friction_coefficient", lower_rms=flat, grid=mesh)).mean for flat in ROUGH]
-    ratio = [SMOOTH.load / a / HARDNESS for a in area]
-    sentence = (
-        f"mu goes down to {mu[-1]:.4f} (printed 0.089), below {LOWEST_FRICTION}, at a mean pressure of "
-        f"{ratio[-1]:.2f} H; the elastic model itself knows no hardness"
-    )
-    data = {
-        "sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]],
-        "mean pressure / H": ratio,
-        "mu": mu,
-        "Eq. (11)": smooth_friction_coefficient(TAU, BETA, HARDNESS),
-    }
-    return judged(Verdict.REFUTED, sentence, ratio[-1], data=data)
-
-
 @cache
 def _beta0(tier: str) -> tuple[Row, ...]:
     if tier == "full":
         return rows_of("beta0")
-    return rows(
-        reduced(read_study("beta0"), table3.QUICK_REALISATIONS, grid=(table3.QUICK_MESH,)), "beta0-quick"
-    )
+    return rows(reduced(read_study("beta0"), table3.QUICK_REALISATIONS, grid=(table3.QUICK_MESH,)))
 
 
 def _percent(shares: list[float]) -> str:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -60,18 +59,22 @@ def reduced(study: Study, realisations: int, **vary: Iterable[float]) -> Study:
 
 @cache
 def rows_of(name: str) -> tuple[Row, ...]:
-    """All rows of a shipped study; see `rows`."""
-    return rows(read_study(name), name)
+    """All rows of a shipped study, kept in the folder that `FOLDER` names, if any; see `rows`."""
+    folder = os.environ.get(FOLDER)
+    if not folder:
+        return rows(read_study(name))
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    return rows(read_study(name), Path(folder) / f"{name}.sqlite")
 
 
-def rows(study: Study, name: str) -> tuple[Row, ...]:
-    """All rows of a study, solved in this process.
+def rows(study: Study, store: Path | None = None) -> tuple[Row, ...]:
+    """All rows of a study, solved in this process, and kept in the store if one is given.
 
     Raises RuntimeError when a run failed or its certificate does not meet the tolerance: an ensemble with
     gaps is no ensemble.
     """
-    with _store(name) as path:
-        done = sweep(study, path, workers=0)
+    with tempfile.TemporaryDirectory() as folder:
+        done = sweep(study, store or Path(folder) / "rows.sqlite", workers=0)
     uncertified = [row["key"] for row in done.rows if row["status"] not in CERTIFIED]
     if done.failures or uncertified:
         first = next(iter(done.failures.values()), uncertified[:1])
@@ -88,14 +91,3 @@ def column(found: Iterable[Row], quantity: str, **where: float) -> list[float]:
     if not chosen:
         raise LookupError(f"no run has {where}")
     return chosen
-
-
-@contextmanager
-def _store(name: str) -> Iterator[Path]:
-    folder = os.environ.get(FOLDER)
-    if folder:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        yield Path(folder) / f"{name}.sqlite"
-        return
-    with tempfile.TemporaryDirectory() as temporary:
-        yield Path(temporary) / f"{name}.sqlite"

@@ -60,7 +60,7 @@ def full_curves() -> tuple[Curve, ...]:
 def quick_curves() -> tuple[Curve, ...]:
     """Three realisations of five roughnesses at 128 x 128."""
     study = reduced(read_study("fig8"), QUICK_REALISATIONS, grid=(QUICK_MESH,), lower_rms=QUICK_RMS)
-    return curves(rows(study, "fig8-quick"), QUICK_MESH)
+    return curves(rows(study), QUICK_MESH)
 
 
 def curves(found: Sequence[Row], mesh: int) -> tuple[Curve, ...]:

@@ -34,7 +34,7 @@ def quick_fig9() -> tuple[Row, ...]:
         sliding_direction=(0.0, float(np.pi / 2)),
         sliding_offset=QUICK_OFFSETS,
     )
-    return rows(study, "fig9-quick")
+    return rows(study)
 
 
 @cache
@@ -53,7 +53,7 @@ def quick_fig10() -> tuple[Row, ...]:
         lower_rms=(0.504e-6, 1.680e-6),
         sliding_direction=QUICK_DIRECTIONS,
     )
-    return rows(study, "fig10-quick")
+    return rows(study)
 
 
 @cache
@@ -66,7 +66,7 @@ def full_slide() -> tuple[Row, ...]:
 def quick_slide() -> tuple[Row, ...]:
     """1.5 mm in steps of 100 um at 128 x 128."""
     offsets = tuple(k * 100e-6 for k in range(16))
-    return rows(reduced(read_study("slide"), 1, grid=(QUICK_MESH,), sliding_offset=offsets), "slide-quick")
+    return rows(reduced(read_study("slide"), 1, grid=(QUICK_MESH,), sliding_offset=offsets))
 
 
 @dataclass(frozen=True)

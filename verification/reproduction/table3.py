@@ -43,7 +43,7 @@ def full_rows() -> tuple[Row, ...]:
 def quick_rows() -> tuple[Row, ...]:
     """Six realisations on the coarsest mesh."""
     study = reduced(read_study("table3"), QUICK_REALISATIONS, grid=(QUICK_MESH,))
-    return rows(study, "table3-quick")
+    return rows(study)
 
 
 @cache
