@@ -13,7 +13,6 @@ from verification.reproduction.printed import (
     RESOLUTION,
     TABLE3,
 )
-from verification.reproduction.table1 import SMOOTH
 from verification.reproduction.tiers import in_both_tiers
 from verification.reproduction.verdict import Verdict, judged
 from verification.sweep.run import Row
