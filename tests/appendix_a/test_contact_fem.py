@@ -92,6 +92,13 @@ def test_action_is_reaction_and_climbing_costs_friction() -> None:
     assert friction[0.25] < friction[0.0] < friction[-0.25]
 
 
+def test_an_end_node_that_comes_and_goes_does_not_cycle() -> None:
+    """A counter-example found: on this coarse mesh tau's end at either of two places brings the other."""
+    scene = pair(15.0, Material(1.0, 0.0), Material(1e3, 0.0), friction=True, shift=-0.25)
+    load = 0.3 * scene.full_contact_pressure
+    assert slide(scene, load, plans(scene, load, 1)).updates < 100
+
+
 def test_forces_on_the_two_bodies_cancel() -> None:
     plan = MeshPlan(32, 0.2)
     lower = wavy_surface(0.02, -0.1, COPPER, plan, upper=False)
