@@ -1,0 +1,238 @@
+"""What a contact solver is asked and what it must answer: the whole interface of a contestant.
+
+The discrete problem, for square elements of uniform pressure f (Pa) whose displacement is taken at their
+centres, in arrays ``[i, j]`` along x, y with centres at ``(i + 1/2) spacing``:
+
+    u(x) = 1/(pi E*) sum f I[1/rho] + c0 sum r I[s/rho^2],      r = tau [f > 0] + beta f
+    u + gap >= approach,   f >= 0,   f (u + gap - approach) = 0,
+
+``I`` integrates over one element, rho is the distance and s the offset along the sliding direction, from
+source to field point (SPEC 1). Displacements and the approach count positive where the bodies come together.
+Without coupling the second sum is absent. A periodic problem repeats the square in both directions; there
+the mean pressure displaces nothing, so ``approach`` counts from the mean planes: the last line holds with
+``approach + mean(gap)`` on its right, and an approach is negative as long as contact is partial.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from refimpl.errors import InputError, require_number
+from refimpl.grid import Array
+
+LARGEST_PRECISION = 1e-3
+"""No contestant may claim less: with a gap of 1e-3 pressures err by some 3 %, as much as what is tested."""
+
+
+class Unsupported(Exception):
+    """Raised by a contestant that cannot pose a problem; the case then does not count as a pass."""
+
+
+class BadAnswer(Exception):
+    """What a contestant returned cannot be judged: wrong shape, NaN, no array, no success claimed."""
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Friction whose shear moves the surfaces normally, without slopes (SPEC 1).
+
+    tau : shear strength of the contact (Pa)
+    beta : friction coefficient proper
+    shear_compliance : c0 (1/Pa), ``(1+nu)(1-2nu)/(2 pi E)`` of the lower body minus that of the upper
+    sliding_direction : angle phi (rad); the upper body slides along ``(cos phi, sin phi)``
+    """
+
+    tau: float
+    beta: float
+    shear_compliance: float
+    sliding_direction: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_number("coupling.tau", self.tau, "a shear strength in Pa, not negative", at_least=0)
+        require_number("coupling.beta", self.beta, "a finite number, not negative", at_least=0)
+        for name in ("shear_compliance", "sliding_direction"):
+            require_number(f"coupling.{name}", getattr(self, name), "a finite number")
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """Two surfaces pressed together, frictionless or sliding steadily.
+
+    gap : ``z_upper - z_lower`` undeformed, shape ``(M, M)``, ``min gap = 0`` (m)
+    spacing : edge of one element (m)
+    reduced_modulus : E* (Pa), ``1/E* = sum (1 - nu^2)/E``
+    load : normal load on the square (N), or None
+    approach : prescribed approach (m), from first touch or, if periodic, from the mean planes; or None
+    periodic : the square repeats in both directions; otherwise the half-space is free around it
+    tolerance : relative residual to reach: complementarity gap over elastic energy, and load balance
+    coupling : friction, or None
+
+    Exactly one of load and approach is given. Raises `InputError` naming the field.
+    """
+
+    gap: Array
+    spacing: float
+    reduced_modulus: float
+    load: float | None = None
+    approach: float | None = None
+    periodic: bool = False
+    tolerance: float = 1e-8
+    coupling: Coupling | None = None
+
+    def __post_init__(self) -> None:
+        gap = np.array(self.gap, dtype=np.float64)
+        if gap.ndim != 2 or gap.shape[0] != gap.shape[1] or not gap.size or not np.isfinite(gap).all():
+            raise InputError("gap", gap.shape, "a square array of finite heights in m")
+        if gap.min() != 0:
+            raise InputError("gap", float(gap.min()), "a gap whose least value is 0 m (first touch)")
+        object.__setattr__(self, "gap", gap)
+        require_number("spacing", self.spacing, "a positive length in m", above=0)
+        require_number("reduced_modulus", self.reduced_modulus, "a positive modulus in Pa", above=0)
+        require_number("tolerance", self.tolerance, "a number between 0 and 1", above=0, below=1)
+        if (self.load is None) == (self.approach is None):
+            raise InputError("load", self.load, "a load or an approach, and not both")
+        if self.load is not None:
+            require_number("load", self.load, "a positive load in N", above=0)
+        if self.approach is not None:
+            require_number("approach", self.approach, "a finite approach in m")
+
+    @property
+    def M(self) -> int:
+        """Elements along one side."""
+        return len(self.gap)
+
+    @property
+    def side(self) -> float:
+        """Edge of the square (m)."""
+        return self.M * self.spacing
+
+    @property
+    def element_area(self) -> float:
+        """Area of one element (m^2)."""
+        return self.spacing**2
+
+    @property
+    def approach_from_touch(self) -> float | None:
+        """The prescribed approach counted from first touch, periodic or not (m); None under a load."""
+        if self.approach is None or not self.periodic:
+            return self.approach
+        return self.approach + float(self.gap.mean())
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """Pressures ``(M, M)`` (Pa) and whether the solver says that they solve the problem."""
+
+    pressure: ArrayLike
+    converged: bool
+
+
+@dataclass(frozen=True)
+class Abilities:
+    """What a contestant can be asked. It may carry them as an attribute ``abilities``.
+
+    largest : most elements per side that it should be given (None: any)
+    precision : the least relative residual that it claims to reach, at most 1e-3; it is held to the larger of
+        this and the problem's tolerance
+    """
+
+    periodic: bool = True
+    aperiodic: bool = True
+    load: bool = True
+    approach: bool = True
+    coupling: bool = False
+    largest: int | None = None
+    precision: float = 1e-8
+
+    def __post_init__(self) -> None:
+        for flag in ("periodic", "aperiodic", "load", "approach", "coupling"):
+            if not isinstance(getattr(self, flag), bool):
+                raise InputError(f"abilities.{flag}", getattr(self, flag), "true or false")
+        if self.largest is not None and not (type(self.largest) is int and self.largest >= 1):
+            raise InputError("abilities.largest", self.largest, "a number of elements per side, or None")
+        require_number(
+            "abilities.precision",
+            self.precision,
+            f"a relative residual above 0 and at most {LARGEST_PRECISION:g}",
+            above=0,
+            at_most=LARGEST_PRECISION,
+        )
+
+    @classmethod
+    def named(cls, names: str, *, largest: int | None = None, precision: float = 1e-8) -> Abilities:
+        """Only the abilities in a comma-separated list.
+
+        >>> Abilities.named("aperiodic,load").periodic
+        False
+
+        Raises `InputError` for an unknown name, and where no problem at all could be posed.
+        """
+        known = [f.name for f in fields(cls) if f.name not in ("largest", "precision")]
+        given = [name.strip() for name in names.split(",") if name.strip()]
+        domain, control = {"periodic", "aperiodic"} & {*given}, {"load", "approach"} & {*given}
+        if not {*given} <= {*known} or not domain or not control:
+            allowed = "periodic or aperiodic, load or approach (of both pairs at least one), coupling"
+            raise InputError("abilities", names, f"a list of {allowed}")
+        return cls(**{name: name in given for name in known}, largest=largest, precision=precision)
+
+    def lacking(self, problem: ContactProblem) -> str | None:
+        """What the problem asks for beyond these abilities, or None.
+
+        >>> problem = ContactProblem(np.zeros((2, 2)), 1e-6, 1e9, load=1.0, periodic=True)
+        >>> Abilities(periodic=False).lacking(problem)
+        'periodic'
+        """
+        if not (self.periodic if problem.periodic else self.aperiodic):
+            return "periodic" if problem.periodic else "aperiodic"
+        if not (self.load if problem.load is not None else self.approach):
+            return "load" if problem.load is not None else "approach"
+        if problem.coupling is not None and not self.coupling:
+            return "coupling"
+        if self.largest is not None and self.largest < problem.M:
+            return f"{problem.M} elements per side"
+        return None
+
+
+Contestant = Callable[[ContactProblem], "Answer | Array"]
+"""A bare array is an answer that claims success. Optional attributes: ``abilities`` and ``version`` (text)."""
+
+
+def abilities_of(contestant: Contestant) -> Abilities:
+    """Its ``abilities`` attribute, or the defaults: everything but coupling, at any size.
+
+    Raises `InputError` when the attribute is no `Abilities`.
+    """
+    found = getattr(contestant, "abilities", None)
+    if found is None:
+        return Abilities()
+    if not isinstance(found, Abilities):
+        raise InputError("abilities", found, "verification.contestants.protocol.Abilities")
+    return found
+
+
+def ask(contestant: Contestant, problem: ContactProblem) -> Array:
+    """The pressures ``(M, M)`` (Pa) that a contestant claims to be right, checked for shape and finiteness.
+
+    The contestant gets a copy of the problem. Raises `Unsupported` where its abilities do not reach,
+    `BadAnswer` for an answer that cannot be judged or admits failure, and whatever the contestant raises.
+    """
+    lacking = abilities_of(contestant).lacking(problem)
+    if lacking:
+        raise Unsupported(f"the solver does not offer: {lacking}")
+    answer = contestant(replace(problem, gap=problem.gap))
+    if isinstance(answer, Answer):
+        if answer.converged is not True:
+            raise BadAnswer(f"the solver says converged = {answer.converged!r}")
+        answer = np.asarray(answer.pressure)
+    if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
+        raise BadAnswer("the solver returned no array of real numbers")
+    if answer.shape != problem.gap.shape:
+        raise BadAnswer(f"pressures of shape {answer.shape} for a gap of shape {problem.gap.shape}")
+    pressure = np.array(answer, dtype=np.float64)
+    if not np.isfinite(pressure).all():
+        raise BadAnswer(f"{int(np.count_nonzero(~np.isfinite(pressure)))} pressures are not finite")
+    return pressure
