@@ -8,9 +8,12 @@ centres, in arrays ``[i, j]`` along x, y with centres at ``(i + 1/2) spacing``:
 
 ``I`` integrates over one element, rho is the distance and s the offset along the sliding direction, from
 source to field point (SPEC 1). Displacements and the approach count positive where the bodies come together.
-Without coupling the second sum is absent. A periodic problem repeats the square in both directions; there
-the mean pressure displaces nothing, so ``approach`` counts from the mean planes: the last line holds with
-``approach + mean(gap)`` on its right, and an approach is negative as long as contact is partial.
+Without coupling the second sum is absent. A periodic problem repeats the square in both directions; its
+fields are the band-limited interpolants of the element values, with the symbols ``2/(E* q)`` for pressure and
+``-2 pi i c0 q_s/q^2`` for shear. There the mean pressure displaces nothing, so ``approach`` counts from the
+mean planes: the last line holds with ``approach + mean(gap)`` on its right, and an approach is negative as
+long as contact is partial. Residuals are those of SPEC 1: the complementarity gap ``sum f (v - min v)`` with
+``v = u + gap`` over the elastic energy ``1/2 sum f (a f)``, and ``|N - P| / P``.
 """
 
 from __future__ import annotations
@@ -23,13 +26,15 @@ from numpy.typing import ArrayLike
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
+from verification.case import Unavailable
 
-LARGEST_PRECISION = 1e-3
-"""No contestant may claim less: with a gap of 1e-3 pressures err by some 3 %, as much as what is tested."""
+LARGEST_PRECISION = 1e-6
+"""No contestant may claim less. A relative gap g allows pressure errors of sqrt(g) in the energy norm, here
+0.1 %, a tenth of the smallest fault that must be seen; single precision reaches it."""
 
 
-class Unsupported(Exception):
-    """Raised by a contestant that cannot pose a problem; the case then does not count as a pass."""
+class Unsupported(Unavailable):
+    """Raised by a contestant that cannot pose a problem: the case is not applicable, and no pass."""
 
 
 class BadAnswer(Exception):
@@ -136,7 +141,7 @@ class Abilities:
     """What a contestant can be asked. It may carry them as an attribute ``abilities``.
 
     largest : most elements per side that it should be given (None: any)
-    precision : the least relative residual that it claims to reach, at most 1e-3; it is held to the larger of
+    precision : the least relative residual that it claims to reach, at most 1e-6; it is held to the larger of
         this and the problem's tolerance
     """
 
@@ -198,7 +203,7 @@ class Abilities:
 
 
 Contestant = Callable[[ContactProblem], "Answer | Array"]
-"""A bare array is an answer that claims success. Optional attributes: ``abilities`` and ``version`` (text)."""
+"""A bare array is an answer that claims success. Optional attributes: ``abilities``, ``version`` (a text)."""
 
 
 def abilities_of(contestant: Contestant) -> Abilities:
