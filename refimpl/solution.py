@@ -35,9 +35,11 @@ class Solution:
 
     ``approach`` counts from first touch, or from the mean planes when periodic. ``pressure`` is the
     local ``f`` and ``traction`` the local ``r`` of Eq. (1). ``surface_lower`` and ``surface_upper``
-    are the deformed heights; ``separation`` is the gap left between them. ``uncertainty`` maps each
-    reported number to its parts, absolute, in the number's unit. ``slope_error`` quotes what Appendix
-    A's table says of flat-surface influence coefficients at this contact's slopes.
+    are the deformed heights; ``separation`` is the gap left between them, and ``clearance`` what
+    Eq. (6) asks to be zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``.
+    ``uncertainty`` maps each reported number to its parts, absolute, in the number's unit.
+    ``slope_error`` quotes what Appendix A's table says of flat-surface influence coefficients at this
+    contact's slopes.
     """
 
     status: Status
@@ -55,6 +57,7 @@ class Solution:
     surface_lower: Array
     surface_upper: Array
     separation: Array
+    clearance: Array
     withheld: Mask
     slope_error: SlopeError
     grid: Grid

@@ -160,6 +160,7 @@ def _solution(
         surface_lower=surface_lower,
         surface_upper=surface_upper,
         separation=surface_upper - surface_lower,
+        clearance=state.clearance(problem.gap),
         withheld=outcome.withheld,
         slope_error=slope_error(
             state.slopes.tan_x, state.slopes.tan_y, state.pressure, problem.pair.lower, problem.pair.upper

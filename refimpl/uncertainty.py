@@ -23,13 +23,13 @@ def iteration_parts(solution: Solution) -> Uncertainty:
     """What the certificate leaves open.
 
     Forces and lengths are uncertain by the worst residual. The area is uncertain by the elements
-    whose pressure or separation is within ten worst residuals of zero.
+    whose pressure or clearance is within ten worst residuals of zero.
     """
     worst = solution.certificate.worst
     margin = 10 * worst
     marginal = (solution.pressure > 0) & (solution.pressure <= margin * solution.max_pressure)
     lift = abs(solution.approach) or solution.grid.spacing
-    marginal |= (solution.pressure == 0) & (solution.separation <= margin * lift)
+    marginal |= (solution.pressure == 0) & (solution.clearance <= margin * lift)
     area = float(np.count_nonzero(marginal)) * solution.grid.element_area
     relative = ("max_pressure", "approach", "normal_force", "friction_force")
     parts: Uncertainty = {name: {"iteration": worst * abs(getattr(solution, name))} for name in relative}

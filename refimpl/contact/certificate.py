@@ -59,6 +59,11 @@ class State:
     forces: Forces
     certificate: Certificate
 
+    def clearance(self, gap: Array) -> Array:
+        """``v - approach`` of Eq. (6) from the undeformed gap (m): zero in contact, not negative outside."""
+        u = self.displacement_lower + self.displacement_upper
+        return u / self.slopes.obliqueness + gap - self.approach
+
 
 def certify(
     problem: Problem, operator: Influence, pressure: Array, traction: Array, slopes: Slopes

@@ -102,3 +102,19 @@ def test_between_equal_solutions_only_the_edge_is_uncertain() -> None:
 def test_parts_are_merged_by_number_and_name() -> None:
     first, second = {"A": {"x": 1.0, "y": 2.0}}, {"A": {"y": 3.0}, "B": {"x": 4.0}}
     assert merged(first, second) == {"A": {"x": 1.0, "y": 3.0}, "B": {"x": 4.0}}
+
+
+def test_slopes_do_not_make_elements_outside_contact_marginal() -> None:
+    # on slopes Eq. (6) leaves surfaces u (1 / K - 1) apart: clearance counts, not separation
+    ball = rf.Scene(
+        upper=rf.Body(STEEL, rf.Sphere(radius=2e-3)),
+        lower=rf.Body(COPPER, rf.Flat()),
+        friction=rf.Friction(beta=0.1),
+        load=500.0,
+        side=1.6e-3,
+    )
+    found = rf.solve(ball, grid=64, tolerance=1e-6)
+    assert found.slope_error.rms_slope > 0.03
+    assert abs(found.clearance[found.contact]).max() <= 1e-5 * found.approach
+    assert found.separation[found.contact].min() < -1e-3 * found.approach
+    assert found.uncertainty["contact_area"]["iteration"] <= 4 * found.grid.element_area
