@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 
 from refimpl.coefficient_error import SlopeError
+from refimpl.contact.bounds import Bounds, proven_bounds
 from refimpl.contact.certificate import Certificate
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.outcome import Status
 from refimpl.plan import Plan
+from refimpl.problem import Problem
 from refimpl.scene import Friction
 from refimpl.slopes import Slopes
 
@@ -39,7 +41,7 @@ class Solution:
     Eq. (6) asks to be zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``.
     ``uncertainty`` maps each reported number to its parts, absolute, in the number's unit.
     ``slope_error`` quotes what Appendix A's table says of flat-surface influence coefficients at this
-    contact's slopes.
+    contact's slopes. ``problem`` is what was solved: the scene on its grid.
     """
 
     status: Status
@@ -67,6 +69,7 @@ class Solution:
     tolerance: float
     uncertainty: Mapping[str, Mapping[str, float]]
     plan: Plan
+    problem: Problem
     warnings: tuple[str, ...]
     cost: Cost
 
@@ -84,6 +87,11 @@ class Solution:
     def theta_y(self) -> Array:
         """Slope angle along the direction 90 degrees anticlockwise of sliding (rad)."""
         return np.arctan(self.slopes.tan_y)
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """Proven bounds at the state's slopes and support of tau; computed when first asked for."""
+        return proven_bounds(self.problem, self.pressure, self.traction, self.slopes)
 
     def summary(self) -> dict[str, Any]:
         """Everything but the arrays, as plain values for JSON."""

@@ -172,6 +172,7 @@ def _solution(
         tolerance=tolerance,
         uncertainty=_cycle_spread(outcome, found),
         plan=plan,
+        problem=problem,
         warnings=notes + _contact_warnings(problem, contact),
         cost=cost,
     )

@@ -1,0 +1,253 @@
+"""Proven bounds on what separates a returned state from the solution, from its arrays alone.
+
+Held fixed are the slopes and the part ``t = r - beta f`` of the returned traction (``tau`` on its support).
+Then ``u = (a + beta c) f + c t``, and with ``K = cos theta_x cos theta_y`` Eq. (6), times K, reads
+
+    w = (a + beta c) f + c t + K (h - approach) >= 0,    f >= 0,    f.w = 0:
+
+the factor K scales rows and leaves the matrix alone. Let a star mark the solution, and ``e = f - f*`` with
+any ``f >= 0``. Because c is skew, ``e.a e = e.(a + beta c) e``, hence
+
+    e.a e = e.(w - w*) + (approach - approach*) K.e.                                                    (B1)
+
+Split ``w = r + p`` with any ``p >= 0``. Since ``f.w* >= 0``, ``f*.w* = 0`` and ``f*.p >= 0``,
+
+    e.a e <= e.r + f.p + (approach - approach*) K.e <= ||r||' ||e|| + f.p + ...                         (B2)
+
+with ``||e||^2 = e.a e`` and ``||.||'`` its dual norm. Nothing is asked of f: a negative pressure is set to
+zero first and its own ``||f-||`` added at the end; penetration (w < 0) is part of r.
+
+*The complementarity gap.* Where nothing penetrates, ``r = 0`` and ``p = w`` give ``e.a e <= f.w``, which is
+``sum K f (v - approach) <= sum f (v - approach)``, since K <= 1. With N exact and flat slopes that holds for
+any approach, so for min v: the certificate's gap (in J) bounds the error as it stands. Used here is a sharper
+split: p where ``w >= a_ii f`` (no contact), r elsewhere, which makes the bound linear in the residual. Off
+contact r may be anything below w, and is taken as ``a z`` with ``a z = w`` on contact: then ``||r||' = ||z||``,
+the very error if both supports agree, plus what of r is left over the root of the least eigenvalue.
+
+*Prescribed approach*: the last term is absent. *Prescribed load* ``l.f* = T``, where ``l = K - beta s``,
+``s = K tan theta_x`` and T is Eq. (2)'s load less the share of t: with ``n = l.f - T`` (the load's error),
+
+    K.e = n + beta s.e,
+    approach* - approach <= (f.w + ||(a - beta c) f||' ||e||) / K.f                    from f.w* >= 0,
+    approach - approach* <= (-f.r + (||(a - beta c) f||' + ||r||') ||e||) / K.f*       from f*.w* = 0,
+
+``K.f* >= T / (1 + beta max |tan theta_x|)`` by f* >= 0. So ``|approach - approach*| <= c0 + c1 ||e||``, and
+(B2) is a quadratic inequality for ``||e||``. *Periodic*: a mean pressure displaces nothing. ``m (K.e)^2`` on
+both sides of (B1) makes ``a + m K K'`` definite; K.e is known as above. At a prescribed approach it is not,
+and no bound is claimed.
+
+Not proven, and not touched by these numbers: that slopes and tau's support are those of the solution of the
+whole problem (see the certificate's ``slope`` and ``unlawful``), and the grid's own error. Rounding of the
+products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of a number, is not.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from refimpl.contact.energy_norm import EnergyNorm
+from refimpl.forces import resultants
+from refimpl.friction import Mask
+from refimpl.grid import Array
+from refimpl.problem import Problem
+from refimpl.slopes import Slopes
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Bounds on returned value minus solution, at the state's slopes and support of tau; inf: no bound.
+
+    ``energy`` bounds ``sum (f - f*) a (f - f*) dA`` (J), ``pressure`` each element's pressure and the largest
+    (Pa), ``pressure_l2`` the root of ``sum (f - f*)^2 dA`` (Pa m). ``approach`` in m, forces in N. The masks
+    mark elements that carry load in the solution (pressure above its bound), or do not (separation above
+    its own); ``contact_area`` is the interval they leave (m^2). ``unproven`` says what is not bounded.
+    """
+
+    energy: float
+    pressure: float
+    pressure_l2: float
+    approach: float
+    normal_force: float
+    friction_force: float
+    binormal_force: float
+    friction_coefficient: float
+    in_contact: Mask
+    out_of_contact: Mask
+    contact_area: tuple[float, float]
+    unproven: str
+
+
+UNPROVEN = "slopes and tau's support are held as returned; the grid's own error is not included"
+NO_BOUND_CORRECTED = "the slope correction's matrix is not a plus a skew one: no bound"
+NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic square: no bound"
+NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressure: no bound"
+
+
+def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> Bounds:
+    """Bounds for any pressure and traction (Pa), shapes ``(M, M)``, at these slopes.
+
+    Costs some tens of products with ``a``. Where nothing can be proven all are infinite, and ``unproven``
+    says why.
+    """
+    if problem.terms.slope_correction:
+        return _none(problem, NO_BOUND_CORRECTED)
+    if problem.periodic and problem.approach is not None:
+        return _none(problem, NO_BOUND_PERIODIC)
+    norm = EnergyNorm(problem, slopes.obliqueness)
+    if norm.floor <= 0:
+        return _none(problem, NO_BOUND_STEEP)
+    frozen = _Frozen(problem, norm, pressure, traction, slopes)
+    distance, approach = frozen.distance()
+    if not math.isfinite(distance):
+        return _none(problem, "the load does not fix the contact: " + UNPROVEN)
+    return _translated(frozen, distance, approach)
+
+
+class _Frozen:
+    """The returned state with slopes and ``t`` held: ``w = r + p`` and all that (B2) needs."""
+
+    def __init__(
+        self, problem: Problem, norm: EnergyNorm, pressure: Array, traction: Array, slopes: Slopes
+    ) -> None:
+        self.problem, self.norm, self.slopes = problem, norm, slopes
+        self.pressure, self.traction = pressure, traction
+        self.beta = problem.friction.beta
+        self.K = slopes.obliqueness
+        self.coupling = self.beta * problem.pair.shear_compliance if problem.terms.shear_moves() else 0.0
+        self.f = np.maximum(pressure, 0.0)
+        self.clipped = self.norm.norm(self.f - pressure)
+        held = traction - self.beta * pressure
+        shear = held + self.beta * self.f
+        u = np.add(*problem.displacements(self.norm.operator, self.f, shear, slopes))
+        self.total = float(np.vdot(self.K, self.f))
+        free = u + self.K * problem.gap
+        if problem.approach is not None:
+            self.approach = problem.approach
+        else:
+            self.approach = float(np.vdot(self.f, free)) / self.total if self.total > 0 else 0.0
+        self.w = free - self.K * self.approach
+        # cancellation of h against the approach, as well as the products' own rounding
+        lengths = self.K * (problem.gap + abs(self.approach))
+        self.noise = self.norm.rounding(self.f, shear) + 4 * np.finfo(float).eps * float(
+            np.linalg.norm(lengths)
+        )
+        self._split()
+
+    def _split(self) -> None:
+        """``r`` with its dual norm, and ``f.p``."""
+        touching: Mask = (self.w < self.norm.diagonal * self.f) | (self.w < 0)
+        z, az = self.norm.solve(self.w, touching)
+        r = np.where(touching, self.w, np.minimum(self.w, az))
+        left = float(np.linalg.norm(r - az)) + self.norm.rounding(z) + self.noise
+        self.residual = self.norm.norm(z) + left / math.sqrt(self.norm.floor)
+        self.r, self.slack = r, float(np.vdot(self.f, self.w - r))
+
+    def distance(self) -> tuple[float, float]:
+        """Bounds on ``||e||`` and on the approach's error (m); infinite when (B2) does not close."""
+        problem, beta = self.problem, self.beta
+        if problem.load is None:
+            return _largest_root(1.0, self.residual, self.slack), 0.0
+        tan = self.slopes.tan_x
+        everywhere = np.ones_like(self.f, dtype=bool)
+        held = self.traction - beta * self.pressure
+        target = problem.load / problem.grid.element_area + float(np.vdot(held, self.K * tan))
+        error = abs(self.total - beta * float(np.vdot(self.K * tan, self.f)) - target)
+        least_total = target / (1 + beta * float(np.abs(tan).max()))
+        if min(self.total, least_total) <= 0:
+            return math.inf, math.inf
+        norm = self.norm
+        stiffness = norm.norm(self.f)
+        if self.coupling:
+            stiffness += abs(self.coupling) * norm.dual_norm(norm.operator.shear(self.f), everywhere)
+        lowest = min(self.total, least_total)
+        c0 = max(float(np.vdot(self.f, self.w)), -float(np.vdot(self.f, self.r)), 0.0) / lowest
+        c0 += float(np.linalg.norm(self.f)) * self.noise / lowest
+        c1 = (stiffness + self.residual) / lowest
+        tilt = beta * norm.dual_norm(self.K * tan, everywhere) if beta else 0.0
+        lift = norm.lift
+        x = _largest_root(
+            1 - c1 * tilt - lift * tilt**2,
+            self.residual + c1 * error + c0 * tilt + 2 * lift * error * tilt,
+            self.slack + c0 * error + lift * error**2,
+        )
+        return x, c0 + c1 * x
+
+
+def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
+    """What ``||e|| <= x`` says of each reported number."""
+    problem, norm, slopes, beta = frozen.problem, frozen.norm, frozen.slopes, frozen.beta
+    dA, root = problem.grid.element_area, math.sqrt(norm.floor)
+    moved = x * (math.sqrt(norm.diagonal) + abs(frozen.coupling) * _shear_row(frozen) / root)
+    out: Mask = frozen.w > moved + frozen.K * approach + frozen.noise
+    inside: Mask = frozen.f > x / root
+    total = x + frozen.clipped
+    open_: Mask = ~out | (frozen.pressure != 0)  # elsewhere the state's error is exactly zero
+
+    def force(weights: Array) -> float:
+        return total * norm.dual_norm(weights, open_) * dA
+
+    forces = resultants(frozen.pressure, frozen.traction, slopes, dA)
+    friction = force((slopes.sin_x + beta * slopes.cos_x) * slopes.cos_y)
+    if problem.load is not None:
+        normal, mu = abs(forces.normal - problem.load), friction / problem.load
+    else:
+        normal = force((slopes.cos_x - beta * slopes.sin_x) * slopes.cos_y)
+        least = forces.normal - normal
+        mu = (friction + abs(forces.friction / forces.normal) * normal) / least if least > 0 else math.inf
+    return Bounds(
+        energy=total**2 * dA,
+        pressure=total / root,
+        pressure_l2=total / root * math.sqrt(dA),
+        approach=approach,
+        normal_force=normal,
+        friction_force=friction,
+        binormal_force=force((slopes.cos_x - beta * slopes.sin_x) * slopes.sin_y),
+        friction_coefficient=mu,
+        in_contact=inside,
+        out_of_contact=out,
+        contact_area=(float(inside.sum()) * dA, float((~out).sum()) * dA),
+        unproven=UNPROVEN,
+    )
+
+
+def _shear_row(frozen: _Frozen) -> float:
+    """2-norm of a row of ``I[s/rho^2]`` from above: an element in each corner meets every offset (m)."""
+    if not frozen.coupling:
+        return 0.0
+    corners = np.zeros((4, *frozen.K.shape))
+    for corner, (i, j) in zip(corners, ((0, 0), (0, -1), (-1, 0), (-1, -1)), strict=True):
+        corner[i, j] = 1.0
+    return float(np.linalg.norm([frozen.norm.operator.shear(corner) for corner in corners]))
+
+
+def _largest_root(quadratic: float, linear: float, constant: float) -> float:
+    """The largest x with ``quadratic x^2 <= linear x + constant``; infinite unless ``quadratic > 0``.
+
+    >>> _largest_root(1.0, 1.0, 2.0), _largest_root(0.0, 1.0, 2.0)
+    (2.0, inf)
+    """
+    if not quadratic > 0:
+        return math.inf
+    return (linear + math.sqrt(linear**2 + 4 * quadratic * constant)) / (2 * quadratic)
+
+
+def _none(problem: Problem, why: str) -> Bounds:
+    nowhere = np.zeros(problem.gap.shape, dtype=bool)
+    whole = nowhere.size * problem.grid.element_area
+    return Bounds(
+        energy=math.inf,
+        pressure=math.inf,
+        pressure_l2=math.inf,
+        approach=math.inf,
+        normal_force=math.inf,
+        friction_force=math.inf,
+        binormal_force=math.inf,
+        friction_coefficient=math.inf,
+        in_contact=nowhere,
+        out_of_contact=nowhere,
+        contact_area=(0.0, whole),
+        unproven=why,
+    )
