@@ -1,0 +1,179 @@
+"""How a case of the suite is declared: like any verification case, but it takes the contestant it judges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from refimpl.grid import Array
+from verification.case import Case, Measured, Metric
+from verification.contestants import referee
+from verification.contestants.protocol import ContactProblem, Contestant, Coupling, abilities_of, ask
+
+MODULUS = 2e9
+"""Reduced modulus E* (Pa) of the suite's problems."""
+COMPLIANCE = 0.375 / (np.pi * MODULUS)
+"""c0 (1/Pa) where friction couples: Dundurs' constant 0.375, as of nu = 0.2 against a rigid body."""
+
+
+class Fault(StrEnum):
+    """What can be wrong with a solver: a case names what it is meant to catch, and is tried on just that."""
+
+    SIGN_OF_C = "sign of c"
+    PERIODIC_FOR_APERIODIC = "periodic instead of aperiodic"
+    APERIODIC_FOR_PERIODIC = "aperiodic instead of periodic"
+    MODULUS_OFF = "1 % modulus error"
+    MODULUS_DOUBLED = "modulus with E instead of 2E"
+    STUCK = "stuck iteration that claims success"
+    TRANSPOSED = "transposed axes"
+    HALF_ELEMENT = "half-element shift"
+    SINGLE_PRECISION = "float32 noise"
+    TAU_MISSING = "missing tau"
+    MEAN_DISPLACEMENT_LOST = "lost mean of the displacement"
+    MEAN_PLANES_LOST = "lost mean of the gap"
+    MEAN_PRESSURE_LOST = "lost mean of the pressure"
+    NEAR_FIELD = "wrong near-field coefficients"
+    TENSION = "contact that pulls"
+    STATE_KEPT = "state kept from an earlier problem"
+    ABSOLUTE_THRESHOLD = "absolute threshold"
+    TAU_EVERYWHERE = "tau outside the contact"
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed:
+    """A problem with the answer that a contestant stands by."""
+
+    problem: ContactProblem
+    pressure: Array
+
+    @property
+    def load(self) -> float:
+        """Sum of f dA (N)."""
+        return float(self.pressure.sum()) * self.problem.element_area
+
+
+@dataclass(frozen=True)
+class Entrant:
+    """A contestant at the table: poses problems to it and keeps it to its claim."""
+
+    contestant: Contestant
+
+    @property
+    def claim(self) -> float:
+        """The relative residual that it is held to."""
+        return max(1e-8, abilities_of(self.contestant).precision)
+
+    def press(
+        self,
+        gap: Array,
+        side: float,
+        *,
+        load: float | None = None,
+        approach: float | None = None,
+        periodic: bool = False,
+        coupling: Coupling | None = None,
+        modulus: float = MODULUS,
+    ) -> Pressed:
+        """Pose a gap ``(M, M)`` (m) over a square of ``side`` (m); under a load (N) or at an approach (m).
+
+        An aperiodic approach counts from the gap's own zero, which need not be its least value: an indenter's
+        tip may lie between element centres. Raises what `ask` raises.
+        """
+        if approach is not None and not periodic:
+            approach -= float(gap.min())
+        problem = ContactProblem(
+            gap=gap - gap.min(),
+            spacing=side / len(gap),
+            reduced_modulus=modulus,
+            load=load,
+            approach=approach,
+            periodic=periodic,
+            tolerance=self.claim,
+            coupling=coupling,
+        )
+        return Pressed(problem, ask(self.contestant, problem))
+
+    def misfit(self, pressed: Pressed, exact: Array) -> float:
+        """Squared energy-norm error against exact pressures, in units of the claim."""
+        return referee.misfit(pressed.problem, pressed.pressure, exact) / self.claim
+
+    def residual(self, pressed: Pressed) -> float:
+        """The worst of the recomputed residuals, in units of the claim."""
+        return referee.residual(pressed.problem, pressed.pressure).worst / self.claim
+
+
+Judge = Callable[[Entrant], Measured]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A case of the suite; ``case`` fills in the contestant."""
+
+    slug: str
+    title: str
+    claim: str
+    source: str
+    metric: Metric
+    tolerance: float
+    tolerance_reason: str
+    catches: tuple[Fault, ...]
+    judge: Judge
+
+    @property
+    def id(self) -> str:
+        """Id of its verification case."""
+        return f"contestant/{self.slug}"
+
+    @property
+    def description(self) -> str:
+        """The claim, and what the case is meant to catch."""
+        return f"{self.claim}. Meant to catch: {', '.join(self.catches) or 'no single fault'}"
+
+    def case(self, contestant: Contestant) -> Case:
+        """The verification case of this contestant."""
+        return Case(
+            id=self.id,
+            title=self.title,
+            claim=self.description,
+            source=self.source,
+            metric=self.metric,
+            tolerance=self.tolerance,
+            tolerance_reason=self.tolerance_reason,
+            function=lambda: self.judge(Entrant(contestant)),
+            tags=("contestant",),
+        )
+
+
+_declared: dict[str, Check] = {}
+
+
+def check(
+    slug: str,
+    *,
+    title: str,
+    claim: str,
+    source: str,
+    metric: str,
+    tolerance: float,
+    tolerance_reason: str,
+    catches: tuple[Fault, ...],
+) -> Callable[[Judge], Judge]:
+    """Declare the decorated function as a case of the suite. Raises ValueError for a slug that is taken."""
+
+    def declare(judge: Judge) -> Judge:
+        if slug in _declared:
+            raise ValueError(f"check {slug!r} is declared twice")
+        _declared[slug] = Check(
+            slug, title, claim, source, Metric(metric), tolerance, tolerance_reason, catches, judge
+        )
+        return judge
+
+    return declare
+
+
+def declared() -> tuple[Check, ...]:
+    """All checks of the modules imported so far, in their order."""
+    return tuple(_declared.values())

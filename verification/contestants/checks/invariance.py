@@ -1,0 +1,206 @@
+"""What a solver must not notice: orientation, place, units, surroundings, and what it was asked before.
+
+Two answers of one claim differ by at most four claims: twice the error in the energy norm, squared.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refimpl.grid import Array
+from verification.case import Measured
+from verification.contestants import referee
+from verification.contestants.check import MODULUS, Entrant, Fault, check
+from verification.contestants.checks.residuals import wavy
+from verification.contestants.gaps import rough_bump
+
+TWICE = (
+    "in claims: two answers, each within one claim of the squared energy-norm error (proven), differ by four"
+)
+LOAD = 0.05 * MODULUS
+M = 20
+
+
+def bump(seed: int) -> Array:
+    """The rough bump of these checks."""
+    return rough_bump(M, seed)
+
+
+@check(
+    "mirror-x",
+    title="Mirrored along x",
+    claim="The mirrored gap has the mirrored pressure",
+    source="isotropy of the half-space",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.HALF_ELEMENT,),
+)
+def mirror_x(entrant: Entrant) -> Measured:
+    first, second = (entrant.press(gap, 1.0, load=LOAD) for gap in (bump(41), bump(41)[::-1]))
+    return Measured(entrant.misfit(second, first.pressure[::-1]))
+
+
+@check(
+    "mirror-y",
+    title="Mirrored along y",
+    claim="The mirrored gap has the mirrored pressure",
+    source="isotropy of the half-space",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.HALF_ELEMENT,),
+)
+def mirror_y(entrant: Entrant) -> Measured:
+    first, second = (entrant.press(gap, 1.0, load=LOAD) for gap in (bump(42), bump(42)[:, ::-1]))
+    return Measured(entrant.misfit(second, first.pressure[:, ::-1]))
+
+
+@check(
+    "transposition",
+    title="Axes exchanged on purpose",
+    claim="The transposed gap has the transposed pressure: no axis is treated unlike the other",
+    source="isotropy of the half-space",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.HALF_ELEMENT,),
+)
+def transposition(entrant: Entrant) -> Measured:
+    first, second = (entrant.press(gap, 1.0, load=LOAD) for gap in (bump(43), bump(43).T))
+    return Measured(entrant.misfit(second, first.pressure.T))
+
+
+@check(
+    "units",
+    title="Micrometres and pascals, metres and gigapascals",
+    claim="A square a million times smaller of a material 2^30 times softer has proportional pressures",
+    source="dimensional analysis",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.ABSOLUTE_THRESHOLD,),
+)
+def units(entrant: Entrant) -> Measured:
+    small, soft = 2.0**-20, 2.0**-30
+    first = entrant.press(bump(44), 1.0, load=LOAD)
+    second = entrant.press(small * bump(44), small, load=soft * small**2 * LOAD, modulus=soft * MODULUS)
+    return Measured(entrant.misfit(second, soft * first.pressure))
+
+
+@check(
+    "memory",
+    title="Problems in turn",
+    claim="A grid of the same size but other spacing and modulus, then another size, then the first again: "
+    "nothing of one problem gets into the next",
+    source="a solver is a function",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.STATE_KEPT,),
+)
+def memory(entrant: Entrant) -> Measured:
+    first = entrant.press(bump(45), 1.0, load=LOAD)
+    second = entrant.press(2 * bump(45), 2.0, load=12 * LOAD, modulus=3 * MODULUS)
+    entrant.press(rough_bump(24, 45), 1.0, load=LOAD)
+    third = entrant.press(bump(45), 1.0, load=LOAD)
+    worst = max(entrant.misfit(second, 3 * first.pressure), entrant.misfit(third, first.pressure))
+    return Measured(worst)
+
+
+@check(
+    "surroundings",
+    title="Free surroundings",
+    claim="The same bump in a square twice as wide, all else out of reach, has the same pressures: nothing is "
+    "repeated beyond the square",
+    source="a half-space is free outside; a code that keeps its periodic operator silently fails here",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.PERIODIC_FOR_APERIODIC,),
+)
+def surroundings(entrant: Entrant) -> Measured:
+    n = 16
+    gap = rough_bump(n, 46)
+    wide = np.full((2 * n, 2 * n), 10.0)
+    wide[3 : n + 3, 7 : n + 7] = gap
+    small, large = entrant.press(gap, 1.0, load=LOAD), entrant.press(wide, 2.0, load=LOAD)
+    again = np.zeros_like(wide)
+    again[3 : n + 3, 7 : n + 7] = small.pressure
+    return Measured(entrant.misfit(large, again))
+
+
+@check(
+    "there-and-back",
+    title="Load to approach and back",
+    claim="Pressed to the approach that its pressures say a load takes, the bump carries that load again",
+    source="the contact problem has one solution",
+    metric="at_most",
+    tolerance=10.0,
+    tolerance_reason="in claims: two answers (four), and the approach recomputed from the first, which a gap "
+    "of one claim leaves uncertain by as much",
+    catches=(Fault.MEAN_DISPLACEMENT_LOST, Fault.MEAN_PRESSURE_LOST),
+)
+def there_and_back(entrant: Entrant) -> Measured:
+    gap = bump(47)
+    first = entrant.press(gap, 1.0, load=LOAD)
+    touch = referee.approach_of(first.problem, first.pressure)
+    second = entrant.press(gap, 1.0, approach=touch + float(gap.min()))
+    return Measured(
+        max(entrant.misfit(second, first.pressure), (second.load / LOAD - 1) ** 2 / entrant.claim)
+    )
+
+
+@check(
+    "periodic-there-and-back",
+    title="Load to approach and back, periodic",
+    claim="An approach counts from the mean planes, and takes a periodic plane back to its load",
+    source="the contact problem has one solution",
+    metric="at_most",
+    tolerance=10.0,
+    tolerance_reason="as there-and-back",
+    catches=(Fault.MEAN_PLANES_LOST, Fault.MEAN_PRESSURE_LOST),
+)
+def periodic_there_and_back(entrant: Entrant) -> Measured:
+    load = 0.02 * MODULUS
+    first = entrant.press(wavy(24, 48), 1.0, load=load, periodic=True)
+    approach = referee.approach_of(first.problem, first.pressure)
+    second = entrant.press(wavy(24, 48), 1.0, approach=approach, periodic=True)
+    return Measured(
+        max(entrant.misfit(second, first.pressure), (second.load / load - 1) ** 2 / entrant.claim)
+    )
+
+
+@check(
+    "periodic-shift",
+    title="A periodic plane shifted by whole elements",
+    claim="The shifted gap has the shifted pressure, across the square's border as well",
+    source="translation of a periodic problem",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.APERIODIC_FOR_PERIODIC,),
+)
+def periodic_shift(entrant: Entrant) -> Measured:
+    gap, shift = wavy(24, 49), (7, -9)
+    first, second = (
+        entrant.press(g, 1.0, load=0.02 * MODULUS, periodic=True) for g in (gap, np.roll(gap, shift, (0, 1)))
+    )
+    return Measured(entrant.misfit(second, np.roll(first.pressure, shift, (0, 1))))
+
+
+@check(
+    "periodic-tiling",
+    title="Four periods in one square",
+    claim="Two by two copies of a periodic gap have two by two copies of its pressure",
+    source="a periodic problem has all multiples of its period",
+    metric="at_most",
+    tolerance=4.1,
+    tolerance_reason=TWICE,
+    catches=(Fault.APERIODIC_FOR_PERIODIC,),
+)
+def periodic_tiling(entrant: Entrant) -> Measured:
+    gap = wavy(16, 50)
+    one = entrant.press(gap, 1.0, load=0.02 * MODULUS, periodic=True)
+    four = entrant.press(np.tile(gap, (2, 2)), 2.0, load=0.08 * MODULUS, periodic=True)
+    return Measured(entrant.misfit(four, np.tile(one.pressure, (2, 2))))

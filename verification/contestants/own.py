@@ -1,0 +1,91 @@
+"""`refimpl` as a contestant: translates the problem into a scene and hands back the pressures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from importlib.metadata import version
+
+import refimpl as rf
+from refimpl.plan import Method
+from verification.contestants.protocol import Abilities, Answer, ContactProblem, Unsupported
+
+RIGID = 1e30
+"""Modulus of a body that is to be rigid, over E*: its compliance vanishes beside the other's rounding."""
+
+
+@dataclass(frozen=True)
+class Own:
+    """One of `refimpl`'s solvers.
+
+    >>> import numpy as np
+    >>> problem = ContactProblem(np.zeros((2, 2)), spacing=1e-6, reduced_modulus=1e9, load=4e-6)
+    >>> bool(np.allclose(np.asarray(solve(problem).pressure), 1e6))
+    True
+    """
+
+    method: Method
+    abilities: Abilities
+
+    @property
+    def version(self) -> str:
+        """Name and version of the package."""
+        return f"refimpl {version('rough-friction')}"
+
+    def __call__(self, problem: ContactProblem) -> Answer:
+        """The pressures; converged when the solution is certified, with tau's support settled or cycling."""
+        solution = rf.solve(
+            scene(problem),
+            problem.M,
+            method=self.method,
+            approach=problem.approach,
+            oblique=False,
+            tolerance=problem.tolerance,
+        )
+        apart = solution.status is rf.Status.NO_CONTACT and problem.approach is not None
+        ended_well = apart or solution.status in (rf.Status.CONVERGED, rf.Status.CYCLED)
+        return Answer(solution.pressure, ended_well)
+
+
+def scene(problem: ContactProblem) -> rf.Scene:
+    """The problem as a scene: the gap is the upper body's surface, the lower one is flat.
+
+    Raises `Unsupported` for a coupling that no pair of Poisson's ratios has.
+    """
+    coupling = problem.coupling
+    lower, upper = materials(problem.reduced_modulus, coupling.shear_compliance if coupling else 0.0)
+    return rf.Scene(
+        upper=rf.Body(upper, problem.gap),
+        lower=rf.Body(lower, rf.Flat()),
+        friction=rf.Friction(coupling.tau, coupling.beta) if coupling else rf.Friction(),
+        load=problem.load if problem.load is not None else 1.0,  # unused under a prescribed approach
+        side=problem.side,
+        sliding_direction=coupling.sliding_direction if coupling else 0.0,
+        periodic=problem.periodic,
+    )
+
+
+def materials(reduced_modulus: float, shear_compliance: float) -> tuple[rf.Material, rf.Material]:
+    """Lower and upper body with this E* (Pa) and c0 (1/Pa): two alike, or a compressible and a rigid one.
+
+    For a rigid partner ``pi c0 E* = (1 - 2 nu)/(2 (1 - nu))``, which is solved for nu.
+
+    >>> pair = rf.materials.Pair(*materials(1e9, -1e-10))
+    >>> round(pair.reduced_modulus / 1e9, 12), round(pair.shear_compliance * 1e10, 12)
+    (1.0, -1.0)
+    """
+    if shear_compliance == 0:
+        return (rf.Material(2 * reduced_modulus, 0.0),) * 2
+    k = math.pi * abs(shear_compliance) * reduced_modulus
+    if k >= 0.75:
+        raise Unsupported(f"pi |c0| E* = {k:.3g}: below 0.75, or Poisson's ratio were -1 or less")
+    nu = (1 - 2 * k) / (2 * (1 - k))
+    soft = rf.Material(reduced_modulus * (1 - nu**2), nu)
+    rigid = rf.Material(RIGID * reduced_modulus, 0.5)
+    return (soft, rigid) if shear_compliance > 0 else (rigid, soft)
+
+
+solve = Own("fft", Abilities(coupling=True))
+"""The production solver."""
+dense = Own("dense", Abilities(coupling=True, largest=24))
+"""The plain reference."""

@@ -1,0 +1,179 @@
+"""What the suite computes itself, to judge an answer: displacements, residuals, and solutions by elimination.
+
+None of it is shared with the solvers of `refimpl`. A half-space uses dense matrices of the textbook's corner
+differences, so squares here have at most `LARGEST` elements a side; a periodic problem uses the exact symbols
+of `verification.exact.fourier`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.grid import Array, Grid
+from verification.contestants.protocol import ContactProblem
+from verification.exact.fourier import symbol_at
+from verification.properties.textbook import normal_matrix, shear_matrix
+
+LARGEST = 32
+
+
+class Residual(NamedTuple):
+    """The three ways in which pressures can miss a problem, relative; see `residual`."""
+
+    gap: float
+    balance: float
+    tension: float
+
+    @property
+    def worst(self) -> float:
+        """The largest of them."""
+        return max(self)
+
+
+@lru_cache(maxsize=4)
+def _unit_matrix(M: int, direction: float | None) -> Array:
+    """``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between elements of unit edge; ``(M^2, M^2)``."""
+    if M > LARGEST:
+        raise ValueError(f"{M} elements a side are too many for dense matrices")
+    grid = Grid(float(M), M)
+    return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
+
+
+def by_pressure(problem: ContactProblem, pressure: Array) -> Array:
+    """Normal displacement ``a f`` (m) of both bodies by pressure alone, ``(M, M)``."""
+    if problem.periodic:
+        return _filtered(pressure, symbol_at(*_waves(problem), problem.reduced_modulus))
+    scale = problem.spacing / (np.pi * problem.reduced_modulus)
+    return scale * np.asarray(_unit_matrix(problem.M, None) @ pressure.ravel()).reshape(pressure.shape)
+
+
+def displacement(problem: ContactProblem, pressure: Array) -> Array:
+    """Normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``, ``(M, M)``."""
+    normal, coupling = by_pressure(problem, pressure), problem.coupling
+    if coupling is None:
+        return normal
+    shear = coupling.tau * (pressure > 0) + coupling.beta * pressure
+    c0, direction = coupling.shear_compliance, coupling.sliding_direction
+    if problem.periodic:
+        E, slip = problem.reduced_modulus, np.pi * c0 * problem.reduced_modulus
+        both = symbol_at(*_waves(problem), E, slip, direction)
+        return normal + _filtered(shear, both - symbol_at(*_waves(problem), E))
+    moved = np.asarray(_unit_matrix(problem.M, direction) @ shear.ravel()).reshape(shear.shape)
+    return normal + c0 * problem.spacing * moved
+
+
+def _waves(problem: ContactProblem) -> tuple[Array, Array]:
+    q: Array = 2 * np.pi * np.fft.fftfreq(problem.M, problem.spacing).astype(np.float64)
+    return q[:, None], q[None, :]
+
+
+def _filtered(field: Array, symbol: NDArray[np.complex128]) -> Array:
+    return np.asarray(np.fft.ifft2(np.fft.fft2(field) * symbol).real)
+
+
+def energy(problem: ContactProblem, pressure: Array) -> float:
+    """Elastic energy ``1/2 sum f (a f) dA`` (J)."""
+    return 0.5 * float(np.vdot(pressure, by_pressure(problem, pressure))) * problem.element_area
+
+
+def residual(problem: ContactProblem, pressure: Array) -> Residual:
+    """How far pressures ``(M, M)`` (Pa) are from solving the problem, recomputed from them alone.
+
+    gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
+        approach where that is prescribed, with penetration counted on the whole load
+    balance : ``|N - P| / P``, or zero
+    tension : largest negative pressure over the largest positive one
+
+    Raises ValueError for pressures without any elastic energy: there is no scale to judge by.
+    """
+    v = displacement(problem, pressure) + problem.gap
+    stored = energy(problem, pressure)
+    if not stored > 0 or not pressure.max() > 0:
+        raise ValueError("the pressures hold no elastic energy")
+    level, dA = float(v.min()), problem.element_area
+    balance = 0.0
+    if problem.load is not None:
+        balance = abs(float(pressure.sum()) * dA / problem.load - 1)
+    approach = problem.approach_from_touch
+    if approach is None:
+        duality = float(np.vdot(pressure, v - level))
+    else:
+        penetration = max(0.0, approach - level)
+        duality = abs(float(np.vdot(pressure, v - approach))) + penetration * float(np.abs(pressure).sum())
+    return Residual(duality * dA / stored, balance, max(0.0, -float(pressure.min())) / float(pressure.max()))
+
+
+def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
+    """``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: the square of the relative error in the energy norm.
+
+    It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
+    tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
+    it is the load balance's affair.)
+    """
+    return energy(problem, found - exact) / energy(problem, exact)
+
+
+def approach_of(problem: ContactProblem, pressure: Array) -> float:
+    """The approach (m) at which pressures solve the problem, as the problem counts it: mean of v over f."""
+    v = displacement(problem, pressure) + problem.gap
+    touch = float(np.vdot(pressure, v) / pressure.sum())
+    return touch - (float(problem.gap.mean()) if problem.periodic else 0.0)
+
+
+@dataclass
+class _Elimination:
+    """Pressures and approach on a given contact set, by Gauss' elimination; frictionless or with beta."""
+
+    problem: ContactProblem
+
+    def __post_init__(self) -> None:
+        problem, M = self.problem, self.problem.M
+        unit = np.eye(M * M).reshape(M * M, M, M)
+        bare = problem.coupling is None or problem.coupling.tau == 0
+        if not bare or (problem.periodic and M > 16):
+            raise ValueError("elimination is for small problems without tau")
+        self.matrix = np.array([displacement(problem, f).ravel() for f in unit]).T
+        self.gap = problem.gap.ravel()
+
+    def on(self, contact: Array) -> tuple[Array, float]:
+        """Pressures (all elements) and approach from first touch."""
+        k = np.flatnonzero(contact)
+        block, approach = self.matrix[np.ix_(k, k)], self.problem.approach_from_touch
+        f = np.zeros(len(self.gap))
+        if approach is not None:
+            f[k] = np.linalg.solve(block, approach - self.gap[k])
+            return f, approach
+        # unknowns are scaled to one: pressures by the mean one, the approach by what that displaces
+        assert self.problem.load is not None
+        mean = self.problem.load / self.problem.element_area / len(k)
+        length = float(np.abs(block).max()) * mean
+        one = np.ones((len(k), 1))
+        bordered = np.block([[block * (mean / length), -one], [one.T, np.zeros((1, 1))]])
+        solved = np.linalg.solve(bordered, np.append(-self.gap[k] / length, len(k)))
+        f[k] = solved[:-1] * mean
+        return f, float(solved[-1]) * length
+
+
+def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
+    """The solution ``(M, M)`` (Pa) by block principal pivoting, for small problems without tau.
+
+    Starts from all elements in contact; drops those in tension and adds those that penetrate until there are
+    none. Raises RuntimeError where that does not end within ``limit`` rounds.
+    """
+    system = _Elimination(problem)
+    contact = np.ones(problem.M**2, dtype=bool)
+    for _ in range(limit):
+        f, approach = system.on(contact)
+        v = system.matrix @ f + system.gap
+        slack = 1e-13 * max(float(np.abs(v).max()), abs(approach))
+        wrong_in, wrong_out = contact & (f < 0), ~contact & (v < approach - slack)
+        if not wrong_in.any() and not wrong_out.any():
+            return f.reshape(problem.gap.shape)
+        # tension first: a set that is too large only loses elements, one by its worst penetration gains
+        contact = contact & ~wrong_in if wrong_in.any() else contact | wrong_out
+    raise RuntimeError(f"no contact set found in {limit} rounds")

@@ -1,0 +1,37 @@
+"""The whole suite, and one contestant's way through it."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Iterable
+from fnmatch import fnmatchcase
+
+from verification.case import Result
+from verification.contestants import checks
+from verification.contestants.check import Check, declared
+from verification.contestants.protocol import Contestant
+
+
+def suite() -> tuple[Check, ...]:
+    """Every check of every module in `verification.contestants.checks`."""
+    for module in pkgutil.iter_modules(checks.__path__, prefix=f"{checks.__name__}."):
+        importlib.import_module(module.name)
+    return declared()
+
+
+def select(globs: Iterable[str] = ()) -> tuple[Check, ...]:
+    """The checks whose id (``contestant/...``) matches any of ``globs``; all without any.
+
+    Raises LookupError for a glob that matches none: an empty selection must not look like success.
+    """
+    patterns, checks_ = tuple(globs), suite()
+    idle = [p for p in patterns if not any(fnmatchcase(c.id, p) for c in checks_)]
+    if idle:
+        raise LookupError(f"no case of the suite matches {', '.join(idle)}")
+    return tuple(c for c in checks_ if not patterns or any(fnmatchcase(c.id, p) for p in patterns))
+
+
+def run(contestant: Contestant, globs: Iterable[str] = ()) -> list[Result]:
+    """Results of a contestant, in this process; a case beyond its abilities is `unavailable`."""
+    return [check.case(contestant).run() for check in select(globs)]
