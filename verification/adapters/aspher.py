@@ -1,0 +1,60 @@
+"""ASPHER (Yastrebov 2026), by nested grids where the grid allows, with its exact FFT operator.
+
+Its default H2 operator approximates the influence coefficients to some 1e-6, beyond the tolerances asked for
+here, so the exact one takes its place ("modestly faster", its authors say, up to 2048 x 2048).
+
+``rough-friction verify --solver verification.adapters.aspher:solve``
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from verification.adapters.peer import Peer, PeerAnswer, closure, imported
+from verification.contestants.protocol import Abilities, ContactProblem
+
+_COARSEST = 64  # its own default
+_ITERATIONS = 5000
+
+
+def press(problem: ContactProblem) -> PeerAnswer:
+    """Pressures of ``solve_nested``, or of ``ContactSolver`` on grids that do not halve down to 64.
+
+    Its Frank-Wolfe error is the mean gap under the pressure over the range of the gap, and over one unit of
+    length where the gap is flat: the unit is ``P / (E* side)``, about the approach, to give that a meaning.
+    """
+    hc = imported("aspher")
+    assert problem.load is not None  # by its abilities
+    E, side = problem.reduced_modulus, problem.side
+    unit = problem.load / (E * side)
+    backend = "periodic" if problem.periodic else "fft"
+    common = {"domain_size": side / unit, "E_star": 1.0, "backend": backend}
+    stop = {
+        "p_nominal": problem.load / side**2 / E,
+        "tol": closure(problem) / (float(problem.gap.max()) or unit),
+        "max_iter": _ITERATIONS,
+    }
+    gap = problem.gap.ravel() / unit
+    if _halves(problem.M):
+        found = hc.solve_nested(problem.M, gap, coarsest=_COARSEST, **common, **stop)
+    else:
+        found = hc.ContactSolver(problem.M, **common).solve(gap, precond="fourier", **stop)
+    pressure = E * np.array(found.pressure, dtype=np.float64).reshape(problem.gap.shape)
+    work = {"displacements": int(found.matvec_count), "preconditionings": int(found.precond_count)}
+    return PeerAnswer(pressure, str(found.status) == "converged", work)
+
+
+def _halves(M: int) -> bool:
+    """Whether M is 64 times a power of two."""
+    levels, rest = divmod(M, _COARSEST)
+    return rest == 0 and levels > 0 and levels & (levels - 1) == 0
+
+
+solve = Peer(
+    distribution="aspher",
+    extra="aspher",
+    setup="solve_nested from 64 x 64 with backend 'fft' or 'periodic', double precision, its other defaults",
+    abilities=Abilities(approach=False),
+    press=press,
+)
+"""The contestant."""

@@ -1,0 +1,84 @@
+"""ContactMechanics (Pastewka, Sanner and others), by its constrained conjugate gradients.
+
+Under a load: ``minimize_proxy`` (Polonsky and Keer). At an approach: ``dual_minimize_proxy`` (conjugate
+gradients without restarts), since the former, at an offset in free space, is apt to come to rest at a wrong
+state (and says so). A periodic half-space keeps its default ``stiffness_q0`` under a load: with zero there,
+version 1.8.3 calls the uniform pressure of its first iteration converged; a test keeps that trap in view.
+
+``rough-friction verify --solver verification.adapters.contactmechanics:solve``
+"""
+
+from __future__ import annotations
+
+import math
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from verification.adapters.peer import Peer, PeerAnswer, closure, imported
+from verification.contestants.protocol import Abilities, ContactProblem
+
+_ITERATIONS = 5000
+
+
+def press(problem: ContactProblem) -> PeerAnswer:
+    """Pressures on the periodic or free half-space, under a load or at an offset."""
+    package = imported("ContactMechanics")
+    sides = (problem.side, problem.side)
+    topography = imported("SurfaceTopography").Topography(-problem.gap, sides, periodic=problem.periodic)
+    system = imported("ContactMechanics.Systems").NonSmoothContactSystem(
+        _half_space(package, problem), topography
+    )
+    if problem.load is not None:
+        found = system.minimize_proxy(
+            external_force=problem.load, maxiter=_ITERATIONS, **_tolerances(problem)
+        )
+        force, work = found.jac, int(found.nfev)
+    else:
+        found = system.dual_minimize_proxy(
+            problem.approach_from_touch,
+            init_force=np.zeros(problem.gap.shape),
+            gtol=closure(problem),
+            maxiter=_ITERATIONS,
+        )
+        force, work = found.x, 2 * int(found.nit)
+    # a negative zero or a pressure in the padding would be the peer's; only the square is handed on
+    pressure = np.array(force).reshape(-1, problem.M)[: problem.M] / problem.element_area
+    return PeerAnswer(pressure, bool(found.success), {"displacements": work})
+
+
+def _half_space(package: ModuleType, problem: ContactProblem) -> Any:
+    shape, sides = problem.gap.shape, (problem.side, problem.side)
+    E = problem.reduced_modulus
+    if not problem.periodic:
+        return package.FreeFFTElasticHalfSpace(shape, E, sides)
+    if problem.load is not None:
+        return package.PeriodicFFTElasticHalfSpace(shape, E, sides)
+    # the mean pressure displaces nothing, so that offsets count as the problem's approaches do
+    return package.PeriodicFFTElasticHalfSpace(shape, E, sides, stiffness_q0=0.0)
+
+
+def _tolerances(problem: ContactProblem) -> dict[str, float]:
+    """Absolute ones in m and N: the defaults are not meant for SI units, nor for a relative gap of 1e-8.
+
+    Penetrations up to ``pentol`` under the pressure make at most twice that of mean gap.
+    """
+    assert problem.load is not None
+    return {
+        "pentol": 0.5 * closure(problem),
+        # per element; a tension left over changes the energy by its square, so the tolerance's root will do
+        "forcetol": math.sqrt(problem.tolerance) * problem.load / problem.M**2,
+        "thermotol": problem.tolerance,
+    }
+
+
+solve = Peer(
+    distribution="ContactMechanics",
+    extra="contactmechanics",
+    setup="NonSmoothContactSystem on the periodic or free FFT half-space: minimize_proxy under a load, "
+    "dual_minimize_proxy at an approach",
+    abilities=Abilities(),
+    press=press,
+)
+"""The contestant."""

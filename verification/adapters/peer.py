@@ -1,0 +1,87 @@
+"""What all adapters share: a name, an installed version, abilities, and a way to call the peer."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
+from types import ModuleType
+
+from verification.case import Unavailable
+from verification.contestants.protocol import Abilities, Answer, ContactProblem, Unsupported
+
+
+@dataclass(frozen=True, eq=False)
+class PeerAnswer(Answer):
+    """An answer with the operations that the peer says it took, by its own names."""
+
+    operations: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Peer:
+    """A published solver as a contestant.
+
+    distribution : its name on the package index
+    extra : this project's extra that installs it
+    setup : how it is set up, and on whose advice
+    press : maps a problem to an answer; may import the peer
+    """
+
+    distribution: str
+    extra: str
+    setup: str
+    abilities: Abilities
+    press: Callable[[ContactProblem], PeerAnswer]
+
+    @property
+    def installed(self) -> str | None:
+        """The installed version, or None."""
+        try:
+            return version(self.distribution)
+        except PackageNotFoundError:
+            return None
+
+    @property
+    def version(self) -> str:
+        """Name and installed version."""
+        return f"{self.distribution} {self.installed or '(not installed)'}"
+
+    def __call__(self, problem: ContactProblem) -> PeerAnswer:
+        """The peer's answer.
+
+        Raises `Unavailable` where the peer is not installed and `Unsupported` where it cannot pose the
+        problem.
+        """
+        if self.installed is None:
+            raise Unavailable(
+                f"{self.distribution} is not installed: pip install 'rough-friction[{self.extra}]'"
+            )
+        lacking = self.abilities.lacking(problem)
+        if lacking:
+            raise Unsupported(f"{self.distribution} does not offer: {lacking}")
+        return self.press(problem)
+
+
+def closure(problem: ContactProblem) -> float:
+    """Mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met (m).
+
+    The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
+    P in a square has a smaller one than the square punch, 0.87 P / (E* side); at an approach d it is d / 2
+    for a cone and more for blunter shapes. Periodic contact displaces at least a third of the heights'
+    deviation when it is about to become full (peaks of three deviations), and half of it when light.
+    """
+    if problem.load is not None:
+        depth = 0.87 * problem.load / (problem.reduced_modulus * problem.side)
+    else:
+        assert problem.approach_from_touch is not None
+        depth = 0.5 * abs(problem.approach_from_touch)
+    if problem.periodic and problem.gap.any():
+        depth = min(depth, float(problem.gap.std()) / 3)
+    return 0.5 * problem.tolerance * depth
+
+
+def imported(name: str) -> ModuleType:
+    """A peer's module, as an untyped one: none of the peers ships type hints."""
+    return importlib.import_module(name)
