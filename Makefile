@@ -7,7 +7,7 @@ OUT := out
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: report test lint setup clean
+.PHONY: report test lint setup clean nightly
 
 report: $(READY)
 	@mkdir -p $(OUT)
@@ -22,6 +22,11 @@ test: lint
 lint: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+
+# Hypothesis examples of the solver invariants: other ones every day, resumed when interrupted.
+nightly: $(READY)
+	@mkdir -p $(OUT)
+	$(BIN)/python -m verification.properties --examples 10000 --seed $$(date +%Y%m%d) --json $(OUT)/hypothesis.json
 
 setup: $(READY)
 

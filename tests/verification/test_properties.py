@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import pytest
 
-import refimpl as rf
 from verification.properties import INVARIANTS, check_solver
-
-SOLVERS = {
-    "fft": partial(rf.solve, method="fft", tolerance=1e-12),
-    "dense": partial(rf.solve, method="dense", tolerance=1e-12),
-}
+from verification.properties.nightly import SOLVERS
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("name", INVARIANTS)
-def test_invariant(name: str, solver: str) -> None:
-    check_solver(SOLVERS[solver], examples=20, only=[name])
+def test_invariant(name: str, solver: str, order_seed: int | None) -> None:
+    check_solver(SOLVERS[solver], examples=20, only=[name], seed=order_seed)

@@ -1,0 +1,92 @@
+"""Runs in a random order, with a log that shows whether any test flips.
+
+``pytest --order-seed 3`` shuffles the files and the tests within each, and seeds every hypothesis search with
+3, derandomised or not; ``--order-log FILE`` adds the run to a JSON log. pytest-randomly shuffles as well, but in
+every run in which it is installed, and it leaves derandomised searches as they are.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import random
+import time
+from collections import defaultdict
+from pathlib import Path
+
+import hypothesis
+import pytest
+
+from verification.files import to_json, write_text
+from verification.provenance import provenance
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("random order")
+    group.addoption("--order-seed", type=int, help="shuffle tests, and seed hypothesis, with this number")
+    group.addoption("--order-log", type=Path, help="JSON log to add the run to")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--order-log"):
+        config.pluginmanager.register(Log(config))
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    seed = config.getoption("--order-seed")
+    if seed is None:
+        return
+    chance, files = random.Random(seed), defaultdict(list)
+    for item in items:
+        files[item.path].append(item)
+        test = getattr(item, "obj", None)
+        if test is not None and hypothesis.is_hypothesis_test(test):
+            hypothesis.seed(seed)(test)
+    shuffled = list(files.values())
+    chance.shuffle(shuffled)
+    for tests in shuffled:
+        chance.shuffle(tests)
+    items[:] = [item for tests in shuffled for item in tests]
+
+
+@pytest.fixture
+def order_seed(request: pytest.FixtureRequest) -> int | None:
+    """The run's ``--order-seed``, for searches that are not declared with ``given``."""
+    return request.config.getoption("--order-seed")
+
+
+class Log:
+    """Outcome of every test, summed up when the session ends."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.config, self.begun = config, time.process_time()
+        self.order: list[str] = []
+        self.outcomes: dict[str, str] = {}
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.when == "call" or report.outcome != "passed":
+            self.order.append(report.nodeid)
+            self.outcomes[report.nodeid] = report.outcome
+
+    def pytest_sessionfinish(self) -> None:
+        if hasattr(self.config, "workerinput"):  # the controller of several processes has all reports
+            return
+        path = self.config.getoption("--order-log")
+        runs = json.loads(path.read_text())["runs"] if path.exists() else []
+        run = {
+            "seed": self.config.getoption("--order-seed"),
+            "tests": len(self.outcomes),
+            "not_passed": {name: end for name, end in self.outcomes.items() if end != "passed"},
+            "outcomes_sha256": _digest(sorted(self.outcomes.items())),
+            "order_sha256": _digest(self.order),
+            "processor_seconds": round(time.process_time() - self.begun, 1),
+            "provenance": provenance(),
+        }
+        runs.append(run)
+        same = len({run["outcomes_sha256"] for run in runs}) == 1
+        write_text(to_json({"no_test_flips": same, "runs": runs}), path)
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(json.dumps(value).encode()).hexdigest()

@@ -1,0 +1,80 @@
+"""The nightly search of the invariants: it counts, resumes, and keeps what it finds."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import refimpl as rf
+from verification.properties import INVARIANTS, check_solver, nightly
+from verification.properties.__main__ import main
+
+
+@pytest.fixture
+def two_invariants(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only two of the invariants, so that a night takes a second."""
+    chosen = {name: INVARIANTS[name] for name in ("positivity", "area_and_peak")}
+    monkeypatch.setattr(nightly, "INVARIANTS", chosen)
+
+
+def solve_with_a_wrong_peak(scene: rf.Scene, grid: int, **keywords: Any) -> rf.Solution:
+    good = rf.solve(scene, grid, method="dense", tolerance=1e-12, **keywords)
+    return replace(good, max_pressure=good.max_pressure * (1 if scene.periodic else 1 + 1e-15))
+
+
+@pytest.mark.usefixtures("two_invariants")
+def test_a_night_without_counterexamples(tmp_path: Path) -> None:
+    log = tmp_path / "log.json"
+    assert main(["--examples", "10", "--seed", "7", "--json", str(log)]) == 0
+    found = json.loads(log.read_text())
+    assert found["examples"] == 12  # four slices of three: at least as many as asked
+    assert found["counterexamples"] == 0
+    assert [line["seed"] for line in found["slices"]] == [7, 8, 9, 10]
+    assert {line["solver"] for line in found["slices"]} == {"fft", "dense"}
+
+
+@pytest.mark.usefixtures("two_invariants")
+def test_finished_slices_are_kept_and_another_seed_starts_anew(tmp_path: Path) -> None:
+    log = tmp_path / "log.json"
+    main(["--examples", "8", "--json", str(log)])
+    cut = json.loads(log.read_text())
+    cut["slices"][0]["claim"] = "kept"
+    del cut["slices"][2]
+    log.write_text(json.dumps(cut))
+    main(["--examples", "8", "--json", str(log)])
+    slices = json.loads(log.read_text())["slices"]
+    assert sorted(line["number"] for line in slices) == [0, 1, 2, 3]
+    assert slices[0]["claim"] == "kept"
+    main(["--examples", "8", "--seed", "2", "--json", str(log)])
+    assert [line["seed"] for line in json.loads(log.read_text())["slices"]] == [2, 3, 4, 5]
+
+
+@pytest.mark.usefixtures("two_invariants")
+def test_a_counterexample_fails_the_night_and_is_printed_shrunk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(nightly, "SOLVERS", {"wrong": solve_with_a_wrong_peak})
+    log = tmp_path / "log.json"
+    assert main(["--examples", "40", "--json", str(log)]) == 1
+    found = json.loads(log.read_text())
+    assert found["counterexamples"] == 1
+    text = "".join(found["slices"][1]["counterexample"].split())
+    assert "Sample(bumps=((0,0),(0,0))" in text
+
+
+def test_seeds_draw_other_samples() -> None:
+    drawn: dict[int | None, list[float]] = {}
+
+    def noting(seen: list[float], scene: rf.Scene, grid: int, **keywords: Any) -> rf.Solution:
+        seen.append(scene.load)
+        return rf.solve(scene, grid, method="dense", tolerance=1e-12, **keywords)
+
+    for seed in (None, 1, 2):
+        drawn[seed] = []
+        check_solver(partial(noting, drawn[seed]), examples=5, only=["positivity"], seed=seed)
+    assert drawn[1] != drawn[2] != drawn[None] != drawn[1]

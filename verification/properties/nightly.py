@@ -1,0 +1,80 @@
+"""Many seeded examples of every invariant for both solvers, in slices that can be resumed."""
+
+from __future__ import annotations
+
+import json
+import time
+import traceback
+from collections.abc import Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import refimpl as rf
+from verification.files import Progress, to_json, write_text
+from verification.properties.check import search
+from verification.properties.registry import INVARIANTS, Solver
+from verification.provenance import provenance
+
+SOLVERS: Mapping[str, Solver] = {
+    "fft": partial(rf.solve, method="fft", tolerance=1e-12),
+    "dense": partial(rf.solve, method="dense", tolerance=1e-12),
+}
+"""The residual asked for is what `verification.properties.states.RESIDUAL` is derived from."""
+
+
+def run(path: Path, examples: int, seed: int) -> bool:
+    """Search at least ``examples`` samples in all, write the log after every slice; whether all held.
+
+    A slice is one invariant for one solver with its own seed, ``seed`` plus its number. Slices that the log
+    already has are not run again; a log of another ``seed`` or share of examples is started anew.
+    """
+    each = -(-examples // (len(SOLVERS) * len(INVARIANTS)))
+    slices = [line for line in logged(path) if (line["seed"] - line["number"], line["asked"]) == (seed, each)]
+    known = {(line["solver"], line["invariant"]) for line in slices}
+    progress = Progress(len(SOLVERS) * len(INVARIANTS) - len(known))
+    for number, (solver, name) in enumerate((s, n) for s in SOLVERS for n in INVARIANTS):
+        if (solver, name) not in known:
+            slices.append(one_slice(number, solver, name, each, seed))
+            write_text(to_json(document(slices, seed)), path)
+            progress.tick(f"{solver} {name}")
+    progress.close()
+    return all(line["counterexample"] is None for line in slices)
+
+
+def logged(path: Path) -> Iterator[dict[str, Any]]:
+    """Slices of an earlier run, if there was one."""
+    if path.exists():
+        yield from json.loads(path.read_text(encoding="utf-8"))["slices"]
+
+
+def one_slice(number: int, solver: str, name: str, examples: int, seed: int) -> dict[str, Any]:
+    """Search one invariant for one solver; a counter-example is kept as printed, shrunk."""
+    begun, held, found = time.process_time(), 0, None
+    try:
+        held = search(INVARIANTS[name], SOLVERS[solver], examples, seed + number)
+    except (AssertionError, ArithmeticError, ValueError) as broken:  # no solution, or no claim of one
+        found = "".join(traceback.format_exception_only(broken))
+    return {
+        "number": number,
+        "solver": solver,
+        "invariant": name,
+        "claim": INVARIANTS[name].claim,
+        "seed": seed + number,
+        "asked": examples,
+        "held": held,
+        "seconds": round(time.process_time() - begun, 2),
+        "counterexample": found,
+    }
+
+
+def document(slices: list[dict[str, Any]], seed: int) -> dict[str, object]:
+    """The log: totals, every slice, and the conditions."""
+    return {
+        "seed": seed,
+        "examples": sum(line["held"] for line in slices),
+        "counterexamples": sum(line["counterexample"] is not None for line in slices),
+        "processor_seconds": round(sum(line["seconds"] for line in slices), 1),
+        "slices": slices,
+        "provenance": provenance(),
+    }
