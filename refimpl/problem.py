@@ -20,15 +20,21 @@ from refimpl.slopes import Slopes
 
 @dataclass(frozen=True)
 class Terms:
-    """Which physics enters: tau/beta coupled to displacement, slopes, exact facet tractions."""
+    """Which physics enters.
+
+    ``coupled``: shear moves the bodies towards each other (c, lower minus upper); ``oblique``: slopes;
+    ``slope_correction``: exact facet tractions in Eq. (7); ``tilted``: shear moves the common surface
+    (c, mean of both bodies), which only the slopes feel.
+    """
 
     coupled: bool
     oblique: bool
     slope_correction: bool
+    tilted: bool = True
 
     def shear_moves(self) -> bool:
         """Whether tangential tractions displace anything that enters the problem."""
-        return self.coupled or self.oblique
+        return self.coupled or (self.oblique and self.tilted)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,9 +106,21 @@ class Problem:
             shear = operator.shear(along)
             if across is not None:
                 shear = shear + operator.shear_across(across)
-            lower = lower + self.pair.lower.shear_compliance * shear
-            upper = upper - self.pair.upper.shear_compliance * shear
+            into_lower, into_upper = self._shear_compliances()
+            lower = lower + into_lower * shear
+            upper = upper + into_upper * shear
         return lower, upper
+
+    def _shear_compliances(self) -> tuple[float, float]:
+        """Factors of ``I[s/rho^2]`` for each body: their sum couples, half their difference tilts (1/Pa)."""
+        into_lower, into_upper = self.pair.lower.shear_compliance, -self.pair.upper.shear_compliance
+        if not self.terms.coupled:
+            tilt = 0.5 * (into_lower - into_upper)
+            return tilt, -tilt
+        if self.terms.oblique and not self.terms.tilted:
+            approach = 0.5 * (into_lower + into_upper)
+            return approach, approach
+        return into_lower, into_upper
 
     def slopes(self, lower: Array, upper: Array) -> Slopes:
         """Slopes of the common surface, the mean of both deformed ones; flat when not oblique."""
