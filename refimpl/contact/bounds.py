@@ -21,7 +21,7 @@ zero first and its own ``||f-||`` added at the end; penetration (w < 0) is part 
 ``sum K f (v - approach) <= sum f (v - approach)``, since K <= 1. With N exact and flat slopes that holds for
 any approach, so for min v: the certificate's gap (in J) bounds the error as it stands. Used here is a sharper
 split: p where ``w >= a_ii f`` (no contact), r elsewhere, which makes the bound linear in the residual. Off
-contact r may be anything below w, and is taken as ``a z`` with ``a z = w`` on contact: then ``||r||' = ||z||``,
+contact r may be anything below w: it is ``a z`` with ``a z = w`` on contact, and ``||r||' = ||z||``,
 the very error if both supports agree, plus what of r is left over the root of the least eigenvalue.
 
 *Prescribed approach*: the last term is absent. *Prescribed load* ``l.f* = T``, where ``l = K - beta s``,

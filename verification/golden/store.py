@@ -1,0 +1,204 @@
+"""Golden files: one JSON document per scene with its problem, its proven solution and its provenance.
+
+Numbers are a midpoint and a radius: the exact value lies within the radius of the midpoint, both doubles. The
+problem's own numbers are exact. A pressure list follows the contact map's marks, row by row.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.friction import Mask
+from refimpl.grid import Array
+from verification.files import to_json, write_text
+from verification.golden.enclosure import BITS, Ball, Proof, arb
+from verification.golden.scenes import SIDE, GoldenScene
+from verification.provenance import provenance
+
+FORMAT = "rough-friction golden scene, version 1"
+_EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class Enclosed:
+    """The exact value is within ``radius`` of ``mid``."""
+
+    mid: float
+    radius: float
+
+    def misses(self, value: float) -> float:
+        """How far ``value`` is from the farthest point of the enclosure."""
+        return abs(value - self.mid) + self.radius
+
+    def meets(self, other: Enclosed) -> bool:
+        """Whether the enclosures have a point in common, as they must if both are true."""
+        return abs(self.mid - other.mid) <= self.radius + other.radius
+
+
+@dataclass(frozen=True, eq=False)
+class Golden:
+    """A stored scene: contact set, pressure midpoints with their largest radius (Pa), enclosed numbers.
+
+    ``numbers`` holds the approach (m, from first touch), the forces (N) and the friction coefficient.
+    """
+
+    scene: GoldenScene
+    contact: Mask
+    pressure: Array
+    radius: float
+    numbers: Mapping[str, Enclosed]
+    margins: Mapping[str, float | None]
+
+
+def document(golden: GoldenScene, proof: Proof) -> dict[str, Any]:
+    """The JSON document of a proof."""
+    return {
+        "format": FORMAT,
+        "name": golden.name,
+        "stresses": golden.stresses,
+        "problem": _problem(golden),
+        "proof": {
+            "arithmetic": f"python-flint arb, {BITS} bits",
+            "contact": _drawn(proof.contact),
+            **_margins(proof),
+        },
+        "solution": {
+            "pressures": [enclosed_json(ball) for ball in proof.pressures],
+            "approach": enclosed_json(proof.approach),
+            **{name: enclosed_json(ball) for name, ball in proof.forces.items()},
+        },
+        "provenance": provenance(),
+    }
+
+
+def enclosed(ball: Ball) -> Enclosed:
+    """The ball in doubles: its midpoint, and a radius that covers the midpoint's rounding too."""
+    mid = float(ball.mid())
+    radius = float(abs(ball - arb().arb(mid)).upper())
+    return Enclosed(mid, radius * (1 + 4 * _EPS))
+
+
+def enclosed_json(ball: Ball) -> dict[str, float]:
+    """`enclosed`, for JSON."""
+    found = enclosed(ball)
+    return {"mid": found.mid, "radius": found.radius}
+
+
+def write(golden: GoldenScene, proof: Proof, folder: Path) -> Path:
+    """Write ``folder/NAME.json`` in one step; its path."""
+    path = folder / f"{golden.name}.json"
+    write_text(to_json(document(golden, proof)), path)
+    return path
+
+
+@cache
+def stored() -> tuple[Golden, ...]:
+    """All golden scenes that ship with the package, by name. Raises FileNotFoundError when there are none."""
+    files = sorted(
+        file.name for file in resources.files("verification.golden").iterdir() if file.name.endswith(".json")
+    )
+    if not files:
+        raise FileNotFoundError("no golden scenes: run python -m verification.golden --json DIR")
+    return tuple(
+        parsed(json.loads((resources.files("verification.golden") / name).read_text(encoding="utf-8")))
+        for name in files
+    )
+
+
+def named(name: str) -> Golden:
+    """The stored scene of this name. Raises StopIteration for an unknown one."""
+    return next(golden for golden in stored() if golden.scene.name == name)
+
+
+def parsed(content: Mapping[str, Any]) -> Golden:
+    """A golden document read back. Raises ValueError for another format, KeyError for a missing part."""
+    if content["format"] != FORMAT:
+        raise ValueError(f"not a file of the format {FORMAT!r}")
+    contact = np.array([[mark == "#" for mark in row] for row in content["proof"]["contact"]])
+    solution = content["solution"]
+    pressure = np.zeros(contact.shape)
+    pressure[contact] = [entry["mid"] for entry in solution["pressures"]]
+    numbers = {name: Enclosed(**entry) for name, entry in solution.items() if name != "pressures"}
+    margins = {name: content["proof"][name] for name in ("smallest pressure", "smallest separation")}
+    return Golden(
+        scene=_scene(content),
+        contact=contact,
+        pressure=pressure,
+        radius=max(entry["radius"] for entry in solution["pressures"]),
+        numbers=numbers,
+        margins=margins,
+    )
+
+
+def _problem(golden: GoldenScene) -> dict[str, Any]:
+    return {
+        "M": golden.M,
+        "side": SIDE,
+        "lower": {"E": golden.lower.E, "nu": golden.lower.nu},
+        "upper": {"E": golden.upper.E, "nu": golden.upper.nu},
+        "friction": {"tau": golden.friction.tau, "beta": golden.friction.beta},
+        "load": golden.load if golden.approach is None else None,
+        "approach": golden.approach,
+        "direction": golden.direction,
+        "periodic": golden.periodic,
+        "heights": golden.heights.tolist(),
+        "tan_x": None if golden.tan_x is None else golden.tan_x.tolist(),
+        "tan_y": None if golden.tan_y is None else golden.tan_y.tolist(),
+    }
+
+
+def _scene(content: Mapping[str, Any]) -> GoldenScene:
+    problem = content["problem"]
+    tangents = {
+        name: None if problem[name] is None else np.array(problem[name]) for name in ("tan_x", "tan_y")
+    }
+    return GoldenScene(
+        name=content["name"],
+        stresses=content["stresses"],
+        heights=np.array(problem["heights"]),
+        lower=rf.Material(**problem["lower"]),
+        upper=rf.Material(**problem["upper"]),
+        friction=rf.Friction(**problem["friction"]),
+        load=1.0 if problem["load"] is None else problem["load"],
+        approach=problem["approach"],
+        direction=problem["direction"],
+        periodic=problem["periodic"],
+        **tangents,
+    )
+
+
+def _margins(proof: Proof) -> dict[str, float | None]:
+    """Smallest pressure over the peak and w over the approach (None in full contact), proven positive."""
+    pressures = [float(ball) for ball in proof.pressures]
+    separations = [float(ball) for ball in proof.separations]
+    return {
+        "smallest pressure": min(pressures) / max(pressures),
+        "smallest separation": min(separations) / float(proof.approach) if separations else None,
+        "largest relative radius": max(
+            float(ball.rad()) / abs(float(ball)) for ball in (*proof.pressures, *proof.separations)
+        ),
+    }
+
+
+def _drawn(contact: Mask) -> list[str]:
+    return ["".join("#" if touching else "." for touching in row) for row in contact]
+
+
+def relative(value: float, exact: Enclosed, scale: float) -> float:
+    """Largest distance of ``value`` from the enclosure over ``scale``; exact agreement of zeros is 0.
+
+    >>> relative(1.5, Enclosed(1.0, 0.25), 1.0)
+    0.75
+    """
+    miss = exact.misses(value)
+    return 0.0 if miss == 0 else miss / scale if scale else math.inf
