@@ -15,8 +15,8 @@ from verification.contestants.protocol import ContactProblem, Contestant, Coupli
 
 MODULUS = 2e9
 """Reduced modulus E* (Pa) of the suite's problems."""
-COMPLIANCE = 0.375 / (np.pi * MODULUS)
-"""c0 (1/Pa) where friction couples: Dundurs' constant 0.375, as of nu = 0.2 against a rigid body."""
+COMPLIANCE = 0.3 / (np.pi * MODULUS)
+"""c0 (1/Pa) where friction couples: Dundurs' constant 0.3, as of nu = 2/7 against a rigid body."""
 
 
 class Fault(StrEnum):

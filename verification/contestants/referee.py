@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from verification.contestants.protocol import ContactProblem
 from verification.exact.fourier import symbol_at
@@ -133,14 +134,23 @@ class _Elimination:
 
     def __post_init__(self) -> None:
         problem, M = self.problem, self.problem.M
-        unit = np.eye(M * M).reshape(M * M, M, M)
-        bare = problem.coupling is None or problem.coupling.tau == 0
-        if not bare or (problem.periodic and M > 16):
-            raise ValueError("elimination is for small problems without tau")
-        self.matrix = np.array([displacement(problem, f).ravel() for f in unit]).T
+        if problem.coupling is not None and problem.coupling.tau != 0:
+            raise ValueError("elimination is for problems without tau")
+        origin = np.zeros((M, M))
+        origin[0, 0] = 1.0
+        if problem.periodic:
+            i, j = (axis.ravel() for axis in np.indices((M, M)))
+            response = displacement(problem, origin)
+            self.matrix = response[(i[:, None] - i) % M, (j[:, None] - j) % M]
+        else:
+            c = problem.coupling
+            self.matrix = _unit_matrix(M, None) * (problem.spacing / (np.pi * problem.reduced_modulus))
+            if c is not None:
+                shear = _unit_matrix(M, c.sliding_direction) * problem.spacing
+                self.matrix = self.matrix + c.beta * c.shear_compliance * shear
         self.gap = problem.gap.ravel()
 
-    def on(self, contact: Array) -> tuple[Array, float]:
+    def on(self, contact: Mask) -> tuple[Array, float]:
         """Pressures (all elements) and approach from first touch."""
         k = np.flatnonzero(contact)
         block, approach = self.matrix[np.ix_(k, k)], self.problem.approach_from_touch
@@ -162,11 +172,12 @@ class _Elimination:
 def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
     """The solution ``(M, M)`` (Pa) by block principal pivoting, for small problems without tau.
 
-    Starts from all elements in contact; drops those in tension and adds those that penetrate until there are
-    none. Raises RuntimeError where that does not end within ``limit`` rounds.
+    Starts from all elements in contact, or all that overlap at a prescribed approach; drops those in tension
+    and adds those that penetrate until there are none. Raises RuntimeError where that does not end within
+    ``limit`` rounds.
     """
-    system = _Elimination(problem)
-    contact = np.ones(problem.M**2, dtype=bool)
+    system, prescribed = _Elimination(problem), problem.approach_from_touch
+    contact = problem.gap.ravel() < (np.inf if prescribed is None else prescribed)
     for _ in range(limit):
         f, approach = system.on(contact)
         v = system.matrix @ f + system.gap

@@ -36,8 +36,8 @@ def egg_box(n: int) -> Array:
     claim="At half the full-contact load the pressure is Westergaard's, with its ridges along y",
     source="Westergaard 1939; Johnson 1985, Eq. (13.7)",
     metric="at_most",
-    tolerance=0.012,
-    tolerance_reason="relative L2; square-root edges: order 1, 8e-3 at 32 elements to a wave",
+    tolerance=0.01,
+    tolerance_reason="relative L2; square-root edges: order 1, 7.7e-3 measured at 32 elements to a wave",
     catches=(Fault.TRANSPOSED, Fault.HALF_ELEMENT, Fault.APERIODIC_FOR_PERIODIC, Fault.MODULUS_DOUBLED),
 )
 def westergaard_pressure(entrant: Entrant) -> Measured:
@@ -52,8 +52,8 @@ def westergaard_pressure(entrant: Entrant) -> Measured:
     claim="Mean pressure = p* sin^2(pi a/lambda) from a tenth to nine tenths of full contact",
     source="Johnson 1985, Eq. (13.8)",
     metric="at_most",
-    tolerance=2 / M,
-    tolerance_reason="whole elements: each of the two edges is placed to one element of 1/32",
+    tolerance=1 / M,
+    tolerance_reason="whole elements: each of the two edges is placed to half an element of 1/32",
     catches=(Fault.MODULUS_DOUBLED, Fault.APERIODIC_FOR_PERIODIC),
 )
 def westergaard_area(entrant: Entrant) -> Measured:
@@ -69,11 +69,11 @@ def westergaard_area(entrant: Entrant) -> Measured:
 @check(
     "westergaard-load",
     title="One-dimensional wave: load at a prescribed approach",
-    claim="At the approach of the mean planes that belongs to half the full-contact load, that load comes out",
+    claim="At the approach of the mean planes that belongs to half the full-contact load, out it comes",
     source="approach integrated from Johnson's flat-punch increment: Delta s^2 (1 - ln s^2)",
     metric="relative",
-    tolerance=0.004,
-    tolerance_reason="order 2 with the edge on element borders: measured 2.3e-3 at 32 elements to a wave",
+    tolerance=0.002,
+    tolerance_reason="order 2 with the edge on element borders: 1.4e-3 measured at 32 elements to a wave",
     catches=(Fault.MEAN_PLANES_LOST, Fault.MODULUS_OFF, Fault.MODULUS_DOUBLED, Fault.APERIODIC_FOR_PERIODIC),
 )
 def westergaard_load(entrant: Entrant) -> Measured:
@@ -88,8 +88,9 @@ def westergaard_load(entrant: Entrant) -> Measured:
     claim="Mean planes at 0.61525 Delta from first touch carry a tenth of the full-contact load",
     source="Johnson, Greenwood and Higginson 1985; own 21-grid extrapolation (verification.exact.jgh)",
     metric="relative",
-    tolerance=0.008,
-    tolerance_reason="order 2 in h over the contact's radius, a quarter of the wave",
+    tolerance=0.0025,
+    tolerance_reason="order 2 in h over the contact's radius, eight elements: 1.7e-3 measured. 1 % of "
+    "modulus is 1 % of load",
     catches=(Fault.MEAN_PLANES_LOST, Fault.MODULUS_OFF, Fault.MODULUS_DOUBLED, Fault.APERIODIC_FOR_PERIODIC),
 )
 def egg_box_load(entrant: Entrant) -> Measured:
@@ -104,9 +105,9 @@ def egg_box_load(entrant: Entrant) -> Measured:
     claim="The contact fraction follows the extrapolated curve at 0.1, 0.5 and 0.9 of the full-contact load",
     source="Johnson, Greenwood and Higginson 1985; own 21-grid extrapolation (verification.exact.jgh)",
     metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="whole elements: the outline, some two waves long, is worth about half an element of "
-    "1/48 along it, the grid's alignment with it included",
+    tolerance=0.01,
+    tolerance_reason="whole elements: the area inside an outline of three waves scatters by some 5e-3 on "
+    "elements of 1/48; 4.3e-3 measured",
     catches=(Fault.MODULUS_DOUBLED, Fault.APERIODIC_FOR_PERIODIC),
 )
 def egg_box_area(entrant: Entrant) -> Measured:

@@ -36,7 +36,7 @@ def judged(entrant: Entrant, pressed: Pressed) -> Measured:
 def wavy(M: int, seed: int) -> Array:
     """A periodic rough gap (m) on a unit square."""
     heights = waves(M, seed, longest=2, shortest=7)
-    return 0.01 * (heights.max() - heights)
+    return np.asarray(0.01 * (heights.max() - heights))
 
 
 @check(
@@ -217,4 +217,4 @@ def sliding_residual(entrant: Entrant) -> Measured:
 def sliding_elimination(entrant: Entrant) -> Measured:
     coupling = Coupling(tau=0.0, beta=0.5, shear_compliance=-COMPLIANCE, sliding_direction=2.2)
     pressed = entrant.press(rough_bump(20, seed=13), 1.0, load=0.05 * MODULUS, coupling=coupling)
-    return Measured(entrant.misfit(pressed, np.asarray(referee.eliminated(pressed.problem))))
+    return Measured(entrant.misfit(pressed, referee.eliminated(pressed.problem)))

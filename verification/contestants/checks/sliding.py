@@ -18,7 +18,7 @@ from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
 from verification.exact.sliding_wave import SlidingWave
 
 D = float(np.pi * COMPLIANCE * MODULUS)
-"""Dundurs' constant of the pair, 0.375."""
+"""Dundurs' constant of the pair, 0.3."""
 M = 32
 
 
@@ -34,10 +34,10 @@ def centroid(pressed: Pressed, x: Array) -> float:
     "direction, towards the trailing edge",
     source="Gauss' law for the kernel s/rho^2; verification.exact.coupled_indentation; paper section 7",
     metric="relative",
-    tolerance=0.1,
-    tolerance_reason="the shift is 0.7 of an element and the edge of tau a staircase: some per cent of it at "
-    "13 elements across the radius. The other sign misses by 2, no tau by 1",
-    catches=(Fault.SIGN_OF_C, Fault.TAU_MISSING, Fault.TAU_EVERYWHERE),
+    tolerance=0.03,
+    tolerance_reason="the edge of tau is a staircase that places the centroid to a per cent of the shift at "
+    "12 elements across the radius: 1.4e-2 measured. The other sign misses by 2, no tau by 1",
+    catches=(Fault.SIGN_OF_C, Fault.TAU_MISSING),
 )
 def trailing_shift(entrant: Entrant) -> Measured:
     side = 2.6 * SPHERE.contact_radius
@@ -50,14 +50,14 @@ def trailing_shift(entrant: Entrant) -> Measured:
 @check(
     "coupled-indentation",
     title="A gap whose exact sliding state is Hertz'",
-    claim="Sliding at 2.5 rad with tau and beta over a gap that takes their displacement away, the pressure is "
-    "centred and round",
+    claim="Sliding at 2.5 rad with tau and beta over a gap that takes their displacement away, the pressure "
+    "is centred and round",
     source="Gauss' law for the kernel s/rho^2; verification.exact.coupled_indentation",
     metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="relative L2; order 1 as for Hertz alone, with the jump of tau at the edge; 2e-2 "
+    tolerance=0.02,
+    tolerance_reason="relative L2; order 1 as for Hertz alone, with the jump of tau at the edge; 1.6e-2 "
     "measured at 12 elements across the radius",
-    catches=(Fault.SIGN_OF_C, Fault.TAU_MISSING, Fault.TRANSPOSED, Fault.HALF_ELEMENT, Fault.TAU_EVERYWHERE),
+    catches=(Fault.SIGN_OF_C, Fault.TAU_MISSING, Fault.TRANSPOSED, Fault.HALF_ELEMENT),
 )
 def coupled_indentation(entrant: Entrant) -> Measured:
     side, direction = 2.6 * SPHERE.contact_radius, 2.5
@@ -73,14 +73,14 @@ def coupled_indentation(entrant: Entrant) -> Measured:
 @check(
     "sliding-wave",
     title="A sliding wave with the binomial law: trailing shift",
-    claim="With shear tau + beta p the centroid of a wave's pressure trails by the exact amount; tau is worth "
-    "a fifth of it",
+    claim="With shear tau + beta p the centroid of a wave's pressure trails by the exact amount; tau is "
+    "worth a fifth of it",
     source="singular exponents of Galin 1953 and Johnson 1985, section 8.3, on Westergaard's wave",
     metric="relative",
-    tolerance=0.03,
-    tolerance_reason="the edges are placed to 1/64 of a wave, but enter the centroid by their pressure, which "
-    "vanishes there",
-    catches=(Fault.SIGN_OF_C, Fault.TAU_MISSING, Fault.TRANSPOSED),
+    tolerance=2e-3,
+    tolerance_reason="the edges are placed to 1/64 of a wave, but enter the centroid by their pressure, "
+    "which vanishes there: 1e-3 measured",
+    catches=(Fault.SIGN_OF_C, Fault.TAU_MISSING, Fault.TAU_EVERYWHERE, Fault.TRANSPOSED),
 )
 def sliding_wave(entrant: Entrant) -> Measured:
     n, beta, tau = 64, 0.4, 0.04 * STAR
@@ -94,7 +94,7 @@ def sliding_wave(entrant: Entrant) -> Measured:
 @check(
     "full-contact-sliding",
     title="A rough plane sliding in full contact",
-    claim="With coupling the transform of the pressure gains 1/(1 - i d beta q_s/q), in a direction of 0.7 rad",
+    claim="With coupling the pressure's transform gains 1/(1 - i d beta q_s/q), in a direction of 0.7 rad",
     source="transform of s/rho^2, -2 pi i q_s/q^2; derived in verification.exact.fourier",
     metric="at_most",
     tolerance=2.0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from refimpl.friction import Mask
 from refimpl.grid import Array
 from verification.case import Measured
 from verification.contestants.check import MODULUS, Entrant, Fault, Pressed, check
@@ -38,9 +39,9 @@ def sphere(side: float, n: int) -> Array:
     claim="A paraboloid under a load has Hertz' peak pressure",
     source="Hertz 1882; Johnson 1985, Eq. (4.24)",
     metric="relative",
-    tolerance=0.005,
-    tolerance_reason="order 2, 3 h^2/a^2: 4e-3 at 13 elements across the radius. 1 % of modulus is worth "
-    "0.67 %, above or below",
+    tolerance=0.002,
+    tolerance_reason="order 2 in h/a: 1.0e-3 measured at 13 elements across the radius. 1 % of modulus is "
+    "worth 6.7e-3",
     catches=BOTH_MODULI,
 )
 def hertz_peak(entrant: Entrant) -> Measured:
@@ -55,9 +56,10 @@ def hertz_peak(entrant: Entrant) -> Measured:
     claim="P = 4/3 E* sqrt(R) delta^(3/2), the approach counted from the tip between four centres",
     source="Hertz 1882; Johnson 1985, Eq. (4.23)",
     metric="relative",
-    tolerance=0.005,
-    tolerance_reason="order 2 in h/a. 1 % of modulus is 1 % of load",
-    catches=(*BOTH_MODULI, Fault.MEAN_DISPLACEMENT_LOST, Fault.PERIODIC_FOR_APERIODIC),
+    tolerance=0.001,
+    tolerance_reason="order 2 in h/a with scatter: 1.5e-4 measured, 7e-4 at most with 26 to 48 elements. 1 % "
+    "of modulus is 1 % of load",
+    catches=(*BOTH_MODULI, Fault.MEAN_DISPLACEMENT_LOST),
 )
 def hertz_load(entrant: Entrant) -> Measured:
     side = WIDE * SPHERE.contact_radius
@@ -72,8 +74,8 @@ def hertz_load(entrant: Entrant) -> Measured:
     source="Johnson 1985, Eq. (3.39); what a periodic image would add",
     metric="at_most",
     tolerance=0.03,
-    tolerance_reason="relative L2; square-root edges: order 1, h/4a at 10 elements across the radius. Images "
-    "at distances of 3 a are worth twice that",
+    tolerance_reason="relative L2; square-root edges: order 1, 2.4e-2 measured at 10 elements across the "
+    "radius",
     catches=(Fault.PERIODIC_FOR_APERIODIC, Fault.TRANSPOSED),
 )
 def hertz_off_centre(entrant: Entrant) -> Measured:
@@ -90,9 +92,9 @@ def hertz_off_centre(entrant: Entrant) -> Measured:
     claim="The long semi-axis of a paraboloid of curvatures 2 and 6 lies along x, where it is flatter",
     source="Johnson 1985, section 4.2; Carlson's integrals",
     metric="at_most",
-    tolerance=0.025,
-    tolerance_reason="relative L2; square-root edges: order 1, 2e-2 at 13 elements across the long semi-axis. "
-    "Exchanged axes miss by 60 %, half an element by 10 %",
+    tolerance=0.02,
+    tolerance_reason="relative L2; square-root edges: order 1, 1.7e-2 measured at 13 elements across "
+    "the long semi-axis. Exchanged axes miss by 60 %, half an element by 10 %",
     catches=(Fault.TRANSPOSED, Fault.HALF_ELEMENT, Fault.MODULUS_DOUBLED),
 )
 def hertz_ellipse(entrant: Entrant) -> Measured:
@@ -108,8 +110,9 @@ def hertz_ellipse(entrant: Entrant) -> Measured:
     claim="The pressure is E* slope/2 arccosh(a/r), logarithmic at the tip",
     source="Sneddon 1965; Johnson 1985, section 5.2",
     metric="at_most",
-    tolerance=0.016,
-    tolerance_reason="relative L2: order 1 by tip and edge alike, 1.2e-2 at 13 elements across the radius",
+    tolerance=0.013,
+    tolerance_reason="relative L2: order 1 by tip and edge alike, 1.04e-2 measured at 13 elements across the "
+    "radius",
     catches=(Fault.MODULUS_DOUBLED, Fault.HALF_ELEMENT),
 )
 def cone(entrant: Entrant) -> Measured:
@@ -122,14 +125,14 @@ def cone(entrant: Entrant) -> Measured:
 @check(
     "load-doubling",
     title="Load doubling of power-law indenters",
-    claim="Twice the load on r, r^2, r^4 multiplies the load within half the first radius as Galin's pressure "
-    "says, and the pressures stay his",
+    claim="On r, r^2, r^4 the load within half the first contact's radius is Galin's, before and after the "
+    "load is doubled",
     source="Galin 1961; Sneddon 1965; Archard 1957 for the meaning",
     metric="at_most",
-    tolerance=0.012,
-    tolerance_reason="relative, of the load within half the radius, which no edge element touches: order 2 of "
-    "h/a = 1/10 over the first contact",
-    catches=(Fault.MODULUS_DOUBLED, Fault.MODULUS_OFF),
+    tolerance=0.007,
+    tolerance_reason="relative; the cone's tip, logarithmic, is worth h^2 of load: 4.7e-3 measured at ten "
+    "elements across the first contact's radius",
+    catches=(Fault.MODULUS_DOUBLED,),
 )
 def load_doubling(entrant: Entrant) -> Measured:
     worst, ratios = 0.0, []
@@ -147,7 +150,7 @@ def load_doubling(entrant: Entrant) -> Measured:
     return Measured(worst, data={"exponent": [1.0, 2.0, 4.0], "core load ratio": ratios})
 
 
-def punch(entrant: Entrant, inside: Array, side: float) -> Pressed:
+def punch(entrant: Entrant, inside: Mask, side: float) -> Pressed:
     """A flat punch at an approach of 1 mm; the elements outside it stand off by 1 m."""
     return entrant.press(np.where(inside, 0.0, 1.0), side, approach=1e-3)
 

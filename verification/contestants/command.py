@@ -1,0 +1,154 @@
+"""A program in any language as a contestant: problems and answers as plain files.
+
+The command is run as ``COMMAND DIRECTORY`` for each problem. In the directory it finds
+
+    problem.json   one key a line: M, spacing (m), reduced_modulus (Pa), control ("load" or "approach"),
+                   value (N or m), periodic (0 or 1), tolerance, friction (0 or 1), tau (Pa), beta,
+                   shear_compliance (1/Pa), sliding_direction (rad); the last four are 0 without friction
+    gap.csv        the gap (m): M lines of M numbers, line i for x, column j for y, full precision
+    problem.npz    the same array under the name gap
+
+and writes there, in the same layout, either ``pressure.csv`` or ``answer.npz`` (array ``pressure``), in Pa.
+It may add ``answer.json``, ``{"converged": true}``; without it, exit status 0 claims success. Anything else
+is an error of the case: another exit status, no answer or two, a short one, NaN, too much time. What the
+numbers mean is said in `verification.contestants.protocol`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import signal
+import subprocess
+import tempfile
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from refimpl.errors import InputError
+from refimpl.grid import Array
+from verification.contestants.protocol import Abilities, Answer, BadAnswer, ContactProblem
+
+
+@dataclass(frozen=True)
+class Command:
+    """A program with its arguments; ``timeout`` in seconds for one problem.
+
+    Raises `InputError` for an empty command or a time that is not positive.
+    """
+
+    words: tuple[str, ...]
+    abilities: Abilities = Abilities()
+    timeout: float = 300.0
+
+    def __post_init__(self) -> None:
+        if not self.words:
+            raise InputError("--exec", "", "a command")
+        if not self.timeout > 0:
+            raise InputError("--timeout", self.timeout, "a positive number of seconds")
+
+    @classmethod
+    def of(cls, line: str, abilities: Abilities, timeout: float) -> Command:
+        """From a command line, split like a shell does; no shell runs it."""
+        try:
+            return cls(tuple(shlex.split(line)), abilities, timeout)
+        except ValueError as unbalanced:
+            raise InputError("--exec", line, f"a command ({unbalanced})") from unbalanced
+
+    @property
+    def version(self) -> str:
+        """The command itself: what it is, only its author knows."""
+        return shlex.join(self.words)
+
+    def __call__(self, problem: ContactProblem) -> Answer:
+        """Run the program on one problem. Raises `BadAnswer` for whatever is not a readable claim of success."""
+        with tempfile.TemporaryDirectory(prefix="contact-") as name:
+            directory = Path(name)
+            write_problem(problem, directory)
+            self._run(directory)
+            return read_answer(directory)
+
+    def _run(self, directory: Path) -> None:
+        """Run to its end in a process group of its own, which is killed when the time is up."""
+        with (directory / "output.txt").open("w+b") as output:
+            try:
+                process = subprocess.Popen(
+                    [*self.words, str(directory)],
+                    stdin=subprocess.DEVNULL,
+                    stdout=output,
+                    stderr=subprocess.STDOUT,
+                    start_new_session=True,
+                )
+            except OSError as missing:
+                raise BadAnswer(f"cannot run {self.words[0]}: {missing.strerror}") from missing
+            try:
+                status = process.wait(self.timeout)
+            except subprocess.TimeoutExpired as late:
+                raise BadAnswer(f"no answer within {self.timeout:g} s") from late
+            finally:
+                _end(process)
+        if status:
+            said = (directory / "output.txt").read_bytes().decode(errors="replace").split("\n")
+            last = next((line for line in reversed(said) if line.strip()), "nothing said")
+            raise BadAnswer(f"exit status {status}: {last.strip()[:200]}")
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Kill what is left of the program's process group."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    process.wait()
+
+
+def write_problem(problem: ContactProblem, directory: Path) -> None:
+    """Write the three files of a problem."""
+    coupling, by_load = problem.coupling, problem.load is not None
+    header = {
+        "M": problem.M,
+        "spacing": problem.spacing,
+        "reduced_modulus": problem.reduced_modulus,
+        "control": "load" if by_load else "approach",
+        "value": problem.load if by_load else problem.approach,
+        "periodic": int(problem.periodic),
+        "tolerance": problem.tolerance,
+        "friction": int(coupling is not None),
+        "tau": coupling.tau if coupling else 0.0,
+        "beta": coupling.beta if coupling else 0.0,
+        "shear_compliance": coupling.shear_compliance if coupling else 0.0,
+        "sliding_direction": coupling.sliding_direction if coupling else 0.0,
+    }
+    (directory / "problem.json").write_text(json.dumps(header, indent=1) + "\n", encoding="utf-8")
+    np.savetxt(directory / "gap.csv", problem.gap, fmt="%.17g", delimiter=",")
+    np.savez(directory / "problem.npz", gap=problem.gap)
+
+
+def read_answer(directory: Path) -> Answer:
+    """The answer in a directory; `ask` judges its shape and numbers. Raises `BadAnswer` where there is none."""
+    table, archive, header = (directory / name for name in ("pressure.csv", "answer.npz", "answer.json"))
+    if table.exists() == archive.exists():
+        found = "both pressure.csv and" if table.exists() else "neither pressure.csv nor"
+        raise BadAnswer(f"exit status 0, but {found} answer.npz")
+    try:
+        converged = json.loads(header.read_text(encoding="utf-8"))["converged"] if header.exists() else True
+        pressure = _read_table(table) if table.exists() else _read_archive(archive)
+    except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile) as broken:
+        raise BadAnswer(f"unreadable answer: {type(broken).__name__}: {broken}") from broken
+    return Answer(pressure, converged)
+
+
+def _read_table(path: Path) -> Array:
+    """Numbers between commas; a line of another length raises ValueError, as does an empty file."""
+    rows = [[float(cell) for cell in line.split(",")] for line in path.read_text().splitlines() if line]
+    if not rows or any(len(row) != len(rows[0]) for row in rows):
+        raise ValueError("no numbers, or lines of unequal length")
+    return np.array(rows)
+
+
+def _read_archive(path: Path) -> Array:
+    with np.load(path, allow_pickle=False) as archive:
+        return np.asarray(archive["pressure"])
