@@ -14,8 +14,9 @@ Split ``w = r + p`` with any ``p >= 0``. Since ``f.w* >= 0``, ``f*.w* = 0`` and 
 
     e.a e <= e.r + f.p + (approach - approach*) K.e <= ||r||' ||e|| + f.p + ...                         (B2)
 
-with ``||e||^2 = e.a e`` and ``||.||'`` its dual norm. Nothing is asked of f: a negative pressure is set to
-zero first and its own ``||f-||`` added at the end; penetration (w < 0) is part of r.
+with ``||e||^2 = e.a e`` and ``||.||'`` its dual norm. Nothing is asked of f: pressure that is negative, or
+stands where the gap is open, is set to zero first and its own norm added at the end; penetration (w < 0) is
+part of r.
 
 *The complementarity gap.* Where nothing penetrates, ``r = 0`` and ``p = w`` give ``e.a e <= f.w``, which is
 ``sum K f (v - approach) <= sum f (v - approach)``, since K <= 1. With N exact and flat slopes that holds for
@@ -117,24 +118,27 @@ class _Frozen:
         self.beta = problem.friction.beta
         self.K = slopes.obliqueness
         self.coupling = self.beta * problem.pair.shear_compliance if problem.terms.shear_moves() else 0.0
-        self.f = np.maximum(pressure, 0.0)
-        self.clipped = self.norm.norm(self.f - pressure)
-        held = traction - self.beta * pressure
-        shear = held + self.beta * self.f
-        u = np.add(*problem.displacements(self.norm.operator, self.f, shear, slopes))
-        self.total = float(np.vdot(self.K, self.f))
-        free = u + self.K * problem.gap
+        self._set(np.maximum(pressure, 0.0))
+        spurious = (self.f > 0) & (self.w >= norm.diagonal * self.f)
+        if spurious.any():
+            self._set(np.where(spurious, 0.0, self.f))
+        self.clipped = norm.norm(self.f - pressure)
+        self._split()
+
+    def _set(self, f: Array) -> None:
+        """Pressure, approach and w, from the displacements of this pressure."""
+        problem, K = self.problem, self.K
+        shear = self.traction - self.beta * self.pressure + self.beta * f
+        free = np.add(*problem.displacements(self.norm.operator, f, shear, self.slopes)) + K * problem.gap
+        self.f, self.total = f, float(np.vdot(K, f))
         if problem.approach is not None:
             self.approach = problem.approach
         else:
-            self.approach = float(np.vdot(self.f, free)) / self.total if self.total > 0 else 0.0
-        self.w = free - self.K * self.approach
+            self.approach = float(np.vdot(f, free)) / self.total if self.total > 0 else 0.0
+        self.w = free - K * self.approach
         # cancellation of h against the approach, as well as the products' own rounding
-        lengths = self.K * (problem.gap + abs(self.approach))
-        self.noise = self.norm.rounding(self.f, shear) + 4 * np.finfo(float).eps * float(
-            np.linalg.norm(lengths)
-        )
-        self._split()
+        cancelled = float(np.linalg.norm(K * (problem.gap + abs(self.approach))))
+        self.noise = self.norm.rounding(f, shear) + 4 * np.finfo(float).eps * cancelled
 
     def _split(self) -> None:
         """``r`` with its dual norm, and ``f.p``."""

@@ -2,9 +2,9 @@
 
 A contact set S is given. On S Eq. (6) with equality, with ``r = tau + beta f``, and Eq. (2) are linear in the
 pressures and the approach. Their balls contain the exact solution, whatever the rounding; if every pressure's
-ball on S is above 0, and the ball of ``w = u + K (h - approach)`` elsewhere, S is the contact set and the balls
-contain the solution. There is no other: ``a + beta c`` is positive definite, and under a load, at flat slopes,
-the difference of two solutions has no resultant, so that the approach drops out. (With slopes see
+ball on S is above 0, and the ball of ``w = u + K (h - approach)`` elsewhere, S is the contact set and the
+balls contain the solution. There is no other: ``a + beta c`` is positive definite, and under a load, at flat
+slopes, the difference of two solutions has no resultant, so that the approach drops out. (With slopes see
 `refimpl.contact.bounds`.)
 
 Shares nothing with `refimpl`: influence coefficients are the textbook's corner sums (Love 1929; Johnson 1985,

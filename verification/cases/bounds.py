@@ -1,0 +1,248 @@
+"""The proven bounds of `refimpl.contact.bounds` against solutions that are proven by ball arithmetic."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.contact.bounds import Bounds, proven_bounds
+from refimpl.contact.energy_norm import EnergyNorm
+from refimpl.friction import local_friction
+from refimpl.grid import Array
+from refimpl.operators.dense import DenseInfluence
+from refimpl.problem import Problem
+from refimpl.slopes import Slopes
+from verification.case import Measured
+from verification.golden.store import Golden, named, stored
+from verification.properties.states import compliances
+from verification.properties.textbook import normal_matrix
+from verification.registry import case
+from verification.scenes import pressed
+
+SOURCE = "derivation in refimpl/contact/bounds.py; truth from ball arithmetic, verification/golden"
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+PROVEN = "a bound that is exceeded once is none; the truth is enclosed to 1e-16"
+
+
+def held(golden: Golden) -> Slopes:
+    """The slopes that the proof holds."""
+    tan_x, tan_y = golden.scene.tan_x, golden.scene.tan_y
+    return Slopes.flat(golden.contact.shape) if tan_x is None or tan_y is None else Slopes(tan_x, tan_y)
+
+
+@cache
+def loose(name: str, tolerance: float) -> rf.Solution:
+    """The production solver stopped early."""
+    return named(name).scene.solve("fft", tolerance)
+
+
+def bounds_of(golden: Golden, problem: Problem, pressure: Array) -> Bounds:
+    """Bounds of a pressure with the proof's slopes and support of tau."""
+    traction = local_friction(problem.friction, pressure, golden.contact)
+    return proven_bounds(problem, pressure, traction, held(golden))
+
+
+def energy_of(golden: Golden, pressure: Array) -> float:
+    """``sum e (a e) dA`` of any pressure e (J), with the textbook's matrix where there is one."""
+    grid, e = rf.Grid(golden.scene.scene.side, golden.scene.M), pressure.ravel()
+    if golden.scene.periodic:
+        a = DenseInfluence(grid, golden.scene.direction, periodic=True).normal_matrix
+    else:
+        a = normal_matrix(grid)
+    return float(e @ a @ e) * compliances(golden.scene.scene)[0] * grid.element_area
+
+
+def same_support(golden: Golden, found: rf.Solution) -> bool:
+    """Whether the solution holds tau where the proof does."""
+    if golden.scene.friction.tau == 0:
+        return True
+    held_tau = found.traction - found.friction.beta * found.pressure > 0.5 * found.friction.tau
+    return np.array_equal(held_tau, golden.contact)
+
+
+def rough_states() -> list[tuple[Golden, float, rf.Solution]]:
+    """Every golden scene at every loose tolerance."""
+    return [(golden, tol, loose(golden.scene.name, tol)) for golden in stored() for tol in TOLERANCES]
+
+
+@case(
+    "bounds/energy",
+    title="Bound on the error in the energy norm",
+    claim="(f - f*)' a (f - f*) is never above its bound, at tolerances from 1e-2 to 1e-8",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1.0,
+    tolerance_reason=PROVEN,
+    tags=("certificate", "rigorous"),
+)
+def energy() -> Measured:
+    ratios: dict[float, list[float]] = {tol: [] for tol in TOLERANCES}
+    for golden, tol, found in rough_states():
+        bound = bounds_of(golden, found.problem, found.pressure).energy
+        ratios[tol].append(energy_of(golden, found.pressure - golden.pressure) / bound)
+    sharp = [1 / math.sqrt(np.median(ratios[tol])) for tol in TOLERANCES]
+    return Measured(
+        value=max(max(values) for values in ratios.values()),
+        data={"tolerance": list(TOLERANCES), "median of bound over true error, in the norm": sharp},
+        note=f"the bound's norm is {min(sharp):.2f} to {max(sharp):.2f} times the true one (medians)",
+    )
+
+
+@case(
+    "bounds/gap",
+    title="The certificate's own gap bounds the error",
+    claim="at flat slopes and exact load, (f - f*)' a (f - f*) is at most the complementarity gap",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1.0,
+    tolerance_reason=PROVEN,
+    tags=("certificate", "rigorous"),
+)
+def gap() -> Measured:
+    ratios = {}
+    for name in ("smooth", "rough", "near-tie-misses", "near-tie-touches"):
+        golden, worst = named(name), 0.0
+        for tol in TOLERANCES:
+            found = loose(name, tol)
+            certified = found.certificate.gap * energy_of(golden, found.pressure) / 2
+            worst = max(worst, energy_of(golden, found.pressure - golden.pressure) / certified)
+        ratios[name] = worst
+    return Measured(value=max(ratios.values()), data={"true error over gap": ratios})
+
+
+@case(
+    "bounds/any-state",
+    title="Bounds for states that are far from feasible",
+    claim="noise on the pressure, negative pressures, penetration and a wrong load do not break the bound",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1.0,
+    tolerance_reason=PROVEN,
+    tags=("certificate", "rigorous"),
+)
+def any_state() -> Measured:
+    random, ratios = np.random.default_rng(5), []
+    for golden in stored():
+        problem = loose(golden.scene.name, 1e-8).problem
+        for size in (1.0, 0.1, 1e-3, 1e-6):
+            noise = random.standard_normal(golden.contact.shape) * (random.random(golden.contact.shape) < 0.5)
+            pressure = golden.pressure + size * float(golden.pressure.max()) * noise
+            ratios.append(
+                energy_of(golden, pressure - golden.pressure) / bounds_of(golden, problem, pressure).energy
+            )
+    return Measured(value=max(ratios), data={"true over bound": ratios})
+
+
+@case(
+    "bounds/numbers",
+    title="Bounds on pressure, approach, forces and friction",
+    claim="no number of a loosely solved scene is farther from its proven value than its bound",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1.0,
+    tolerance_reason=PROVEN + "; differences below 1e-15 of a number are the double's own and left out",
+    tags=("certificate", "rigorous", "friction"),
+)
+def numbers() -> Measured:
+    worst: dict[str, float] = {}
+    compared = 0
+    for golden, _, found in rough_states():
+        if golden.scene.oblique or not same_support(golden, found):
+            continue  # its own slopes, or its own support of tau: another frozen problem than the proven one
+        compared += 1
+        bounds = bounds_of(golden, found.problem, found.pressure)
+        miss = {"pressure": float(np.abs(found.pressure - golden.pressure).max())}
+        mean = float(found.problem.gap.mean()) if golden.scene.periodic else 0.0
+        for name, exact in golden.numbers.items():
+            value = getattr(found, name) + (mean if name == "approach" else 0.0)
+            miss[name] = max(0.0, abs(value - exact.mid) - exact.radius - 1e-15 * abs(exact.mid))
+        for name, error in miss.items():
+            if error > 0:
+                worst[name] = max(worst.get(name, 0.0), error / getattr(bounds, name))
+    return Measured(
+        value=max(worst.values()) if compared >= len(rough_states()) / 2 else math.inf,
+        data={"true over bound": worst, "states compared": compared},
+    )
+
+
+@case(
+    "bounds/contact-sets",
+    title="Elements proven in or out of contact",
+    claim="none is listed wrongly, and at 1e-8 all are listed but the near ties",
+    source=SOURCE,
+    metric="equal",
+    tolerance=0.0,
+    tolerance_reason="one element on the wrong list refutes the proof",
+    tags=("certificate", "rigorous"),
+)
+def contact_sets() -> Measured:
+    wrong, undecided = 0, dict.fromkeys(TOLERANCES, 0)
+    for golden, tol, found in rough_states():
+        bounds = bounds_of(golden, found.problem, found.pressure)
+        wrong += int(np.count_nonzero(bounds.in_contact & ~golden.contact))
+        wrong += int(np.count_nonzero(bounds.out_of_contact & golden.contact))
+        low, high = bounds.contact_area
+        area = float(golden.contact.sum()) * found.grid.element_area
+        wrong += not low * (1 - 1e-15) <= area <= high * (1 + 1e-15)
+        open_ = int((~bounds.in_contact & ~bounds.out_of_contact).sum())
+        undecided[tol] += open_
+        if tol == TOLERANCES[-1]:
+            wrong += open_ != golden.scene.name.startswith("near-tie")
+    data = {"tolerance": list(TOLERANCES), "undecided elements": list(undecided.values())}
+    return Measured(value=float(wrong), reference=0.0, unit="elements", data=data)
+
+
+@case(
+    "bounds/least-eigenvalue",
+    title="Least eigenvalue of the flexibility",
+    claim="the symbol's smallest value is below every grid's smallest eigenvalue, and within 0.5 % at M = 16",
+    source="refimpl/contact/energy_norm.py; numpy.linalg.eigvalsh",
+    metric="at_most",
+    tolerance=1.0,
+    tolerance_reason="a lower bound that is exceeded once is none; eigvalsh errs by 1e-15",
+    tags=("certificate",),
+)
+def least_eigenvalue() -> Measured:
+    sizes, ratios = (1, 2, 3, 5, 8, 12, 16), []
+    for M in sizes:
+        problem = pressed_problem(M)
+        matrix = problem.pair.normal_compliance * normal_matrix(problem.grid)
+        floor = EnergyNorm(problem, np.ones((M, M))).floor
+        ratios.append(floor / float(np.linalg.eigvalsh(matrix)[0]))
+    close = ratios[-1] > 0.995
+    return Measured(value=max(ratios) if close else math.inf, data={"M": list(sizes), "bound": ratios})
+
+
+def pressed_problem(M: int) -> Problem:
+    """Some scene's problem on ``M x M`` elements."""
+    return rf.solve(pressed(rms=None), M, tolerance=0.5, oblique=False).problem
+
+
+@case(
+    "bounds/production",
+    title="Bounds of a production solve",
+    claim="at the default tolerance the bound proves mu to 1e-6 and the contact set of Table 1's rough scene",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=1e-6,
+    tolerance_reason="a hundredth of what the paper prints of mu; the bound is linear in residuals of 1e-8",
+    tags=("certificate", "friction"),
+)
+def production() -> Measured:
+    found = rf.solve(rf.read_scene("table1-rough"), 64)
+    bounds = found.bounds
+    low, high = bounds.contact_area
+    undecided = round((high - low) / found.grid.element_area)
+    return Measured(
+        value=bounds.friction_coefficient if undecided == 0 else math.inf,
+        data={
+            "bound of mu": bounds.friction_coefficient,
+            "bound of the pressure over the peak": bounds.pressure / found.max_pressure,
+            "bound of the approach, relative": bounds.approach / found.approach,
+            "undecided elements": undecided,
+        },
+        note=bounds.unproven,
+    )
