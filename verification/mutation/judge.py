@@ -1,0 +1,154 @@
+"""A mutant's trial: its kill-suite in a forked process whose import system serves the mutated source.
+
+The parent process imports what the suite needs from outside the tree, once, and nothing of the tree itself:
+a child starts in milliseconds, and everything it imports from the tree sees the mutant. Processor time is
+limited, so that an endless loop ends and a busy machine condemns nobody.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.machinery
+import json
+import os
+import resource
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import CodeType
+from typing import Any, NamedTuple
+
+import hypothesis
+import pytest
+
+OUR_PACKAGES = ("refimpl", "appendix_a")
+NO_SHRINKING = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+
+
+class Verdict(NamedTuple):
+    """``outcome`` survived, killed or timeout; ``killer`` the first test that failed; processor time."""
+
+    outcome: str
+    killer: str | None
+    seconds: float
+
+
+class Suite:
+    """The kill-suite ``tests`` (arguments for pytest) of the tree at ``root``, where it is run from.
+
+    Raises RuntimeError when the tree's own packages were imported before: children would not see mutants.
+    """
+
+    def __init__(self, root: Path, tests: Sequence[str]) -> None:
+        self.root, self.tests = root, tests
+        begun = [name for name in sys.modules if name.split(".")[0] in OUR_PACKAGES]
+        if begun:
+            raise RuntimeError(f"already imported: {begun}")
+
+    def baseline(self) -> float:
+        """Processor seconds of the suite on the tree as it is, measured with everything foreign imported.
+
+        Raises RuntimeError when it fails: nothing could be judged by it.
+        """
+        collected = self._forked(None, "", limit=None, more=("--collect-only",))
+        for name in collected.get("foreign", ()):
+            importlib.import_module(name)
+        found = self._forked(None, "", limit=None)
+        if collected["status"] or found["status"]:
+            raise RuntimeError(f"the suite fails without a mutant: {collected} {found}")
+        return float(found["seconds"])
+
+    def verdict(self, module: str, source: str, limit: int) -> Verdict:
+        """Try ``module`` (a path in the tree) with another source, within ``limit`` processor seconds."""
+        found = self._forked(module, source, limit)
+        outcome = "timeout" if found["status"] is None else "killed" if found["status"] else "survived"
+        return Verdict(outcome, found["killer"], round(found["seconds"], 2))
+
+    def _forked(
+        self, module: str | None, source: str, limit: int | None, more: Sequence[str] = ()
+    ) -> dict[str, Any]:
+        """Run in a child; its report, in which ``status`` is None when the child did not end by itself."""
+        begun = _children_seconds()
+        reading, writing = os.pipe()
+        sys.stdout.flush()
+        child = os.fork()
+        if child == 0:
+            os.close(reading)
+            try:
+                report = self._run(module, source, limit, more)
+            except BaseException as broken:  # the child must end here, whatever the mutant does
+                report = {"status": 1, "killer": type(broken).__name__}
+            with os.fdopen(writing, "w") as pipe:
+                json.dump(report, pipe)
+            os._exit(0)
+        os.close(writing)
+        with os.fdopen(reading) as pipe:
+            text = pipe.read()
+        os.waitpid(child, 0)
+        report = json.loads(text) if text else {"status": None, "killer": None}
+        return report | {"seconds": _children_seconds() - begun}
+
+    def _run(self, module: str | None, source: str, limit: int | None, more: Sequence[str]) -> dict[str, Any]:
+        if limit is not None:
+            resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+        quiet = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(quiet, 1)
+        os.dup2(quiet, 2)
+        os.chdir(self.root)
+        sys.path.insert(0, str(self.root))
+        if module is not None:
+            _serve(self.root / module, compile(source, module, "exec"))
+        hypothesis.settings.register_profile(
+            "judge", derandomize=True, database=None, deadline=None, phases=NO_SHRINKING
+        )
+        hypothesis.settings.load_profile("judge")
+        first = _FirstFailure()
+        options = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--assert=plain")
+        status = int(pytest.main([*options, *more, *self.tests], plugins=[first]))
+        report: dict[str, Any] = {"status": status, "killer": first.test}
+        if module is None:
+            report["foreign"] = _foreign(self.root)
+        return report
+
+
+class _FirstFailure:
+    """Notes the first test, or the first file, that failed."""
+
+    def __init__(self) -> None:
+        self.test: str | None = None
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.failed and self.test is None:
+            self.test = report.nodeid
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        if report.failed and self.test is None:
+            self.test = report.nodeid
+
+
+def _serve(path: Path, code: CodeType) -> None:
+    """Make every import of the file at ``path`` run ``code``."""
+    original = importlib.machinery.SourceFileLoader.get_code
+    real = path.resolve()
+
+    def get_code(loader: importlib.machinery.SourceFileLoader, name: str) -> CodeType | None:
+        found = original(loader, name)
+        return code if Path(loader.path).resolve() == real else found
+
+    importlib.machinery.SourceFileLoader.get_code = get_code  # type: ignore[method-assign,assignment]  # the hook
+
+
+def _foreign(root: Path) -> list[str]:
+    """Loaded modules of the standard library and of installed packages, those of ``root`` left out."""
+    found = []
+    for name, module in list(sys.modules.items()):
+        file = getattr(module, "__file__", None)
+        spec = getattr(module, "__spec__", None)
+        if file and spec and spec.name == name and not Path(file).resolve().is_relative_to(root.resolve()):
+            found.append(name)
+    return found
+
+
+def _children_seconds() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime

@@ -1,0 +1,58 @@
+"""The modules that are mutated, and the tests that judge each: its own first, the invariants last.
+
+A kill-suite takes seconds, so slow tests that add nothing to it (50-digit sweeps over many elements, files,
+command lines) stay out. Suites run in the order they are written and end at the first failure.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+INVARIANTS = "tests/verification/test_properties.py"
+"""All 25 invariants of `verification.properties` for both solvers."""
+KERNELS = ("tests/refimpl/test_kernels_properties.py", "tests/refimpl/test_kernels.py")
+OPERATORS = ("tests/refimpl/test_operators.py", INVARIANTS)
+WEDGE = ("tests/appendix_a/test_wedge.py", "tests/appendix_a/test_wedge_enclosure.py")
+STRIP = ("tests/appendix_a/test_strip.py",)
+
+
+class Target(NamedTuple):
+    """``module`` (a path) of ``subject``, and paths of the tests that judge it beside its doctests."""
+
+    subject: str
+    module: str
+    tests: tuple[str, ...]
+
+    @property
+    def suite(self) -> tuple[str, ...]:
+        """Arguments for pytest."""
+        return (self.module, *self.tests)
+
+
+def _tests(*names: str) -> tuple[str, ...]:
+    return (*(f"tests/refimpl/test_{name}.py" for name in names), INVARIANTS)
+
+
+TARGETS = (
+    *(Target("kernels", f"refimpl/kernels/{name}.py", KERNELS)
+      for name in ("cerruti", "far_field", "love", "points", "tables")),
+    *(Target("operators", f"refimpl/operators/{name}.py", OPERATORS)
+      for name in ("dense", "fft", "periodic", "tables", "window")),
+    Target("contact", "refimpl/contact/active_set.py", _tests("active_set", "dense_solver")),
+    Target("contact", "refimpl/contact/certificate.py", _tests("certificate", "solve")),
+    Target("contact", "refimpl/contact/preconditioner.py", _tests("projected_cg")),
+    Target("contact", "refimpl/contact/projected_cg.py", _tests("projected_cg", "solve")),
+    Target("friction", "refimpl/friction.py", _tests("friction", "tau_cycle")),
+    Target("equilibrium", "refimpl/problem.py", _tests("problem")),
+    Target("equilibrium", "refimpl/forces.py", _tests("forces")),
+    Target("equilibrium", "refimpl/slopes.py", _tests("slopes")),
+    Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "solve")),
+    Target("equilibrium", "refimpl/dense_solver.py", _tests("dense_solver", "tau_cycle", "solve")),
+    Target("equilibrium", "refimpl/paper.py", ("tests/refimpl/test_paper.py",)),
+    *(Target("wedge", f"appendix_a/wedge/{name}.py", WEDGE)
+      for name in ("__init__", "enclosure", "fast", "printed", "reference", "residues", "transform")),
+    *(Target("strip", f"appendix_a/strip/{name}.py", STRIP)
+      for name in ("field", "perturbation", "profile", "superposition")),
+    Target("equilibrium", "refimpl/fft_solver.py", _tests("tau_cycle", "solve", "solve_full_contact")),
+)  # fmt: skip
+"""What the mutation score speaks of; `refimpl.contact.bounds` and its norm are still growing."""
