@@ -7,9 +7,12 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from verification.files import to_json, write_text
+
+if TYPE_CHECKING:
+    from verification.case import Result
 
 Parsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 
@@ -54,7 +57,14 @@ def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
       approach  12   y
     """
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))] if rows else []
-    lines = (
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows
-    )
+    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
     return "\n".join(indent + line.rstrip() for line in lines)
+
+
+def judgement(result: Result) -> str:
+    """Error and tolerance with the sign between them; empty where nothing could be judged."""
+    if result.error is None:
+        return ""
+    sign = ">=" if result.metric == "at_least" else "<="
+    sign = sign if result.status == "pass" else {">=": "<", "<=": ">"}[sign]
+    return f"{result.error:.3g} {sign} {result.tolerance:.3g}"

@@ -5,17 +5,22 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from verification.cli.output import Parsers, add_json, columns, emit
+from verification.cli import contestant
+from verification.cli.output import Parsers, add_json, columns, emit, judgement
 
 if TYPE_CHECKING:
-    from verification.case import Result
     from verification.runner import Run
 
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
   rough-friction verify --tier full --only 'hertz/*' --only kernels/love
   rough-friction verify --list
+  rough-friction verify --solver verification.contestants.own:solve
+  rough-friction verify --exec './my-solver --quiet' --able aperiodic,load --largest 32
+  rough-friction verify --self-test
 """
+SELF_TEST = "contestants/*"
+"""The cases that run the suite for other solvers on our own, and on broken ones."""
 
 
 def add_parser(commands: Parsers) -> None:
@@ -35,6 +40,7 @@ def add_parser(commands: Parsers) -> None:
     )
     parser.add_argument("--jobs", metavar="N", type=int, default=2, help="worker processes (default 2)")
     parser.add_argument("--list", action="store_true", help="list the selected cases and run nothing")
+    contestant.add_options(parser)
     add_json(parser)
     parser.set_defaults(run=run)
 
@@ -47,12 +53,14 @@ def run(options: argparse.Namespace) -> int:
 
     if options.jobs < 1:
         raise InputError("--jobs", options.jobs, "at least one worker process")
+    if contestant.chosen(options):
+        return contestant.run(options)
+    if options.self_test:
+        options.tier, options.only = "full", options.only or [SELF_TEST]
     try:
         chosen = registry.select(registry.load(), Tier(options.tier), options.only)
     except LookupError as nothing:
-        raise InputError(
-            "--only", options.only, f"the id of a case ({nothing}; see --list)"
-        ) from nothing
+        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
     if options.list:
         document = [
             {"id": c.id, "tier": c.tier.value, "title": c.title, "tags": list(c.tags)} for c in chosen
@@ -66,16 +74,8 @@ def run(options: argparse.Namespace) -> int:
 
 def table(done: Run) -> str:
     """One line per case, the reasons of those that did not pass, and the counts."""
-    rows = [[r.status, r.id, _judgement(r), f"{r.seconds:.1f} s"] for r in done.results]
+    rows = [[r.status, r.id, judgement(r), f"{r.seconds:.1f} s"] for r in done.results]
     reasons = [[r.id, r.note] for r in done.results if r.status in ("error", "unavailable")]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
     parts = [columns(rows, indent=""), columns(reasons), f"{counts}; {done.seconds:.0f} s"]
     return "\n\n".join(part for part in parts if part)
-
-
-def _judgement(result: Result) -> str:
-    if result.error is None:
-        return ""
-    sign = ">=" if result.metric == "at_least" else "<="
-    sign = sign if result.status == "pass" else {">=": "<", "<=": ">"}[sign]
-    return f"{result.error:.3g} {sign} {result.tolerance:.3g}"

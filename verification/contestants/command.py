@@ -23,6 +23,7 @@ import signal
 import subprocess
 import tempfile
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -41,8 +42,8 @@ class Command:
     """
 
     words: tuple[str, ...]
-    abilities: Abilities = Abilities()
-    timeout: float = 300.0
+    abilities: Abilities
+    timeout: float
 
     def __post_init__(self) -> None:
         if not self.words:
@@ -58,13 +59,17 @@ class Command:
         except ValueError as unbalanced:
             raise InputError("--exec", line, f"a command ({unbalanced})") from unbalanced
 
+    def contestant(self) -> Command:
+        """Itself: a source for `verification.contestants.isolated`."""
+        return self
+
     @property
     def version(self) -> str:
         """The command itself: what it is, only its author knows."""
         return shlex.join(self.words)
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """Run the program on one problem. Raises `BadAnswer` for whatever is not a readable claim of success."""
+        """Run the program on one problem. Raises `BadAnswer` for all but a readable claim of success."""
         with tempfile.TemporaryDirectory(prefix="contact-") as name:
             directory = Path(name)
             write_problem(problem, directory)
@@ -98,10 +103,8 @@ class Command:
 
 def _end(process: subprocess.Popen[bytes]) -> None:
     """Kill what is left of the program's process group."""
-    try:
+    with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
     process.wait()
 
 
@@ -128,7 +131,7 @@ def write_problem(problem: ContactProblem, directory: Path) -> None:
 
 
 def read_answer(directory: Path) -> Answer:
-    """The answer in a directory; `ask` judges its shape and numbers. Raises `BadAnswer` where there is none."""
+    """The answer in a directory, for `ask` to judge. Raises `BadAnswer` where there is none."""
     table, archive, header = (directory / name for name in ("pressure.csv", "answer.npz", "answer.json"))
     if table.exists() == archive.exists():
         found = "both pressure.csv and" if table.exists() else "neither pressure.csv nor"

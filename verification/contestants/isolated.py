@@ -1,4 +1,4 @@
-"""A contestant at work in a process of its own: a crash, a hang or an early exit is an `error`, never a pass."""
+"""A contestant in a process of its own: a crash, a hang or an early exit is an `error`, never a pass."""
 
 from __future__ import annotations
 
@@ -9,17 +9,22 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
+from typing import Any
 
 from refimpl.errors import InputError
+from refimpl.grid import Array
 from verification.case import Result, Status
 from verification.contestants.check import Check
-from verification.contestants.protocol import Abilities, Contestant, abilities_of
+from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
 from verification.contestants.suite import select, suite
 
+MOST_PROBLEMS = 6
+"""No check poses more problems: so many times the time for one is the time for a check."""
 GRACE = 10.0
-"""Seconds beyond the time limit: a command's own limit goes first, and says more."""
+"""Seconds beyond that: a command's own limit goes first, and says more."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +45,7 @@ class Named:
             raise InputError("--solver", self.name, allowed)
         sys.path.insert(0, os.getcwd())
         try:
-            found: object = importlib.import_module(module)
+            found: Any = importlib.import_module(module)
             for part in attribute.split("."):
                 found = getattr(found, part)
         except (ImportError, AttributeError) as missing:
@@ -48,18 +53,19 @@ class Named:
         if not callable(found):
             raise InputError("--solver", self.name, allowed)
         abilities_of(found)
-        return found if self.abilities is None else _Limited(found, self.abilities)
+        return Limited(found, self.abilities) if self.abilities else found
 
 
 @dataclass(frozen=True)
-class _Limited:
+class Limited:
     """A contestant with other abilities than it carries itself."""
 
     solver: Contestant
     abilities: Abilities
 
-    def __call__(self, problem: object) -> object:
-        return self.solver(problem)  # type: ignore[arg-type]  # passed through untouched
+    def __call__(self, problem: ContactProblem) -> Answer | Array:
+        """Pass the problem on."""
+        return self.solver(problem)
 
 
 Source = Callable[[], Contestant]
@@ -72,7 +78,7 @@ class Table:
     def __init__(self, source: Source, timeout: float) -> None:
         if not timeout > 0:
             raise InputError("--timeout", timeout, "a positive number of seconds")
-        self._source, self._timeout = source, timeout
+        self._source, self._limit = source, MOST_PROBLEMS * timeout + GRACE
         self._open()
 
     def run(self, check: Check) -> Result:
@@ -80,10 +86,10 @@ class Table:
         start = time.perf_counter()
         try:
             self._pipe.send(check.slug)
-            if self._pipe.poll(self._timeout + GRACE):
+            if self._pipe.poll(self._limit):
                 result: Result = self._pipe.recv()
                 return result
-            note = f"no verdict within {self._timeout:g} s"
+            note = f"no verdict within {self._limit:g} s"
         except (EOFError, OSError):
             note = f"the solver's process died (exit status {self._exit_status()})"
         self.close()
@@ -94,25 +100,22 @@ class Table:
     def close(self) -> None:
         """End the process and all that it started."""
         self._pipe.close()
-        if self._process.pid is not None and self._process.is_alive():
-            try:
+        if self._process.pid is not None:
+            with suppress(ProcessLookupError):  # gone already, or not yet the head of a group
                 os.killpg(self._process.pid, signal.SIGKILL)
-            except ProcessLookupError:
-                self._process.kill()
+        self._process.kill()
         self._process.join()
 
     def _open(self) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, self._source), daemon=True)
+        self._process = context.Process(target=_serve, args=(theirs, self._source))
         self._process.start()
         theirs.close()
-        try:
-            refusal = self._pipe.recv()
-        except EOFError:
-            refusal = InputError(
-                "--solver", repr(self._source), "a solver that can be imported; its process died"
-            )
+        refusal: InputError | None = InputError("--solver", self._source, "a solver whose import ends well")
+        with suppress(EOFError):
+            if self._pipe.poll(self._limit):
+                refusal = self._pipe.recv()
         if refusal is not None:
             self.close()
             raise refusal
@@ -122,7 +125,7 @@ class Table:
         return self._process.exitcode
 
 
-def _absent(problem: object) -> object:
+def _absent(problem: ContactProblem) -> Answer:
     raise RuntimeError("stands for a contestant whose process died")
 
 
@@ -148,7 +151,7 @@ def _serve(pipe: Connection, source: Source) -> None:
 def run(
     source: Source, globs: Iterable[str], *, timeout: float, tick: Callable[[Result], None] = lambda r: None
 ) -> list[Result]:
-    """Results of the checks that match ``globs`` (all without any), each within about ``timeout`` seconds.
+    """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
 
     Raises `InputError` for a contestant that cannot be had, LookupError for a glob that matches nothing.
     """

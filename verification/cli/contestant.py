@@ -1,0 +1,138 @@
+"""`rough-friction verify --solver` and `--exec`: anyone's solver through the suite."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import TYPE_CHECKING
+
+from verification.cli.output import columns, emit, judgement
+
+if TYPE_CHECKING:
+    from verification.contestants.isolated import Source
+    from verification.contestants.protocol import Abilities
+    from verification.runner import Run
+
+ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The options that name a solver and say what it can do."""
+    group = parser.add_argument_group(
+        "bring your own solver",
+        "Run the suite of verification.contestants with it: the cases it can pose; the others are named.",
+    )
+    who = group.add_mutually_exclusive_group()
+    who.add_argument(
+        "--solver", metavar="MODULE:FUNCTION", help="a Python function of one ContactProblem, see its module"
+    )
+    who.add_argument(
+        "--exec", metavar="COMMAND", help="a program, run as COMMAND DIRECTORY; files: contestants/command.py"
+    )
+    who.add_argument(
+        "--self-test", action="store_true", help="run the suite on solvers that are broken on purpose"
+    )
+    group.add_argument(
+        "--able",
+        metavar="LIST",
+        help="of aperiodic,periodic,load,approach,coupling (default all but coupling, or the solver's own)",
+    )
+    group.add_argument(
+        "--largest", metavar="M", type=int, help="most elements a side that it should be given"
+    )
+    group.add_argument(
+        "--precision", metavar="P", type=float, help="relative residual that it claims (default 1e-8)"
+    )
+    group.add_argument("--timeout", metavar="S", type=float, help="seconds for one problem (default 60)")
+
+
+def chosen(options: argparse.Namespace) -> bool:
+    """Whether a solver is named. Raises `InputError` for its options without one."""
+    from refimpl.errors import InputError
+
+    if options.solver is not None or options.exec is not None:
+        return True
+    for name in ONLY_WITH_SOLVER:
+        if getattr(options, name) is not None:
+            raise InputError(f"--{name}", getattr(options, name), "nothing without --solver or --exec")
+    return False
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run or list the suite; status 1 when a case failed or broke, or none passed."""
+    from dataclasses import asdict
+
+    from refimpl.errors import InputError
+    from verification.case import Tier
+    from verification.contestants import isolated, suite
+    from verification.files import Progress
+    from verification.runner import Run
+
+    try:
+        checks = suite.select(options.only)
+    except LookupError as nothing:
+        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
+    if options.list:
+        listed = [{"id": c.id, "title": c.title, "claim": c.description} for c in checks]
+        emit(listed, options.json, columns([[c.id, c.title] for c in checks], indent=""))
+        return 0
+    name, source, abilities = _source(options)
+    start, progress = time.perf_counter(), Progress(len(checks))
+    results = isolated.run(
+        source,
+        options.only,
+        timeout=_timeout(options),
+        tick=lambda r: progress.tick(f"{r.status:<11} {r.id}"),
+    )
+    progress.close()
+    done = Run(Tier.FULL, tuple(options.only), tuple(results), time.perf_counter() - start)
+    document = done.document() | {
+        "contestant": {
+            "name": name,
+            "abilities": None if abilities is None else asdict(abilities),
+            "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
+        }
+    }
+    emit(document, options.json, table(name, done))
+    return done.exit_status
+
+
+def _timeout(options: argparse.Namespace) -> float:
+    return 60.0 if options.timeout is None else float(options.timeout)
+
+
+def _source(options: argparse.Namespace) -> tuple[str, Source, Abilities | None]:
+    """Name, source and stated abilities of the solver; None where it speaks for itself."""
+    from verification.contestants.command import Command
+    from verification.contestants.isolated import Named
+    from verification.contestants.protocol import Abilities
+
+    precision = 1e-8 if options.precision is None else options.precision
+    stated = any(getattr(options, name) is not None for name in ("able", "largest", "precision"))
+    able = "aperiodic,periodic,load,approach" if options.able is None else options.able
+    abilities = Abilities.named(able, largest=options.largest, precision=precision)
+    if options.solver is not None:
+        given = abilities if stated else None
+        return options.solver, Named(options.solver, given).contestant, given
+    command = Command.of(options.exec, abilities, _timeout(options))
+    return options.exec, command.contestant, abilities
+
+
+def table(name: str, done: Run) -> str:
+    """Verdicts, reasons of failure, what was not run and why, and the counts."""
+    ran = [r for r in done.results if r.status != "unavailable"]
+    rows = [[r.status, r.id, judgement(r), f"{r.seconds:.1f} s"] for r in ran]
+    reasons = [[r.id, r.note or r.claim] for r in ran if r.status != "pass"]
+    counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
+    parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
+    return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
+
+
+def _not_applicable(done: Run) -> list[str]:
+    left_out = [r for r in done.results if r.status == "unavailable"]
+    reasons = dict.fromkeys(r.note for r in left_out)
+    lines = [
+        f"  {note}: {', '.join(r.id.partition('/')[2] for r in left_out if r.note == note)}"
+        for note in reasons
+    ]
+    return ["\n".join(["not applicable, and not passed:", *lines])] if lines else []
