@@ -1,4 +1,4 @@
-"""Influence coefficients of one square element on an infinite plane of any tilt: values 'computed on the slope'.
+"""Influence coefficients of one square element on a plane of any tilt: values 'computed on the slope'.
 
 The paper's remedy for steep asperities is to replace the few near-field terms of the flexibility matrix
 by values computed on the slope. On an infinite plane of gradient g those are the flat solution in the
@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-POINTS = 8  # Gauss points a side of a neighbour: 1e-7 of flat at the next, where the distance varies threefold
-OCTANTS = 8  # of the loaded element, each 1/rho in polar coordinates with POINTS points: smooth in the angle
+NEAR, FAR = 8, 5  # Gauss points a side, for the next elements and beyond: 2e-7 of flat at worst
+OCTANTS = 8  # of the loaded element, each 1/rho in polar coordinates with NEAR points: smooth in the angle
 
 
 def neighbours(reach: int) -> list[tuple[int, int]]:
@@ -56,8 +56,8 @@ def facet_coefficient(tan_x: Array, tan_y: Array, nu: float, offset: tuple[int, 
 
 
 def _own(tan_x: Array, tan_y: Array, nu: float) -> Array:
-    """At the loaded element's own centre: the odd part cancels; the integral of 1/rho in polar coordinates."""
-    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+    """At the loaded element's own centre: the odd part cancels; 1/rho in polar coordinates."""
+    nodes, weights = np.polynomial.legendre.leggauss(NEAR)
     width = 2 * pi / OCTANTS
     angles = (width * (np.arange(OCTANTS)[:, None] + 0.5 * (nodes + 1))).ravel()
     steps = np.tile(0.5 * width * weights, OCTANTS)
@@ -71,7 +71,7 @@ def _own(tan_x: Array, tan_y: Array, nu: float) -> Array:
 @cache
 def _lever_arms(offset: tuple[int, int]) -> tuple[Array, Array, Array]:
     """From Gauss points of the loaded square to the field point: dx, dy (m,), and weights."""
-    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+    nodes, weights = np.polynomial.legendre.leggauss(NEAR if max(map(abs, offset)) == 1 else FAR)
     x, y = np.meshgrid(nodes, nodes, indexing="ij")
     area = np.outer(weights, weights)
     return 2.0 * offset[0] - x.ravel(), 2.0 * offset[1] - y.ravel(), area.ravel()
