@@ -1,0 +1,1 @@
+"""Extremes: every axis driven until something gives, each state judged by an independent oracle."""

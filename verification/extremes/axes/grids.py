@@ -1,0 +1,85 @@
+"""Grids: 1 x 1, 2 x 2, primes, one of 2048; and contacts as long and narrow as the grid allows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+import refimpl as rf
+from verification.exact import hertz
+from verification.extremes.judge import GOOD, TOLERANCE, by_oracle, guarded, verdict
+from verification.extremes.state import Extreme, Judged, axis
+from verification.scenes import POLYMER, STEEL, pressed
+
+TINY, PRIMES, LARGEST = (1, 2, 3, 5, 7), (11, 13, 17, 19, 23), 2048
+LINES = (2, 4, 8, 16, 32)
+
+
+def against_dense(scene: rf.Scene, M: int) -> Judged:
+    """The production solver against the dense one, whose certificate is at rounding."""
+
+    def run() -> Judged:
+        found = rf.solve(scene, M, tolerance=TOLERANCE)
+        exact = rf.solve(scene, M, method="dense", tolerance=TOLERANCE)
+        if exact.status not in GOOD:
+            raise ArithmeticError(f"the dense reference ended {exact.status.value}")
+        error = float(np.abs(found.pressure - exact.pressure).max()) / exact.max_pressure
+        return verdict(found, max(error, abs(found.approach / exact.approach - 1)), "the dense solver")
+
+    return guarded(run)
+
+
+def against_hertz(M: int) -> Judged:
+    """A smooth ball, frictionless: peak and approach within what whole elements cost, 2 spacing / a squared."""
+
+    def run() -> Judged:
+        scene = replace(pressed(rms=None), friction=rf.Friction())
+        found = rf.solve(scene, M, oblique=False)
+        exact = hertz.Sphere(scene.load, 0.14, scene.materials.reduced_modulus)
+        error = max(
+            abs(found.max_pressure / exact.peak_pressure - 1), abs(found.approach / exact.approach - 1)
+        )
+        flipped = max(np.abs(found.pressure - p).max() for p in (found.pressure[::-1], found.pressure.T))
+        symmetry = float(flipped) / found.max_pressure
+        cell = found.grid.spacing / exact.contact_radius
+        return verdict(
+            found, error, "Hertz", f"asymmetry {symmetry:.0e}", limit=2 * cell**2 + 1e-7, symmetry=symmetry
+        )
+
+    return guarded(run)
+
+
+def ridge(M: int, across: int) -> rf.Scene:
+    """A parabolic ridge along x that touches ``across`` elements or so of M."""
+    y = (np.arange(M) + 0.5) / M - 0.5
+    z = -1e-6 * np.outer(np.ones(M), (y * M / across) ** 2)
+    flat = pressed(upper=STEEL, lower=POLYMER, radius=None, rms=None, side=1e-3, load=1.0, direction=0.7)
+    return replace(flat, lower=rf.Body(POLYMER, z))
+
+
+@axis("grid")
+def grids() -> Iterator[Extreme]:
+    """Tiny grids by the oracle, primes by the dense solver, large ones by Hertz, ridges of any aspect."""
+    scene = pressed(lower=POLYMER, load=30.0, direction=0.7)
+    flat = replace(scene, upper=rf.Body(STEEL, rf.Flat()), periodic=True)
+    for M in TINY:
+        for method in ("fft", "dense"):
+            for name, what in (("half-space", scene), ("periodic", flat)):
+                yield Extreme(
+                    "grid", f"{name}, {method}", f"{M}", float(M),
+                    lambda s=what, n=M, m=method: by_oracle(s, n, m),
+                )  # fmt: skip
+    for M in PRIMES:
+        for name, what in (("half-space", scene), ("periodic", flat)):
+            yield Extreme(
+                "grid", f"{name} primes, fft", f"{M}", float(M), lambda s=what, n=M: against_dense(s, n)
+            )
+    for M in (31, 61, 127, 257, 509, LARGEST):
+        yield Extreme("grid", "Hertz, fft", f"{M}", float(M), lambda n=M: against_hertz(n))
+    for across in LINES:
+        yield Extreme(
+            "grid", "ridge of 32 elements, fft", f"{across} across", float(across),
+            lambda a=across: against_dense(ridge(32, a), 32),
+        )  # fmt: skip

@@ -1,0 +1,127 @@
+"""Plane problems of Appendix A: wedges from flat to needle, their tip and far field; finite elements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import mpmath as mp
+import numpy as np
+from skfem import MeshTri
+
+from appendix_a import wedge
+from appendix_a.errors import InputError
+from appendix_a.fem import mixed
+from appendix_a.fem.departure import Setup
+from appendix_a.fem.elasticity import PlaneStrain
+from appendix_a.fem.geometry import bend, flat
+from appendix_a.fem.halfplane import pressed_strip
+from appendix_a.fem.mesh import Source
+from appendix_a.wedge import reference
+from refimpl.grid import Array
+from verification.extremes.judge import guarded
+from verification.extremes.state import Extreme, Judged, Verdict, axis, number
+
+WEDGE_LIMIT = 2e-10
+"""Of the largest component; 1e-13 is promised for r in 1e-4 ... 1e4 only. Beyond, the weight r^(-1/2) multiplies
+rounding by up to exp(10) = 2e4, where the line of integration moves on; measured 6e-11 at 1e-8 and 1e8."""
+GAMMAS = (0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.3, 1.0, 1.3, 1.5, 1.56, math.pi / 2 - 1e-3, math.pi / 2 - 1e-9, math.pi / 2)
+RADII = (1e-14, 1e-8, 1e-4, 0.5, 1.0 + 1e-12, 1e4, 1e8, 1e16)
+LIMIT_RADII = (1e-300, 1e-100, 1e100, 1e300)
+FEM_RATIOS = (-0.99, -0.5, 0.0, 0.3, 0.49, 0.4999, 0.499999, 0.5 - 1e-9, 0.5)
+FEM_LIMIT = 1e-2
+"""Relative error of the mesh used, ten times that at nu = 0.3 (measured 1e-4 to 4e-4 for both formulations)."""
+JITTERS = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4)
+OFFSETS = np.array([-10.0, -4.0, -1.0, 0.5, 2.0, 3.0, 10.0])
+SETUP = Setup((Source(-1.0, -1.0, 2.0**-7, 1.0), Source(1.0, 1.0, 2.0**-7, 1.0)), 1024.0)
+
+
+def wedge_at(gamma: float, r: float) -> Judged:
+    """Stresses half-way to a face against the other formulation in 18 digits, or the exact limits of r."""
+
+    def run() -> Judged:
+        theta = 0.5 * (math.pi / 2 - gamma)
+        try:
+            found = np.array(wedge.stresses(r, theta, gamma)).ravel()
+        except InputError as refused:
+            return Judged(Verdict.HONEST, "InputError", None, WEDGE_LIMIT, "refused", str(refused))
+        if r in LIMIT_RADII:
+            exact, oracle = _limits(gamma, theta, r), "Michell's radial field" if r > 1 else "hydrostatic tip"
+        else:
+            values = reference.stresses(r, theta, gamma, digits=36 if r > 1e6 else 18).values
+            exact, oracle = np.array([float(v) for v in values]), "the other formulation, mpmath"
+        error = float(np.abs(found - exact).max() / np.abs(exact).max())
+        return number(error, WEDGE_LIMIT, "value", oracle)
+
+    return guarded(run)
+
+
+def _limits(gamma: float, theta: float, r: float) -> Array:
+    """r -> 0: both faces pressed, -1 all round. r -> infinity: the resultant's radial field (Michell 1900)."""
+    if r < 1:
+        return np.array([-1.0, -1.0, 0.0])
+    radial = -4 * math.cos(gamma) * math.cos(theta) / (math.pi - 2 * gamma + math.sin(2 * gamma))
+    return np.array([radial / r, 0.0, 0.0])
+
+
+def pressed(nu: float, *, formulation: str, jitter: float = 0.0) -> Judged:
+    """Surface displacement of a flat body under a strip against the closed form, on a mesh that may be distorted."""
+
+    def run() -> Judged:
+        mesh = distorted(SETUP.mesh(1), jitter)
+        body = PlaneStrain.on(mesh, bend(mesh, flat()), 2 if formulation == "mixed" else 3)
+        if formulation == "direct" and nu == 0.5:
+            return Judged(Verdict.HONEST, "excluded", None, FEM_LIMIT, "lambda is infinite", "use the mixed form")
+        u = body.displacements(nu) if formulation == "direct" else mixed.displacements(body, nu)
+        off = body.surface_values(u[1] - pressed_strip(body.basis.doflocs[0], nu), np.append(OFFSETS, 0.0))
+        exact = pressed_strip(OFFSETS, nu)
+        error = float(np.abs((off[:-1] - off[-1]) / exact).max())
+        return number(error, FEM_LIMIT, "value", "closed form of the strip (Johnson 1985)")
+
+    return guarded(run)
+
+
+def distorted(mesh: MeshTri, jitter: float) -> MeshTri:
+    """The mesh with inner vertices moved by up to ``jitter`` of the shortest edge that meets them."""
+    edges = mesh.facets
+    lengths = np.hypot(*(mesh.p[:, edges[0]] - mesh.p[:, edges[1]]))
+    shortest = np.full(mesh.p.shape[1], np.inf)
+    for end in (0, 1):
+        np.minimum.at(shortest, edges[end], lengths)
+    moves = np.random.default_rng(4999).uniform(-1, 1, mesh.p.shape) * jitter * shortest / math.sqrt(2)
+    moves[:, mesh.boundary_nodes()] = 0.0
+    return replace(mesh, doflocs=mesh.p + moves)
+
+
+@axis("wedge")
+def wedges() -> Iterator[Extreme]:
+    """All angles by all radii; the limits only where the slowest mode has died out by then."""
+    for gamma in GAMMAS:
+        for r in RADII:
+            yield Extreme("wedge", f"r = {r:g}", f"gamma = {gamma!r}", gamma, lambda g=gamma, s=r: wedge_at(g, s))
+        for r in LIMIT_RADII:
+            # next to flat the field at the tip still decays like r^(4 gamma / pi): no limit within doubles
+            if r > 1 or gamma == 0 or gamma >= 0.3:
+                yield Extreme(
+                    "wedge", f"limit r = {r:g}", f"gamma = {gamma!r}", gamma, lambda g=gamma, s=r: wedge_at(g, s)
+                )
+
+
+@axis("finite elements")
+def finite_elements() -> Iterator[Extreme]:
+    """Poisson's ratio up to 1/2 in both formulations; inner vertices moved, at nu = 0.3 and 0.4999."""
+    for formulation in ("direct", "mixed"):
+        for nu in FEM_RATIOS:
+            if formulation == "mixed" and nu <= 0:  # 1 / lambda does not exist there
+                continue
+            yield Extreme(
+                "finite elements", f"nu, {formulation}", f"{nu!r}", nu,
+                lambda f=formulation, v=nu: pressed(v, formulation=f),
+            )  # fmt: skip
+        for nu in (0.3, 0.4999):
+            for jitter in JITTERS:
+                yield Extreme(
+                    "finite elements", f"distortion at nu = {nu}, {formulation}", f"{jitter:g}", jitter,
+                    lambda f=formulation, v=nu, j=jitter: pressed(v, formulation=f, jitter=j),
+                )  # fmt: skip

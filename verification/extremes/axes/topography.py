@@ -1,0 +1,113 @@
+"""Topography: roughness from 1e-12 of the gap to slopes of 45 degrees, data far from zero, exact ties."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.grid import Array
+from verification.extremes.judge import GOOD, TOLERANCE, by_oracle, guarded, verdict
+from verification.extremes.state import Extreme, Judged, axis
+from verification.scenes import POLYMER, STEEL, TABLE1
+
+M = 6
+SIDE = 1e-3
+NOISE = np.random.default_rng(45).standard_normal((M, M))
+SLOPES = [math.radians(d) for d in (0.01, 0.1, 1, 3, 6.5, 10, 15, 20, 25, 30, 35, 40, 45)]
+AMPLITUDES = [10.0**k for k in range(-18, -6)]
+OFFSETS = [2.0**k for k in range(0, 61, 6)]
+"""Of the heights, over their range; 2^20 is the million asked for."""
+WRONG_BEYOND_DATA = 300.0
+"""Error allowed, in units of the data's own: rounding of heights at an offset, through the flexibility's
+inverse (condition number 30 at this size) and the relative size of gap and approach."""
+
+
+def rough_ball(heights: Array, radius: float = 0.14, load: float = 1.0) -> rf.Scene:
+    """A ball on a polymer with the given heights."""
+    return rf.Scene(
+        upper=rf.Body(STEEL, rf.Sphere(radius)),
+        lower=rf.Body(POLYMER, heights),
+        friction=replace(TABLE1, tau=1e5),
+        load=load,
+        side=SIDE,
+        sliding_direction=0.7,
+    )
+
+
+def sloped(angle: float) -> Array:
+    """Noise whose largest central difference is the tangent of an angle."""
+    step = np.abs(np.gradient(NOISE, SIDE / M, axis=0)).max()
+    return NOISE * (math.tan(angle) / step)
+
+
+def moved(offset: float, *, dyadic: bool, method: str) -> Judged:
+    """Heights plus an offset against the same heights without one: no more is lost than the data lost."""
+
+    def run() -> Judged:
+        z = np.round(NOISE * 2**8) * 2.0**-28 if dyadic else 1e-6 * NOISE
+        far = z + offset * float(np.ptp(z))
+        lost = float(np.abs((far - far.min()) - (z - z.min())).max()) / float(np.ptp(z))
+        here, there = (
+            rf.solve(replace(rough_ball(h), upper=rf.Body(STEEL, rf.Flat())), M, method=method, tolerance=TOLERANCE)  # type: ignore[arg-type]  # a Method
+            for h in (z, far)
+        )
+        if here.status not in GOOD:
+            raise ArithmeticError(f"without an offset: {here.status.value}")
+        error = float(np.abs(there.pressure - here.pressure).max()) / here.max_pressure
+        error = max(error, abs(there.approach / here.approach - 1))
+        limit = WRONG_BEYOND_DATA * lost + (0.0 if lost == 0 else 1e-9)
+        return verdict(there, error, "the same heights without an offset", limit=limit, lost=lost)
+
+    return guarded(run)
+
+
+def ties() -> dict[str, Array]:
+    """Heights with exact ties: equal steps, duplicates, symmetries."""
+    i, j = np.indices((M, M))
+    return {
+        "checkerboard": 1e-7 * ((i + j) % 2),
+        "two levels": 1e-7 * (i < 3),
+        "stripes": 1e-7 * (i % 2),
+        "four towers": 1e-7 * ((i % 5 == 0) & (j % 5 == 0)),
+        "ring": 1e-7 * (np.maximum(np.abs(2 * i - 5), np.abs(2 * j - 5)) == 3),
+        "staircase": 1e-7 * (i + j),
+        "whole numbers": 1e-7 * np.random.default_rng(3).integers(0, 3, (M, M)),
+        "all equal": np.full((M, M), 0.1),
+    }
+
+
+@axis("topography")
+def topography() -> Iterator[Extreme]:
+    """Amplitudes, slopes, offsets and ties for both solvers."""
+    for method in ("fft", "dense"):
+        for amplitude in AMPLITUDES:
+            yield Extreme(
+                "topography", f"rms, {method}", f"{amplitude:.0e} m", amplitude,
+                lambda z=amplitude * NOISE, m=method: by_oracle(rough_ball(z), M, m),
+            )  # fmt: skip
+        for angle in SLOPES:
+            for correction in (False, True):
+                series = f"largest slope, {'corrected, ' * correction}{method}"
+                yield Extreme(
+                    "topography", series, f"{math.degrees(angle):.3g} deg", math.degrees(angle),
+                    lambda z=sloped(angle), m=method, c=correction: by_oracle(
+                        rough_ball(z, load=1e3), M, m, slope_correction=c
+                    ),
+                )  # fmt: skip
+        for offset in OFFSETS:
+            for dyadic in (True, False):
+                yield Extreme(
+                    "topography", f"offset, {'dyadic ' * dyadic}heights, {method}", f"{offset:.3g}", offset,
+                    lambda o=offset, d=dyadic, m=method: moved(o, dyadic=d, method=m),
+                )  # fmt: skip
+        for k, (name, heights) in enumerate(ties().items()):
+            for radius in (0.14, 1e300):
+                series = f"ties, {'ball' if radius < 1 else 'flat'}, {method}"
+                yield Extreme(
+                    "topography", series, name, float(k),
+                    lambda z=heights, r=radius, m=method: by_oracle(rough_ball(z, r), M, m),
+                )  # fmt: skip

@@ -1,0 +1,84 @@
+"""Limits found by the study: where the implementation stops being a reference, how it says so, and what would move it.
+
+Each names the states of the study that reproduce it (a glob over their ids); a test keeps them true.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One limit: ``states`` that show it, ``what`` happens there, ``why``, and the ``remedy`` if any."""
+
+    states: str
+    what: str
+    why: str
+    remedy: str
+
+
+LIMITS = (
+    Limit(
+        "friction/beta*, fft/beta = 1e+06",
+        "the production solver does not end within the time allowed, for sigma = beta c / a above about 500",
+        "its patience grows like 1.4 sigma^2 updates before it gives up, and updates without CG steps are not "
+        "counted by any limit",
+        "the dense solver does not lag the coupling; a limit on updates as well as on CG steps",
+    ),
+    Limit(
+        "load/ball*, fft/p/E[*] = 1e+0[12]",
+        "mean pressures of ten times the reduced modulus end in ZeroDivisionError or STAGNATED",
+        "slopes of a surface displaced by many element widths run off until their cosines underflow",
+        "a reason beside the status; no elastic half-space is meant to be loaded like this",
+    ),
+    Limit(
+        "load/periodic plane, */p/E[*] = 1e+0[012]",
+        "full periodic contact above p = E* is STAGNATED although every digit is right",
+        "the certificate's gap is divided by the elastic energy, which a mean pressure does not add to, while its "
+        "rounding grows with that pressure",
+        "state the gap's rounding floor, eps N h, beside it",
+    ),
+    Limit(
+        "contact set/flat on flat, periodic dense/*",
+        "periodic flats are STAGNATED by the dense solver although every digit is right",
+        "the approach from first touch is nearly zero and scales the certificate's penetration",
+        "scale by max(|approach|, compliance x peak x spacing)",
+    ),
+    Limit(
+        "contact set/approach*, */4.94066e-324 m",
+        "approaches below 1e-160 m end as STAGNATED or ITERATION_LIMIT",
+        "energies are products of two such lengths and underflow",
+        "none needed: an approach of 1e-30 m still converges to 10 digits",
+    ),
+    Limit(
+        "load/ball with tau, */p/E[*] = 1e-1[3456]",
+        "a fixed tau of 1e8 times the pressure and more costs the balance its digits: STAGNATED",
+        "N is the difference of tau's tilt on slopes and of pressure; it cancels by tau tan(theta) / f",
+        "none: the printed Eq. (2) is ill-conditioned there",
+    ),
+    Limit(
+        "friction/tau*, fft/tau/f = 1e+0[36]",
+        "tau above some ten times the pressure has no settled state, or the solvers find none",
+        "tau drags elements out of contact and lets them back in; on slopes it carries the load by itself",
+        "none: see the table of lawful states",
+    ),
+    Limit(
+        "friction/beta, slope correction, */beta = 1*0*",
+        "beta of 10 and more with the slope correction: no P-matrix, refused by the dense solver",
+        "f - beta f tan(theta) changes sign where beta tan(theta) > 1: a rough facet's friction lifts it",
+        "none: this is where uniqueness ends",
+    ),
+    Limit(
+        "wedge/*/gamma = 1.56",
+        "wedges narrower than 0.011 rad cost seconds per point, and without bound as the angle closes",
+        "the integrand decays like exp(-2 (pi/2 - gamma) xi): nodes grow like 1/(pi/2 - gamma)",
+        "refuse, naming the angle",
+    ),
+    Limit(
+        "wedge/r = 1e[-+]08/gamma = 1.5",
+        "wedge stresses keep 10 digits between r = 1e4 and 5e8, where they keep 13 elsewhere",
+        "the weight r^(-1/2) on the line of integration multiplies rounding by exp(|log r| / 2)",
+        "move the line from |log r| = 10 on",
+    ),
+)

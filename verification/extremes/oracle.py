@@ -1,0 +1,217 @@
+"""The discrete problem solved in 34 digits, started from the state under test (mpmath, tiny grids).
+
+At fixed slopes and a fixed support of tau the problem has one solution (`positive_definite`), so where the
+search for it starts cannot bend the answer: the contact set under test is taken as a first guess, its linear
+equations are solved exactly, and elements are exchanged until every inequality of Eq. (6) holds exactly.
+Slopes are brought up to date until they stand. tau's support is that of the returned traction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mpmath as mp
+import numpy as np
+from numpy.typing import NDArray
+
+import refimpl as rf
+from refimpl.grid import Array
+from verification.extremes import exact_operators as operators
+from verification.extremes.exact_operators import DIGITS, Exact
+
+EXCHANGES, SLOPE_UPDATES = 80, 100
+SETTLED = mp.mpf(10) ** (4 - DIGITS)  # of the pressure, between two updates of the slopes
+TIE = mp.mpf(10) ** (6 - DIGITS)  # of the largest pressure or gap: signs nearer to zero are ties
+
+
+class NotSettled(ArithmeticError):
+    """The oracle's own iteration did not end; it says nothing about the state."""
+
+
+@dataclass(frozen=True)
+class Exactly:
+    """The exact state: pressure (Pa), approach from first touch (m), forces (N), and the contact's margin.
+
+    ``margin`` is how far, relative to the largest, the least pressure or gap is from zero: at 1e-16 no double
+    can tell the contact set.
+    """
+
+    pressure: Exact
+    approach: Exact
+    normal: Exact
+    friction: Exact
+    contact: NDArray[np.bool_]
+    margin: float
+
+
+class Oracle:
+    """One scene on a tiny grid; heights are the doubles that the surfaces deliver, exact from there on."""
+
+    def __init__(
+        self,
+        scene: rf.Scene,
+        M: int,
+        *,
+        approach: float | None = None,
+        oblique: bool = True,
+        slope_correction: bool = False,
+    ) -> None:
+        grid = rf.Grid(scene.side, M)
+        self.scene, self.M, self.oblique, self.correction = scene, M, oblique, slope_correction
+        self.spacing = mp.mpf(scene.side) / M
+        self.z_lower = _exact(scene.lower.surface.heights(grid, periodic=scene.periodic))
+        self.z_upper = _exact(scene.upper.surface.heights(grid, periodic=scene.periodic))
+        gap = self.z_upper - self.z_lower
+        self.h = gap - min(gap)
+        self.approach = None
+        if approach is not None:
+            self.approach = mp.mpf(approach) + (sum(self.h) / len(self.h) if scene.periodic else 0)
+        self.a = [_normal_compliance(body.material) for body in (scene.lower, scene.upper)]
+        self.c = [_shear_compliance(body.material) for body in (scene.lower, scene.upper)]
+        self.A = operators.normal(M, scene.periodic) * self.spacing
+        x, y = (matrix * self.spacing for matrix in operators.tangential(M, scene.periodic))
+        cos, sin = mp.cos(mp.mpf(scene.sliding_direction)), mp.sin(mp.mpf(scene.sliding_direction))
+        self.S, self.T = cos * x + sin * y, cos * y - sin * x
+        self.D = [operators.difference(M, axis, scene.periodic) / self.spacing for axis in (0, 1)]
+        self.cos, self.sin = cos, sin
+
+    def solve(self, pressure: Array, support: NDArray[np.bool_]) -> Exactly:
+        """The exact state that belongs to a returned pressure and to tau's support, both ``(M, M)``."""
+        with mp.workdps(DIGITS):
+            chi = np.array([mp.mpf(int(s)) for s in support.ravel()], dtype=object)
+            f, contact = _exact(pressure), pressure.ravel() > 0
+            tan = self._slopes(f, self._traction(f, chi), self._flat())
+            for _ in range(SLOPE_UPDATES):
+                last = f
+                f, delta, contact, margin = self._frozen(tan, chi, contact)
+                r = self._traction(f, chi)
+                tan = self._slopes(f, r, tan)
+                if not self.oblique or max(abs(f - last)) <= SETTLED * max(f):
+                    break
+            else:
+                raise NotSettled("slopes of the exact state do not settle")
+            cos_x, cos_y = _cos(tan[0]), _cos(tan[1])
+            sin_x, dA = tan[0] * cos_x, self.spacing**2
+            normal = sum((f * cos_x - r * sin_x) * cos_y) * dA
+            friction = sum((f * sin_x + r * cos_x) * cos_y) * dA
+        return Exactly(f, delta, normal, friction, contact, margin)
+
+    def _flat(self) -> tuple[Exact, Exact]:
+        zero = np.full(self.M**2, mp.mpf(0), dtype=object)
+        return zero, zero
+
+    def _traction(self, f: Exact, chi: Exact) -> Exact:
+        return mp.mpf(self.scene.friction.tau) * chi + mp.mpf(self.scene.friction.beta) * f
+
+    def _slopes(self, f: Exact, r: Exact, tan: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
+        """Tangents of the mean of both deformed surfaces, along and across sliding."""
+        if not self.oblique:
+            return self._flat()
+        down, along, across = f, r, None
+        if self.correction:
+            down, along, across = f - r * tan[0], r + f * tan[0], f * tan[1]
+        shear = self.S @ along + (0 if across is None else self.T @ across)
+        pressed = self.A @ down
+        lower = self.z_lower - self.a[0] * pressed - self.c[0] * shear
+        upper = self.z_upper + self.a[1] * pressed - self.c[1] * shear
+        x, y = (D @ ((lower + upper) / 2) for D in self.D)
+        return self.cos * x + self.sin * y, self.cos * y - self.sin * x
+
+    def _frozen(
+        self, tan: tuple[Exact, Exact], chi: Exact, contact: NDArray[np.bool_]
+    ) -> tuple[Exact, Exact, NDArray[np.bool_], float]:
+        """Pressure, approach, contact set and margin at fixed slopes and support of tau."""
+        tau, beta = mp.mpf(self.scene.friction.tau), mp.mpf(self.scene.friction.beta)
+        a, c, (tan_x, tan_y) = sum(self.a), self.c[0] - self.c[1], tan
+        cos_x, cos_y = _cos(tan_x), _cos(tan_y)
+        G, g = a * self.A + beta * c * self.S, tau * c * (self.S @ chi)
+        if self.correction:
+            G = a * self.A * (1 - beta * tan_x) + c * self.S * (beta + tan_x) + c * self.T * tan_y
+            g = tau * (c * (self.S @ chi) - a * (self.A @ (chi * tan_x)))
+        K = cos_x * cos_y
+        weights = (cos_x - beta * tan_x * cos_x) * cos_y
+        offset = tau * sum(chi * tan_x * K)
+        target = (mp.mpf(self.scene.load) / self.spacing**2) + offset
+        right = -(K * self.h + g)
+        for exchange in range(EXCHANGES):
+            f, delta = self._equations(G, right, K, weights, target, contact)
+            room = G @ f - right - K * delta
+            bad, margin = _infeasible(f, room, contact)
+            if not bad.any():
+                return f, delta, contact, margin
+            if exchange > EXCHANGES // 4:  # blocks may cycle; one at a time from the last index on does not
+                bad[: np.flatnonzero(bad)[-1]] = False
+            contact = contact ^ bad
+            if not contact.any():
+                contact = bad
+        raise NotSettled("exchanges of the exact state do not end")
+
+    def _equations(
+        self, G: Exact, right: Exact, K: Exact, weights: Exact, target: Exact, contact: NDArray[np.bool_]
+    ) -> tuple[Exact, Exact]:
+        """Pressure on the contact set, and the approach: bordered by the load unless that is prescribed."""
+        index = np.flatnonzero(contact)
+        f = np.full(len(K), mp.mpf(0), dtype=object)
+        if self.approach is not None:
+            if len(index):
+                f[index] = _solve(G[np.ix_(index, index)], (right + K * self.approach)[index])
+            return f, self.approach
+        n = len(index)
+        bordered = np.full((n + 1, n + 1), mp.mpf(0), dtype=object)
+        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = (
+            G[np.ix_(index, index)] / _size(G), -K[index], weights[index] / _size(weights)
+        )  # fmt: skip
+        found = _solve(bordered, np.append(right[index], target * _size(G) / _size(weights)))
+        # pressures come in units of 1/|G|: the border and the block then have one size
+        f[index] = found[:n] / _size(G)
+        return f, found[n]
+
+
+def _infeasible(f: Exact, room: Exact, contact: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], float]:
+    """Elements that break Eq. (6), and the least relative distance of any element from doing so."""
+    inside, outside = f[contact], room[~contact]
+    scale_f, scale_v = max(abs(f)) or mp.mpf(1), max(abs(room)) or mp.mpf(1)
+    bad = np.zeros(len(f), dtype=bool)
+    bad[contact] = [bool(value < -TIE * scale_f) for value in inside]
+    bad[~contact] = [bool(value < -TIE * scale_v) for value in outside]
+    margins = [float(min(abs(v)) / s) for v, s in ((inside, scale_f), (outside, scale_v)) if len(v)]
+    return bad, min(margins)
+
+
+def _solve(matrix: Exact, right: Exact) -> Exact:
+    """Gaussian elimination with partial pivoting on object arrays."""
+    m, x = matrix.copy(), right.copy()
+    n = len(x)
+    for k in range(n):
+        p = k + int(np.argmax(np.abs(m[k:, k])))
+        if m[p, k] == 0:
+            raise NotSettled("singular equations")
+        if p != k:
+            m[[k, p]], x[[k, p]] = m[[p, k]], x[[p, k]]
+        factors = m[k + 1 :, k] / m[k, k]
+        m[k + 1 :, k + 1 :] -= np.outer(factors, m[k, k + 1 :])
+        x[k + 1 :] -= factors * x[k]
+    for k in reversed(range(n)):
+        x[k] = (x[k] - (m[k, k + 1 :] @ x[k + 1 :] if k + 1 < n else 0)) / m[k, k]
+    return x
+
+
+def _size(values: Exact) -> Exact:
+    return np.max(np.abs(values))
+
+
+def _cos(tan: Exact) -> Exact:
+    return np.array([1 / mp.sqrt(1 + t * t) for t in tan], dtype=object)
+
+
+def _exact(values: Array) -> Exact:
+    return np.array([mp.mpf(float(v)) for v in values.ravel()], dtype=object)
+
+
+def _normal_compliance(material: rf.Material) -> Exact:
+    return (1 - mp.mpf(material.nu) ** 2) / (mp.pi * mp.mpf(material.E))
+
+
+def _shear_compliance(material: rf.Material) -> Exact:
+    nu = mp.mpf(material.nu)
+    return (1 + nu) * (1 - 2 * nu) / (2 * mp.pi * mp.mpf(material.E))

@@ -1,0 +1,104 @@
+"""What an extreme state is, how it may end, and the register of axes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+DIGITS_MOST = 17.0
+"""Digits given to an error of exactly zero: a double holds 15.95."""
+
+
+class Verdict(StrEnum):
+    """How a state ended. WRONG is what must never be: a number that is off although it was reported as good."""
+
+    RIGHT = "right"
+    HONEST = "honest failure"  # refused by InputError, or a status that says no
+    WRONG = "wrong"
+    CRASH = "crash"  # an exception that nobody foresaw: no wrong number, but no reason either
+
+
+@dataclass(frozen=True)
+class Judged:
+    """The outcome of one state.
+
+    ``error`` is relative to the scale of what is judged, None where no number was given; ``limit`` is the
+    error from which a number counts as wrong; ``oracle`` says what it was held against.
+    """
+
+    verdict: Verdict
+    status: str
+    error: float | None
+    limit: float
+    oracle: str
+    note: str = ""
+    data: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def digits(self) -> float | None:
+        """Decimal digits that agree with the oracle; None where no number was given."""
+        return None if self.error is None else digits_kept(self.error)
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """One state: ``axis`` and ``series`` it belongs to, where on the axis it is, and how it is run."""
+
+    axis: str
+    series: str
+    at: str
+    x: float
+    run: Callable[[], Judged]
+
+    @property
+    def id(self) -> str:
+        """Unique name, stable between runs."""
+        return f"{self.axis}/{self.series}/{self.at}"
+
+
+def digits_kept(error: float) -> float:
+    """``-log10`` of a relative error, between 0 and `DIGITS_MOST`.
+
+    >>> digits_kept(1e-12), digits_kept(0.0), digits_kept(3.0)
+    (12.0, 17.0, 0.0)
+    """
+    return DIGITS_MOST if error == 0 else min(DIGITS_MOST, max(0.0, -math.log10(error)))
+
+
+def number(error: float, limit: float, status: str, oracle: str, note: str = "", **data: float) -> Judged:
+    """The verdict on a number that was given as good: right within the limit, else (NaN too) wrong."""
+    verdict = Verdict.RIGHT if error <= limit else Verdict.WRONG
+    return Judged(verdict, status, error if math.isfinite(error) else 1e300, limit, oracle, note, data)
+
+
+Axis = Callable[[], Iterable[Extreme]]
+_AXES: dict[str, Axis] = {}
+
+
+def axis(name: str) -> Callable[[Axis], Axis]:
+    """Decorator that registers a function which yields the states of an axis."""
+
+    def register(states: Axis) -> Axis:
+        if name in _AXES:
+            raise ValueError(f"the axis {name!r} is declared twice")
+        _AXES[name] = states
+        return states
+
+    return register
+
+
+def axes() -> tuple[str, ...]:
+    """Names of the registered axes, in order of declaration."""
+    return tuple(_AXES)
+
+
+def states(name: str) -> Iterator[Extreme]:
+    """The states of an axis; raises ValueError when two have one id."""
+    seen = set()
+    for extreme in _AXES[name]():
+        if extreme.id in seen:
+            raise ValueError(f"two states are called {extreme.id!r}")
+        seen.add(extreme.id)
+        yield extreme
