@@ -1,0 +1,82 @@
+"""The codes that take part: each peer's adapter, and this project's solver without and with coupling."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.grid import Array
+from verification.adapters import aspher, contactmechanics, tamaas
+from verification.adapters.peer import Peer
+from verification.benchmarks.problems import FRICTION, problem, scene
+from verification.provenance import DISTRIBUTION, versions
+
+OWN = "refimpl"
+SHEARED, SLOPED = f"{OWN}+friction", f"{OWN}+friction+slopes"
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed:
+    """What a code returned.
+
+    pressure : ``(M, M)`` (Pa)
+    converged : whether the code says so; for ours, tau's support may end in a settled cycle
+    operations : its own counts
+    residual : the certificate's worst residual; only with coupling, where the frictionless judge cannot say
+    """
+
+    pressure: Array
+    converged: bool
+    operations: Mapping[str, float] = field(default_factory=dict)
+    residual: float | None = None
+
+
+@dataclass(frozen=True)
+class Code:
+    """One competitor. `ready` makes what is to be timed from a problem's kind, its M and a tolerance."""
+
+    name: str
+    version: str | None
+    ready: Callable[[str, int, float], Callable[[], Pressed]]
+
+
+def _peer(peer: Peer, kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
+    posed = problem(kind, M, tolerance)
+
+    def press() -> Pressed:
+        answer = peer(posed)
+        return Pressed(np.asarray(answer.pressure), answer.converged, answer.operations)
+
+    return press
+
+
+def _own(friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
+    posed = scene(kind, M, friction)
+
+    def press() -> Pressed:
+        found = rf.solve(posed, grid=M, oblique=oblique, tolerance=tolerance)
+        work = {f"{name} products": float(n) for name, n in found.cost.applications.items()}
+        coupled = None if friction.is_zero and not oblique else found.certificate.worst
+        return Pressed(
+            found.pressure,
+            found.status in (rf.Status.CONVERGED, rf.Status.CYCLED),
+            work | {"n log2 n": found.cost.point_logs},
+            coupled,
+        )
+
+    return press
+
+
+def codes() -> dict[str, Code]:
+    """All codes by name; the version is None where a peer is not installed."""
+    own = f"{OWN} {versions()[DISTRIBUTION]}"
+    settings = {OWN: (rf.Friction(), False), SHEARED: (FRICTION, False), SLOPED: (FRICTION, True)}
+    found = {name: Code(name, own, partial(_own, *setting)) for name, setting in settings.items()}
+    for peer in (tamaas.solve, contactmechanics.solve, aspher.solve):
+        name = peer.distribution
+        found[name] = Code(name, peer.version if peer.installed else None, partial(_peer, peer))
+    return found

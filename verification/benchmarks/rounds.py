@@ -1,0 +1,110 @@
+"""Turns: every code solves in a process of its own, A B C A B C, at the loosest tolerance that will do."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+TARGET = 1e-8  # relative gap, recomputed, that everybody has to meet
+CERTIFIED = 1e-8  # tolerance at which our own solver starts: its default, so never looser
+LOOSE = 1e-7  # where a peer's search starts: adapters derive their tolerances from bounds, on the safe side
+_LONG = 20.0  # s; above it a tolerance that does is not loosened further
+_TRIES = 8
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+Found = dict[str, Any]
+Solve = Callable[[float], Found]
+
+
+class Failed(Exception):
+    """A solve that gave nothing to judge: it raised, or took longer than allowed."""
+
+
+@dataclass
+class Turns:
+    """One code on one problem: the tolerance it was given and what each round found."""
+
+    code: str
+    kind: str
+    M: int
+    tolerance: float
+    rounds: list[Found] = field(default_factory=list)
+    failure: str = ""
+
+
+def solved(code: str, kind: str, M: int, tolerance: float, threads: int, limit: float) -> Found:
+    """What one fresh process found. Raises `Failed` with the last line of what it complained of."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "found.json"
+        asked = ["--code", code, "--kind", kind, "--grid", str(M), "--tolerance", repr(tolerance)]
+        command = [sys.executable, "-m", "verification.benchmarks.child", *asked, "--json", str(file)]
+        environment = {**os.environ, **dict.fromkeys(THREADS, str(threads))}
+        try:
+            done = subprocess.run(
+                command, env=environment, capture_output=True, text=True, timeout=limit, check=False
+            )
+        except subprocess.TimeoutExpired:
+            raise Failed(f"took longer than {limit:g} s") from None
+        if done.returncode != 0:
+            raise Failed((done.stderr.strip() or "no word").splitlines()[-1])
+        found: Found = json.loads(file.read_text(encoding="utf-8"))
+        return found
+
+
+def error(found: Mapping[str, Any]) -> float:
+    """What has to meet the target: the recomputed gap, or with coupling the certificate's worst residual."""
+    return float(found["gap"] if found["residual"] is None else found["residual"])
+
+
+def tuned(solve: Solve, start: float, *, loosen: bool) -> tuple[float, Found]:
+    """The loosest tolerance, within a factor of two, whose error meets the target, and what it found.
+
+    Without ``loosen`` the start is the loosest allowed. Raises `Failed` when no tolerance tried will do.
+
+    >>> def solve(tolerance): return {"gap": 3 * tolerance, "residual": None, "seconds": 1.0}
+    >>> 2 * tuned(solve, 1e-7, loosen=True)[0] >= TARGET / 3 >= tuned(solve, 1e-7, loosen=True)[0]
+    True
+    """
+    best: tuple[float, Found] | None = None
+    too_loose, tolerance = math.inf, start
+    for _ in range(_TRIES):
+        found = solve(tolerance)
+        excess = error(found) / TARGET
+        if excess <= 1:
+            best = tolerance, found
+            if not loosen or found["seconds"] > _LONG or too_loose <= 2 * tolerance:
+                return best
+            if math.isinf(too_loose):
+                tolerance *= min(10.0, max(2.0, 1 / max(excess, 0.1)))
+                continue
+        else:
+            too_loose = tolerance
+            if best is None:
+                tolerance *= max(0.1, min(0.5, 1 / excess))
+                continue
+            if too_loose <= 2 * best[0]:
+                return best
+        tolerance = math.sqrt(best[0] * too_loose)
+    if best is None:
+        raise Failed(f"relative gap {TARGET * excess:.1e} at tolerance {tolerance:.1e}: {_TRIES} tries")
+    return best
+
+
+def in_turns(turns: Sequence[Turns], rounds: int, solve: Callable[[Turns], Found]) -> None:
+    """Fill the rounds: one solve of each code, then the next of each. A failure ends a code's part."""
+    for _ in range(rounds):
+        for one in turns:
+            if one.failure:
+                continue
+            try:
+                one.rounds.append(solve(one))
+            except Failed as failure:
+                one.failure = str(failure)
