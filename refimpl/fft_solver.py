@@ -18,7 +18,7 @@ from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.friction import Mask, TauSupport, local_friction
 from refimpl.grid import Array
-from refimpl.nesting import foundation_pressure, levels, likely_contact, prolonged
+from refimpl.nesting import foundation_pressure, levels, prolonged, sharpened, touching
 from refimpl.operators.base import Influence
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -28,8 +28,8 @@ from refimpl.problem import Problem, visit
 from refimpl.slopes import Slopes
 
 _REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
-_COARSE_TOLERANCE = 1e-4  # a coarse state is only a start: its own grid error is larger than this
-_MARGIN = 3  # elements by which a window exceeds the contact that it is expected to hold
+_COARSE_TOLERANCE = 3e-4  # a coarse state is only a start: its own grid error is larger than this
+_MARGIN = 1  # elements, at least, by which a window exceeds the contact that it is expected to hold
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 _STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
@@ -44,7 +44,9 @@ def solve_fft(problem: Problem, tolerance: float, counter: Counter) -> tuple[Out
     """
     iterations: dict[str, int] = {}
     nested = levels(problem)
-    solver = _LevelSolver(nested[0], counter, Window.full(nested[0].grid.M), foundation_pressure(nested[0]))
+    window = Window.full(nested[0].grid.M)
+    precondition = _preconditioner(nested[0], window, counter)
+    solver = _LevelSolver(nested[0], counter, window, precondition, foundation_pressure(nested[0]))
     for fine in nested[1:]:
         solver.settle(_COARSE_TOLERANCE)
         iterations[f"CG at {solver.whole.grid.M}"] = solver.cg_iterations
@@ -75,25 +77,58 @@ def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
     return certify(problem, operator, outcome.pressure, outcome.traction, outcome.slopes)
 
 
+def _preconditioner(problem: Problem, window: Window, counter: Counter) -> SpectralPreconditioner:
+    return SpectralPreconditioner(
+        window.shape,
+        problem.grid.spacing,
+        problem.pair.normal_compliance,
+        counter,
+        band_limited=problem.periodic,
+    )
+
+
 class _LevelSolver:
     """One grid level: CG on a window, with slopes, shear and tau's support brought up to date."""
 
-    def __init__(self, problem: Problem, counter: Counter, window: Window, pressure: Array) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        counter: Counter,
+        window: Window,
+        precondition: SpectralPreconditioner,
+        pressure: Array,
+    ) -> None:
         self.whole = problem
         self.counter = counter
         self.cg_iterations = 0
-        self._open(window, pressure)
+        self._open(window, precondition, pressure)
 
     def refined(self, fine: Problem) -> _LevelSolver:
         """The solver of the twice finer level, started from this one's pressure and likely contact."""
+        separation = self.cg.separation
+        approach = self.cg.approach(separation)
+        displacement = self.full(separation - self.problem.gap)
+        if not fine.periodic:
+            outside = fine.pair.normal_compliance * self._onto_whole_grid().normal(
+                self.full(self.cg.pressure)
+            )
+            outside[self.window.slices] = displacement[self.window.slices]
+            displacement = outside
+        v = prolonged(displacement) + fine.gap
         pressure = prolonged(self.full(self.cg.pressure))
+        contact = touching(pressure, v, approach, fine)
         window = Window.full(fine.grid.M)
         if not fine.periodic:
-            operator = self._onto_whole_grid()
-            displacement = fine.pair.normal_compliance * operator.normal(self.full(self.cg.pressure))
-            likely = likely_contact(displacement, self.cg.approach(self.cg.separation), fine)
-            window = Window.around((pressure > 0) | likely, margin=_MARGIN)
-        return _LevelSolver(fine, self.counter, window, pressure)
+            window = Window.around(contact, _MARGIN).filling(fine.grid.M)
+        precondition = _preconditioner(fine, window, self.counter)
+        start = sharpened(
+            pressure[window.slices],
+            approach - v[window.slices],
+            contact[window.slices],
+            precondition,
+            loaded=fine.load is not None,
+        )
+        return _LevelSolver(fine, self.counter, window, precondition, start)
 
     def _onto_whole_grid(self) -> WholeGridInfluence:
         grid = self.whole.grid
@@ -105,8 +140,8 @@ class _LevelSolver:
             counter=self.counter,
         )
 
-    def _open(self, window: Window, pressure: Array) -> None:
-        """Set up operator, preconditioner and CG on a window, starting from a full-grid pressure."""
+    def _open(self, window: Window, precondition: SpectralPreconditioner, pressure: Array) -> None:
+        """Set up operator and CG on a window, starting from a pressure there."""
         grid, direction = self.whole.grid, self.whole.direction
         self.window = window
         self.problem = self.whole.windowed(window)
@@ -119,8 +154,8 @@ class _LevelSolver:
         compliance = self.problem.pair.normal_compliance
         self.cg = ProjectedCG(
             lambda pressure: compliance * self.operator.normal(pressure),
-            SpectralPreconditioner(window.shape, grid.spacing, compliance, self.counter),
-            pressure[window.slices],
+            precondition,
+            pressure,
         )
         self.slopes = Slopes.flat(window.shape)
         self.traction = np.zeros(window.shape)
@@ -260,7 +295,8 @@ class _LevelSolver:
     def widen(self, outside: Mask) -> None:
         """Start again from the present pressure on a window that also holds the penetrating elements."""
         pressure = self.full(self.cg.pressure)
-        self._open(Window.around((pressure > 0) | outside, margin=_MARGIN), pressure)
+        window = Window.around((pressure > 0) | outside, _MARGIN).filling(len(outside))
+        self._open(window, _preconditioner(self.whole, window, self.counter), pressure[window.slices])
 
     def full(self, values: NDArray[Any]) -> NDArray[Any]:
         """A window array on the whole grid."""

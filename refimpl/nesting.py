@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from refimpl.contact.projected_cg import FIRST_LENGTH, Apply
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.problem import Problem
@@ -54,16 +55,30 @@ def foundation_pressure(problem: Problem) -> Array:
     return pressure
 
 
-def likely_contact(coarse_displacement: Array, approach: float, fine: Problem) -> Mask:
-    """Fine elements that would touch if the coarse displacement held there, judged by the lowest of four.
+def touching(pressure: Array, v: Array, approach: float, problem: Problem) -> Mask:
+    """Elements in contact after a damped Jacobi step from a prolonged pressure; no operator is applied.
 
-    ``coarse_displacement`` has half as many elements per side as the fine problem; shape of the
-    result is the fine grid's.
+    ``v`` is the prolonged displacement plus the grid's gap; what it misses of the approach is of the grid's
+    highest frequency ``q = pi / spacing``, where ``a`` is ``2 compliance spacing``.
     """
-    M = len(coarse_displacement)
-    lowest = fine.gap.reshape(M, 2, M, 2).min(axis=(1, 3))
-    touching = coarse_displacement + lowest < approach
-    return np.repeat(np.repeat(touching, 2, axis=0), 2, axis=1)
+    stiffness = 1 / (2 * problem.pair.normal_compliance * problem.grid.spacing)
+    found: Mask = pressure + 0.5 * stiffness * (approach - v) > 0
+    return found
+
+
+def sharpened(pressure: Array, misfit: Array, contact: Mask, precondition: Apply, *, loaded: bool) -> Array:
+    """A prolonged pressure with the grid's own detail: a preconditioned step, no operator applied.
+
+    ``misfit`` is what ``v`` of `touching` lacks of the approach; the step keeps the load if there is one.
+    """
+    residual = _level(misfit * contact, contact, loaded)
+    step = _level(precondition(residual) * contact, contact, loaded)
+    raised: Array = (pressure + FIRST_LENGTH * step) * contact
+    return np.maximum(raised, 0.0)
+
+
+def _level(values: Array, contact: Mask, loaded: bool) -> Array:
+    return values - values.sum() / np.count_nonzero(contact) * contact if loaded else values
 
 
 def _halved(values: Array) -> Array:

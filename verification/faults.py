@@ -65,10 +65,10 @@ def _wherever_imported(name: str, wrong: Any) -> tuple[Patch, ...]:
     return tuple((user, name, wrong) for user in users if hasattr(user, name))
 
 
-def _circle_off_by_one(n: int, targets: int, shift: int, *, even: bool) -> NDArray[np.int_]:
+def _circle_off_by_one(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
     """The farthest positive offset falls on the far side of the circle."""
     steps = np.arange(n)
-    return np.where(steps < targets - 1, steps, steps - n) + shift
+    return np.where(steps < highest, steps, steps - n)
 
 
 def _periodic_images(self: FFTInfluence) -> Any:

@@ -1,10 +1,11 @@
 """Projected, preconditioned conjugate gradients for contact with everything but the pressure held.
 
 Minimise ``1/2 f.(a f) + f.b`` over ``f >= 0``, either with ``K.f = target`` (the load) or with
-``b`` holding ``-K approach``. On the set S of elements in contact each step is one of projected CG
-with the constraint eliminated in the preconditioner's metric (Gould, Hribar and Nocedal 2001, SIAM
-J. Sci. Comput. 23, 1376); after it, elements with negative pressure leave S and elements that
-penetrate enter it (Polonsky and Keer 1999, Wear 231, 206). Conjugacy is measured by the
+``b`` holding ``-K approach``. On the set S of elements in contact each step is one of CG, residual and
+step both projected onto ``K.d = 0`` (which keeps the preconditioner symmetric there). The trial point of a
+step is cut at zero pressure and scaled to the load *before* the displacement is applied, and the best point
+between the present and the trial is taken: one application a step, whether elements leave or not. Elements
+that penetrate enter S afterwards (Polonsky and Keer 1999, Wear 231, 206). Conjugacy is measured by the
 Polak-Ribiere quotient, which forgets the past by itself when S changes.
 """
 
@@ -18,6 +19,10 @@ from refimpl.friction import Mask
 from refimpl.grid import Array
 
 Apply = Callable[[Array], Array]
+
+FIRST_LENGTH = 0.7  # of a step: the preconditioned spectrum lies between 1 and 2 (see the tests)
+_SHORTER = 0.8  # trial over last best length: a trial too long would leave cut elements halfway
+_TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its length before it cuts
 
 
 def relative_gap(duality: float, energy: float) -> float:
@@ -40,13 +45,13 @@ class ProjectedCG:
         self.normal_displacement = apply(pressure)
         self.contact: Mask = pressure > 0
         self._direction: Array | None = None
-        self._lift: Array | None = None
         self._residual, self._product = pressure, 0.0
+        self._length, self._trusted = FIRST_LENGTH, True
 
     def freeze(self, b: Array, K: Array, *, target: float | None, approach: float | None) -> None:
         """Hold ``b = K h + shear displacement`` (m), the weights ``K`` and the target or approach."""
         self._b, self._K, self._target, self._approach = b, K, target, approach
-        self._direction = self._lift = None
+        self._direction = None
         if target is not None:
             self._scale_to_target()
 
@@ -78,32 +83,25 @@ class ProjectedCG:
         if self._approach is not None:
             residual += self._K * self._approach
         residual *= self.contact
-        step = self._preconditioned(residual)
-        if self._target is not None:
-            lift, stiffness = self._lift_of_set()
-            multiplier = -float(np.vdot(self._K, step)) / stiffness
-            step += multiplier * lift
-            residual += multiplier * (self._K * self.contact)
-        direction = self._conjugate(residual, step)
-        moved = self._apply(direction)
-        curvature = float(np.vdot(direction, moved))
-        if curvature > 0:  # zero when the constraint alone fixes the set's pressure
-            length = float(np.vdot(residual, direction)) / curvature
-            self.pressure = self.pressure + length * direction
-            self.normal_displacement = self.normal_displacement + length * moved
-        self._exchange()
+        residual = self._projected(residual)
+        direction = self._conjugate(residual, self._projected(self._preconditioned(residual)))
+        if not (self._trusted and self._step_to_trial(residual, direction)):
+            self._step_then_cut(residual, direction)
+        v = self.separation
+        self.contact = self.contact | (v < self.approach(v))
+
+    def _projected(self, values: Array) -> Array:
+        """``values`` on the contact set without what they have along the load's weights."""
+        if self._target is None:
+            return values
+        weights = self._K * self.contact
+        values -= (float(np.vdot(weights, values)) / float(np.vdot(weights, weights))) * weights
+        return values
 
     def _preconditioned(self, residual: Array) -> Array:
         step = self._precondition(residual)
         step *= self.contact
         return step
-
-    def _lift_of_set(self) -> tuple[Array, float]:
-        """``M K`` on the contact set and ``K.M K``: how pressure answers to a change of approach."""
-        if self._lift is None:
-            self._lift = self._preconditioned(self._K * self.contact)
-            self._stiffness = float(np.vdot(self._K, self._lift))
-        return self._lift, self._stiffness
 
     def _conjugate(self, residual: Array, step: Array) -> Array:
         product = float(np.vdot(residual, step))
@@ -111,13 +109,50 @@ class ProjectedCG:
         if self._direction is not None and self._product > 0:
             quotient = (product - float(np.vdot(self._residual, step))) / self._product
             direction = step + max(0.0, quotient) * (self._direction * self.contact)
-            if self._target is not None:
-                lift, stiffness = self._lift_of_set()
-                direction -= (float(np.vdot(self._K, direction)) / stiffness) * lift
+            direction = self._projected(direction)
         self._direction, self._residual, self._product = direction, residual, product
         return direction
 
-    def _exchange(self) -> None:
+    def _step_to_trial(self, residual: Array, direction: Array) -> bool:
+        """To the best point between here and the trial, cut and scaled; False if the cut leaves nothing."""
+        trial = self.pressure + (_SHORTER * self._length) * direction
+        negative = trial < 0
+        cut = bool(negative.any())
+        if cut:
+            trial[negative] = 0.0
+            total = float(np.vdot(self._K, trial))
+            if total <= 0:
+                return False
+            if self._target is not None:
+                trial *= self._target / total
+        change = trial - self.pressure
+        moved = self._apply(change)
+        curvature = float(np.vdot(change, moved))
+        best = float(np.vdot(residual, change)) / curvature if curvature > 0 else 0.0
+        share = min(max(best, 0.0), 1.0) if cut else min(best, self._room(change))
+        self.pressure = trial if share == 1 else np.maximum(self.pressure + share * change, 0.0)
+        self.normal_displacement = self.normal_displacement + share * moved
+        self.contact = self.contact & ~((self.pressure == 0) & (negative | (change < 0)))
+        self._length *= _SHORTER * best
+        self._trusted = _TRUSTED[0] < best < _TRUSTED[1]
+        return True
+
+    def _room(self, change: Array) -> float:
+        """The multiple of ``change`` at which the first pressure reaches zero."""
+        falling = change < 0
+        if not falling.any():
+            return np.inf
+        return float(np.min(self.pressure[falling] / -change[falling]))
+
+    def _step_then_cut(self, residual: Array, direction: Array) -> None:
+        """The exact step along the direction, then the cut: two applications, and no guess."""
+        moved = self._apply(direction)
+        curvature = float(np.vdot(direction, moved))
+        if curvature > 0:  # zero when the constraint alone fixes the set's pressure
+            self._length = float(np.vdot(residual, direction)) / curvature
+            self.pressure = self.pressure + self._length * direction
+            self.normal_displacement = self.normal_displacement + self._length * moved
+            self._trusted = True
         negative = self.pressure < 0
         if negative.any():
             if negative[self.contact].all():  # the step overshot everything: keep the largest element
@@ -127,12 +162,6 @@ class ProjectedCG:
             if self._target is not None:
                 self._scale_to_target(displace=False)
             self.normal_displacement = self._apply(self.pressure)
-            self._lift = None
-        v = self.separation
-        entering = ~self.contact & (v < self.approach(v))
-        if entering.any():
-            self.contact = self.contact | entering
-            self._lift = None
 
     def _scale_to_target(self, *, displace: bool = True) -> None:
         assert self._target is not None

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import scipy.fft as sfft
@@ -16,22 +17,24 @@ from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
 from refimpl.operators.tables import signed_table
-from refimpl.operators.window import Window
+from refimpl.operators.window import Window, padded_length
 
 Complex = NDArray[np.complex128]
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 @dataclass
 class Counter:
-    """How often operators were applied, each application with its ``n log2 n`` padded points."""
+    """How often operators were applied, each application with its ``n log2 n`` padded points.
 
-    applications: int = 0
+    A kernel's own transform counts as the half of an application that it is, or an eighth by symmetry.
+    """
+
     point_logs: float = 0.0
     tally: dict[str, int] = field(default_factory=dict)
 
     def add(self, what: str, points: int) -> None:
         """Count one application of ``what`` with a transform of ``points`` points."""
-        self.applications += 1
         self.point_logs += points * math.log2(max(points, 2))
         self.tally[what] = self.tally.get(what, 0) + 1
 
@@ -58,9 +61,8 @@ class FFTInfluence:
         self.source = source or Window.full(grid.M)
         self.target = target or self.source
         self.counter = counter if counter is not None else Counter()
-        rows, columns = (n + m for n, m in zip(self.source.shape, self.target.shape, strict=True))
-        # the transform along columns is real, the one along rows complex, with more fast lengths
-        self._padded = sfft.next_fast_len(rows), sfft.next_fast_len(columns, real=True)
+        rows, columns = (n + m - 1 for n, m in zip(self.source.shape, self.target.shape, strict=True))
+        self._padded = padded_length(rows), padded_length(columns)
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""
@@ -80,20 +82,24 @@ class FFTInfluence:
     @cached_property
     def _offsets(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
         """Signed element offsets, target minus source, around the circle of each axis."""
-        shifts = (self.target.i0 - self.source.i0, self.target.j0 - self.source.j0)
-        even = self.source == self.target
-        rows, columns = (
-            _circle(n, targets, shift, even=even)
-            for n, targets, shift in zip(self._padded, self.target.shape, shifts, strict=True)
-        )
-        return rows, columns
+        source, target = self.source, self.target
+        rows = _circle(self._padded[0], target.i0 - source.i1 + 1, target.i1 - 1 - source.i0)
+        return rows, _circle(self._padded[1], target.j0 - source.j1 + 1, target.j1 - 1 - source.j0)
 
     @cached_property
     def _normal_hat(self) -> Array | Complex:
-        """The kernel's transform; real, and kept so, when source and target coincide."""
+        """The kernel's transform: of a quarter of it, and real, where the circles are even."""
         rows, columns = self._offsets
-        hat = sfft.rfft2(signed_table("normal", rows, columns) * self.grid.spacing)
-        return np.ascontiguousarray(hat.real) if self.source == self.target else hat
+        points, spacing = math.prod(self._padded), self.grid.spacing
+        if not (_is_even(rows) and _is_even(columns)):
+            self.counter.add("normal kernel", points // 2)
+            transform: Complex = sfft.rfft2(signed_table("normal", rows, columns) * spacing)
+            return transform
+        self.counter.add("normal kernel", points // 8)
+        half = len(rows) // 2
+        quarter = signed_table("normal", rows[: half + 1], columns[: len(columns) // 2 + 1])
+        hat: Array = sfft.dctn(quarter * spacing, type=1)
+        return np.concatenate([hat, hat[half - 1 : 0 : -1]])
 
     @cached_property
     def _shear_hat(self) -> Complex:
@@ -107,19 +113,19 @@ class FFTInfluence:
         rows, columns = self._offsets
         along_x = signed_table("tangential", rows, columns)
         along_y = signed_table("tangential", columns, rows).T
-        hat: Complex = sfft.rfft2(
-            (math.cos(angle) * along_x + math.sin(angle) * along_y) * self.grid.spacing
-        )
+        self.counter.add("shear kernel", math.prod(self._padded) // 2)
+        hat: Complex = sfft.rfft2((math.cos(angle) * along_x + math.sin(angle) * along_y) * self.grid.spacing)
         return hat
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
         n, m = self.target.shape
         N, K = self._padded
+        i, j = self.target.i0 - self.source.i0, self.target.j0 - self.source.j0
         spectrum = sfft.fft(sfft.rfft(source, n=K, axis=1), n=N, axis=0)
         spectrum *= hat
-        rows = sfft.ifft(spectrum, axis=0, overwrite_x=True)[:n]
-        result: Array = sfft.irfft(rows, n=K, axis=1)[:, :m]
-        return result
+        rows = _arc(sfft.ifft(spectrum, axis=0, overwrite_x=True), i, n)
+        result: Array = sfft.irfft(rows, n=K, axis=1).T
+        return _arc(result, j, m).T
 
 
 class WholeGridInfluence(FFTInfluence):
@@ -132,12 +138,22 @@ class WholeGridInfluence(FFTInfluence):
         return super()._convolve(source[self.source.slices], hat)
 
 
-def _circle(n: int, targets: int, shift: int, *, even: bool) -> NDArray[np.int_]:
-    """Offsets met around a circle of ``n`` points: ``0 ... targets - 1``, then the negative ones.
+def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
+    """Offsets around a circle of ``n`` points that holds ``lowest ... highest`` once, 0 at its start.
 
-    ``even`` splits the circle in halves, so that an even kernel has a real transform: for equal windows.
+    Even, but for the point opposite 0, where there is room: an even kernel then has a real transform.
     """
-    steps = np.arange(n)
-    if even:
-        return np.where(steps <= n // 2, steps, steps - n)
-    return np.where(steps < targets, steps, steps - n) + shift
+    if max(-lowest, highest) <= n // 2:
+        lowest = min(lowest, 1 - n // 2)
+    return lowest + (np.arange(n) - lowest) % n
+
+
+def _is_even(circle: NDArray[np.int_]) -> bool:
+    return len(circle) % 2 == 0 and np.array_equal(np.abs(circle[1:]), np.abs(circle[:0:-1]))
+
+
+def _arc(values: NDArray[Scalar], start: int, count: int) -> NDArray[Scalar]:
+    """``count`` rows of a circle from row ``start`` on."""
+    if 0 <= start <= len(values) - count:
+        return values[start : start + count]
+    return np.take(values, np.arange(start, start + count), axis=0, mode="wrap")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy.fft as sfft
 from numpy.typing import NDArray
 
 
@@ -40,6 +41,15 @@ class Window:
             min(where.shape[1], int(columns[-1]) + 1 + margin),
         )
 
+    def filling(self, M: int) -> Window:
+        """The window within an ``M x M`` grid, widened as far as its convolution costs no more.
+
+        A window of n elements a side is padded to the least fast length of ``2 n - 1`` or more.
+        """
+        i0, i1 = _filled(self.i0, self.i1, M)
+        j0, j1 = _filled(self.j0, self.j1, M)
+        return Window(i0, i1, j0, j1)
+
     @property
     def shape(self) -> tuple[int, int]:
         """Numbers of elements along x and y."""
@@ -55,3 +65,14 @@ class Window:
         full = np.zeros((M, M), dtype=values.dtype)
         full[self.slices] = values
         return full
+
+
+def padded_length(n: int) -> int:
+    """The least even fast length of at least ``n``."""
+    return 2 * int(sfft.next_fast_len((n + 1) // 2, real=True))
+
+
+def _filled(start: int, stop: int, M: int) -> tuple[int, int]:
+    size = min(M, padded_length(2 * (stop - start) - 1) // 2)
+    start = min(max(0, start - (size - (stop - start)) // 2), M - size)
+    return start, start + size

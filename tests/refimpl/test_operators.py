@@ -174,8 +174,9 @@ def test_counter_counts():
     operator = FFTInfluence(Grid(1.0, 4), 0.0, counter=counter)
     operator.normal(np.zeros((4, 4)))
     operator.shear(np.zeros((4, 4)))
-    assert counter.tally == {"normal": 1, "shear": 1}
-    assert counter.point_logs == 2 * 64 * 6
+    assert counter.tally == {"normal": 1, "shear": 1, "normal kernel": 1, "shear kernel": 1}
+    # kernels: an eighth of an application by symmetry, and a half
+    assert counter.point_logs == 2 * 64 * 6 + 8 * 3 + 32 * 5
 
 
 def test_window():
@@ -184,4 +185,6 @@ def test_window():
     marked[2, 1] = marked[3, 4] = True
     assert Window.around(marked, margin=0) == Window(2, 4, 1, 5)
     assert Window.around(marked, margin=2) == Window(0, 6, 0, 6)
+    assert Window(2, 4, 1, 5).filling(6) == Window(2, 4, 1, 5)  # 3 and 7 elements pad to 4 and 8
+    assert Window(20, 37, 60, 64).filling(64) == Window(20, 38, 60, 64)  # 33 pad to 36, room for 18
     assert Window(2, 4, 1, 5).spread(np.ones((2, 4)), 6).sum() == 8

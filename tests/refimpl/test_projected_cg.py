@@ -111,6 +111,42 @@ def test_the_preconditioner_clusters_the_spectrum() -> None:
     assert values[-1] / values[0] < 0.5 * np.linalg.cond(A)
 
 
+def test_the_spectrum_on_a_disc_lies_between_one_and_about_two() -> None:
+    """What the first step's length rests on; a periodic window and one fold cost a few per cent below one."""
+    n = 24
+    grid = Grid(SIDE, n)
+    spectral = SpectralPreconditioner((n, n), grid.spacing, COMPLIANCE, Counter())
+    x = np.arange(n) - (n - 1) / 2
+    disc = (x[:, None] ** 2 + x[None, :] ** 2 < (0.45 * n) ** 2).ravel()
+    inverse = np.array([spectral(row.reshape(n, n)).ravel() for row in np.eye(n * n)[disc]])[:, disc]
+    flexibility = COMPLIANCE * DenseInfluence(grid, 0.0).normal_matrix[np.ix_(disc, disc)]
+    # on the tangent space of the load, as CG works
+    tangent = np.eye(disc.sum()) - 1 / disc.sum()
+    values = np.sort(np.linalg.eigvals(tangent @ inverse @ tangent @ flexibility).real)[1:]
+    assert 0.9 < values[0]
+    assert values[-1] < 2.2
+
+
+@pytest.mark.parametrize("load", [1e3, 1e9])
+def test_one_application_a_step_once_lengths_are_trusted(load: float) -> None:
+    counted = 0
+    cg = start()
+    apply = cg._apply
+
+    def counting(f: np.ndarray) -> np.ndarray:
+        nonlocal counted
+        counted += 1
+        return apply(f)
+
+    cg._apply = counting
+    cg.freeze(BOWL, np.ones((M, M)), target=load, approach=None)
+    untrusted = 0
+    for _ in range(12):
+        untrusted += not cg._trusted
+        cg.iterate()
+    assert 12 <= counted <= 12 + untrusted
+
+
 def test_relative_gap() -> None:
     assert relative_gap(0.0, 0.0) == 0
     assert relative_gap(1.0, 2.0) == 0.5
