@@ -28,11 +28,12 @@ def in_fair_order(found: Iterable[Candidate], seed: int) -> list[Candidate]:
 
     Each stratum of each module is shuffled and spread evenly over the whole.
     """
-    chance, strata = random.Random(seed), defaultdict(list)
+    strata = defaultdict(list)
     for candidate in found:
         strata[candidate.module, candidate.stratum].append(candidate)
     placed = []
-    for members in strata.values():
+    for name, members in strata.items():
+        chance = random.Random(f"{seed} {name}")  # of its own, so that no other module changes it
         chance.shuffle(members)
         offset = chance.random()
         placed += [((k + offset) / len(members), chance.random(), c) for k, c in enumerate(members)]
@@ -53,7 +54,7 @@ def run(root: Path, targets: Sequence[Target], chosen: Sequence[Candidate], log:
     records: list[Record] = []
     for target in targets:
         mine = [c for c in chosen if c.module == target.module]
-        stamp = {"source": _digest([root / target.module]), "suite": _digest(root / t for t in target.tests)}
+        stamp = {"source": _digest([root / target.module]), "suite": _digest(root / t for t in target.files)}
         open_ones = []
         for candidate in mine:
             record = known.get(_identity(vars(candidate) | stamp))

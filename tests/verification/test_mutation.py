@@ -1,0 +1,191 @@
+"""The mutation runner: mutants are made, judged in a fork, sampled fairly, and scored."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from verification.mutation import mutants, score, session
+from verification.mutation.__main__ import main
+from verification.mutation.mutants import Candidate, mutant, without_statements
+from verification.mutation.targets import TARGETS
+
+ROOT = Path(__file__).resolve().parents[2]
+
+SUM_OF_SQUARES = '''
+def total(values: list[float], scale: float | None = None) -> float:
+    """The sum."""
+    found = 0.0
+    for value in values:
+        found += value * value
+    print(found)
+    if scale is not None:
+        found = found * scale
+    return found
+'''
+
+
+def test_statements_that_may_go_unmissed() -> None:
+    gone = [
+        set(SUM_OF_SQUARES.split("\n")) - set(text.split("\n")) for text in without_statements(SUM_OF_SQUARES)
+    ]
+    assert sorted(line.strip() for (line,) in gone) == [
+        "found += value * value",
+        "found = found * scale",
+        "print(found)",
+    ]
+    for text in without_statements(SUM_OF_SQUARES):
+        compile(text, "mutant", "exec")
+
+
+def replacing(monkeypatch: pytest.MonkeyPatch, change: tuple[str, str]) -> None:
+    """An operator that replaces a text, in cosmic-ray's place."""
+    fake = (None, None, lambda name: name, lambda source, operator, occurrence: source.replace(*change))
+    monkeypatch.setattr(mutants, "cosmic_ray", lambda: fake)
+
+
+def test_a_mutant_says_what_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    replacing(monkeypatch, ("value * value", "value + value"))
+    made = mutant(Candidate("sum.py", "arithmetic", "Mul_Add", 0), SUM_OF_SQUARES)
+    assert made is not None
+    assert (made.line, made.before, made.after) == (6, "found += value * value", "found += value + value")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [("float | None =", "float & None ="), ("The sum.", "The total."), ("value * value", "value * * value")],
+    ids=["annotation", "docstring", "no Python"],
+)
+def test_what_cannot_matter_is_no_mutant(change: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    replacing(monkeypatch, change)
+    assert mutant(Candidate("sum.py", "arithmetic", "any", 0), SUM_OF_SQUARES) is None
+
+
+def test_every_beginning_is_a_proportional_sample() -> None:
+    everything = [Candidate("m", "a", "o", i) for i in range(300)] + [
+        Candidate("m", "b", "o", i) for i in range(60)
+    ]
+    order = session.in_fair_order(everything, seed=3)
+    assert sorted(order, key=str) == sorted(everything, key=str)
+    for size in (60, 120, 240):
+        shares = Counter(candidate.stratum for candidate in order[:size])
+        assert abs(shares["b"] - size / 6) <= 1
+    assert order == session.in_fair_order(everything, seed=3)
+    assert order != session.in_fair_order(everything, seed=4)
+
+
+def record(outcome: str, **changes: Any) -> dict[str, Any]:
+    base = {"module": TARGETS[0].module, "stratum": "sign", "operator": "o", "line": 1, "seconds": 0.5}
+    return base | {"before": "x", "after": "-x", "outcome": outcome} | changes
+
+
+def test_score_counts_equivalent_ones_neither_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(score, "explanations", lambda: {(TARGETS[0].module, "a", "b"): "the same"})
+    records = [record("killed")] * 18 + [record("timeout"), record("survived", before="a", after="b")]
+    found = score.summary([*records, record("void")], population=99, seed=1)
+    assert (found["score"], found["score_raw"]) == (1.0, 0.95)
+    assert (found["tried"], found["void"], found["equivalent"], found["survived"]) == (20, 1, 1, 0)
+    assert found["score_lower_bound"] == pytest.approx(0.05 ** (1 / 19))  # all of 19: closed form
+    assert score.passes(found)
+
+
+@pytest.mark.parametrize(
+    "records",
+    [
+        [],
+        [record("void")],
+        [record("killed")] * 99 + [record("survived")],  # enough, but one is not explained
+        [record("killed")] * 9 + [record("survived")],
+    ],
+    ids=["none", "void", "unexplained", "too few"],
+)
+def test_what_is_no_pass(records: list[dict[str, Any]]) -> None:
+    assert not score.passes(score.summary(records, population=9, seed=1))
+
+
+def test_an_explanation_needs_words(tmp_path: Path) -> None:
+    listed = tmp_path / "explained.toml"
+    listed.write_text('[[equivalent]]\nmodule = "m"\nbefore = "a"\nafter = "b"\nreason = " "\n')
+    with pytest.raises(ValueError, match="empty"):
+        score.explanations(listed)
+
+
+def test_explanations_name_lines_that_exist() -> None:
+    for module, before, _ in score.explanations():
+        text = " ".join((ROOT / module).read_text(encoding="utf-8").split())
+        assert before in text, f"{module}: {before}"
+
+
+def test_targets_exist() -> None:
+    for target in TARGETS:
+        assert all((ROOT / path).is_file() for path in (target.module, *target.files))
+
+
+def test_without_cosmic_ray_nothing_passes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "cosmic_ray.ast", None)
+    assert main(["--log", str(tmp_path / "log")]) == 2
+    assert "cosmic-ray is not installed" in capsys.readouterr().err
+
+
+JUDGE = """
+import json, sys
+from pathlib import Path
+from verification.mutation.judge import Suite
+root = Path(sys.argv[1])
+suite = Suite(root, ("test_half.py",))
+suite.baseline()
+print(json.dumps([suite.verdict("half.py", source, 2)[:2] for source in json.loads(sys.argv[2])]))
+"""
+
+
+def test_verdicts_on_a_small_tree(tmp_path: Path) -> None:
+    (tmp_path / "half.py").write_text("def half(x):\n    return x / 2\n")
+    test = "from half import half\ndef test_one(): assert half(2) == 1\ndef test_two(): assert half(4) == 2\n"
+    (tmp_path / "test_half.py").write_text(test)
+    sources = {
+        "def half(x):\n    return 0.5 * x\n": ["survived", None],
+        "def half(x):\n    return x - 1\n": ["killed", "test_half.py::test_two"],
+        "def half(x):\n    while True: pass\n": ["timeout", None],
+        "raise ValueError\n": ["killed", "test_half.py"],
+    }
+    asked = [sys.executable, "-c", JUDGE, str(tmp_path), json.dumps(list(sources))]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+    assert json.loads(done.stdout) == list(sources.values())
+    assert (tmp_path / "half.py").read_text().endswith("x / 2\n")
+
+
+def test_verdicts_are_kept_and_survivors_tried_again_when_tests_change(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "m.py").write_text("x = 1\n")
+    (tmp_path / "t.py").write_text("first\n")
+    target = TARGETS[0]._replace(module="m.py", tests=("t.py",))
+    chosen = [Candidate("m.py", "number", "o", k) for k in range(3)]
+    tried: list[list[int]] = []
+
+    def judged(root: Path, target: Any, open_ones: list[Candidate], stamp: dict[str, str], log: Path) -> Any:
+        tried.append([c.occurrence for c in open_ones])
+        new = [
+            vars(c) | stamp | {"outcome": "survived" if c.occurrence == 1 else "killed"} for c in open_ones
+        ]
+        with log.open("a") as lines:
+            lines.writelines(json.dumps(line) + "\n" for line in new)
+        return new
+
+    monkeypatch.setattr(session, "_try", judged)
+    log = tmp_path / "log"
+    for _ in range(2):
+        assert len(session.run(tmp_path, [target], chosen, log)) == 3
+    (tmp_path / "t.py").write_text("second\n")
+    assert len(session.run(tmp_path, [target], chosen, log)) == 3
+    (tmp_path / "m.py").write_text("x = 2\n")
+    session.run(tmp_path, [target], chosen, log)
+    assert tried == [[0, 1, 2], [1], [0, 1, 2]]
