@@ -81,11 +81,17 @@ def points() -> list[Point]:
         *grid(SLOPES, 20.0, 0.0),
         *grid(SLOPES, 20.0, 0.45),
         *grid((30.0,), 20.0, 0.45, (VALLEY,), quality="full"),
-        *grid((10.0,), 20.0, 0.3, (0.125, 0.375)),
         *grid(SLOPES, 50.0, 0.3),
         *grid(SLOPES, 20.0, 0.3, kind="egg-box"),
         *grid((30.0,), 20.0, 0.3, (VALLEY,), kind="egg-box", quality="full"),
         *grid(SLOPES, 20.0, 0.3, (FLANK,), width="facet"),
+        *grid((30.0,), 20.0, 0.0, (FLANK, VALLEY), quality="full"),
+        *grid((20.0,), 20.0, 0.3),
+        *grid((20.0,), 20.0, 0.0),
+        *grid((20.0,), 20.0, 0.45),
+        *grid(SLOPES, 20.0, 0.3, (0.125, 0.375)),
+        *grid((10.0, 30.0), 50.0, 0.0),
+        *grid((10.0, 30.0), 50.0, 0.45),
         *grid(SLOPES, 100.0, 0.3),
     ]
     return list(dict.fromkeys(first + rest))

@@ -27,6 +27,7 @@ HALF_BASE = 8.0
     tolerance=0.65,
     tolerance_reason="percent of the flat coefficient; the second order that is left out is half of "
     "tan(6.5 degrees)^2 = 1.3 % at most, and the finite elements are off by 0.01 %",
+    tier="full",
     tags=("appendix-a", "fig12"),
 )
 def fig12() -> Measured:
@@ -55,6 +56,7 @@ def fig12() -> Measured:
     tolerance=0.05,
     tolerance_reason="percentage points; the unmatched part of the base's tractions is second order, "
     "measured 0.001 points at 2.5 degrees and 0.018 at 6.5",
+    tier="full",
     tags=("appendix-a", "fig13"),
 )
 def fig13() -> Measured:
