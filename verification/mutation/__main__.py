@@ -23,7 +23,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m verification.mutation", description=__doc__)
     parser.add_argument("--sample", type=int, default=600, help="mutants to try; more of them extend a run")
     parser.add_argument("--seed", type=int, default=1, help="of the sample's order")
-    parser.add_argument("--only", default="*", help="pattern of the sample's modules to run now")
+    parser.add_argument("--only", nargs="+", default=["*"], help="patterns of the sample's modules to try now")
     parser.add_argument("--log", type=Path, required=True, help="JSON lines: every verdict; resumed from")
     parser.add_argument("--json", type=Path, help="summary to write")
     options = parser.parse_args(arguments)
@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(missing, file=sys.stderr)
         return 2
     chosen = in_fair_order(everything, options.seed)[: options.sample]
-    targets = [target for target in TARGETS if fnmatch(target.module, options.only)]
+    targets = [target for target in TARGETS if any(fnmatch(target.module, p) for p in options.only)]
     found = summary(run(ROOT, targets, chosen, options.log), len(everything), options.seed)
     if options.json:
         write_text(to_json(found | {"provenance": provenance()}), options.json)
