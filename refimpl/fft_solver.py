@@ -29,7 +29,7 @@ from refimpl.slopes import Slopes
 
 _REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
 _COARSE_TOLERANCE = 3e-4  # a coarse state is only a start: its own grid error is larger than this
-_MARGIN = 1  # elements, at least, by which a window exceeds the contact that it is expected to hold
+_MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 _STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
@@ -285,11 +285,11 @@ class _LevelSolver:
         )
 
     def penetrating_outside(self, state: State, tolerance: float) -> Mask:
-        """Elements outside the window that penetrate by more than the tolerance."""
+        """Elements that penetrate by more than the tolerance outside the window or on its edge."""
         u = state.displacement_lower + state.displacement_upper
         v = u / state.slopes.obliqueness + self.whole.gap
         outside = v < state.approach * (1 - tolerance)
-        outside[self.window.slices] = False
+        outside[self.window.interior(len(outside)).slices] = False
         return outside
 
     def widen(self, outside: Mask) -> None:

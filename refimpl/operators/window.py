@@ -50,6 +50,12 @@ class Window:
         j0, j1 = _filled(self.j0, self.j1, M)
         return Window(i0, i1, j0, j1)
 
+    def interior(self, M: int) -> Window:
+        """The window without its edge, but where that is the edge of the ``M x M`` grid."""
+        return Window(
+            self.i0 + (self.i0 > 0), self.i1 - (self.i1 < M), self.j0 + (self.j0 > 0), self.j1 - (self.j1 < M)
+        )
+
     @property
     def shape(self) -> tuple[int, int]:
         """Numbers of elements along x and y."""
