@@ -25,6 +25,8 @@ MOST_PROBLEMS = 6
 """No check poses more problems: so many times the time for one is the time for a check."""
 GRACE = 10.0
 """Seconds beyond that: a command's own limit goes first, and says more."""
+START = 120.0
+"""Seconds for a new process to import the solver and the suite."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,7 @@ class Table:
         theirs.close()
         refusal: InputError | None = InputError("--solver", self._source, "a solver whose import ends well")
         with suppress(EOFError):
-            if self._pipe.poll(self._limit):
+            if self._pipe.poll(START):
                 refusal = self._pipe.recv()
         if refusal is not None:
             self.close()
@@ -133,13 +135,13 @@ def _serve(pipe: Connection, source: Source) -> None:
     """In the child: what the solver prints goes to stderr, so that it cannot end up in a result file."""
     os.setsid()
     os.dup2(2, 1)
+    checks = {check.slug: check for check in suite()}
     try:
         contestant = source()
     except InputError as refused:
         pipe.send(refused)
         return
     pipe.send(None)
-    checks = {check.slug: check for check in suite()}
     while True:
         try:
             slug = pipe.recv()

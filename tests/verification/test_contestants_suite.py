@@ -1,0 +1,156 @@
+"""The suite for anyone's solver: our own passes it, broken ones do not, and the referee is right."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import refimpl as rf
+from verification.contestants import own, referee
+from verification.contestants.broken import BROKEN, Wrong, asked, periodic
+from verification.contestants.check import COMPLIANCE, MODULUS, Entrant, Fault
+from verification.contestants.command import Command
+from verification.contestants.gaps import rough_bump
+from verification.contestants.isolated import MOST_PROBLEMS, Limited
+from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, Coupling
+from verification.contestants.suite import run, select, suite
+from verification.exact.kernel_reference import normal, tangential
+
+TEN = (
+    Fault.SIGN_OF_C,
+    Fault.PERIODIC_FOR_APERIODIC,
+    Fault.MODULUS_OFF,
+    Fault.MODULUS_DOUBLED,
+    Fault.STUCK,
+    Fault.TRANSPOSED,
+    Fault.HALF_ELEMENT,
+    Fault.SINGLE_PRECISION,
+    Fault.TAU_MISSING,
+    Fault.MEAN_DISPLACEMENT_LOST,
+)
+SOURCE = Path(__file__).with_name("contestant.c")
+
+
+def naming(fault: Fault) -> list[str]:
+    """Ids of the checks that name a fault."""
+    return [check.id for check in suite() if fault in check.catches]
+
+
+def test_our_own_solver_passes_every_case() -> None:
+    posed: list[ContactProblem] = []
+
+    def counting(problem: ContactProblem) -> Answer:
+        posed.append(problem)
+        return own.solve(problem)
+
+    contestant = Limited(counting, own.solve.abilities)
+    assert len(suite()) >= 40
+    for check in suite():
+        posed.clear()
+        result = check.case(contestant).run()
+        assert result.status == "pass", result
+        assert 1 <= len(posed) <= MOST_PROBLEMS
+        assert max(problem.M for problem in posed) <= 64
+
+
+def test_the_dense_reference_passes_what_is_small_enough() -> None:
+    results = run(own.dense, ["contestant/*pins", "contestant/hertz-peak", "contestant/sliding-residual"])
+    assert [r.status for r in results] == ["pass", "pass", "pass", "unavailable"]
+    assert results[-1].note == "the solver does not offer: 32 elements per side"
+
+
+def test_every_fault_is_named_and_described() -> None:
+    assert set(BROKEN) == set(Fault)
+    for check in suite():
+        assert all(fault in check.case(own.solve).claim for fault in check.catches)
+        assert len(check.tolerance_reason) > 10
+    assert [fault for fault in Fault if not naming(fault)] == []
+
+
+@pytest.mark.parametrize("fault", list(Fault), ids=str)
+def test_a_broken_solver_fails_wherever_its_fault_is_named(fault: Fault) -> None:
+    results = run(BROKEN[fault](), naming(fault))
+    assert {r.id: r.status for r in results} == dict.fromkeys(naming(fault), "fail")
+
+
+@pytest.mark.parametrize("fault", [f for f in TEN if f is not Fault.SINGLE_PRECISION], ids=str)
+def test_the_laxest_claim_lets_no_broken_solver_through(fault: Fault) -> None:
+    lax = Limited(BROKEN[fault](), replace(own.solve.abilities, precision=1e-6))
+    assert any(run(lax, [name])[0].status == "fail" for name in naming(fault))
+
+
+def test_the_periodic_problem_solved_silently_is_seen_by_its_peak() -> None:
+    gap = rough_bump(32, seed=70)
+    entrant, silent = Entrant(own.solve), Entrant(Wrong(asked(periodic)))
+    peaks = [e.press(gap, 1.0, load=0.05 * MODULUS).pressure.max() for e in (entrant, silent)]
+    assert 0.005 < abs(peaks[1] / peaks[0] - 1) < 0.1  # a few per cent, as in the published case
+    assert {r.status for r in run(silent.contestant, ["contestant/surroundings"])} == {"fail"}
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+def test_a_program_in_c_passes_what_applies_to_it(tmp_path: Path) -> None:
+    program = tmp_path / "contestant"
+    subprocess.run(["cc", "-O2", "-Wall", "-Werror", "-o", program, SOURCE, "-lm"], check=True)
+    able = Abilities.named("aperiodic,load,approach", largest=32)
+    results = run(Command((str(program),), able, timeout=60.0))
+    verdicts = {r.id: r.status for r in results}
+    assert {r.id: r for r in results if r.status in ("fail", "error")} == {}
+    assert sum(status == "pass" for status in verdicts.values()) >= 20
+    assert verdicts["contestant/westergaard-load"] == verdicts["contestant/sheared-pins"] == "unavailable"
+
+
+def test_an_empty_selection_is_refused() -> None:
+    with pytest.raises(LookupError, match="hertz-peek"):
+        select(["contestant/hertz-peek"])
+
+
+def problem(coupling: Coupling | None = None) -> ContactProblem:
+    gap = rough_bump(5, seed=71)
+    return ContactProblem(gap - gap.min(), 0.2, MODULUS, load=0.05 * MODULUS, coupling=coupling)
+
+
+def test_the_referees_displacement_is_the_sum_over_elements() -> None:
+    coupling = Coupling(0.02 * MODULUS, 0.3, COMPLIANCE, sliding_direction=1.1)
+    posed, f = problem(coupling), np.random.default_rng(72).uniform(0, 1, (5, 5)) * 1e-2 * MODULUS
+    f[2, 3] = 0.0
+    u = mp.mpf(0)
+    for i, j in np.ndindex(5, 5):
+        x, y, h = (1 - i) * 0.2, (4 - j) * 0.2, 0.2
+        r = coupling.tau * (f[i, j] > 0) + coupling.beta * f[i, j]
+        along = mp.cos(1.1) * tangential(x, y, h, h) + mp.sin(1.1) * tangential(y, x, h, h)
+        u += f[i, j] * normal(x, y, h, h) / (mp.pi * MODULUS) + r * COMPLIANCE * along
+    assert abs(referee.displacement(posed, f)[1, 4] / float(u) - 1) < 1e-13
+
+
+@pytest.mark.parametrize("coupling", [None, Coupling(0.0, 0.4, COMPLIANCE, 0.5)], ids=["still", "sliding"])
+def test_the_energy_norm_error_is_bounded_by_the_gap(coupling: Coupling | None) -> None:
+    posed = problem(coupling)
+    exact, random = referee.eliminated(posed), np.random.default_rng(73)
+    for size in (1e-6, 1e-3, 0.3):
+        f = np.abs(exact * (1 + size * random.standard_normal(exact.shape)))
+        f += size * exact.max() * (random.random(exact.shape) < 0.2)
+        f *= exact.sum() / f.sum()
+        found = referee.residual(posed, f)
+        assert found.balance < 1e-14
+        scale = referee.energy(posed, exact) / referee.energy(posed, f)
+        assert 0 < referee.misfit(posed, f, exact) * scale <= found.gap
+    assert referee.residual(posed, exact).worst < 1e-13
+
+
+def test_elimination_agrees_with_our_dense_reference() -> None:
+    for posed in (problem(), replace(problem(), load=None, approach=0.08), replace(problem(), periodic=True)):
+        found = rf.solve(own.scene(posed), posed.M, method="dense", oblique=False, approach=posed.approach)
+        np.testing.assert_allclose(referee.eliminated(posed), found.pressure, atol=1e-9 * found.max_pressure)
+
+
+def test_pressures_without_energy_cannot_be_judged() -> None:
+    nothing: Contestant = Limited(lambda p: np.zeros_like(p.gap), Abilities())
+    statuses = {r.id: r.status for r in run(nothing)}
+    assert "pass" not in {s for name, s in statuses.items() if name != "contestant/no-tension"}
+    assert statuses["contestant/no-tension"] == "error"
