@@ -1,20 +1,19 @@
 """Adapters: each peer that is installed solves the problem it is given; one that is not says so.
 
-What a peer does only when set up wrongly is shown here too, so that no adapter falls into it unseen.
+What a peer does when it is set up wrongly is shown here too, and that the suite fails it then.
 """
 
 from __future__ import annotations
 
-import importlib
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from verification.adapters import aspher, contactmechanics, tamaas
+from verification.adapters import aspher, contactmechanics, table, tamaas, traps
 from verification.adapters.peer import Peer, PeerAnswer, closure
 from verification.case import Unavailable
-from verification.contestants import gaps, referee
+from verification.contestants import gaps, referee, suite
 from verification.contestants.own import solve as own
 from verification.contestants.protocol import Abilities, ContactProblem, Unsupported, ask
 
@@ -127,32 +126,50 @@ def test_closure_is_a_bound(name: str) -> None:
 @needs(tamaas.solve)
 def test_trap_tamaas_without_its_second_step_is_periodic() -> None:
     """`registerNonPeriodic` alone changes nothing, and nothing says so: 171.05 instead of 166.24 MPa."""
-    tm, problem = importlib.import_module("tamaas"), sphere()
-    tm.set_log_level(tm.LogLevel.error)
-    model = tm.ModelFactory.createModel(tm.model_type.basic_2d, [problem.side] * 2, [problem.M] * 2)
-    model.E, model.nu = problem.reduced_modulus, 0.0
-    tm.ModelFactory.registerNonPeriodic(model, "dcfft")
-    solver = tm.PolonskyKeerRey(model, np.ascontiguousarray(-problem.gap), 1e-10)
-    assert solver.solve(TABLE_1["load"] / problem.side**2) <= 1e-10
-    fallen_in = float(np.array(model.traction).max())
-    periodic = float(np.max(np.asarray(tamaas.solve(sphere(periodic=True)).pressure)))
-    assert fallen_in == pytest.approx(171.0454e6, rel=1e-6)
-    assert fallen_in == pytest.approx(periodic, rel=1e-6)
+    fallen_in = traps.registered_only(sphere())
+    periodic = tamaas.solve(sphere(periodic=True))
+    assert fallen_in.converged is True
+    assert float(np.max(np.asarray(fallen_in.pressure))) == pytest.approx(171.0454e6, rel=1e-6)
+    np.testing.assert_allclose(
+        np.asarray(fallen_in.pressure), np.asarray(periodic.pressure), rtol=0, atol=171e6 * 1e-6
+    )
+    assert fails(traps.registered_only, "contestant/hertz-peak", "contestant/surroundings")
 
 
 @needs(contactmechanics.solve)
 def test_trap_contactmechanics_without_mean_stiffness_stops_at_once() -> None:
     """A periodic half-space with ``stiffness_q0 = 0`` under a load: uniform pressure, and success."""
-    package = importlib.import_module("ContactMechanics")
-    systems = importlib.import_module("ContactMechanics.Systems")
-    topography = importlib.import_module("SurfaceTopography").Topography
-    problem = small("periodic")
-    sides = (problem.side, problem.side)
-    space = package.PeriodicFFTElasticHalfSpace(
-        problem.gap.shape, problem.reduced_modulus, sides, stiffness_q0=0.0
-    )
-    system = systems.NonSmoothContactSystem(space, topography(-problem.gap, sides, periodic=True))
-    found = system.minimize_proxy(external_force=problem.load, pentol=1e-14)
-    assert found.success
-    assert found.nit == 1
-    assert np.ptp(found.jac) < 1e-12 * found.jac.max()
+    fallen_in = traps.no_mean_stiffness(small("periodic"))
+    pressure = np.asarray(fallen_in.pressure)
+    assert fallen_in.converged is True
+    assert np.ptp(pressure) < 1e-12 * pressure.max()
+    assert fails(traps.no_mean_stiffness, "contestant/westergaard-pressure", "contestant/rough-plane")
+
+
+def fails(peer: Peer, *cases: str) -> bool:
+    """Whether the suite fails it in each of these cases."""
+    return [result.status for result in suite.run(peer, cases)] == ["fail"] * len(cases)
+
+
+def test_table_has_every_entrant_and_recomputes_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also those that are not installed, by name; residuals and seconds are of the cases that ran."""
+    few = suite.select(["contestant/hertz-peak", "contestant/sliding-residual"])
+    monkeypatch.setattr(table, "suite", lambda: few)
+    entrants = cast(list[dict[str, Any]], table.measured()["entrants"])
+    assert [entrant["name"] for entrant in entrants] == list(table.ENTRANTS)
+    for entrant in entrants:
+        if not entrant["installed"]:
+            assert "(not installed)" in entrant["version"]
+            continue
+        if entrant["name"] == "refimpl, dense":
+            assert entrant["counts"]["fail"] == entrant["counts"]["error"] == 0  # too large for it, or passed
+            continue
+        peak, sliding = entrant["results"]
+        assert peak["seconds"] > 0
+        if entrant["name"] == "Tamaas, registered only":
+            assert peak["status"] == "fail"
+            assert peak["residual"] > 1e-3
+        else:
+            assert peak["status"] == "pass"
+            assert 0 < peak["residual"] <= 1e-8
+        assert sliding["status"] == ("pass" if entrant["role"] == "ours" else "unavailable")

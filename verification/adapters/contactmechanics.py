@@ -3,7 +3,7 @@
 Under a load: ``minimize_proxy`` (Polonsky and Keer). At an approach: ``dual_minimize_proxy`` (conjugate
 gradients without restarts), since the former, at an offset in free space, is apt to come to rest at a wrong
 state (and says so). A periodic half-space keeps its default ``stiffness_q0`` under a load: with zero there,
-version 1.8.3 calls the uniform pressure of its first iteration converged; a test keeps that trap in view.
+version 1.8.3 calls the uniform pressure of its first iteration converged (`verification.adapters.traps`).
 
 ``rough-friction verify --solver verification.adapters.contactmechanics:solve``
 """
@@ -22,13 +22,16 @@ from verification.contestants.protocol import Abilities, ContactProblem
 _ITERATIONS = 5000
 
 
-def press(problem: ContactProblem) -> PeerAnswer:
-    """Pressures on the periodic or free half-space, under a load or at an offset."""
+def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> PeerAnswer:
+    """Pressures on the periodic or free half-space, under a load or at an offset.
+
+    ``mean_stiffness`` is ``stiffness_q0`` under a load; zero falls into the trap.
+    """
     package = imported("ContactMechanics")
     sides = (problem.side, problem.side)
     topography = imported("SurfaceTopography").Topography(-problem.gap, sides, periodic=problem.periodic)
     system = imported("ContactMechanics.Systems").NonSmoothContactSystem(
-        _half_space(package, problem), topography
+        _half_space(package, problem, mean_stiffness), topography
     )
     if problem.load is not None:
         found = system.minimize_proxy(
@@ -43,20 +46,18 @@ def press(problem: ContactProblem) -> PeerAnswer:
             maxiter=_ITERATIONS,
         )
         force, work = found.x, 2 * int(found.nit)
-    # a negative zero or a pressure in the padding would be the peer's; only the square is handed on
-    pressure = np.array(force).reshape(-1, problem.M)[: problem.M] / problem.element_area
+    pressure = np.array(force).reshape(problem.gap.shape) / problem.element_area
     return PeerAnswer(pressure, bool(found.success), {"displacements": work})
 
 
-def _half_space(package: ModuleType, problem: ContactProblem) -> Any:
+def _half_space(package: ModuleType, problem: ContactProblem, mean_stiffness: float | None) -> Any:
     shape, sides = problem.gap.shape, (problem.side, problem.side)
     E = problem.reduced_modulus
     if not problem.periodic:
         return package.FreeFFTElasticHalfSpace(shape, E, sides)
-    if problem.load is not None:
-        return package.PeriodicFFTElasticHalfSpace(shape, E, sides)
-    # the mean pressure displaces nothing, so that offsets count as the problem's approaches do
-    return package.PeriodicFFTElasticHalfSpace(shape, E, sides, stiffness_q0=0.0)
+    # at zero the mean pressure displaces nothing, so that offsets count as the problem's approaches do
+    stiffness = mean_stiffness if problem.load is not None else 0.0
+    return package.PeriodicFFTElasticHalfSpace(shape, E, sides, stiffness_q0=stiffness)
 
 
 def _tolerances(problem: ContactProblem) -> dict[str, float]:

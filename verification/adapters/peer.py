@@ -69,8 +69,8 @@ def closure(problem: ContactProblem) -> float:
 
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
     P in a square has a smaller one than the square punch, 0.87 P / (E* side); at an approach d it is d / 2
-    for a cone and more for blunter shapes. Periodic contact displaces at least a third of the heights'
-    deviation when it is about to become full (peaks of three deviations), and half of it when light.
+    for a cone and more for blunter shapes. Periodic contact displaces half the heights' deviation when light,
+    a third when about to become full (peaks of three deviations), and a sixth at twice that pressure.
     """
     if problem.load is not None:
         depth = 0.87 * problem.load / (problem.reduced_modulus * problem.side)
@@ -78,7 +78,7 @@ def closure(problem: ContactProblem) -> float:
         assert problem.approach_from_touch is not None
         depth = 0.5 * abs(problem.approach_from_touch)
     if problem.periodic and problem.gap.any():
-        depth = min(depth, float(problem.gap.std()) / 3)
+        depth = min(depth, float(problem.gap.std()) / 6)
     return 0.5 * problem.tolerance * depth
 
 

@@ -2,7 +2,7 @@
 
 Free space takes two steps: ``registerNonPeriodic`` adds the zero-padded operator to the model, and
 ``setIntegralOperator`` tells the solver to use it. Without the second, Tamaas 2.9.0 solves the periodic
-problem and says nothing; a test keeps that trap in view.
+problem and says nothing; `verification.adapters.traps` keeps that in view.
 
 ``rough-friction verify --solver verification.adapters.tamaas:solve``
 """
@@ -20,11 +20,12 @@ _GAP_FORMULATION = 0.3
 """Its pressures are a by-product: they miss the approach, which its error does not see, by a third more."""
 
 
-def press(problem: ContactProblem) -> PeerAnswer:
+def press(problem: ContactProblem, *, second_step: bool = True) -> PeerAnswer:
     """Pressures of the Polonsky-Keer solver. Its error is the mean gap under the pressure over std(heights).
 
     Loads are mean pressures. A periodic approach is minus the mean gap, which the same solver takes as
-    constraint of its gap formulation. Raises `Unsupported` for an approach in free space: Tamaas has none.
+    constraint of its gap formulation. ``second_step=False`` falls into the trap. Raises `Unsupported` for an
+    approach in free space: Tamaas has none.
     """
     tm = imported("tamaas")
     tm.set_log_level(tm.LogLevel.error)
@@ -42,7 +43,8 @@ def press(problem: ContactProblem) -> PeerAnswer:
     solver.max_iter = solver.dump_freq = _ITERATIONS  # it writes its progress to stdout, at any log level
     if not problem.periodic:
         tm.ModelFactory.registerNonPeriodic(model, _FREE_SPACE)
-        solver.setIntegralOperator(_FREE_SPACE)
+        if second_step:
+            solver.setIntegralOperator(_FREE_SPACE)
     target = -problem.approach if problem.approach is not None else (problem.load or 0.0) / side**2
     error = solver.solve(target)
     pressure = np.array(model.traction)
