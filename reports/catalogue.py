@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from reports.appendix_figures import APPENDIX
 from reports.drawing import Figure, dots, lines, maps, order
 from reports.reproduction_figures import REPRODUCTION
 
@@ -28,6 +29,7 @@ FIG13 = {
 
 DECLARED = (
     *REPRODUCTION,
+    *APPENDIX,
     *(
         Figure(
             f"appendix-figures/{name}",
