@@ -23,7 +23,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m verification.mutation", description=__doc__)
     parser.add_argument("--sample", type=int, default=600, help="mutants to try; more of them extend a run")
     parser.add_argument("--seed", type=int, default=1, help="of the sample's order")
-    parser.add_argument("--only", nargs="+", default=["*"], help="patterns of the sample's modules to try now")
+    parser.add_argument("--only", nargs="+", default=["*"], help="patterns of the modules to try now")
     parser.add_argument("--log", type=Path, required=True, help="JSON lines: every verdict; resumed from")
     parser.add_argument("--json", type=Path, help="summary to write")
     options = parser.parse_args(arguments)
