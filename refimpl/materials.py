@@ -12,7 +12,9 @@ from refimpl.errors import require_number
 class Material:
     """A linear elastic, isotropic material: Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``.
 
-    Raises `InputError` unless ``E`` is positive and finite and ``-1 < nu <= 0.5``.
+    ``hardness`` (Pa), if given, is what pressures are warned against; the model stays elastic.
+
+    Raises `InputError` unless ``E`` and ``hardness`` are positive and finite and ``-1 < nu <= 0.5``.
 
     >>> round(Material(E=200e9, nu=0.3).plane_strain_modulus / 1e9, 3)
     219.78
@@ -20,10 +22,13 @@ class Material:
 
     E: float
     nu: float
+    hardness: float | None = None
 
     def __post_init__(self) -> None:
         require_number("E", self.E, "a positive, finite Young's modulus in Pa", above=0)
         require_number("nu", self.nu, "a Poisson's ratio in (-1, 0.5]", above=-1, at_most=0.5)
+        if self.hardness is not None:
+            require_number("hardness", self.hardness, "a positive, finite hardness in Pa", above=0)
 
     @property
     def plane_strain_modulus(self) -> float:

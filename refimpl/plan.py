@@ -1,18 +1,28 @@
-"""What a scene requires: the terms that enter, the terms left out, and the memory it will take."""
+"""What a scene requires: the terms that enter, the terms left out with what they would change, the memory."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
 from refimpl.errors import InputError
-from refimpl.problem import Terms
+from refimpl.grid import Grid
+from refimpl.planning.choice import Forced, Term, affordable, choose
+from refimpl.planning.outlook import Outlook, expected
+from refimpl.planning.resolution import Resolution, resolution
+from refimpl.problem import Terms, pose
 from refimpl.scene import Scene
+from refimpl.surfaces import SurfaceWarning
 
 Method = Literal["dense", "fft", "paper"]
 METHODS: tuple[Method, ...] = ("dense", "fft", "paper")
+
+EVERYTHING = Terms(coupled=True, oblique=True, slope_correction=False)
+_KEYWORDS = {"shear coupling": "coupled", "obliqueness": "oblique", "shear tilt": "tilted"}
+DECISION_GRID = 256  # where terms are decided for all grids of a refinement
 
 # Bytes per element at the peak, measured on the shipped scenes with slopes and shear coupling: FFT
 # work arrays, two kernel tables and their transforms; or five dense matrices of Eq. (7).
@@ -21,26 +31,37 @@ _DENSE_MATRICES = 5
 
 
 @dataclass(frozen=True)
-class Term:
-    """One piece of physics: whether it is modelled, and why."""
-
-    name: str
-    included: bool
-    reason: str
-
-
-@dataclass(frozen=True)
 class Plan:
-    """What is modelled on an ``M x M`` grid, what is left out and why, and the memory estimate (bytes)."""
+    """What is modelled on an ``M x M`` grid, what is left out and why, and the memory estimate (bytes).
+
+    ``demand`` is the relative accuracy that terms are held against, and ``budget`` what those left out may
+    add up to; ``decided_on`` is the grid whose heights decided; ``outlook`` the contact to expect there;
+    ``resolution`` what roughness asks of the grid, if there is any.
+    """
 
     method: Method
     M: int
     terms: tuple[Term, ...]
     memory: int
+    demand: float
+    budget: float
+    forced: Forced
+    decided_on: int
+    outlook: Outlook
+    resolution: Resolution | None
+
+    def term(self, name: str) -> Term:
+        """The named term."""
+        return next(term for term in self.terms if term.name == name)
 
     def includes(self, name: str) -> bool:
         """Whether the named term is modelled."""
-        return next(term.included for term in self.terms if term.name == name)
+        return self.term(name).included
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Names of the terms that would change something and were left out for being small."""
+        return tuple(term.name for term in self.terms if term.small)
 
     @property
     def switches(self) -> Terms:
@@ -49,50 +70,83 @@ class Plan:
             coupled=self.includes("shear coupling"),
             oblique=self.includes("obliqueness"),
             slope_correction=self.includes("slope correction"),
+            tilted=self.includes("shear tilt"),
         )
+
+    def on(self, scene: Scene, M: int) -> Plan:
+        """The same terms on another grid, checked against the free memory."""
+        asked = resolution(scene, M, self.demand)
+        return replace(self, M=M, memory=memory_of(self.method, M), resolution=asked)
+
+    def put_back(self, scene: Scene, name: str) -> Plan:
+        """The plan with a term that turned out to matter."""
+        forced = replace(self.forced, **{_KEYWORDS[name]: True})
+        terms = choose(scene, self.outlook, forced, self.budget)
+        put_back = tuple(
+            replace(term, reason="put back: the contact found says that it matters")
+            if term.name == name
+            else term
+            for term in terms
+        )
+        return replace(self, terms=put_back, forced=forced)
 
 
 def make_plan(
-    scene: Scene, M: int, method: Method, *, oblique: bool | None, slope_correction: bool
+    scene: Scene,
+    M: int,
+    method: Method,
+    *,
+    oblique: bool | None = None,
+    slope_correction: bool = False,
+    coupled: bool | None = None,
+    tilted: bool | None = None,
+    demand: float = 1e-8,
+    approach: float | None = None,
+    decide_on: int | None = None,
 ) -> Plan:
     """Decide the terms from the scene alone and check that the grid fits into memory.
 
-    Raises `InputError` for an unknown method and for a grid whose estimate exceeds the free memory.
+    ``True`` and ``False`` force a term in or out, ``None`` leaves it to its estimate against ``demand``,
+    the relative accuracy asked of mu and A, by the heights on ``decide_on`` elements a side (M by default).
+
+    Raises `InputError` for an unknown method, for a grid whose estimate exceeds the free memory, and for
+    terms that exclude each other.
     """
     if method not in METHODS:
         raise InputError("method", method, f"one of {', '.join(METHODS)}")
-    if slope_correction and oblique is False:
-        raise InputError("oblique", oblique, "true or unset: the slope correction needs the slopes")
+    forced = Forced(coupled, oblique, tilted, slope_correction)
+    forced.check()
     if method == "paper" and scene.periodic:
         raise InputError("method", method, "dense or fft for a periodic scene")
+    memory = memory_of(method, M)
+    decide_on = decide_on or M
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SurfaceWarning)  # the solve repeats what surfaces have to say
+        outlook = expected(pose(scene, Grid(scene.side, decide_on), EVERYTHING, approach))
+    budget = affordable(scene, outlook, demand)
+    return Plan(
+        method=method,
+        M=M,
+        terms=choose(scene, outlook, forced, budget),
+        memory=memory,
+        demand=demand,
+        budget=budget,
+        forced=forced,
+        decided_on=decide_on,
+        outlook=outlook,
+        resolution=resolution(scene, M, demand),
+    )
+
+
+def memory_of(method: Method, M: int) -> int:
+    """Estimated bytes at the peak of a solve; raises `InputError` when they exceed the free memory."""
     memory = 8 * _DENSE_MATRICES * M**4 if method == "dense" else _FFT_BYTES * M**2
     free = free_memory()
     if memory > free:
         raise InputError(
             "grid", M, f"a grid whose estimated {memory / 1e9:.3g} GB fit into the free {free / 1e9:.3g} GB"
         )
-    terms = (
-        _coupling(scene, slope_correction),
-        _obliqueness(oblique),
-        Term("slope correction", slope_correction, "asked for" if slope_correction else "not asked for"),
-        Term("tau support", scene.friction.tau > 0, "tau > 0" if scene.friction.tau > 0 else "tau is zero"),
-    )
-    return Plan(method, M, terms, memory)
-
-
-def _coupling(scene: Scene, slope_correction: bool) -> Term:
-    name = "shear coupling"
-    if scene.materials.shear_compliance == 0:
-        return Term(name, False, "lower and upper shear compliances cancel exactly")
-    if scene.friction.is_zero and not slope_correction:
-        return Term(name, False, "no friction")
-    return Term(name, True, "shear compliances of the bodies differ")
-
-
-def _obliqueness(oblique: bool | None) -> Term:
-    if oblique is None:
-        return Term("obliqueness", True, "slopes of the deformed surface enter Eqs (2), (3) and (6)")
-    return Term("obliqueness", oblique, "forced in" if oblique else "forced out: cosines 1, sines 0")
+    return memory
 
 
 def free_memory() -> int:

@@ -91,7 +91,7 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     body = _table(table, name, None)
     _refuse_unknown(name, body, ("material", "surface"))
     material = _table(body, "material", None, prefix=f"{name}.")
-    _refuse_unknown(f"{name}.material", material, ("E", "nu"))
+    _refuse_unknown(f"{name}.material", material, ("E", "nu", "hardness"))
     parts = body.get("surface", [{"kind": "flat"}])
     if isinstance(parts, Mapping):
         parts = [parts]
@@ -100,13 +100,15 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     surfaces = [surface_from_dict(dict(part), folder) for part in parts]
     modulus = _required(material, "E", "Young's modulus in Pa", prefix=f"{name}.material.")
     ratio = _required(material, "nu", "Poisson's ratio", prefix=f"{name}.material.")
-    return Body(Material(E=modulus, nu=ratio), sum(surfaces[1:], start=surfaces[0]))
+    matter = Material(E=modulus, nu=ratio, hardness=material.get("hardness"))
+    return Body(matter, sum(surfaces[1:], start=surfaces[0]))
 
 
 def _body_to_dict(body: Body) -> dict[str, Any]:
     parts = body.surface.parts if isinstance(body.surface, SurfaceSum) else (body.surface,)
+    hardness = {} if body.material.hardness is None else {"hardness": body.material.hardness}
     return {
-        "material": {"E": body.material.E, "nu": body.material.nu},
+        "material": {"E": body.material.E, "nu": body.material.nu, **hardness},
         "surface": [part.to_dict() for part in parts],
     }
 

@@ -16,9 +16,11 @@ from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.outcome import Status
 from refimpl.plan import Plan
+from refimpl.planning.effects import Effect
 from refimpl.problem import Problem
 from refimpl.scene import Friction
 from refimpl.slopes import Slopes
+from refimpl.validity import plain_warning
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,9 @@ class Solution:
     Eq. (6) asks to be zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``.
     ``uncertainty`` maps each reported number to its parts, absolute, in the number's unit.
     ``slope_error`` quotes what Appendix A's table says of flat-surface influence coefficients at this
-    contact's slopes. ``problem`` is what was solved: the scene on its grid.
+    contact's slopes. ``problem`` is what was solved: the scene on its grid. ``left_out`` holds, for each
+    term that the plan left out as small, its effect as the found contact has it; ``warnings`` are texts,
+    those of `refimpl.validity` with name, number and limit.
     """
 
     status: Status
@@ -69,6 +73,7 @@ class Solution:
     tolerance: float
     uncertainty: Mapping[str, Mapping[str, float]]
     plan: Plan
+    left_out: Mapping[str, Effect]
     problem: Problem
     warnings: tuple[str, ...]
     cost: Cost
@@ -106,11 +111,17 @@ class Solution:
             "uncertainty": {name: dict(parts) for name, parts in self.uncertainty.items()},
             "slope_error": asdict(self.slope_error),
             "plan": [
-                {"term": term.name, "included": term.included, "reason": term.reason}
+                {
+                    "term": term.name,
+                    "included": term.included,
+                    "reason": term.reason,
+                    "effect": asdict(term.effect),
+                }
                 for term in self.plan.terms
             ],
+            "left_out": {name: asdict(effect) for name, effect in self.left_out.items()},
             "method": self.plan.method,
-            "warnings": list(self.warnings),
+            "warnings": [plain_warning(text) for text in self.warnings],
             "cost": {
                 "seconds": self.cost.seconds,
                 "applications": dict(self.cost.applications),

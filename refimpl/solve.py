@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,20 +16,21 @@ from refimpl.dense_solver import solve_dense
 from refimpl.errors import InputError, require_number
 from refimpl.fft_solver import solve_fft
 from refimpl.forces import perimeter_corrected_area
-from refimpl.friction import Mask
 from refimpl.grid import Grid
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome, Status, Visited
 from refimpl.paper import PAPER_TOLERANCE, solve_paper
-from refimpl.plan import Method, Plan, make_plan
+from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
+from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
 from refimpl.problem import Problem, pose
 from refimpl.refine import Quantity, check_accuracy, deserved_tolerance, refine
 from refimpl.scene import Scene
 from refimpl.solution import Cost, Solution
-from refimpl.surfaces import SurfaceWarning
+from refimpl.surfaces import GaussianRoughness, SurfaceWarning
 from refimpl.uncertainty import iteration_parts, merged, one_grid
+from refimpl.validity import cautions
 
 
 def solve(
@@ -41,6 +43,8 @@ def solve(
     approach: float | None = None,
     oblique: bool | None = None,
     slope_correction: bool = False,
+    coupled: bool | None = None,
+    tilted: bool | None = None,
     tolerance: float | None = None,
 ) -> Solution:
     """Solve a scene on ``grid x grid`` elements, or to a relative ``accuracy``; exactly one of them.
@@ -55,6 +59,8 @@ def solve(
     approach : prescribe the approach (m) instead of the scene's load
     oblique : False drops every slope term; None lets the scene decide
     slope_correction : exact facet tractions in Eq. (7) (SPEC 2)
+    coupled, tilted : force in or out what shear does to the gap, and to the slopes of the common surface;
+        None lets the scene decide
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, what that deserves), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
@@ -72,20 +78,46 @@ def solve(
         tolerance = PAPER_TOLERANCE if method == "paper" else default
     require_number("tolerance", tolerance, "a number between 0 and 1", above=0, below=1)
 
-    def solve_at(M: int) -> Solution:
-        plan = make_plan(
-            scene, Grid(scene.side, M).M, method, oblique=oblique, slope_correction=slope_correction
+    def plan_for(M: int, decide_on: int | None = None) -> Plan:
+        return make_plan(
+            scene,
+            Grid(scene.side, M).M,
+            method,
+            oblique=oblique,
+            slope_correction=slope_correction,
+            coupled=coupled,
+            tilted=tilted,
+            demand=accuracy or tolerance,
+            approach=approach,
+            decide_on=decide_on,
         )
-        return _solve_planned(scene, plan, approach, tolerance)
 
     if accuracy is not None and grid is None:
-        return refine(solve_at, accuracy, quantity)
+        planned = _Planned(scene, plan_for(1, DECISION_GRID), approach, tolerance)
+        return refine(planned.solve_at, accuracy, quantity)
     if grid is None or accuracy is not None:
         raise InputError("grid", grid, "a number of elements per side, or an accuracy, and not both")
-    solution = solve_at(grid)
+    solution = _solve_planned(scene, plan_for(grid), approach, tolerance)
     return replace(
         solution, uncertainty=merged(iteration_parts(solution), solution.uncertainty, one_grid(solution))
     )
+
+
+class _Planned:
+    """A plan made once for all grids of a refinement; terms that turn out to matter are put back for good."""
+
+    def __init__(self, scene: Scene, plan: Plan, approach: float | None, tolerance: float) -> None:
+        self.scene, self.plan = scene, plan
+        self.approach, self.tolerance = approach, tolerance
+
+    def solve_at(self, M: int) -> Solution:
+        """The solution on a grid, solved again if the terms left out together exceed their budget."""
+        solution = _solve_planned(self.scene, self.plan.on(self.scene, M), self.approach, self.tolerance)
+        sizes = {name: effect.larger for name, effect in solution.left_out.items()}
+        if sum(sizes.values()) <= self.plan.budget:
+            return solution
+        self.plan = self.plan.put_back(self.scene, max(sizes, key=lambda name: sizes[name]))
+        return self.solve_at(M)
 
 
 def _solve_planned(scene: Scene, plan: Plan, approach: float | None, tolerance: float) -> Solution:
@@ -96,13 +128,18 @@ def _solve_planned(scene: Scene, plan: Plan, approach: float | None, tolerance: 
         problem = pose(scene, Grid(scene.side, plan.M), plan.switches, approach)
     outcome, state = _solve_posed(problem, plan, tolerance, counter)
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, outcome.iterations)
-    notes = tuple(dict.fromkeys(str(w.message) for w in caught))
-    return _solution(problem, plan, outcome, state, tolerance, notes, cost)
+    solution = _solution(problem, plan, outcome, state, tolerance, cost)
+    return replace(solution, warnings=_remarks(scene, problem.grid, caught) + cautions(solution, scene))
 
 
-def _solve_posed(
-    problem: Problem, plan: Plan, tolerance: float, counter: Counter
-) -> tuple[Outcome, State]:
+def _remarks(scene: Scene, grid: Grid, caught: Sequence[warnings.WarningMessage]) -> tuple[str, ...]:
+    """What surfaces had to remark; unresolved roughness is told by name (`refimpl.validity`)."""
+    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
+    told = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
+    return tuple(line for line in dict.fromkeys(str(w.message) for w in caught) if line not in told)
+
+
+def _solve_posed(problem: Problem, plan: Plan, tolerance: float, counter: Counter) -> tuple[Outcome, State]:
     if problem.approach is not None and problem.approach <= 0:
         return _apart(problem)
     if plan.method == "dense":
@@ -131,7 +168,6 @@ def _solution(
     outcome: Outcome,
     state: State,
     tolerance: float,
-    notes: tuple[str, ...],
     cost: Cost,
 ) -> Solution:
     """Gather the state's numbers; the status yields to the certificate."""
@@ -144,6 +180,9 @@ def _solution(
         friction_coefficient=state.forces.friction / load if load else math.nan,
         contact_area=float(np.count_nonzero(contact)) * grid.element_area,
     )
+    changes = effects_left_out(plan.left_out, problem, state.pressure, state.approach, plan.decided_on)
+    largest = float(state.pressure.max())
+    total = float(state.pressure.sum())
     return Solution(
         status=_final_status(outcome.status, state, tolerance),
         approach=state.approach - (float(problem.gap.mean()) if problem.periodic else 0.0),
@@ -153,7 +192,7 @@ def _solution(
         friction_coefficient=found.friction_coefficient,
         contact_area=found.contact_area,
         contact_area_corrected=perimeter_corrected_area(contact, grid.spacing, periodic=problem.periodic),
-        max_pressure=float(state.pressure.max()),
+        max_pressure=largest,
         pressure=state.pressure,
         traction=state.traction,
         slopes=state.slopes,
@@ -170,10 +209,19 @@ def _solution(
         sliding_direction=problem.direction,
         certificate=state.certificate,
         tolerance=tolerance,
-        uncertainty=_cycle_spread(outcome, found),
+        uncertainty=merged(
+            _cycle_spread(outcome, found),
+            uncertainty_left_out(
+                changes,
+                float(state.traction.sum()) / total if total else 0.0,
+                load,
+                {"contact_area": found.contact_area, "max_pressure": largest},
+            ),
+        ),
         plan=plan,
+        left_out=changes,
         problem=problem,
-        warnings=notes + _contact_warnings(problem, contact),
+        warnings=(),
         cost=cost,
     )
 
@@ -194,14 +242,3 @@ def _cycle_spread(outcome: Outcome, found: Visited) -> dict[str, dict[str, float
         name: {"tau support": max(abs(getattr(v, name) - getattr(found, name)) for v in outcome.visited)}
         for name in names
     }
-
-
-def _contact_warnings(problem: Problem, contact: Mask) -> tuple[str, ...]:
-    if problem.periodic:
-        return ()
-    border = contact.copy()
-    border[1:-1, 1:-1] = False
-    touching = int(np.count_nonzero(border))
-    if touching and problem.grid.M > 2:
-        return (f"contact reaches the border of the domain on {touching} elements: enlarge the side",)
-    return ()

@@ -1,0 +1,52 @@
+"""The estimates made again from the solved contact: what terms that were left out may have changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from refimpl.grid import Array
+from refimpl.planning import effects
+from refimpl.planning.effects import Effect, Scales
+from refimpl.planning.outlook import found
+from refimpl.problem import Problem
+
+_ESTIMATES = {
+    "shear coupling": effects.shear_coupling,
+    "obliqueness": effects.obliqueness,
+    "shear tilt": effects.shear_tilt,
+}
+
+
+def effects_left_out(
+    names: tuple[str, ...], problem: Problem, pressure: Array, approach: float, grid_of_decision: int
+) -> dict[str, Effect]:
+    """Effect by name of each term left out as small; costs nothing when there is none.
+
+    A coarser grid than that of the decision is credited with its number of elements, so that a term is
+    not put back for tipping single elements of a grid that is only a start.
+    """
+    if not names or not pressure.any():
+        return {}
+    outlook = found(problem, pressure, approach)
+    finer = max(1.0, grid_of_decision / problem.grid.M) ** 2
+    outlook = replace(outlook, elements=round(finer * outlook.elements))
+    scales = Scales(outlook, problem.pair, problem.friction)
+    return {name: _ESTIMATES[name](scales) for name in names}
+
+
+def uncertainty_left_out(
+    changes: Mapping[str, Effect], local_friction: float, load: float, numbers: Mapping[str, float]
+) -> dict[str, dict[str, float]]:
+    """The same as parts of the uncertainty, in each number's unit; pressures change as areas do.
+
+    ``local_friction`` is ``r`` over ``f``, both summed; ``numbers`` holds A and f_max (m^2, Pa).
+    """
+    if not changes:
+        return {}
+    friction = local_friction * sum(effect.friction for effect in changes.values())
+    area = sum(effect.area for effect in changes.values())
+    parts = {name: {"left out": area * abs(value)} for name, value in numbers.items()}
+    parts["friction_coefficient"] = {"left out": friction}
+    parts["friction_force"] = {"left out": friction * load}
+    return parts
