@@ -1,4 +1,4 @@
-"""What a chapter shows of a study's own result file: sentences, tables and figures, ready for the template."""
+"""What a chapter shows of a study: sentences, tables and figures from its own result file, ready to print."""
 
 from __future__ import annotations
 
