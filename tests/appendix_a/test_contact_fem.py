@@ -64,9 +64,7 @@ def test_sliding_wave_with_the_strongest_coupling() -> None:
     assert found.ends == pytest.approx(exact.edges, abs=3e-3 * exact.contact_fraction)
     shift = sum(exact.edges) / 2
     assert shift < -5e-3
-    assert found.friction == pytest.approx(
-        scene.beta * load + scene.tau * exact.contact_fraction, rel=2e-3
-    )
+    assert found.friction == pytest.approx(scene.beta * load + scene.tau * exact.contact_fraction, rel=2e-3)
 
 
 def test_upside_down_is_the_same_scene() -> None:

@@ -28,9 +28,7 @@ def test_a_flat_body_turned_upside_down_is_flat() -> None:
     assert body.compliance == pytest.approx(body.compliance.T, abs=1e-10)
     mirrored = body.mirrored()
     assert mirrored.at[0] == pytest.approx(body.at[0])
-    assert mirrored.compliance[2 * n :, 2 * n :] == pytest.approx(
-        body.compliance[2 * n :, 2 * n :], abs=1e-9
-    )
+    assert mirrored.compliance[2 * n :, 2 * n :] == pytest.approx(body.compliance[2 * n :, 2 * n :], abs=1e-9)
     assert mirrored.compliance[:n, 2 * n :] == pytest.approx(-body.compliance[:n, 2 * n :], abs=1e-9)
 
 

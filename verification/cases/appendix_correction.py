@@ -186,8 +186,8 @@ declare("rigid-rough-ball", PAIRS[1])
 @case(
     "appendix-correction/paper-remedy",
     title="The paper's own remedy: near-field coefficients computed on the slope",
-    claim="It makes half to five quarters of the correction's change of the peak pressure, and less than half "
-    "of its change of friction",
+    claim="It makes half to five quarters of the correction's change of the peak pressure, and less than "
+    "half of its change of friction",
     source="paper, Appendix A: 'only a few of the terms in the flexibility matrices need to be modified'",
     metric="at_most",
     tolerance=0.5,
