@@ -1,20 +1,35 @@
-"""Grids refined until the error bar of a chosen number is as short as asked for."""
+"""Grids refined until the error bar of a chosen number is as short as asked for.
+
+Two coarse grids open; the bar they give (`refimpl.discretisation`) also foretells the bar of finer
+grids, so that the next one is, as a rule, the last. All grids but the last together then cost a share
+of it only.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
+from refimpl.discretisation import DECAY, discretisation, estimates
 from refimpl.errors import InputError, require_number
+from refimpl.grid_result import GridResult
 from refimpl.outcome import Status
 from refimpl.solution import Cost, Solution
-from refimpl.uncertainty import iteration_parts, merged, two_grids
+from refimpl.uncertainty import Uncertainty, merged
 
-Quantity = Literal["friction_coefficient", "contact_area", "max_pressure"]
-QUANTITIES: tuple[Quantity, ...] = ("friction_coefficient", "contact_area", "max_pressure")
+Quantity = Literal["friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure"]
+QUANTITIES: tuple[Quantity, ...] = (
+    "friction_coefficient",
+    "contact_area",
+    "contact_area_corrected",
+    "max_pressure",
+)
 
-_COARSEST, _FINEST = 64, 4096
+OPENING = (32, 64)
+LADDER = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
+_FARTHEST = 8  # times finer than the last grid: what two coarse grids foretell beyond is worth little
+_MARGIN = 0.95  # share of the accuracy that a foretold bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
 
@@ -34,44 +49,96 @@ def deserved_tolerance(accuracy: float) -> float:
     return min(1e-5, max(1e-8, _ITERATION_SHARE * accuracy))
 
 
-def refine(solve_at: Callable[[int], Solution], accuracy: float, quantity: Quantity) -> Solution:
-    """Solve on doubled grids until the bar of ``quantity`` is within ``accuracy`` times its value.
+@dataclass(frozen=True)
+class Climb:
+    """The grids solved, coarse to fine; ``refusal`` says why a finer one was not to be had, if so."""
 
-    The solution is the finest grid's, with its uncertainty and the summed cost. When the next grid
-    does not fit into memory or exceeds 4096, the best so far is returned as `ITERATION_LIMIT` with a
-    warning that states the accuracy reached.
+    results: tuple[GridResult, ...]
+    refusal: str
+
+
+def climb(
+    result_at: Callable[[int], GridResult], accuracy: float, quantity: str, ladder: Iterable[int] = LADDER
+) -> Climb:
+    """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
+
+    A grid that ``result_at`` refuses by `InputError` (memory) is replaced by the next coarser one of
+    the ladder, as long as that is finer than the last.
     """
-    coarse = solve_at(_COARSEST)
-    fine, M = _compared(coarse, solve_at(2 * _COARSEST)), 2 * _COARSEST
-    while fine.status is not Status.NO_CONTACT and _bar(fine, quantity) > accuracy:
-        M *= 2
+    results = [result_at(M) for M in OPENING]
+    remaining, refusal = list(ladder), ""
+    while results[-1].touching and relative_bar(results, quantity) > accuracy:
+        remaining = [M for M in remaining if M > results[-1].M]
+        if not remaining:
+            return Climb(tuple(results), refusal or f"at most {results[-1].M} elements a side are tried")
+        M = next_grid(results, accuracy, quantity, remaining)
         try:
-            if M > _FINEST:
-                raise InputError("grid", M, f"at most {_FINEST}")
-            finer = solve_at(M)
-        except InputError as refusal:
-            reached = f"{quantity} is known to {_bar(fine, quantity):.2g}, not to {accuracy:.2g}: {refusal}"
-            return replace(fine, status=Status.ITERATION_LIMIT, warnings=(*fine.warnings, reached))
-        fine = _compared(fine, finer)
-    return fine
+            results.append(result_at(M))
+        except InputError as refused:
+            remaining, refusal = [grid for grid in remaining if grid < M], str(refused)
+    return Climb(tuple(results), "")
 
 
-def _compared(coarse: Solution, fine: Solution) -> Solution:
-    """The fine solution with its error bar from both grids and the cost of both."""
-    parts = merged(iteration_parts(fine), fine.uncertainty, two_grids(coarse, fine))
-    cost = Cost(
-        seconds=coarse.cost.seconds + fine.cost.seconds,
-        applications=_added(coarse.cost.applications, fine.cost.applications),
-        point_logs=coarse.cost.point_logs + fine.cost.point_logs,
-        iterations=_added(coarse.cost.iterations, fine.cost.iterations),
-    )
-    return replace(fine, uncertainty=parts, cost=cost)
+def next_grid(results: Sequence[GridResult], accuracy: float, quantity: str, ladder: Sequence[int]) -> int:
+    """The coarsest grid of the ladder whose bar is foretold to do, within reach of the last grid."""
+    fine = results[-1]
+    reach = [M for M in ladder if M <= _FARTHEST * fine.M] or ladder[:1]
+    found = fine.numbers[quantity]
+    estimate = estimates(results)[quantity]
+    own = sum(fine.parts.get(quantity, {}).values())
+    for M in reach:
+        finer = fine.M / M
+        bar = abs(found - estimate.value) * finer + estimate.spread * finer**DECAY + own * finer
+        if bar <= _MARGIN * accuracy * abs(found):
+            return M
+    return reach[-1]
 
 
-def _bar(solution: Solution, quantity: Quantity) -> float:
-    """Relative error bar: the sum of the parts over the value; infinite for a value of zero."""
-    value = abs(getattr(solution, quantity))
-    return sum(solution.uncertainty[quantity].values()) / value if value > 0 else float("inf")
+def relative_bar(results: Sequence[GridResult], quantity: str) -> float:
+    """The sum of the finest grid's parts over its value; infinite for a value of zero."""
+    value = abs(results[-1].numbers[quantity])
+    return sum(uncertainty(results)[quantity].values()) / value if value > 0 else float("inf")
+
+
+def uncertainty(results: Sequence[GridResult]) -> Uncertainty:
+    """All parts of the finest grid's numbers."""
+    return merged(results[-1].parts, discretisation(results))
+
+
+def refine(solve_at: Callable[[int], Solution], accuracy: float, quantity: Quantity) -> Solution:
+    """The finest grid's solution of a climb, with its uncertainty and the summed cost.
+
+    When finer grids do not fit into memory or exceed the ladder, the finest solved is returned as
+    `ITERATION_LIMIT` with a warning that states the accuracy reached.
+    """
+    solved: list[Solution] = []
+
+    def result_at(M: int) -> GridResult:
+        solved.append(solve_at(M))
+        return GridResult.of(solved[-1])
+
+    climbed = climb(result_at, accuracy, quantity)
+    fine = replace(solved[-1], cost=_total(solution.cost for solution in solved))
+    if not climbed.results[-1].touching:
+        return fine
+    fine = replace(fine, uncertainty=uncertainty(climbed.results))
+    if not climbed.refusal:
+        return fine
+    bar = relative_bar(climbed.results, quantity)
+    reached = f"{quantity} is known to {bar:.2g}, not to {accuracy:.2g}: {climbed.refusal}"
+    return replace(fine, status=Status.ITERATION_LIMIT, warnings=(*fine.warnings, reached))
+
+
+def _total(costs: Iterable[Cost]) -> Cost:
+    total = Cost(0.0, {}, 0.0, {})
+    for cost in costs:
+        total = Cost(
+            seconds=total.seconds + cost.seconds,
+            applications=_added(total.applications, cost.applications),
+            point_logs=total.point_logs + cost.point_logs,
+            iterations=_added(total.iterations, cost.iterations),
+        )
+    return total
 
 
 def _added(first: Mapping[str, int], second: Mapping[str, int]) -> dict[str, int]:

@@ -2,7 +2,7 @@
 
 Parts are absolute, in the number's unit, and meant as 95 % bounds that add. ``iteration`` follows
 from the certificate; ``tau support`` from the states of a settled cycle; ``discretisation`` from
-the contact's perimeter on one grid, or from the change between two grids.
+the contact's perimeter on one grid, or from a sequence of grids (`refimpl.discretisation`).
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from refimpl.solution import Solution
 
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
-
-_SAFETY = 1.25  # Roache's factor for a grid sequence whose order is known
 
 
 def iteration_parts(solution: Solution) -> Uncertainty:
@@ -58,29 +56,6 @@ def one_grid(solution: Solution) -> Uncertainty:
         "contact_area": {"discretisation": excess},
         "friction_coefficient": {"discretisation": excess * adhesive_share(solution)},
     }
-
-
-def two_grids(coarse: Solution, fine: Solution) -> Uncertainty:
-    """Discretisation parts of the fine solution, from the change since a grid of half its elements.
-
-    The edge's excess is known and first order; what is left of area and friction without it, and
-    every other number, is taken to converge with order one at least, so that the change between
-    the grids bounds it.
-    """
-    parts = one_grid(fine)
-    for name in ("max_pressure", "approach", "friction_force", "binormal_force"):
-        parts[name] = {"discretisation": _SAFETY * abs(getattr(fine, name) - getattr(coarse, name))}
-    area = abs(fine.contact_area_corrected - coarse.contact_area_corrected)
-    parts["contact_area"]["discretisation"] += _SAFETY * area
-    friction = _bulk_friction(fine) - _bulk_friction(coarse)
-    parts["friction_coefficient"]["discretisation"] += _SAFETY * abs(friction)
-    parts["contact_area_corrected"] = {"discretisation": _SAFETY * area}
-    return parts
-
-
-def _bulk_friction(solution: Solution) -> float:
-    """Friction coefficient without the share of the edge's excess area."""
-    return solution.friction_coefficient - adhesive_share(solution) * edge_excess(solution)
 
 
 def merged(*several: Mapping[str, Mapping[str, float]]) -> Uncertainty:

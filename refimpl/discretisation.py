@@ -1,0 +1,146 @@
+"""What a sequence of grids tells of the continuous problem: a Bayesian line through the numbers found.
+
+A number ``y_k`` found on grid k of spacing ``h_k`` is modelled as
+
+    y_k = q + c e_k + r_k,   c ~ N(c0, s_c^2),   r_k ~ N(0, (sigma w_k)^2),   sigma^2 ~ scaled inverse chi^2.
+
+``q`` is the number of the continuous problem, ``e_k`` the area that whole elements add along the
+contact's edge (Yastrebov, Anciaux and Molinari 2017), of which only the size ``c`` is uncertain, and
+``r_k`` what is left. In an area that is which elements the edge happens to catch: the count of n edge
+elements varies as sqrt(n), and n goes as 1 / h, so ``w`` falls as h^(3/2). ``q`` given c and sigma is
+normal; sigma integrates to a Student distribution, and c numerically (Gelman et al. 2013, ch. 3, 14).
+Friction takes its edge's share from the area, by ``tau / N``.
+
+The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1039);
+what they promise was judged on the scenes of other seeds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy import optimize, stats
+
+from refimpl.grid import Array
+from refimpl.grid_result import GridResult
+
+EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
+EDGE_SIZE, EDGE_SIZE_SPREAD = 0.85, 0.07  # c0, s_c
+DECAY = 1.5  # order of the scatter where no other is known: the area's
+
+
+class Prior(NamedTuple):
+    """Of a scatter: sigma on the finest grid in the number's unit, worth ``weight`` grids, and its order."""
+
+    scatter: float
+    weight: float
+    order: float = DECAY
+
+
+AREA = Prior(0.22, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
+BULK = Prior(0.01, 1.0)  # friction without tau's share; unit of this and the last: value (edge / area)^1.5
+PEAK = Prior(0.05, 3.0, order=2.0)  # unit: peak times its drop to the neighbours
+OTHER = Prior(0.1, 1.0)
+
+
+class Estimate(NamedTuple):
+    """A number of the continuous problem, and the 95 % bound of its error."""
+
+    value: float
+    spread: float
+
+    def bar(self, found: float) -> float:
+        """Bound of the error of a number found on a grid."""
+        return abs(found - self.value) + self.spread
+
+
+def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
+    """Estimates of the reported numbers, from grids coarse to fine (one at least)."""
+    spacing = np.array([result.spacing for result in results])
+    columns = {name: np.array([result.numbers[name] for result in results]) for name in results[0].numbers}
+    area, force = columns["contact_area"], columns["normal_force"]
+    slip = np.array([result.slip for result in results])
+    fine = {name: abs(float(column[-1])) for name, column in columns.items()}
+    thinness = (min(1.0, max(results[-1].edge, 0.0) / area[-1]) if area[-1] > 0 else 1.0) ** DECAY
+
+    def smooth(values: Array, prior: Prior, unit: float) -> Estimate:
+        scaled = prior._replace(scatter=prior.scatter * unit)
+        return line(values, (spacing / spacing[-1]) ** prior.order, scaled)
+
+    def sheared(name: str, share: Array) -> Estimate:
+        """A number that contains ``share`` times the contact area."""
+        rest = smooth(columns[name] - share * area, BULK, thinness * fine[name])
+        value = rest.value + share[-1] * whole.value
+        return Estimate(value, math.hypot(rest.spread, share[-1] * whole.spread))
+
+    whole = _area(results, area, spacing)
+    return {
+        "friction_coefficient": sheared("friction_coefficient", slip),
+        "friction_force": sheared("friction_force", slip * force),
+        "contact_area": whole,
+        "contact_area_corrected": whole,
+        "max_pressure": smooth(columns["max_pressure"], PEAK, results[-1].drop * fine["max_pressure"]),
+        "approach": smooth(columns["approach"], OTHER, thinness * fine["approach"]),
+        "normal_force": smooth(force, OTHER, thinness * fine["normal_force"]),
+        "binormal_force": smooth(columns["binormal_force"], OTHER, thinness * fine["normal_force"]),
+    }
+
+
+def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]:
+    """Discretisation parts of the finest grid's numbers."""
+    found = results[-1].numbers
+    return {
+        name: {"discretisation": estimate.bar(found[name])} for name, estimate in estimates(results).items()
+    }
+
+
+def _area(results: Sequence[GridResult], area: Array, spacing: Array) -> Estimate:
+    """Contact area: the edge's mean share is a regressor, its scatter that of a count."""
+    edge = np.array([result.edge for result in results])
+    elements = np.maximum(edge / (EDGE_SHARE * spacing**2), 1.0)
+    scatter = np.sqrt(elements * np.array([result.alike for result in results])) * spacing**2
+    return line(area, scatter / scatter[-1], AREA._replace(scatter=AREA.scatter * scatter[-1]), edge)
+
+
+def line(values: Array, weights: Array, prior: Prior, edge: Array | None = None) -> Estimate:
+    """``q`` of the model above, from ``values`` on grids coarse to fine with ``w_k = weights``.
+
+    ``prior.scatter`` is sigma of the finest grid in the number's unit.
+
+    >>> line(np.array([1.04, 1.02, 1.01]), np.array([8.0, 2.8, 1.0]), Prior(0.001, 1.0)).value < 1.015
+    True
+    """
+    sizes, shares = (np.zeros(1), np.ones(1)) if edge is None else _edge_sizes()
+    rest = values - sizes[:, None] * (0 if edge is None else edge)
+    precision = weights**-2.0
+    centre = rest @ precision / precision.sum()
+    squares = ((rest - centre[:, None]) ** 2) @ precision
+    freedom = prior.weight + len(values) - 1
+    variance = (prior.weight * prior.scatter**2 + squares) / freedom
+    variance = np.maximum(variance, np.finfo(float).tiny + (np.finfo(float).eps * values[-1]) ** 2)
+    shares = shares * (variance / variance.min()) ** (-0.5 * freedom)
+    shares = shares / shares.sum()
+    value = float(shares @ centre)
+    scale = np.sqrt(variance / precision.sum())
+    return Estimate(value, _bound(shares, centre - value, scale, freedom))
+
+
+def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> float:
+    """What a mixture of Student's distributions exceeds, either way together, with 5 %."""
+
+    def beyond(bound: float) -> float:
+        above = stats.t.sf((bound - centres) / scales, freedom)
+        below = stats.t.cdf((-bound - centres) / scales, freedom)
+        return float(shares @ (above + below)) - 0.05
+
+    widest = float(np.max(np.abs(centres)) + np.max(scales) * stats.t.ppf(0.975, freedom))
+    return float(optimize.brentq(beyond, 0.0, widest, rtol=1e-4)) if beyond(widest) < 0 else widest
+
+
+def _edge_sizes() -> tuple[Array, Array]:
+    """Nodes and weights of the prior of ``c`` (Gauss-Hermite)."""
+    nodes, weights = np.polynomial.hermite_e.hermegauss(9)
+    return EDGE_SIZE + EDGE_SIZE_SPREAD * nodes, weights / weights.sum()

@@ -1,0 +1,94 @@
+"""What refinement remembers of a solution on one grid: numbers, edge, peak, and its own error parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from refimpl.friction import Mask
+from refimpl.grid import Array
+from refimpl.solution import REPORTED, Solution
+from refimpl.uncertainty import adhesive_share, edge_excess, iteration_parts, merged
+
+
+@dataclass(frozen=True)
+class GridResult:
+    """A solution without its arrays.
+
+    ``numbers`` by the names of `Solution`; ``edge`` is the area (m^2) that whole elements are expected
+    to add along the contact's edge, ``alike`` how many of its elements come in and out together by
+    symmetry, ``drop`` how sharp the peak is, ``slip`` is ``d mu / d A = tau / N`` (1/m^2), ``parts`` are
+    the uncertainties that the grid's own solution states (iteration, tau support).
+    """
+
+    M: int
+    spacing: float
+    numbers: Mapping[str, float]
+    edge: float
+    alike: float
+    drop: float
+    slip: float
+    parts: Mapping[str, Mapping[str, float]]
+
+    @property
+    def touching(self) -> bool:
+        """Whether anything is in contact."""
+        return self.numbers["contact_area"] > 0
+
+    @classmethod
+    def of(cls, solution: Solution) -> GridResult:
+        """What to keep of a solution."""
+        return cls(
+            M=solution.grid.M,
+            spacing=solution.grid.spacing,
+            numbers={name: float(getattr(solution, name)) for name in REPORTED},
+            edge=edge_excess(solution),
+            alike=alike(solution.contact),
+            drop=drop_beside_peak(solution.pressure),
+            slip=adhesive_share(solution),
+            parts=merged(iteration_parts(solution), _own(solution)),
+        )
+
+
+def alike(contact: Mask) -> float:
+    """How many edge elements are one another's images: 8 for a square's symmetries, 1 for none.
+
+    A sum over the mirrorings and turns of the contact's bounding box, each by the share of the edge
+    that it leaves as it is.
+
+    >>> disc = np.hypot(*np.mgrid[-7.5:8, -7.5:8]) < 6
+    >>> alike(disc), alike(disc | (np.indices((16, 16)).sum(axis=0) < 4))
+    (8.0, 2.0)
+    """
+    if not contact.any():
+        return 1.0
+    rows, columns = np.flatnonzero(contact.any(axis=1)), np.flatnonzero(contact.any(axis=0))
+    box = contact[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    flips = [image[::i, ::j] for image in (box, box.T) for i in (1, -1) for j in (1, -1)]
+    edge = sum(np.count_nonzero(np.diff(box, axis=axis)) for axis in (0, 1)) + 2 * sum(box.shape)
+    misfits = [np.count_nonzero(image != box) for image in flips if image.shape == box.shape]
+    return float(sum(max(0.0, 1 - 4 * misfit / edge) for misfit in misfits))
+
+
+def drop_beside_peak(pressure: Array) -> float:
+    """How far the four neighbours of the highest pressure together fall short of it, over it; 0 to 4.
+
+    >>> float(drop_beside_peak(np.array([[0.0, 1, 0], [1, 2, 1], [0, 1, 0]])))
+    2.0
+    """
+    if not np.any(pressure > 0):
+        return 0.0
+    padded = np.pad(pressure, 1, mode="edge")
+    i, j = np.unravel_index(np.argmax(pressure), pressure.shape)
+    beside = padded[i : i + 3 : 2, j + 1].sum() + padded[i + 1, j : j + 3 : 2].sum()
+    return float(4 - beside / pressure[i, j])
+
+
+def _own(solution: Solution) -> dict[str, dict[str, float]]:
+    """What the solution states beside its discretisation, which is for the sequence of grids to tell."""
+    return {
+        name: {part: value for part, value in parts.items() if part != "discretisation"}
+        for name, parts in solution.uncertainty.items()
+    }

@@ -1,0 +1,164 @@
+"""Estimates from a sequence of grids, on numbers made up to have a known limit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl import discretisation
+from refimpl.discretisation import AREA, EDGE_SHARE, EDGE_SIZE, EDGE_SIZE_SPREAD, Prior, estimates, line
+from refimpl.grid import Array
+from refimpl.grid_result import GridResult
+from refimpl.refine import OPENING, climb, next_grid, relative_bar, uncertainty
+from refimpl.solution import REPORTED
+
+SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
+AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
+
+
+def made_up(M: int, size: float = EDGE_SIZE, jitter: float = 0.0) -> GridResult:
+    """A disc's numbers on a grid: first order in its area and through tau in mu, second order in its peak."""
+    h = SIDE / M
+    edge = EDGE_SHARE * 8 * RADIUS * h
+    scatter = jitter * math.sqrt(8 * RADIUS / h) * h**2
+    area = AREA_LIMIT + size * edge + scatter
+    numbers = dict.fromkeys(REPORTED, 0.0)
+    numbers |= {
+        "contact_area": area,
+        "contact_area_corrected": area - edge,
+        "friction_coefficient": BETA + SLIP * area,
+        "max_pressure": PEAK * (1 - 0.3 * (h / RADIUS) ** 2),
+        "normal_force": 70.0,
+        "approach": 1e-6,
+    }
+    return GridResult(
+        M=M,
+        spacing=h,
+        numbers=numbers,
+        edge=edge,
+        alike=1.0,
+        drop=2 * (h / RADIUS) ** 2,
+        slip=SLIP,
+        parts={name: {"iteration": 0.0} for name in REPORTED},
+    )
+
+
+def test_numbers_that_follow_the_model_are_extrapolated() -> None:
+    found = estimates([made_up(M) for M in (32, 64, 128)])
+    for name in ("contact_area", "contact_area_corrected"):
+        assert found[name].value == pytest.approx(AREA_LIMIT, rel=1e-3)
+        assert abs(found[name].value - AREA_LIMIT) < found[name].spread
+    mu = found["friction_coefficient"]
+    assert mu.value == pytest.approx(BETA + SLIP * AREA_LIMIT, rel=1e-3)
+    assert abs(mu.value - BETA - SLIP * AREA_LIMIT) < mu.spread
+    peak = found["max_pressure"]
+    assert abs(peak.value - PEAK) < peak.spread < 0.02 * PEAK
+
+
+def test_a_bar_reaches_from_the_number_over_the_estimate_to_the_end_of_its_spread() -> None:
+    results = [made_up(M) for M in (32, 64)]
+    area = estimates(results)["contact_area"]
+    raw = results[-1].numbers["contact_area"]
+    bar = uncertainty(results)["contact_area"]["discretisation"]
+    assert bar == pytest.approx(raw - area.value + area.spread)
+    assert relative_bar(results, "contact_area") == pytest.approx(bar / raw)
+
+
+def test_an_edge_of_unforeseen_size_is_learnt_from_the_grids() -> None:
+    thick = [made_up(M, size=EDGE_SIZE + 3 * EDGE_SIZE_SPREAD) for M in (32, 64, 128, 256, 512)]
+    assumed = thick[-1].numbers["contact_area"] - EDGE_SIZE * thick[-1].edge
+    found = estimates(thick)["contact_area"]
+    assert abs(found.value - AREA_LIMIT) < abs(assumed - AREA_LIMIT)
+
+
+def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
+    """Numbers from the model itself with q = 0, their weights and edges, in the unit of the scatter."""
+    rng = np.random.default_rng(7)
+    weights = 2.0 ** (1.5 * np.arange(grids)[::-1])
+    edge = 5 * 2.0 ** np.arange(grids)[::-1]
+    size = rng.normal(EDGE_SIZE, EDGE_SIZE_SPREAD, count)
+    sigma = AREA.scatter * np.sqrt(AREA.weight / rng.chisquare(AREA.weight, count))
+    noise = rng.standard_normal((count, grids)) * weights * sigma[:, None]
+    return size[:, None] * edge + noise, weights, edge
+
+
+@pytest.mark.parametrize("grids", [1, 2, 4])
+def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
+    values, weights, edge = draws(800, grids)
+    found = [line(row, weights, AREA, edge) for row in values]
+    share = np.mean([abs(estimate.value) <= estimate.spread for estimate in found])
+    assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
+
+
+def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> None:
+    calm, wild = np.array([1.0, 1.0, 1.0]), np.array([1.3, 0.9, 1.0])
+    weights, prior = np.array([8.0, 2.8, 1.0]), Prior(0.01, 2.0)
+    assert line(wild, weights, prior).spread > 2 * line(calm, weights, prior).spread
+    alone = line(np.array([3.0]), np.ones(1), prior)
+    assert alone.value == 3.0
+    assert alone.spread == pytest.approx(4.303 * 0.01, rel=1e-3)  # Student's t with two degrees of freedom
+
+
+def test_the_climb_jumps_to_the_grid_that_does() -> None:
+    asked: list[int] = []
+
+    def result_at(M: int) -> GridResult:
+        asked.append(M)
+        return made_up(M)
+
+    found = climb(result_at, 0.01, "contact_area")
+    assert found.refusal == ""
+    assert tuple(asked[:2]) == OPENING
+    assert len(asked) == 3
+    assert relative_bar(found.results, "contact_area") <= 0.01
+    true_error = found.results[-1].numbers["contact_area"] / AREA_LIMIT - 1
+    assert true_error <= 0.01
+    coarser = made_up(asked[-1] * 2 // 3).numbers["contact_area"] / AREA_LIMIT - 1
+    assert coarser > 0.0095  # so little was wasted
+    assert next_grid(found.results[:2], 0.01, "contact_area", [96, 128]) == 128
+
+
+def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_is_told() -> None:
+    def result_at(M: int) -> GridResult:
+        if M > 100:
+            raise rf.InputError("grid", M, "one that fits")
+        return made_up(M)
+
+    found = climb(result_at, 0.001, "contact_area")
+    assert found.results[-1].M == 96
+    assert "one that fits" in found.refusal
+    ended = climb(made_up, 0.001, "contact_area", ladder=(80, 96))
+    assert ended.results[-1].M == 96
+    assert "96" in ended.refusal
+
+
+def test_nothing_in_contact_ends_the_climb() -> None:
+    apart = replace(made_up(64), numbers=dict.fromkeys(REPORTED, 0.0), edge=0.0)
+    assert len(climb(lambda M: apart, 0.01, "contact_area").results) == len(OPENING)
+
+
+def test_bars_hold_against_hertz() -> None:
+    scene = rf.read_scene("hertz")
+    modulus, R = scene.materials.reduced_modulus, 0.14
+    a = (3 * scene.load * R / (4 * modulus)) ** (1 / 3)
+    exact = {
+        "contact_area": math.pi * a**2,
+        "max_pressure": 1.5 * scene.load / (math.pi * a**2),
+    }
+    for accuracy in (0.03, 0.01):
+        found = rf.solve(scene, accuracy=accuracy)
+        for name, value in exact.items():
+            bar = sum(found.uncertainty[name].values())
+            assert abs(getattr(found, name) - value) <= bar, name
+            assert bar <= 5 * abs(getattr(found, name) - value) or name == "max_pressure"
+
+
+def test_constants_agree_with_the_perimeter_correction() -> None:
+    contact = np.zeros((8, 8), dtype=bool)
+    contact[2:5, 3:6] = True  # 12 edges
+    corrected = rf.forces.perimeter_corrected_area(contact, 1.0)  # type: ignore[attr-defined]  # submodule
+    assert 9 - corrected == pytest.approx(12 * discretisation.EDGE_SHARE)

@@ -1,0 +1,171 @@
+"""Random scenes for the study of error bars: one a seed, each a continuous problem that knows no grid.
+
+Sizes follow from scale-free numbers - contact radius over the side, rms over the Hertz approach, shear
+strength over the mean pressure - so that contact is neither a few elements nor everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.materials import Pair
+from verification.coverage.shapes import Barrel, Waves, measured_like
+
+SIDE = 1e-3  # m; the problem is scale-free, so one side stands for all
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A random scene and the class it belongs to."""
+
+    seed: int
+    kind: str
+    scene: rf.Scene
+
+
+def random_scene(seed: int) -> Drawn:
+    """The scene of a seed; the classes take turns.
+
+    >>> random_scene(3).kind, random_scene(3).scene.load == random_scene(3).scene.load
+    ('rough ball', True)
+    """
+    kinds = tuple(CLASSES)
+    kind = kinds[seed % len(kinds)]
+    return Drawn(seed, kind, CLASSES[kind](_Dice(seed)))
+
+
+class _Dice:
+    """The random numbers of a scene, by what they mean."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = np.random.default_rng([2001, seed])
+        self.seeds = 2 * seed, 2 * seed + 1  # of both bodies' roughness
+        lower, upper = self._material(), self._material()
+        self.pair = Pair(lower=lower, upper=lower if self.rng.random() < 0.2 else upper)
+        self.modulus = self.pair.reduced_modulus
+
+    def log(self, low: float, high: float) -> float:
+        """A log-uniform number."""
+        return math.exp(self.rng.uniform(math.log(low), math.log(high)))
+
+    def _material(self) -> rf.Material:
+        return rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49)))
+
+    def friction(self, mean_pressure: float) -> rf.Friction:
+        """Neither, one or both of tau and beta; tau up to a third of the mean pressure."""
+        tau, beta = mean_pressure * self.log(0.003, 0.3), self.log(0.01, 0.4)
+        kind = self.rng.random()
+        return rf.Friction(tau=0.0 if kind < 0.1 or kind > 0.9 else tau, beta=0.0 if kind < 0.2 else beta)
+
+    def scene(
+        self, upper: rf.Surface, lower: rf.Surface, load: float, pressure: float, periodic: bool = False
+    ) -> rf.Scene:
+        """Both surfaces on this pair of materials; friction by the mean pressure to be expected (Pa)."""
+        return rf.Scene(
+            upper=rf.Body(self.pair.upper, upper),
+            lower=rf.Body(self.pair.lower, lower),
+            friction=self.friction(pressure),
+            load=load,
+            side=SIDE,
+            sliding_direction=float(self.rng.uniform(0, 2 * math.pi)),
+            periodic=periodic,
+        )
+
+
+@dataclass(frozen=True)
+class _Ball:
+    """A Hertz contact: radius R (m), contact radius a (m), load (N), mean pressure (Pa), approach (m)."""
+
+    R: float
+    a: float
+    load: float
+    pressure: float
+    approach: float
+
+
+def _ball(dice: _Dice) -> _Ball:
+    R, a = SIDE * dice.log(2, 100), SIDE * dice.log(0.08, 0.3)
+    load = 4 * dice.modulus * a**3 / (3 * R)
+    return _Ball(R, a, load, load / (math.pi * a**2), a**2 / R)
+
+
+def _smooth(dice: _Dice) -> rf.Scene:
+    ball = _ball(dice)
+    return dice.scene(rf.Sphere(ball.R), rf.Flat(), ball.load, ball.pressure)
+
+
+def _barrel(dice: _Dice) -> rf.Scene:
+    """Elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves singular."""
+    ball, ratio = _ball(dice), dice.log(1.5, 10)
+    root = math.sqrt(ratio)
+    shape = Barrel(ball.R / root, ball.R * root)
+    return dice.scene(shape, rf.Flat(), ball.load / root, ball.pressure)
+
+
+def _wavy(dice: _Dice) -> rf.Scene:
+    ball = _ball(dice)
+    numbers = tuple(int(n) for n in dice.rng.integers(2, 12, 2))
+    waves = Waves(ball.approach * dice.log(0.02, 0.5), (numbers[0], numbers[1]), _phases(dice))
+    return dice.scene(rf.Sphere(ball.R), waves, ball.load, ball.pressure)
+
+
+def _rough_ball(dice: _Dice) -> rf.Scene:
+    ball = _ball(dice)
+    rms, length = ball.approach * dice.log(0.01, 0.6), SIDE * dice.log(0.05, 0.3)
+    rough = rf.GaussianRoughness(rms, length, dice.seeds[0])
+    return dice.scene(rf.Sphere(ball.R), rough, ball.load, ball.pressure)
+
+
+def _both_rough(dice: _Dice) -> rf.Scene:
+    ball = _ball(dice)
+    upper, lower = (
+        rf.GaussianRoughness(ball.approach * dice.log(0.01, 0.3), SIDE * dice.log(0.05, 0.3), seed)
+        for seed in dice.seeds
+    )
+    return dice.scene(rf.Sphere(ball.R) + upper, lower, ball.load, ball.pressure)
+
+
+def _measured(dice: _Dice) -> rf.Scene:
+    ball, points = _ball(dice), int(dice.rng.integers(48, 161))
+    rms, hurst = ball.approach * dice.log(0.01, 0.4), float(dice.rng.uniform(0.6, 0.9))
+    heights = measured_like(dice.rng, points, rms, hurst, roll_off=int(dice.rng.integers(3, 7)))
+    return dice.scene(rf.Sphere(ball.R) + heights, rf.Flat(), ball.load, ball.pressure)
+
+
+def _periodic_waves(dice: _Dice) -> rf.Scene:
+    """Bisinusoids up to two thirds of what flattens them, ``sqrt(2) pi E* amplitude / wavelength``."""
+    number, amplitude = int(dice.rng.integers(1, 4)), SIDE * dice.log(1e-4, 1e-2)
+    flattening = math.sqrt(2) * math.pi * dice.modulus * amplitude * number / SIDE
+    mean = flattening * dice.log(0.02, 0.66)
+    waves = Waves(amplitude / number, (number, number), _phases(dice))
+    return dice.scene(waves, rf.Flat(), mean / number * SIDE**2, 2 * mean, periodic=True)
+
+
+def _periodic_rough(dice: _Dice) -> rf.Scene:
+    """Rough planes; contact takes about ``2 p / (E* rms slope)`` of the area (Bush et al. 1975)."""
+    rough = rf.GaussianRoughness(SIDE * dice.log(1e-4, 3e-3), SIDE * dice.log(0.08, 0.4), dice.seeds[0])
+    scale = dice.modulus * math.sqrt(2) * rough.rms_slope
+    mean = scale * dice.log(0.02, 0.2)
+    return dice.scene(rough, rf.Flat(), mean * SIDE**2, 0.4 * scale, periodic=True)
+
+
+def _phases(dice: _Dice) -> tuple[float, float]:
+    a, b = dice.rng.uniform(0, 2 * math.pi, 2)
+    return float(a), float(b)
+
+
+CLASSES: dict[str, Callable[[_Dice], rf.Scene]] = {
+    "smooth ball": _smooth,
+    "barrel": _barrel,
+    "wavy ball": _wavy,
+    "rough ball": _rough_ball,
+    "both rough": _both_rough,
+    "measured-like": _measured,
+    "periodic waves": _periodic_waves,
+    "periodic rough": _periodic_rough,
+}
