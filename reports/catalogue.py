@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from reports.appendix_figures import APPENDIX
+from reports.contestant_figures import CONTESTANTS
 from reports.drawing import Figure, dots, lines, maps, order
 from reports.reproduction_figures import REPRODUCTION
 
 
 def _order(cases: str, what: str, expected: float) -> Figure:
     draw = order({"error": what}, ylabel="relative error", expected=(expected,))
-    return Figure(
-        cases, ("M", "error"), draw, f"Error of the {what} over the grid, and the order expected."
-    )
+    return Figure(cases, ("M", "error"), draw, f"Error of the {what} over the grid, and the order expected.")
 
 
 FIG12 = {
@@ -30,6 +29,7 @@ FIG13 = {
 DECLARED = (
     *REPRODUCTION,
     *APPENDIX,
+    *CONTESTANTS,
     *(
         Figure(
             f"appendix-figures/{name}",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from verification.case import Measured
 from verification.contestants import own
 from verification.contestants.broken import BROKEN
@@ -10,6 +12,12 @@ from verification.contestants.suite import run, suite
 from verification.registry import case
 
 SOURCE = "the suite of verification.contestants"
+
+
+@cache
+def verdicts(fault: Fault) -> dict[str, str]:
+    """Status of every case of the suite, by slug, for the solver with a fault."""
+    return {r.id.partition("/")[2]: r.status for r in run(BROKEN[fault]())}
 
 
 @case(
@@ -25,12 +33,12 @@ SOURCE = "the suite of verification.contestants"
 def own_solver() -> Measured:
     results = run(own.solve)
     left = [f"{r.id}: {r.status} {r.note}" for r in results if r.status != "pass"]
-    data = {r.id: r.error for r in results}
+    data = {"error over tolerance": {r.id: (r.error or 0.0) / r.tolerance for r in results}}
     return Measured(len(left), 0.0, unit="cases", data=data, note="; ".join(left) or f"{len(results)} cases")
 
 
 def _declare(fault: Fault) -> None:
-    """The case that a fault is caught in every check that names it."""
+    """The case that a fault is caught in every case of the suite that names it."""
 
     @case(
         "contestants/catches-" + "-".join(fault.replace("%", "percent").split()),
@@ -44,20 +52,40 @@ def _declare(fault: Fault) -> None:
         tags=("contestant", "self-test"),
     )
     def caught() -> Measured:
-        naming = {check.id for check in suite() if fault in check.catches}
+        naming = [check.slug for check in suite() if fault in check.catches]
         if not naming:
             raise ValueError(f"no case of the suite names {fault!r}")
-        results = run(BROKEN[fault]())
-        missed = [r.id for r in results if r.id in naming and r.status != "fail"]
-        others = [r.id for r in results if r.id not in naming and r.status in ("fail", "error")]
-        data = {
-            "fault": fault.value,
-            "verdicts": {r.id: r.status for r in results},
-            "named in": sorted(naming),
-        }
-        note = f"caught in {len(naming)} that name it and {len(others)} others; missed in {missed or 'none'}"
-        return Measured(len(missed), 0.0, unit="cases", data=data, note=note)
+        found = verdicts(fault)
+        missed = [slug for slug in naming if found[slug] != "fail"]
+        others = [slug for slug in found if slug not in naming and found[slug] in ("fail", "error")]
+        note = (
+            f"caught in {len(naming)} that name it and in {len(others)} others; missed in {missed or 'none'}"
+        )
+        return Measured(len(missed), 0.0, unit="cases", data={"named in": naming, "also": others}, note=note)
 
 
 for _fault in BROKEN:
     _declare(_fault)
+
+
+@case(
+    "contestants/each-case-earns-its-place",
+    title="Cases of the suite against broken solvers",
+    claim="Every case of the suite fails at least one of the broken solvers",
+    source=SOURCE,
+    metric="equal",
+    tolerance=0.0,
+    tolerance_reason="a number of cases that fail none",
+    tier="full",
+    tags=("contestant", "self-test"),
+)
+def each_case_earns_its_place() -> Measured:
+    found = {fault: verdicts(fault) for fault in BROKEN}
+    idle = [c.slug for c in suite() if not any(found[fault][c.slug] == "fail" for fault in found)]
+    data = {
+        "case": [c.slug for c in suite()],
+        "fault": [fault.value for fault in found],
+        "verdict": [[found[fault][c.slug] for fault in found] for c in suite()],
+        "named": [[fault in c.catches for fault in found] for c in suite()],
+    }
+    return Measured(len(idle), 0.0, unit="cases", data=data, note=f"idle: {', '.join(idle) or 'none'}")

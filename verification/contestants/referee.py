@@ -114,9 +114,12 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
     It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
     tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
-    it is the load balance's affair.)
+    it is the load balance's affair.) Raises ValueError where ``f*`` holds no energy.
     """
-    return energy(problem, found - exact) / energy(problem, exact)
+    stored = energy(problem, exact)
+    if not stored > 0:
+        raise ValueError("the pressures to compare with hold no elastic energy")
+    return energy(problem, found - exact) / stored
 
 
 def approach_of(problem: ContactProblem, pressure: Array) -> float:
