@@ -50,6 +50,7 @@ def small(name: str) -> ContactProblem:
         "periodic, light": (wave, {"load": 1e-3, "periodic": True}),
         "periodic, approach": (wave, {"approach": -1e-6, "periodic": True}),
         "periodic, nearly full": (wave, {"approach": -1e-7, "periodic": True}),
+        "periodic, pressed flat": (wave, {"load": 200.0, "periodic": True}),
     }
     gap, control = kinds[name]
     return ContactProblem(gap - gap.min(), 1e-3 / len(gap), 2e9, **control)
@@ -64,6 +65,7 @@ NAMES = (
     "periodic, light",
     "periodic, approach",
     "periodic, nearly full",
+    "periodic, pressed flat",
 )
 CANNOT = {
     ("tamaas", "free, approach"): "an approach in free space",

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from types import ModuleType
 
+import numpy as np
+
 from verification.case import Unavailable
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Unsupported
 
@@ -70,7 +72,8 @@ def closure(problem: ContactProblem) -> float:
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
     P in a square has a smaller one than the square punch, 0.87 P / (E* side); at an approach d it is d / 2
     for a cone and more for blunter shapes. Periodic contact displaces half the heights' deviation when light,
-    a third when about to become full (peaks of three deviations), and a sixth at twice that pressure.
+    a third when about to become full (peaks of three deviations), and less under still higher loads: twice
+    the energy that flattens the surface, over the load.
     """
     if problem.load is not None:
         depth = 0.87 * problem.load / (problem.reduced_modulus * problem.side)
@@ -78,8 +81,19 @@ def closure(problem: ContactProblem) -> float:
         assert problem.approach_from_touch is not None
         depth = 0.5 * abs(problem.approach_from_touch)
     if problem.periodic and problem.gap.any():
-        depth = min(depth, float(problem.gap.std()) / 6)
+        depth = min(depth, float(problem.gap.std()) / 3)
+        if problem.load is not None:
+            depth = min(depth, 2 * _flattening(problem) / problem.load)
     return 0.5 * problem.tolerance * depth
+
+
+def _flattening(problem: ContactProblem) -> float:
+    """Elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its waves."""
+    q = 2 * np.pi * np.fft.fftfreq(problem.M, problem.spacing)
+    pressure = np.fft.ifft2(
+        np.fft.fft2(problem.gap) * np.hypot(q[:, None], q) * (0.5 * problem.reduced_modulus)
+    ).real
+    return 0.5 * float(np.vdot(pressure, problem.gap)) * problem.element_area
 
 
 def imported(name: str) -> ModuleType:
