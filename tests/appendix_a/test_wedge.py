@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from appendix_a.errors import InputError
-from appendix_a.wedge import displacements, printed, reference, residues, stresses
+from appendix_a.wedge import FACE_SLACK, displacements, fast, printed, reference, residues, stresses
 from appendix_a.wedge.transform import remainders
 from verification.exact.wedge_residuals import residuals
 
@@ -169,13 +169,21 @@ def test_half_plane_displacements() -> None:
     [
         ((1.0, 0.0, -0.1), "gamma"),
         ((1.0, 0.0, np.pi / 2), "gamma"),
+        ((1.0, 0.0, 2.0), "gamma"),
         ((1.0, 0.0, np.nan), "gamma"),
         ((0.0, 0.0, 0.1), "r"),
         ((-1.0, 0.0, 0.1), "r"),
         ((np.nan, 0.0, 0.1), "r"),
+        ((0.9e-300, 0.0, 0.1), "r"),
+        ((1.1e300, 0.0, 0.1), "r"),
+        ((1e299, 0.0, 0.1, 0.01), "r"),
         ((1.0, 1.5, 0.1), "theta"),
+        ((1.0, -1.5, 0.1), "theta"),
+        ((1.0, np.pi / 2 - 0.1 + 1.1e-12, 0.1), "theta"),
         ((1.0, np.nan, 0.1), "theta"),
         ((1.0, 0.0, 0.1, 0.0), "half_width"),
+        ((1.0, 0.0, 0.1, -1.0), "half_width"),
+        ((1.0, 0.0, 0.1, np.inf), "half_width"),
     ],
 )
 def test_input_is_refused(arguments: tuple[float, ...], field: str) -> None:
@@ -184,9 +192,39 @@ def test_input_is_refused(arguments: tuple[float, ...], field: str) -> None:
     assert refused.value.field == field
 
 
-def test_displacements_refuse_a_poisson_ratio() -> None:
+def test_limits_of_the_input_are_allowed() -> None:
+    """Both ends of the range of r, and a face that its rounding puts outside."""
+    assert np.isfinite(stresses([1e-300, 1e300], 0.0, 0.1)).all()
+    outside = (np.pi / 2 - 0.1) + FACE_SLACK
+    np.testing.assert_array_equal(stresses(0.5, outside, 0.1), stresses(0.5, np.pi / 2 - 0.1, 0.1))
+
+
+@pytest.mark.parametrize("nu", [-0.01, 0.51, np.nan])
+def test_displacements_refuse_a_poisson_ratio(nu: float) -> None:
     with pytest.raises(InputError, match="nu"):
-        displacements(1.0, 0.0, 0.1, 0.6)
+        displacements(1.0, 0.0, 0.1, nu)
+
+
+@pytest.mark.parametrize("gamma", [0.0, 1e-9, 0.3, 1.5])
+def test_angles_from_the_face_keep_their_digits(gamma: float) -> None:
+    """In 50 digits; close to the face too, where the difference of two angles has lost all but the last."""
+    near = (np.pi / 2 - gamma) - 10.0 ** np.arange(-14, 0.0)
+    theta = np.concatenate([near, -near])
+    delta, sine = fast.angle_from_face(theta, gamma)
+    with mp.workdps(50):
+        exact = [mp.pi / 2 - mp.mpf(gamma) - mp.mpf(float(t)) for t in theta]
+        sines = [mp.sin(angle) for angle in exact]
+    np.testing.assert_allclose(delta, np.array(exact, dtype=float), rtol=1e-15)
+    np.testing.assert_allclose(sine, np.array(sines, dtype=float), rtol=1e-15)
+
+
+def test_literal_kernel_does_not_decay() -> None:
+    """(A7) to the letter: xi cancels."""
+    theta, gamma = 0.4, 0.3
+    above = np.cos(0.7) * np.cosh(np.pi / 2 + 0.1) + np.cos(-0.1) * np.cosh(np.pi / 2 - 0.7)
+    expected = above / (np.sin(0.6) + np.sinh(np.pi - 0.6))
+    for xi in (0.5, 3.0, 40.0):
+        assert printed.literal_p(xi, theta, gamma) == pytest.approx(expected, rel=1e-14)
 
 
 @pytest.mark.parametrize("gamma", [1e-6, 1.5])

@@ -21,3 +21,11 @@ def test_enclosures(r: float, share: float, gamma: float) -> None:
         with flint.ctx.workprec(96):
             assert abs(ball - flint.arb(mp.nstr(value, 24))) < 1e-18
         assert abs(ball - float(double)) < 1e-14
+
+
+def test_the_tails_bound_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From xi = 1 on, ``|z| sin(2 alpha) <= sinh(2 alpha xi) / 2`` fails for alpha = 1/2: 1.26 and 0.59."""
+    monkeypatch.setattr(enclosure, "TAIL_EXPONENT", 0.1)
+    with pytest.raises(ArithmeticError, match="from xi = 1"):
+        enclosure._tail_start(flint.arb, flint.arb(0.5), flint.arb(0.0))
+    assert enclosure._tail_start(flint.arb, flint.arb(1.0), flint.arb(0.0)) == 1  # 1.36 and 1.81
