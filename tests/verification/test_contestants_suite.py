@@ -149,6 +149,23 @@ def test_elimination_agrees_with_our_dense_reference() -> None:
         np.testing.assert_allclose(referee.eliminated(posed), found.pressure, atol=1e-9 * found.max_pressure)
 
 
+def test_an_element_left_out_is_seen_by_its_penetration() -> None:
+    for posed in (problem(), replace(problem(), load=None, approach=0.08)):
+        exact = referee.eliminated(posed)
+        others = exact > 0
+        others[np.unravel_index(np.argmin(np.where(others, exact, np.inf)), exact.shape)] = False
+        f, _ = referee._Elimination(posed).on(others.ravel())
+        found = referee.residual(posed, f.reshape(exact.shape))
+        assert found.balance < 1e-13
+        assert found.gap > 1e-5
+
+
+def test_the_approach_of_a_state_is_counted_as_the_problem_counts_it() -> None:
+    for repeats, approach in ((False, 0.08), (True, -0.02)):
+        posed = replace(problem(), load=None, approach=approach, periodic=repeats)
+        assert referee.approach_of(posed, referee.eliminated(posed)) == pytest.approx(approach, rel=1e-12)
+
+
 def test_pressures_without_energy_cannot_be_judged() -> None:
     nothing: Contestant = Limited(lambda p: np.zeros_like(p.gap), Abilities())
     statuses = {r.id: r.status for r in run(nothing)}

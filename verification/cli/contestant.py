@@ -20,7 +20,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """The options that name a solver and say what it can do."""
     group = parser.add_argument_group(
         "bring your own solver",
-        "Run the suite of verification.contestants with it: the cases it can pose; the others are named.",
+        "Run the suite of verification.contestants with it, one case after the other whatever --tier and "
+        "--jobs say: the cases that are within its abilities; the others are named.",
     )
     who = group.add_mutually_exclusive_group()
     who.add_argument(
