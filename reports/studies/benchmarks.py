@@ -1,0 +1,159 @@
+"""Seconds beside the published solvers, at the same recomputed error; the newest run of each grid counts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from matplotlib.figure import Figure as Canvas
+
+from reports.drawing import COLOURS, MARKERS, Data, Figure
+from reports.exhibit import Cell, Document, Exhibit, Table
+
+OURS = "refimpl"
+Row = Mapping[str, Any]
+
+
+def build(document: Document) -> Exhibit:
+    """A table for each surface, the record of all runs, and seconds over the grid."""
+    runs = document["runs"]
+    newest = _newest(runs)
+    kinds = list(dict.fromkeys(kind for kind, _ in newest))
+    last = runs[-1]["conditions"]
+    return Exhibit(
+        "Speed beside published solvers",
+        (
+            "Table 1's paraboloid under 70 N on a smooth and on a rough flat (0.5 um), in free space. The "
+            "codes take turns, each in a process of its own, and each stops at the loosest of its own "
+            f"tolerances whose result has a {last['target']}.",
+            f"Threads for every code: {last['threads']}. Clock: {last['clock']}. Seconds are medians with "
+            "the least and the most; ratios are medians of the ratios within rounds.",
+            f"Versions: {', '.join(dict.fromkeys(last['versions'].values()))}.",
+        ),
+        [*(_table(kind, newest) for kind in kinds), _record(runs)],
+        [(_figure(kinds), _series(kinds, newest))],
+    )
+
+
+def _newest(runs: Sequence[Row]) -> dict[tuple[str, int], Row]:
+    """Rows, ratios and conditions of the newest run by surface and grid."""
+    found = {}
+    for run in runs:
+        for ratios in run["ratios"]:
+            key = (ratios["kind"], ratios["M"])
+            rows = [row for row in run["rows"] if (row["kind"], row["M"]) == key]
+            found[key] = {"rows": rows, "ratios": ratios}
+    return dict(sorted(found.items(), key=lambda item: (item[0][0] != "smooth", item[0])))
+
+
+def _table(kind: str, newest: Mapping[tuple[str, int], Row]) -> Table:
+    head = (
+        "grid", "code", "seconds", "over ours", "processor time over ours", "recomputed gap", "area (mm²)",
+        "peak (MPa)", "peak memory (MB)", "convolutions in all", "times one convolution",
+    )  # fmt: skip
+    rows: list[Sequence[Cell]] = []
+    for (of, M), entry in newest.items():
+        if of == kind:
+            rows += [_cells(M, row, entry) for row in entry["rows"]]
+    caption = (
+        f"{kind.capitalize()} flat. A convolution is rfft2 and irfft2 on the padded bounding box of the "
+        "final contact; others count by n log n."
+    )
+    return Table(caption, head, rows)
+
+
+def _cells(M: int, row: Row, entry: Row) -> Sequence[Cell]:
+    if "seconds" not in row:
+        return (f"{M}²", row["code"], row["failure"], *[None] * 8)
+    ratios = entry["ratios"].get(row["code"], {})
+    coupled = row["code"].startswith(f"{OURS}+")
+    return (
+        f"{M}²",
+        row["code"],
+        _spread(row["seconds"]),
+        _spread(ratios["seconds"]) if ratios else None,
+        _spread(ratios["processor seconds"]) if ratios else None,
+        None if coupled else row["gap"],
+        f"{1e6 * row['area']:.5f}",
+        f"{1e-6 * row['peak']:.3f}",
+        round(1e-6 * row["peak memory"]["median"]),
+        row.get("convolution equivalents"),
+        row["times one convolution"]["median"],
+    )
+
+
+def _spread(values: Row) -> str:
+    return f"{values['median']:.3g} ({values['least']:.2g} to {values['most']:.2g})"
+
+
+def _record(runs: Sequence[Row]) -> Table:
+    rows: list[Sequence[Cell]] = []
+    for run in runs:
+        provenance, conditions = run["provenance"], run["conditions"]
+        for ratios in run["ratios"]:
+            fastest = ratios.get("fastest peer", {})
+            rows.append(
+                (
+                    provenance["date"],
+                    str(provenance["commit"])[:12],
+                    f"{ratios['kind']}, {ratios['M']}²",
+                    conditions["rounds"],
+                    conditions["threads"],
+                    conditions["load average"]["before"][0],
+                    fastest.get("code"),
+                    fastest.get("seconds over ours"),
+                )
+            )
+    head = (
+        "date",
+        "commit",
+        "problem",
+        "rounds",
+        "threads",
+        "load average",
+        "fastest peer",
+        "its seconds over ours",
+    )
+    return Table("Every run so far; none is ever taken out.", head, rows)
+
+
+def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Row]) -> dict[str, Any]:
+    series: dict[str, dict[str, list[float]]] = {}
+    for (kind, M), entry in newest.items():
+        for row in entry["rows"]:
+            if "seconds" in row:
+                line = series.setdefault(f"{kind}, {row['code']}", {"M": [], "s": []})
+                line["M"].append(M)
+                line["s"].append(row["seconds"]["median"])
+    return {
+        "kinds": list(kinds),
+        "seconds": {name: [*map(list, line.values())] for name, line in series.items()},
+    }
+
+
+def _figure(kinds: Sequence[str]) -> Figure:
+    return Figure(
+        "*",
+        ("kinds", "seconds"),
+        _draw,
+        "Seconds over the grid, at a recomputed gap of 1e-8.",
+        (4.4 * len(kinds), 4.2),
+    )
+
+
+def _draw(canvas: Canvas, data: Data) -> None:
+    """One panel a surface, one line a code, the same colour in all."""
+    codes = list(dict.fromkeys(name.partition(", ")[2] for name in data["seconds"]))
+    panels = canvas.subplots(1, len(data["kinds"]), squeeze=False, sharey=True)[0]
+    for axes, kind in zip(panels, data["kinds"], strict=True):
+        grids = set()
+        for k, code in enumerate(codes):
+            line = data["seconds"].get(f"{kind}, {code}")
+            if line is not None:
+                axes.plot(*line, marker=MARKERS[k % 6], color=COLOURS[k % 6], label=code)
+                grids |= set(line[0])
+        axes.set(title=f"{kind} flat", xlabel="elements per side", xscale="log", yscale="log")
+        axes.set_xticks(sorted(grids), [str(M) for M in sorted(grids)])
+        axes.minorticks_off()
+    panels[0].set_ylabel("seconds")
+    panels[0].legend(fontsize=8)

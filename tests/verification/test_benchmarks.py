@@ -1,0 +1,181 @@
+"""Benchmarks: the judge agrees with the referee, tolerances are found, turns are taken, records only grow."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from refimpl.errors import InputError
+from verification.benchmarks import child, rounds
+from verification.benchmarks.__main__ import known, main
+from verification.benchmarks.codes import OWN, SHEARED, SLOPED, codes
+from verification.benchmarks.judge import judged, padded_box
+from verification.benchmarks.problems import problem
+from verification.benchmarks.rounds import Failed, Turns, error, in_turns, solved, tuned
+from verification.benchmarks.run import append
+from verification.benchmarks.summary import ratios, row
+from verification.contestants import own, referee
+
+
+def found(seconds: float, **more: Any) -> dict[str, Any]:
+    """A round as a child process reports it."""
+    return {
+        "seconds": seconds,
+        "processor seconds": seconds / 2,
+        "peak memory": 3e8,
+        "memory before": 1e8,
+        "convolution seconds": 0.5,
+        "converged": True,
+        "operations": {},
+        "residual": None,
+        "gap": 1e-9,
+        "balance": 0.0,
+        "penetration": 0.0,
+        "tension": 0.0,
+        "area": 1.0,
+        "peak": 1.0,
+        "padded box": [4, 4],
+    } | more
+
+
+def turns(code: str, *seconds: float) -> Turns:
+    return Turns(code, "smooth", 64, 1e-8, [found(s) for s in seconds])
+
+
+@pytest.mark.parametrize("kind", ["smooth", "rough"])
+def test_judge_agrees_with_the_dense_referee(kind: str) -> None:
+    posed = problem(kind, 24, 1e-4)
+    pressure = np.array(own.solve(posed).pressure)
+    pressure[pressure > 0] *= 1 + 0.01 * np.sin(np.arange((pressure > 0).sum()))  # far from converged
+    ours, theirs = judged(posed, pressure), referee.residual(posed, pressure)
+    assert ours.gap == pytest.approx(theirs.gap, rel=1e-9)
+    assert ours.balance == pytest.approx(theirs.balance, rel=1e-9)
+    assert ours.gap > 1e-5
+    assert ours.area == pytest.approx((pressure > 0).sum() * posed.element_area)
+
+
+def test_judge_refuses_what_it_cannot_judge() -> None:
+    posed = problem("smooth", 8, 1e-8)
+    periodic = type(posed)(posed.gap, posed.spacing, 1e9, load=1.0, periodic=True)
+    with pytest.raises(ValueError, match="free space"):
+        judged(periodic, np.ones((8, 8)))
+
+
+def test_padded_box_is_twice_the_contact() -> None:
+    pressure = np.zeros((40, 40))
+    pressure[3:11, 5:11] = 1.0
+    assert padded_box(pressure) == (16, 12)
+
+
+@pytest.mark.parametrize("slack", [0.03, 1.0, 30.0])
+def test_tuning_finds_the_loosest_tolerance_within_two(slack: float) -> None:
+    """Gap in steps, as iterations have: the tolerance found will do, and twice that would not."""
+    tried: list[float] = []
+
+    def solve(tolerance: float) -> dict[str, Any]:
+        tried.append(tolerance)
+        return found(1.0, gap=slack * 1.3 ** np.floor(np.log(tolerance) / np.log(1.3)))
+
+    tolerance, best = tuned(solve, 1e-7, loosen=True)
+    assert error(best) <= rounds.TARGET < error(solve(2.6 * tolerance))
+    assert len(tried) <= 9
+
+
+def test_tuning_never_loosens_ours_and_gives_up_aloud() -> None:
+    assert tuned(lambda t: found(1.0, gap=t / 100), 1e-8, loosen=False)[0] == 1e-8
+    assert tuned(lambda t: found(1.0, gap=3 * t), 1e-8, loosen=False)[0] < 1e-8
+    with pytest.raises(Failed, match="8 tries"):
+        tuned(lambda t: found(1.0, gap=1e-6), 1e-8, loosen=True)
+
+
+def test_a_coupled_result_is_judged_by_its_certificate() -> None:
+    assert error(found(1.0, gap=0.02, residual=3e-9)) == 3e-9
+
+
+def test_turns_alternate_and_a_failure_ends_only_its_own() -> None:
+    order: list[str] = []
+
+    def solve(one: Turns) -> dict[str, Any]:
+        order.append(one.code)
+        if one.code == "B" and order.count("B") == 2:
+            raise Failed("out of memory")
+        return found(1.0)
+
+    three = [Turns(name, "smooth", 64, 1e-8) for name in "ABC"]
+    in_turns(three, 3, solve)
+    assert "".join(order) == "ABCABCAC"
+    assert three[1].failure == "out of memory"
+    assert [len(one.rounds) for one in three] == [3, 1, 3]
+
+
+def test_ratios_pair_rounds_and_name_the_fastest_peer() -> None:
+    """A slow spell in the second round meets both codes: the ratio does not hear of it."""
+    all_turns = [turns(OWN, 1.0, 5.0, 2.0), turns("slow", 9.0, 45.0, 18.0), turns("fast", 3.0, 15.0, 8.0)]
+    table: Any = ratios([*all_turns, turns(SHEARED, 1.5, 7.0, 3.2)])
+    assert table["slow"]["seconds"] == {"median": 9.0, "least": 9.0, "most": 9.0}
+    assert table["fastest peer"] == {"code": "fast", "seconds over ours": 3.0}
+    assert table[SHEARED]["seconds"]["median"] == 1.5
+    assert ratios([turns("alone", 1.0)]) == {}
+
+
+def test_rows_count_convolutions_on_the_padded_box() -> None:
+    one = turns(OWN, 1.0, 2.0)
+    one.rounds[-1]["operations"] = {"n log2 n": 640.0}
+    entry: Any = row(one)
+    assert entry["convolution equivalents"] == 640.0 / (16 * 4)
+    assert entry["times one convolution"]["median"] == 3.0
+    assert entry["memory of the solve"]["median"] == 2e8
+    assert entry["meets the target"] is True
+    assert "seconds" not in row(Turns("absent", "smooth", 64, 1e-8, failure="left out"))
+
+
+def test_names_are_checked() -> None:
+    assert known("--kinds", None, ["smooth", "rough"]) == ["smooth", "rough"]
+    with pytest.raises(InputError, match="--codes"):
+        known("--codes", "hertz", [OWN])
+
+
+def test_a_record_only_grows(tmp_path: Path) -> None:
+    file = tmp_path / "record.json"
+    append({"rows": [1]}, file)
+    append({"rows": [2]}, file)
+    assert json.loads(file.read_text())["runs"] == [{"rows": [1]}, {"rows": [2]}]
+
+
+@pytest.mark.parametrize("name", [OWN, SHEARED, SLOPED])
+def test_our_codes_solve_table_1(name: str) -> None:
+    pressed = codes()[name].ready("smooth", 48, 1e-8)()
+    assert pressed.converged
+    verdict = judged(problem("smooth", 48, 1e-8), pressed.pressure)
+    if name == OWN:
+        assert verdict.gap <= 1e-8
+        assert verdict.balance <= 1e-8
+        assert pressed.residual is None
+    else:
+        assert pressed.residual is not None
+        assert pressed.residual <= 1e-8
+        assert verdict.gap > 1e-3  # copper and steel couple, so the frictionless judge must object
+
+
+def test_peak_memory_is_of_this_process() -> None:
+    before = child.peak_memory()
+    held = np.ones(4_000_000)
+    assert child.peak_memory() >= before
+    assert 2e7 < before < 1e11
+    assert held.any()
+
+
+def test_a_run_from_the_command_line(tmp_path: Path) -> None:
+    file = tmp_path / "record.json"
+    main(["--grids", "32", "--codes", OWN, "--kinds", "smooth", "--rounds", "1", "--json", str(file)])
+    (run,) = json.loads(file.read_text())["runs"]
+    (entry,) = run["rows"]
+    assert entry["meets the target"]
+    assert entry["seconds"]["median"] > 0
+    assert run["conditions"]["versions"] == {OWN: codes()[OWN].version}
+    with pytest.raises(Failed, match="KeyError"):
+        solved("no such code", "smooth", 32, 1e-8, threads=1, limit=60)
