@@ -1,0 +1,105 @@
+"""How wrong the solver's own influence coefficients are on a slope: one square element, three dimensions.
+
+``coefficient_error`` is of strips in plane strain, whose displacements have no datum. Three-dimensional
+displacements decay, so here the self coefficient and those across the slope are judged too. The table
+(``data/coefficient_error_3d.json``) holds what finite elements found for a square element of half-edge
+``a`` on a sinusoidal ridge of wavelength ``20 a``, the shortest computed: on a longer one the errors on
+crests and in valleys are smaller and those on flanks within a tenth of these.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+import numpy as np
+
+from refimpl.errors import InputError, require_number
+from refimpl.grid import Array
+from refimpl.materials import Material
+
+_VERSION = 1
+_WAVELENGTH = 20.0
+_POSITIONS = (0.0, 0.25, 0.5)  # crest, flank, valley as the lower body sees them
+_MIRRORED = [0, 4, 5, 6, 1, 2, 3, 7, 8, 9]  # +x and -x change places
+
+
+@dataclass(frozen=True)
+class ElementError:
+    """Largest relative errors on crest, flank and valley: self; three neighbours in line, and across."""
+
+    self_coefficient: float
+    in_line: float
+    across: float
+
+
+def element_error(slope: float, lower: Material, upper: Material | None = None) -> ElementError:
+    """Errors of flat influence coefficients on a wave of maximum ``slope`` (rad), up to 30 degrees.
+
+    One body alone when ``upper`` is None; in a pair the first-order parts enter as lower minus upper.
+    Raises `InputError` for a slope beyond the table and for a negative Poisson's ratio.
+
+    >>> steel, copper = Material(E=200e9, nu=0.3), Material(E=118e9, nu=0.3)
+    >>> largest = math.radians(6.5)
+    >>> element_error(largest, copper, steel).in_line < 0.02 < element_error(largest, copper).in_line
+    True
+    """
+    slopes, ratios, errors = _table()
+    top = math.radians(float(slopes[-1]))
+    require_number("slope", slope, f"an angle of 0 to {top:.4g} rad", at_least=0, at_most=top + 1e-12)
+    bodies = [(lower, 0)] if upper is None else [(lower, 0), (upper, 2)]
+    for body, _ in bodies:
+        require_number("nu", body.nu, "a Poisson's ratio of 0 to 0.5", at_least=0)
+    flat = sum(body.normal_compliance for body, _ in bodies)
+    worst = np.zeros(len(_MIRRORED))
+    for place in range(len(_POSITIONS)):
+        wavy = np.zeros(len(_MIRRORED))
+        for body, turn in bodies:  # a crest of one body is a valley of the other, half a wave away
+            at = (place + turn) % 4
+            error = _error(slope, body.nu, slopes, ratios, errors[:, min(at, 4 - at)])
+            wavy += body.normal_compliance / flat * (error[_MIRRORED] if at == 3 else error)
+        worst = np.maximum(worst, np.abs(wavy))
+    return ElementError(float(worst[0]), float(worst[1:7].max()), float(worst[7:].max()))
+
+
+def _error(slope: float, nu: float, slopes: Array, ratios: Array, errors: Array) -> Array:
+    """(10,) from ``errors`` (ratios, slopes, 10): linear over the slope's tangent, quadratic in nu.
+
+    What is interpolated is the error over the tangent, and times ``1 - nu^2``, as a displacement is: its
+    first-order part, ``(1 + nu)(1 - 2 nu)`` times the slope, is met exactly.
+    """
+    tangents = np.tan(np.radians(slopes))
+    quotients = errors / tangents[:, None] * (1 - ratios[:, None, None] ** 2)
+    by_slope = np.array(
+        [[np.interp(math.tan(slope), tangents, column) for column in rows.T] for rows in quotients]
+    )
+    weights = [math.prod((nu - other) / (own - other) for other in ratios if other != own) for own in ratios]
+    found: Array = math.tan(slope) / (1 - nu**2) * (np.array(weights) @ by_slope)
+    return found
+
+
+@cache
+def _table() -> tuple[Array, Array, Array]:
+    """Slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
+    text = (
+        resources.files("refimpl").joinpath("data", "coefficient_error_3d.json").read_text(encoding="utf-8")
+    )
+    table = json.loads(text)
+    if table["version"] != _VERSION:
+        raise InputError("coefficient_error_3d.json", table["version"], f"version {_VERSION}")
+    rows = {
+        (row["nu"], row["position"], row["slope_deg"]): row["error"]
+        for row in table["points"]
+        if (row["wavelength"], row["kind"], row["width"]) == (_WAVELENGTH, "ridge", "projected")
+    }
+    ratios = sorted({nu for nu, _, _ in rows})
+    slopes = sorted(
+        slope
+        for slope in {slope for _, _, slope in rows}
+        if all((nu, place, slope) in rows for nu in ratios for place in _POSITIONS)
+    )
+    errors = [[[rows[nu, place, slope] for slope in slopes] for place in _POSITIONS] for nu in ratios]
+    return np.array(slopes), np.array(ratios), np.array(errors)
