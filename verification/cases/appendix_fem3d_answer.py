@@ -59,7 +59,8 @@ def less_than_two_percent() -> Measured:
     }
     bodies = {f"one body, nu {nu:g}": (nu, False) for nu in RATIOS} | {"steel on copper": (NU, True)}
     data: dict[str, object] = {"reading of the slope (degrees)": {k: round(v, 2) for k, v in slopes.items()}}
-    true, false = [], []
+    true: list[str] = []
+    false: list[str] = []
     for body, (nu, pair) in bodies.items():
         for group in GROUPS:
             found = [worst(slope, nu, group, pair=pair) for slope in slopes.values()]
