@@ -64,7 +64,7 @@ TARGETS = (
     Target("equilibrium", "refimpl/paper.py", ("tests/refimpl/test_paper.py",)),
     Target("contact", "refimpl/contact/preconditioner.py", _tests("projected_cg")),
     Target("contact", "refimpl/contact/projected_cg.py", _tests("projected_cg", "solve")),
-    Target("equilibrium", "refimpl/nesting.py", _tests("solve")),
+    Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "solve")),
     Target("equilibrium", "refimpl/fft_solver.py", _tests("tau_cycle", "solve", "solve_full_contact")),
 )  # fmt: skip
 """What the mutation score speaks of."""
