@@ -92,7 +92,8 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
         "pressure": max(abs(pressures - exact.pressure)) / peak,
         "approach": abs(solution.approach - approach) / max(abs(approach), compliance),
         "N": abs(mp.mpf(solution.normal_force) / exact.normal - 1),
-        "F": abs(mp.mpf(solution.friction_force) - exact.friction) / (abs(exact.friction) + abs(exact.normal)),
+        "F": abs(mp.mpf(solution.friction_force) - exact.friction)
+        / (abs(exact.friction) + abs(exact.normal)),
     }
     worst = max(errors, key=lambda name: errors[name])
     strays = int(np.count_nonzero(exact.contact != solution.contact.ravel()))

@@ -1,5 +1,7 @@
 """The discrete problem solved in 34 digits, started from the state under test (mpmath, tiny grids).
 
+Arrays stand before scalars in products: an mpf before an array asks for the array's text first, slowly.
+
 At fixed slopes and a fixed support of tau the problem has one solution (`positive_definite`), so where the
 search for it starts cannot bend the answer: the contact set under test is taken as a first guess, its linear
 equations are solved exactly, and elements are exchanged until every inequality of Eq. (6) holds exactly.
@@ -19,8 +21,8 @@ from refimpl.grid import Array
 from verification.extremes import exact_operators as operators
 from verification.extremes.exact_operators import DIGITS, Exact
 
-EXCHANGES, SLOPE_UPDATES = 80, 100
-SETTLED = mp.mpf(10) ** (4 - DIGITS)  # of the pressure, between two updates of the slopes
+EXCHANGES, SLOPE_UPDATES = 80, 150
+SETTLED = mp.mpf(10) ** -20  # of the pressure, between two updates of the slopes: far below a double's digits
 TIE = mp.mpf(10) ** (6 - DIGITS)  # of the largest pressure or gap: signs nearer to zero are ties
 
 
@@ -71,7 +73,7 @@ class Oracle:
         self.A = operators.normal(M, scene.periodic) * self.spacing
         x, y = (matrix * self.spacing for matrix in operators.tangential(M, scene.periodic))
         cos, sin = mp.cos(mp.mpf(scene.sliding_direction)), mp.sin(mp.mpf(scene.sliding_direction))
-        self.S, self.T = cos * x + sin * y, cos * y - sin * x
+        self.S, self.T = x * cos + y * sin, y * cos - x * sin
         self.D = [operators.difference(M, axis, scene.periodic) / self.spacing for axis in (0, 1)]
         self.cos, self.sin = cos, sin
 
@@ -101,7 +103,7 @@ class Oracle:
         return zero, zero
 
     def _traction(self, f: Exact, chi: Exact) -> Exact:
-        return mp.mpf(self.scene.friction.tau) * chi + mp.mpf(self.scene.friction.beta) * f
+        return chi * mp.mpf(self.scene.friction.tau) + f * mp.mpf(self.scene.friction.beta)
 
     def _slopes(self, f: Exact, r: Exact, tan: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
         """Tangents of the mean of both deformed surfaces, along and across sliding."""
@@ -112,10 +114,10 @@ class Oracle:
             down, along, across = f - r * tan[0], r + f * tan[0], f * tan[1]
         shear = self.S @ along + (0 if across is None else self.T @ across)
         pressed = self.A @ down
-        lower = self.z_lower - self.a[0] * pressed - self.c[0] * shear
-        upper = self.z_upper + self.a[1] * pressed - self.c[1] * shear
+        lower = self.z_lower - pressed * self.a[0] - shear * self.c[0]
+        upper = self.z_upper + pressed * self.a[1] - shear * self.c[1]
         x, y = (D @ ((lower + upper) / 2) for D in self.D)
-        return self.cos * x + self.sin * y, self.cos * y - self.sin * x
+        return x * self.cos + y * self.sin, y * self.cos - x * self.sin
 
     def _frozen(
         self, tan: tuple[Exact, Exact], chi: Exact, contact: NDArray[np.bool_]
@@ -124,12 +126,12 @@ class Oracle:
         tau, beta = mp.mpf(self.scene.friction.tau), mp.mpf(self.scene.friction.beta)
         a, c, (tan_x, tan_y) = sum(self.a), self.c[0] - self.c[1], tan
         cos_x, cos_y = _cos(tan_x), _cos(tan_y)
-        G, g = a * self.A + beta * c * self.S, tau * c * (self.S @ chi)
+        G, g = self.A * a + self.S * (c * beta), (self.S @ chi) * (c * tau)
         if self.correction:
-            G = a * self.A * (1 - beta * tan_x) + c * self.S * (beta + tan_x) + c * self.T * tan_y
-            g = tau * (c * (self.S @ chi) - a * (self.A @ (chi * tan_x)))
+            G = self.A * a * (1 - tan_x * beta) + self.S * c * (tan_x + beta) + self.T * c * tan_y
+            g = ((self.S @ chi) * c - (self.A @ (chi * tan_x)) * a) * tau
         K = cos_x * cos_y
-        weights = (cos_x - beta * tan_x * cos_x) * cos_y
+        weights = (cos_x - tan_x * cos_x * beta) * cos_y
         offset = tau * sum(chi * tan_x * K)
         target = (mp.mpf(self.scene.load) / self.spacing**2) + offset
         right = -(K * self.h + g)

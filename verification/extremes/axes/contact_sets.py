@@ -14,13 +14,15 @@ from verification.extremes.judge import by_oracle
 from verification.extremes.state import Extreme, axis
 from verification.scenes import POLYMER, TABLE1, pressed
 
-M = 6
+M = 5
 SIDE = 1e-3
 COULOMB = rf.Friction(0.0, 0.3)
 APPROACHES = (-1.0, -1e-300, 0.0, 5e-324, 1e-300, 1e-160, 1e-30, 1e-18, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4)
 
 
-def on(heights: Array, load: float = 1.0, *, periodic: bool = False, friction: rf.Friction = COULOMB) -> rf.Scene:
+def on(
+    heights: Array, load: float = 1.0, *, periodic: bool = False, friction: rf.Friction = COULOMB
+) -> rf.Scene:
     """A steel flat on a polymer with the given heights."""
     flat = pressed(radius=None, rms=None, side=SIDE, load=load, direction=0.7, periodic=periodic)
     return replace(flat, lower=rf.Body(POLYMER, heights), friction=friction)
@@ -40,7 +42,7 @@ def at_the_border() -> dict[str, Array]:
     bowl = 1e-6 * np.add.outer((x - 0.5) ** 2, (x - 0.5) ** 2)
     return {
         "corner": peak(0, 0), "edge": peak(0, 3), "far corner": peak(M - 1, M - 1),
-        "ramp": ramp, "tilted": ramp + ramp.T, "bowl": bowl, "one row": 1e-7 * (x[:, None] < 0.1) * np.ones(M),
+        "ramp": ramp, "tilted": ramp + ramp.T, "bowl": bowl, "one row": 1e-7 * (x[:, None] < 0.2) * np.ones(M),
     }  # fmt: skip
 
 

@@ -77,7 +77,7 @@ def grids() -> Iterator[Extreme]:
                 "grid", f"{name} primes, fft", f"{M}", float(M), lambda s=what, n=M: against_dense(s, n)
             )
     for M in (31, 61, 127, 257, 509, LARGEST):
-        yield Extreme("grid", "Hertz, fft", f"{M}", float(M), lambda n=M: against_hertz(n))
+        yield Extreme("grid", "Hertz, fft", f"{M}", float(M), lambda n=M: against_hertz(n), seconds=300.0)
     for across in LINES:
         yield Extreme(
             "grid", "ridge of 32 elements, fft", f"{across} across", float(across),

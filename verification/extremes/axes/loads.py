@@ -12,7 +12,7 @@ from verification.extremes.judge import by_oracle
 from verification.extremes.state import Extreme, axis
 from verification.scenes import POLYMER, STEEL, TABLE1, pressed
 
-M = 6
+M = 5
 PRESSURES = [10.0**k for k in range(-16, 3)]
 """Mean pressure over E*: 1e-16 is an atom's worth on this side, 1 and more is no elastic contact any more."""
 WAVE = np.cos(2 * np.pi * np.arange(M) / M)

@@ -10,7 +10,7 @@ from verification.extremes.judge import by_oracle, guarded
 from verification.extremes.state import Extreme, axis
 from verification.scenes import STEEL, TABLE1, pressed
 
-M = 6
+M = 5
 RATIOS = (
     -1.0, -1 + 2**-53, -1 + 1e-12, -1 + 1e-6, -1 + 1e-3, -0.9, -0.5, -1e-300, 0.0, 1e-300, 0.25,
     0.49, 0.4999, 0.5 - 1e-9, 0.5 - 2**-54, 0.5, 0.5 + 2**-53,

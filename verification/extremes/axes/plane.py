@@ -26,7 +26,21 @@ from verification.extremes.state import Extreme, Judged, Verdict, axis, number
 WEDGE_LIMIT = 2e-10
 """Of the largest component; 1e-13 is promised for r in 1e-4 ... 1e4 only. Beyond, the weight r^(-1/2) multiplies
 rounding by up to exp(10) = 2e4, where the line of integration moves on; measured 6e-11 at 1e-8 and 1e8."""
-GAMMAS = (0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.3, 1.0, 1.3, 1.5, 1.56, math.pi / 2 - 1e-3, math.pi / 2 - 1e-9, math.pi / 2)
+GAMMAS = (
+    0.0,
+    1e-12,
+    1e-6,
+    1e-3,
+    0.1,
+    0.3,
+    1.0,
+    1.3,
+    1.5,
+    1.56,
+    math.pi / 2 - 1e-3,
+    math.pi / 2 - 1e-9,
+    math.pi / 2,
+)
 RADII = (1e-14, 1e-8, 1e-4, 0.5, 1.0 + 1e-12, 1e4, 1e8, 1e16)
 LIMIT_RADII = (1e-300, 1e-100, 1e100, 1e300)
 FEM_RATIOS = (-0.99, -0.5, 0.0, 0.3, 0.49, 0.4999, 0.499999, 0.5 - 1e-9, 0.5)
@@ -72,7 +86,9 @@ def pressed(nu: float, *, formulation: str, jitter: float = 0.0) -> Judged:
         mesh = distorted(SETUP.mesh(1), jitter)
         body = PlaneStrain.on(mesh, bend(mesh, flat()), 2 if formulation == "mixed" else 3)
         if formulation == "direct" and nu == 0.5:
-            return Judged(Verdict.HONEST, "excluded", None, FEM_LIMIT, "lambda is infinite", "use the mixed form")
+            return Judged(
+                Verdict.HONEST, "excluded", None, FEM_LIMIT, "lambda is infinite", "use the mixed form"
+            )
         u = body.displacements(nu) if formulation == "direct" else mixed.displacements(body, nu)
         off = body.surface_values(u[1] - pressed_strip(body.basis.doflocs[0], nu), np.append(OFFSETS, 0.0))
         exact = pressed_strip(OFFSETS, nu)
@@ -99,12 +115,18 @@ def wedges() -> Iterator[Extreme]:
     """All angles by all radii; the limits only where the slowest mode has died out by then."""
     for gamma in GAMMAS:
         for r in RADII:
-            yield Extreme("wedge", f"r = {r:g}", f"gamma = {gamma!r}", gamma, lambda g=gamma, s=r: wedge_at(g, s))
+            yield Extreme(
+                "wedge", f"r = {r:g}", f"gamma = {gamma!r}", gamma, lambda g=gamma, s=r: wedge_at(g, s)
+            )
         for r in LIMIT_RADII:
             # next to flat the field at the tip still decays like r^(4 gamma / pi): no limit within doubles
             if r > 1 or gamma == 0 or gamma >= 0.3:
                 yield Extreme(
-                    "wedge", f"limit r = {r:g}", f"gamma = {gamma!r}", gamma, lambda g=gamma, s=r: wedge_at(g, s)
+                    "wedge",
+                    f"limit r = {r:g}",
+                    f"gamma = {gamma!r}",
+                    gamma,
+                    lambda g=gamma, s=r: wedge_at(g, s),
                 )
 
 

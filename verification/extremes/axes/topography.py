@@ -14,7 +14,7 @@ from verification.extremes.judge import GOOD, TOLERANCE, by_oracle, guarded, ver
 from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import POLYMER, STEEL, TABLE1
 
-M = 6
+M = 5
 SIDE = 1e-3
 NOISE = np.random.default_rng(45).standard_normal((M, M))
 SLOPES = [math.radians(d) for d in (0.01, 0.1, 1, 3, 6.5, 10, 15, 20, 25, 30, 35, 40, 45)]
@@ -52,7 +52,9 @@ def moved(offset: float, *, dyadic: bool, method: str) -> Judged:
         far = z + offset * float(np.ptp(z))
         lost = float(np.abs((far - far.min()) - (z - z.min())).max()) / float(np.ptp(z))
         here, there = (
-            rf.solve(replace(rough_ball(h), upper=rf.Body(STEEL, rf.Flat())), M, method=method, tolerance=TOLERANCE)  # type: ignore[arg-type]  # a Method
+            rf.solve(
+                replace(rough_ball(h), upper=rf.Body(STEEL, rf.Flat())), M, method=method, tolerance=TOLERANCE
+            )  # type: ignore[arg-type]  # a Method
             for h in (z, far)
         )
         if here.status not in GOOD:
@@ -70,10 +72,10 @@ def ties() -> dict[str, Array]:
     i, j = np.indices((M, M))
     return {
         "checkerboard": 1e-7 * ((i + j) % 2),
-        "two levels": 1e-7 * (i < 3),
+        "two levels": 1e-7 * (i < 2),
         "stripes": 1e-7 * (i % 2),
-        "four towers": 1e-7 * ((i % 5 == 0) & (j % 5 == 0)),
-        "ring": 1e-7 * (np.maximum(np.abs(2 * i - 5), np.abs(2 * j - 5)) == 3),
+        "four towers": 1e-7 * ((i % 4 == 0) & (j % 4 == 0)),
+        "ring": 1e-7 * (np.maximum(np.abs(i - 2), np.abs(j - 2)) == 1),
         "staircase": 1e-7 * (i + j),
         "whole numbers": 1e-7 * np.random.default_rng(3).integers(0, 3, (M, M)),
         "all equal": np.full((M, M), 0.1),

@@ -44,7 +44,9 @@ def scene(length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, per
 @cache
 def unscaled(method: str, periodic: bool, oblique: bool) -> rf.Solution:
     """The solution that all scaled ones are held against."""
-    found = rf.solve(scene(periodic=periodic), SIZES[method], method=method, tolerance=TOLERANCE, oblique=oblique)  # type: ignore[arg-type]  # a Method
+    found = rf.solve(
+        scene(periodic=periodic), SIZES[method], method=method, tolerance=TOLERANCE, oblique=oblique
+    )  # type: ignore[arg-type]  # a Method
     if found.status is not rf.Status.CONVERGED:
         raise ArithmeticError(f"the unscaled scene ended {found.status.value}")
     return found
@@ -64,16 +66,15 @@ def change(
         "friction_coefficient": 1.0,
     }
     found = {
-        name: abs(getattr(scaled, name) / factor / getattr(base, name) - 1) for name, factor in factors.items()
+        name: abs(getattr(scaled, name) / factor / getattr(base, name) - 1)
+        for name, factor in factors.items()
     }
     found["pressure"] = float(np.abs(scaled.pressure / pressure - base.pressure).max()) / base.max_pressure
     worst = max(found, key=lambda name: found[name])
     return found[worst], f"worst in {worst}"
 
 
-def run(
-    method: str, periodic: bool, length: float, stress: float, similar: float, limit: float
-) -> Judged:
+def run(method: str, periodic: bool, length: float, stress: float, similar: float, limit: float) -> Judged:
     """Solve the scaled scene and compare."""
 
     def compare() -> Judged:

@@ -1,0 +1,50 @@
+"""Condition numbers of the dense flexibility against the grid, and what they cost in digits and iterations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refimpl.grid import Array, Grid
+from refimpl.operators.dense import DenseInfluence
+
+GRIDS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 40)
+CG_TOLERANCE = 1e-10
+
+
+def measure(M: int) -> dict[str, float]:
+    """Extreme eigenvalues (unit elements), condition number, digits lost by a direct solve, CG iterations.
+
+    The right-hand side is formed in long double from known pressures, so that the error of the solve is its own.
+    """
+    matrix = DenseInfluence(Grid(float(M), M), 0.0).normal_matrix
+    values = np.linalg.eigvalsh(matrix)
+    known = np.random.default_rng(M).random(M * M)
+    right = (matrix.astype(np.longdouble) @ known.astype(np.longdouble)).astype(np.float64)
+    error = float(np.abs(np.linalg.solve(matrix, right) - known).max() / known.max())
+    return {
+        "least": float(values[0]),
+        "largest": float(values[-1]),
+        "condition": float(values[-1] / values[0]),
+        "digits lost by a direct solve": float(np.log10(max(error, 1e-17) / np.finfo(float).eps)),
+        "CG iterations": float(conjugate_gradients(matrix, right)),
+    }
+
+
+def conjugate_gradients(matrix: Array, right: Array) -> int:
+    """Steps of the plain method to `CG_TOLERANCE` of the first residual: about sqrt(condition) ln(2/tol) / 2."""
+    residual, direction = right.copy(), right.copy()
+    first = old = float(residual @ residual)
+    for step in range(1, 10 * len(right)):
+        moved = matrix @ direction
+        residual = residual - (old / float(direction @ moved)) * moved
+        new = float(residual @ residual)
+        if new <= CG_TOLERANCE**2 * first:
+            return step
+        direction, old = residual + (new / old) * direction, new
+    return 10 * len(right)
+
+
+def table() -> dict[str, list[float]]:
+    """Columns over the grid."""
+    rows = [measure(M) for M in GRIDS]
+    return {"M": [float(M) for M in GRIDS], **{name: [row[name] for row in rows] for name in rows[0]}}
