@@ -1,0 +1,46 @@
+"""``python -m verification.matrix --json FILE``: which check sees which fault."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from verification.files import to_json, write_text
+from verification.matrix.run import CHEAP, Matrix, measure
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Exit status 0 when every fault is seen, 1 when one is not; the file grows fault by fault."""
+    parser = argparse.ArgumentParser(prog="python -m verification.matrix", description=__doc__)
+    parser.add_argument("--json", metavar="FILE", type=Path, required=True, help="result file")
+    parser.add_argument(
+        "--cheap", metavar="S", type=float, default=CHEAP, help="CPU seconds a check may take (%(default)s)"
+    )
+    parser.add_argument(
+        "--times", metavar="FILE", type=Path, help="results of an earlier `verify`, to skip dear cases by"
+    )
+    parser.add_argument(
+        "--skip", metavar="GLOB", action="append", default=[], help="checks to leave out (repeat)"
+    )
+    asked = parser.parse_args(arguments)
+    known = {}
+    if asked.times is not None:
+        cases = json.loads(asked.times.read_text(encoding="utf-8"))["cases"]
+        known = {case["id"]: case["seconds"] for case in cases}
+    matrix: Matrix | None = None
+    for matrix in measure(asked.cheap, known, asked.skip):
+        write_text(to_json(matrix.document()), asked.json)
+    if matrix is None:
+        return 1
+    missed = [name for name, seen in matrix.caught_by.items() if not seen]
+    print(
+        f"{len(matrix.sound)} checks, {len(matrix.faults)} faults; seen by none: {', '.join(missed) or '-'}"
+    )
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
