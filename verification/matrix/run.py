@@ -84,8 +84,8 @@ def measure(
 ) -> Iterator[Matrix]:
     """Try every cheap check against every fault that it could see; yields the matrix after each fault.
 
-    ``known`` holds seconds of an earlier run: what took longer than ``cheap`` then is not even timed. ``skip``
-    are globs of checks to leave out.
+    ``known`` holds seconds of an earlier run: what took longer than ``cheap`` then is not even timed.
+    ``skip`` are globs of checks to leave out.
     """
     checks = {check.id: check for check in all_checks()}
     for arguments in ((False, False), (True, False), (True, True)):
