@@ -13,7 +13,6 @@ import numpy as np
 from refimpl.coefficient_error import slope_error
 from refimpl.contact.certificate import State, certify
 from refimpl.dense_solver import solve_dense
-from refimpl.errors import InputError, require_number
 from refimpl.fft_solver import solve_fft
 from refimpl.forces import perimeter_corrected_area
 from refimpl.grid import Grid
@@ -21,11 +20,12 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome, Status, Visited
-from refimpl.paper import PAPER_TOLERANCE, solve_paper
-from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
+from refimpl.paper import solve_paper
+from refimpl.plan import Method, Plan
 from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
 from refimpl.problem import Problem, pose
-from refimpl.refine import Quantity, check_accuracy, deserved_tolerance, refine
+from refimpl.refine import Quantity, refine
+from refimpl.request import Request
 from refimpl.scene import Scene
 from refimpl.solution import Cost, Solution
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning
@@ -67,37 +67,23 @@ def solve(
 
     Raises `InputError` for input that is out of range, before anything large is allocated.
     """
-    if approach is not None:
-        allowed = "an approach below 0 m (mean planes)" if scene.periodic else "a finite approach in m"
-        require_number("approach", approach, allowed, below=0 if scene.periodic else None)
-    quantity = quantity or ("contact_area" if scene.friction.is_zero else "friction_coefficient")
+    request = Request(
+        scene=scene,
+        grid=grid,
+        method=method,
+        accuracy=accuracy,
+        quantity=quantity,
+        approach=approach,
+        oblique=oblique,
+        slope_correction=slope_correction,
+        coupled=coupled,
+        tilted=tilted,
+        tolerance=tolerance,
+    )
     if accuracy is not None:
-        check_accuracy(accuracy, quantity)
-    if tolerance is None:
-        default = 1e-8 if accuracy is None else deserved_tolerance(accuracy)
-        tolerance = PAPER_TOLERANCE if method == "paper" else default
-    require_number("tolerance", tolerance, "a number between 0 and 1", above=0, below=1)
-
-    def plan_for(M: int, decide_on: int | None = None) -> Plan:
-        return make_plan(
-            scene,
-            Grid(scene.side, M).M,
-            method,
-            oblique=oblique,
-            slope_correction=slope_correction,
-            coupled=coupled,
-            tilted=tilted,
-            demand=accuracy or tolerance,
-            approach=approach,
-            decide_on=decide_on,
-        )
-
-    if accuracy is not None and grid is None:
-        planned = _Planned(scene, plan_for(1, DECISION_GRID), approach, tolerance)
-        return refine(planned.solve_at, accuracy, quantity)
-    if grid is None or accuracy is not None:
-        raise InputError("grid", grid, "a number of elements per side, or an accuracy, and not both")
-    solution = _solve_planned(scene, plan_for(grid), approach, tolerance)
+        planned = _Planned(scene, request.plan(), approach, request.residual)
+        return refine(planned.solve_at, accuracy, request.judged)
+    solution = _solve_planned(scene, request.plan(), approach, request.residual)
     return replace(
         solution, uncertainty=merged(iteration_parts(solution), solution.uncertainty, one_grid(solution))
     )
@@ -113,7 +99,10 @@ class _Planned:
     def solve_at(self, M: int) -> Solution:
         """The solution on a grid, solved again if the terms left out together exceed their budget."""
         solution = _solve_planned(self.scene, self.plan.on(self.scene, M), self.approach, self.tolerance)
-        sizes = {name: effect.larger for name, effect in solution.left_out.items()}
+        changes = effects_left_out(
+            self.plan.left_out, solution.problem, solution.pressure, solution.approach, self.plan.decided_on
+        )
+        sizes = {name: effect.larger for name, effect in changes.items()}
         if sum(sizes.values()) <= self.plan.budget:
             return solution
         self.plan = self.plan.put_back(self.scene, max(sizes, key=lambda name: sizes[name]))
@@ -180,7 +169,7 @@ def _solution(
         friction_coefficient=state.forces.friction / load if load else math.nan,
         contact_area=float(np.count_nonzero(contact)) * grid.element_area,
     )
-    changes = effects_left_out(plan.left_out, problem, state.pressure, state.approach, plan.decided_on)
+    changes = effects_left_out(plan.left_out, problem, state.pressure, state.approach)
     largest = float(state.pressure.max())
     total = float(state.pressure.sum())
     return Solution(

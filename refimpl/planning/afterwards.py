@@ -19,17 +19,17 @@ _ESTIMATES = {
 
 
 def effects_left_out(
-    names: tuple[str, ...], problem: Problem, pressure: Array, approach: float, grid_of_decision: int
+    names: tuple[str, ...], problem: Problem, pressure: Array, approach: float, grid: int | None = None
 ) -> dict[str, Effect]:
     """Effect by name of each term left out as small; costs nothing when there is none.
 
-    A coarser grid than that of the decision is credited with its number of elements, so that a term is
-    not put back for tipping single elements of a grid that is only a start.
+    With ``grid``, that of ``grid x grid`` elements if they are more: a coarse start may tip elements by
+    terms that the grid of the decision would not notice.
     """
     if not names or not pressure.any():
         return {}
     outlook = found(problem, pressure, approach)
-    finer = max(1.0, grid_of_decision / problem.grid.M) ** 2
+    finer = max(1.0, (grid or 0) / problem.grid.M) ** 2
     outlook = replace(outlook, elements=round(finer * outlook.elements))
     scales = Scales(outlook, problem.pair, problem.friction)
     return {name: _ESTIMATES[name](scales) for name in names}

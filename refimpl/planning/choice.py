@@ -133,7 +133,7 @@ def _tilt(scene: Scene, forced: Forced, scales: Scales, coupled: Term, oblique: 
         return Term(name, True, "comes with the coupling's kernel", effect)
     if effect.larger <= budget:
         return Term(name, False, "too small to matter", effect, small=True)
-    return Term(name, True, "shear moves the mean surface, also of identical bodies", effect)
+    return Term(name, True, "shear moves the common surface", effect)
 
 
 def _tau_support(scene: Scene, moved: bool) -> Term:

@@ -26,6 +26,7 @@ from refimpl.slopes import Slopes
 
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
+_LEAST = 1e-12  # mean pressure over E*, of a contact at an approach that hardly loads it
 _ROUNDING = 1e-9  # of a surface's range: heights that differ by less are mirror images of each other
 
 
@@ -77,6 +78,7 @@ def expected(problem: Problem) -> Outlook:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
         mean_pressure = float(carried[elements - 1]) / (elements * dA)
+        mean_pressure = max(mean_pressure, _LEAST * modulus)
     contact = np.zeros(gap.size, dtype=bool)
     contact[order[:elements]] = True
     # a sphere's gap at the contact's edge is half the approach

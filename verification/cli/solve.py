@@ -18,6 +18,7 @@ EPILOG = """examples:
   rough-friction solve hertz --grid 48 --method dense
   rough-friction solve scene.toml --accuracy 0.01
   rough-friction solve scene.toml --approach 1.2e-6
+  rough-friction solve table1-smooth --accuracy 0.01 --explain
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
@@ -25,7 +26,7 @@ Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 DEFAULT_GRID = 256
 # Those of refimpl, which --help does not wait for.
 METHODS = ("fft", "dense", "paper")
-ACCURATE = ("friction_coefficient", "contact_area", "max_pressure")
+ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 
 # attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 QUANTITIES = (
@@ -54,9 +55,7 @@ def add_parser(commands: Parsers) -> None:
     size = parser.add_mutually_exclusive_group().add_argument
     size("--grid", metavar="N", type=int, help=f"N x N elements (default {DEFAULT_GRID})")
     size("--accuracy", metavar="A", type=float, help="refine until the error bar is this share of mu")
-    add(
-        "--quantity", choices=ACCURATE, help="what --accuracy is about (default mu; without friction, A)"
-    )
+    add("--quantity", choices=ACCURATE, help="what --accuracy is about (default mu; without friction, A)")
     add(
         "--method",
         choices=METHODS,
@@ -70,7 +69,20 @@ def add_parser(commands: Parsers) -> None:
         default=None,
         help="keep or drop every slope term (default: the scene decides)",
     )
+    add(
+        "--coupled",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="keep or drop what shear does to the gap (default: the scene decides)",
+    )
+    add(
+        "--tilted",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="keep or drop what shear does to the slopes (default: the scene decides)",
+    )
     add("--slope-correction", action="store_true", help="exact tractions of oblique facets in Eq. (7)")
+    add("--explain", action="store_true", help="print what the scene requires, and solve nothing")
     add("--tolerance", metavar="T", type=float, help="for the certificate (default 1e-8; paper 1e-4)")
     add("--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture")
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
@@ -81,13 +93,14 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
-    from verification.cli import plot, vtk
+    from refimpl.request import Request
+    from verification.cli import explain, plot, vtk
 
     plot.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     scene = refimpl.read_scene(options.scene)
-    solution = refimpl.solve(
-        scene,
+    request = Request(
+        scene=scene,
         grid=DEFAULT_GRID if options.grid is None and options.accuracy is None else options.grid,
         accuracy=options.accuracy,
         quantity=options.quantity,
@@ -95,8 +108,16 @@ def run(options: argparse.Namespace) -> int:
         approach=options.approach,
         oblique=options.oblique,
         slope_correction=options.slope_correction,
+        coupled=options.coupled,
+        tilted=options.tilted,
         tolerance=options.tolerance,
     )
+    if options.explain:
+        plan = request.plan()
+        found = explain.document(plan, options.scene)
+        emit(found, options.json, explain.explained(plan, options.scene))
+        return 0
+    solution = refimpl.solve(**vars(request))
     if options.plot is not None:
         plot.draw(solution, scene, options.plot)
     if options.vtk is not None:
@@ -127,17 +148,19 @@ def table(solution: Solution, scene: str) -> str:
         for attribute, name, factor, unit in QUANTITIES
     ]
     summary = solution.summary()
-    certificate = [
-        [name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()
+    certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
+    left_out = [
+        [term["term"], term["reason"], _change(term["effect"])]
+        for term in summary["plan"]
+        if not term["included"]
     ]
-    left_out = [[term["term"], term["reason"]] for term in summary["plan"] if not term["included"]]
     parts = [
         f"{scene}: {size} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
         f"status: {solution.status.name}",
         columns(found),
         f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
         f"left out:\n{columns(left_out)}" if left_out else "",
-        *(f"warning: {text}" for text in solution.warnings),
+        *(_warned(warning) for warning in summary["warnings"]),
     ]
     return "\n\n".join(part for part in parts if part)
 
@@ -145,6 +168,17 @@ def table(solution: Solution, scene: str) -> str:
 def error_bar(solution: Solution, quantity: str) -> float:
     """The sum of the parts of a number's uncertainty, in its unit; 0 where none is stated."""
     return math.fsum(solution.uncertainty.get(quantity, {}).values())
+
+
+def _change(effect: Mapping[str, float]) -> str:
+    """What leaving a term out changes, in words; nothing where it is exactly nothing."""
+    if not any(effect.values()):
+        return ""
+    return f"estimated change of mu {effect['friction']:.1e}, of A {effect['area']:.1e}"
+
+
+def _warned(warning: Mapping[str, object]) -> str:
+    return f"warning ({warning['name']}): {warning['text']}"
 
 
 def _bar(value: float) -> str:

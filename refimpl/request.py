@@ -1,0 +1,74 @@
+"""What is asked of a solve: checked input, its defaults, and the plan that follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from refimpl.errors import InputError, require_number
+from refimpl.grid import Grid
+from refimpl.paper import PAPER_TOLERANCE
+from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
+from refimpl.refine import Quantity, check_accuracy, deserved_tolerance
+from refimpl.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """The options of `refimpl.solve`, by the same names.
+
+    Raises `InputError` for what is out of range or missing.
+    """
+
+    scene: Scene
+    grid: int | None = None
+    method: Method = "fft"
+    accuracy: float | None = None
+    quantity: Quantity | None = None
+    approach: float | None = None
+    oblique: bool | None = None
+    slope_correction: bool = False
+    coupled: bool | None = None
+    tilted: bool | None = None
+    tolerance: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.approach is not None:
+            periodic = self.scene.periodic
+            allowed = "an approach below 0 m (mean planes)" if periodic else "a finite approach in m"
+            require_number("approach", self.approach, allowed, below=0 if periodic else None)
+        if self.accuracy is not None:
+            check_accuracy(self.accuracy, self.judged)
+        require_number("tolerance", self.residual, "a number between 0 and 1", above=0, below=1)
+        if (self.grid is None) == (self.accuracy is None):
+            allowed = "a number of elements per side, or an accuracy, and not both"
+            raise InputError("grid", self.grid, allowed)
+
+    @property
+    def judged(self) -> Quantity:
+        """The quantity that the accuracy is about."""
+        return self.quantity or ("contact_area" if self.scene.friction.is_zero else "friction_coefficient")
+
+    @property
+    def residual(self) -> float:
+        """What every residual of the certificate must meet."""
+        if self.tolerance is not None:
+            return self.tolerance
+        if self.method == "paper":
+            return PAPER_TOLERANCE
+        return 1e-8 if self.accuracy is None else deserved_tolerance(self.accuracy)
+
+    def plan(self) -> Plan:
+        """What will be modelled; with an accuracy, the terms for all grids and the grid that decided them."""
+        M = 1 if self.grid is None else Grid(self.scene.side, self.grid).M
+        return make_plan(
+            self.scene,
+            M,
+            self.method,
+            oblique=self.oblique,
+            slope_correction=self.slope_correction,
+            coupled=self.coupled,
+            tilted=self.tilted,
+            demand=self.accuracy or self.residual,
+            approach=self.approach,
+            decide_on=DECISION_GRID if self.grid is None else None,
+        )
