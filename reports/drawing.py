@@ -27,9 +27,7 @@ STYLE: dict[Any, Any] = {
     "lines.markersize": 5,
     "svg.hashsalt": "rough-friction", "svg.fonttype": "path",
 }  # fmt: skip
-SCHEMES = (
-    "<style>svg{color:#1c1c1e}@media screen and (prefers-color-scheme:dark){svg{color:#ececf0}}</style>"
-)
+SCHEMES = "<style>svg{color:#1c1c1e}@media screen and (prefers-color-scheme:dark){svg{color:#ececf0}}</style>"
 
 
 @dataclass(frozen=True)
@@ -121,9 +119,7 @@ def order(
             axes.plot(grid, error, marker=MARKERS[k], color=COLOURS[k], label=text)
             finest = min(finest, error[np.argmin(h)])
         for slope, style in zip(expected, ("--", ":", "-."), strict=False):
-            axes.plot(
-                grid, 0.6 * finest * (h / h.min()) ** slope, style, color=INK, label=f"order {slope:g}"
-            )
+            axes.plot(grid, 0.6 * finest * (h / h.min()) ** slope, style, color=INK, label=f"order {slope:g}")
         axes.set_xticks(grid, [f"{g:.3g}" for g in grid])
         axes.xaxis.set_minor_locator(NullLocator())
         axes.legend()
@@ -146,9 +142,7 @@ def dots(values: str | None, *, xlabel: str, limit: float | None = None) -> Draw
                 axes.plot(size, k, marker="o", color=COLOURS[0])
                 axes.annotate(f"{size:.1e}", (size, k), (8, -3), textcoords="offset points", fontsize=9)
             else:
-                axes.text(
-                    axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center"
-                )
+                axes.text(axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center")
         if limit is not None:
             axes.axvline(limit, color=COLOURS[1], linestyle="--", label="tolerance")
             axes.legend(loc="lower right")
@@ -165,9 +159,7 @@ def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str
             field = np.ma.masked_equal(_numbers(data[key]), 0.0)
             edge = float(data[side]) if side is not None else field.shape[0]
             extent = (0.0, edge, 0.0, edge)
-            image = axes.imshow(
-                field.T, cmap=colours, origin="lower", extent=extent, interpolation="none"
-            )
+            image = axes.imshow(field.T, cmap=colours, origin="lower", extent=extent, interpolation="none")
             length = "mm" if side is not None else "elements"
             axes.set(title=title, xlabel=f"x ({length})", ylabel=f"y ({length})")
             axes.grid(visible=False)

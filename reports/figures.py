@@ -34,9 +34,7 @@ OFFERED = (
         ),
         "Profile of the pressure through the centre, against Hertz.",
     ),
-    Figure(
-        "*", ("M", "error"), order({"error": "error"}), "Error over the grid, with the fitted order."
-    ),
+    Figure("*", ("M", "error"), order({"error": "error"}), "Error over the grid, with the fitted order."),
     Figure(
         "*",
         ("difference by scene",),

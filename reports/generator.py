@@ -1,8 +1,7 @@
-"""The validation report: one HTML page that needs nothing else, from a result file alone."""
+"""The validation report: one HTML page that needs nothing else, from result files alone."""
 
 from __future__ import annotations
 
-import base64
 import shlex
 from collections.abc import Mapping
 from typing import Any
@@ -10,12 +9,24 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from reports import drawing, figures
-from reports.results import Case, by, by_subject, check, worst
+from reports.chapters import CHAPTERS, exhibits_of, subjects_of, unplaced
+from reports.comparison import compared
+from reports.evidence import Evidence, gathered
+from reports.exhibit import address, as_csv
+from reports.results import Case, by, worst
+from reports.traceability import traced
 
 
-def render(results: object) -> str:
-    """The page. Raises ResultFileError (a ValueError) for anything but a result file."""
-    checked = check(results)
+def render(
+    results: object,
+    committed: Mapping[str, Mapping[str, Any]] | None = None,
+    against: object | None = None,
+) -> str:
+    """The page of a run, with committed result files by name, and what changed against an older run.
+
+    Raises ResultFileError (a ValueError) for anything but result files.
+    """
+    evidence = gathered(results, committed or {})
     environment = Environment(
         loader=PackageLoader("reports"),
         autoescape=True,
@@ -24,17 +35,24 @@ def render(results: object) -> str:
         lstrip_blocks=True,
     )
     environment.filters.update(number=number, anchor=anchor)
-    cases: list[Case] = checked["cases"]
     return environment.get_template("report.html").render(
-        results=checked,
-        counts=checked["counts"],
-        provenance=checked["provenance"],
-        claims=[(claim, group, worst(group)) for claim, group in by(cases, "claim").items()],
-        subjects=by_subject(cases),
+        run=evidence.run,
+        evidence=evidence,
+        provenance=evidence.run["provenance"],
+        paper=traced(evidence.cases, evidence.errata),
+        claims=[(claim, group, worst(group)) for claim, group in by(list(evidence.cases), "claim").items()],
+        chapters=[(c, subjects_of(c, evidence), exhibits_of(c, evidence)) for c in CHAPTERS],
+        unplaced=unplaced(evidence),
+        leading=leading(evidence),
+        changes=None if against is None else compared(against, results),
         judgement=judgement,
         facts=facts,
         rerun=rerun,
-        pictures=pictures,
+        pictures=lambda case: [
+            picture(f, case["data"]) for f in figures.figures_of(case["id"], case["data"])
+        ],
+        picture=picture,
+        cell=cell,
     )
 
 
@@ -90,12 +108,43 @@ def rerun(case: Case) -> str:
     return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"
 
 
-def pictures(case: Case) -> list[Mapping[str, Any]]:
-    """The case's figures as data addresses with captions; an `address` is None where the data are missing."""
-    found: list[Mapping[str, Any]] = []
-    for figure in figures.figures_of(case["id"], case["data"]):
-        svg = drawing.svg(figure, case["data"])
-        encoded = None if svg is None else base64.b64encode(svg.encode()).decode()
-        address = None if encoded is None else f"data:image/svg+xml;base64,{encoded}"
-        found.append({"caption": figure.caption, "address": address})
+def cell(value: Any) -> str:
+    """A table's cell: numbers to four digits, whole numbers and texts as they are.
+
+    >>> cell(0.123456), cell(512), cell(True), cell(None)
+    ('0.1235', '512', 'yes', 'n/a')
+    """
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return number(value) if isinstance(value, float | None) else str(value)
+
+
+def picture(figure: drawing.Figure, data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A figure and its data as addresses, None where the data are missing, and the caption."""
+    svg = drawing.svg(figure, data)
+    return {
+        "caption": figure.caption,
+        "address": None if svg is None else address(svg, "image/svg+xml"),
+        "csv": None if svg is None else address(as_csv(figure, data), "text/csv"),
+    }
+
+
+LEADING = (
+    ("reproduction/fig8-exponential-full", "reproduction/fig8-exponential"),
+    ("fem3d/error-map", "appendix-figures/fig12", "appendix-fem/map"),
+    ("benchmarks/peers", "hertz/peak-order"),
+)
+"""Cases whose first figure opens the report, each with its stand-ins."""
+
+
+def leading(evidence: Evidence) -> list[tuple[Case, Mapping[str, Any]]]:
+    """The figures of the first page, with their cases."""
+    cases = {case["id"]: case for case in evidence.cases}
+    found = []
+    for ids in LEADING:
+        for case in (cases[id] for id in ids if id in cases):
+            drawn = [picture(f, case["data"]) for f in figures.figures_of(case["id"], case["data"])[:1]]
+            if drawn and drawn[0]["address"]:
+                found.append((case, drawn[0]))
+                break
     return found

@@ -58,10 +58,21 @@ def purpose(check: str) -> str:
 
 def _by_fault(faults: list[dict[str, Any]]) -> Table:
     rows = [
-        (fault["name"], fault["what"], fault["tried"], len(fault["caught_by"]), _few(fault["caught_by"]))
+        (
+            fault["name"],
+            fault["what"],
+            fault["tried"],
+            len(fault["caught_by"]),
+            fault["broke"],
+            _few(fault["caught_by"]),
+        )
         for fault in sorted(faults, key=lambda fault: len(fault["caught_by"]))
     ]
-    return Table("Faults, those that fewest see first.", ("fault", "what", "tried", "caught", "by"), rows)
+    return Table(
+        "Faults, those that fewest see first.",
+        ("fault", "what", "tried", "caught", "of which broke", "by"),
+        rows,
+    )
 
 
 def _alone(checks: list[dict[str, Any]]) -> Table:

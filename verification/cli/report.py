@@ -1,17 +1,32 @@
-"""`rough-friction report`: a result file as a self-contained HTML page."""
+"""`rough-friction report`: result files as a self-contained HTML page, and as PDF."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import shutil
+import subprocess
+import tempfile
+from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from verification.cli.output import Parsers, add_json, columns, emit
 
 EPILOG = """example:
   rough-friction verify --tier quick --json results.json
   rough-friction report --results results.json --output report
+  rough-friction report --results results.json --against older.json --pdf
 """
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--no-pdf-header-footer",
+)
 
 
 def add_parser(commands: Parsers) -> None:
@@ -19,7 +34,8 @@ def add_parser(commands: Parsers) -> None:
     parser = commands.add_parser(
         "report",
         help="make the validation report",
-        description="Make the validation report, one HTML file, from a result file of 'verify'.",
+        description="Make the validation report, one HTML file, from a result file of 'verify' and the "
+        "committed results of long cases and studies.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -29,6 +45,11 @@ def add_parser(commands: Parsers) -> None:
     parser.add_argument(
         "--output", metavar="DIR", type=Path, default=Path("report"), help="folder for the report"
     )
+    parser.add_argument(
+        "--committed", metavar="DIR", type=Path, help="committed results (default: those of the package)"
+    )
+    parser.add_argument("--against", metavar="OLD", type=Path, help="say what changed since this result file")
+    parser.add_argument("--pdf", action="store_true", help="also print it to PDF, by an installed Chromium")
     add_json(parser)
     parser.set_defaults(run=run)
 
@@ -40,26 +61,54 @@ def run(options: argparse.Namespace) -> int:
     from reports.results import ResultFileError
     from verification.files import write_text
 
+    results = _read("--results", options.results)
+    against = None if options.against is None else _read("--against", options.against)
+    folder = options.committed or Path(str(resources.files("reports").joinpath("results")))
+    if not folder.is_dir():
+        raise InputError("--committed", str(folder), "a folder of result files")
+    committed = {path.stem: _read("--committed", path) for path in sorted(folder.glob("*.json"))}
     try:
-        results = json.loads(options.results.read_text(encoding="utf-8"))
-    except FileNotFoundError as missing:
-        allowed = "a result file; make one with 'rough-friction verify --json FILE'"
-        raise InputError("--results", str(options.results), allowed) from missing
-    except (json.JSONDecodeError, UnicodeDecodeError, IsADirectoryError) as broken:
-        raise InputError("--results", str(options.results), f"JSON ({broken})") from broken
-    try:
-        page = render(results)
+        page = render(results, committed, against)
     except ResultFileError as alien:
-        raise InputError(
-            "--results", str(options.results), f"a result file of 'verify' ({alien})"
-        ) from alien
+        raise InputError("--results", str(options.results), f"result files ({alien})") from alien
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
         raise InputError("--output", str(options.output), "a folder that can be written to") from refused
     path = options.output / "report.html"
     write_text(page, path)
+    written = [path]
+    if options.pdf:
+        written.append(_printed(path))
     rows = [[status, str(number)] for status, number in results["counts"].items()]
     document = {"report": str(path), "counts": results["counts"]}
-    emit(document, options.json, f"{columns(rows, indent='')}\n{path.resolve()}")
+    emit(document, options.json, "\n".join([columns(rows, indent=""), *map(str, map(Path.resolve, written))]))
     return 0
+
+
+def _read(option: str, path: Path) -> Any:
+    from refimpl.errors import InputError
+
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as missing:
+        allowed = "a result file; make one with 'rough-friction verify --json FILE'"
+        raise InputError(option, str(path), allowed) from missing
+    except (json.JSONDecodeError, UnicodeDecodeError, IsADirectoryError) as broken:
+        raise InputError(option, str(path), f"JSON ({broken})") from broken
+
+
+def _printed(page: Path) -> Path:
+    """The page as PDF beside it."""
+    from refimpl.errors import InputError
+
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser is None:
+        raise InputError("--pdf", True, f"an installed browser, one of {', '.join(BROWSERS)}")
+    target = page.with_suffix(".pdf").resolve()
+    with tempfile.TemporaryDirectory() as profile:
+        command = [browser, *FLAGS, f"--user-data-dir={profile}", f"--print-to-pdf={target}"]
+        done = subprocess.run([*command, page.resolve().as_uri()], capture_output=True, text=True)
+    if done.returncode != 0 or not target.exists():
+        raise InputError("--pdf", True, f"a browser that prints ({done.stderr.strip()[-200:]})")
+    return target

@@ -1,0 +1,60 @@
+"""What a report rests on: one run of `verify`, committed runs of long cases, and studies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from reports.results import FORMAT, Case, check
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Cases by id (the run's own first), errata by equation, and studies by the name of their file.
+
+    The ``origin`` of a case is its committed run (file, command, date, commit), None for the run's own.
+    """
+
+    run: Mapping[str, Any]
+    cases: tuple[Case, ...]
+    errata: tuple[Mapping[str, Any], ...]
+    studies: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of cases by status, those of committed runs included."""
+        return {status: sum(c["status"] == status for c in self.cases) for status in self.run["counts"]}
+
+
+def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidence:
+    """The run with the committed files, by name without suffix, that it does not replace.
+
+    A case counts once: the run's own result, else that of the newest committed run in which it was judged.
+    Raises ResultFileError for a run, or a committed run of `verify`, that is none.
+    """
+    checked = check(run)
+    runs = {name: check(file) for name, file in committed.items() if file.get("format") == FORMAT}
+    newest = sorted(runs.items(), key=lambda item: str(item[1]["provenance"]["date"]), reverse=True)
+    cases = {case["id"]: {**case, "origin": None} for case in checked["cases"]}
+    errata = {erratum["equation"]: erratum for erratum in checked["errata"]}
+    for judged in (True, False):
+        for name, file in newest:
+            for case in file["cases"]:
+                if (case["status"] in ("pass", "fail")) == judged:
+                    cases.setdefault(case["id"], {**case, "origin": _origin(name, file)})
+    for _, file in newest:
+        for erratum in file["errata"]:
+            errata.setdefault(erratum["equation"], erratum)
+    studies = {name: file for name, file in committed.items() if name not in runs}
+    return Evidence(checked, tuple(cases.values()), tuple(errata.values()), studies)
+
+
+def _origin(name: str, file: Mapping[str, Any]) -> dict[str, Any]:
+    provenance = file["provenance"]
+    return {
+        "file": f"{name}.json",
+        "date": provenance["date"],
+        "commit": provenance["commit"],
+        "command": provenance["command"],
+    }
