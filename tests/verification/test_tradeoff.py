@@ -1,0 +1,80 @@
+"""The price list: reliable offers only, the front, growth, and the command."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from reports.studies.tradeoff import build
+from verification.cli import main
+from verification.tradeoff import prices
+from verification.tradeoff.measure import QUANTITIES, Run
+from verification.tradeoff.settings import Setting, settings
+
+REFERENCE = dict.fromkeys(QUANTITIES, 1.0)
+
+
+def made(M: int, seconds: float, error: float, status: str = "converged", nested: bool = True) -> Run:
+    numbers = dict.fromkeys(QUANTITIES, 1.0 + error)
+    return Run(Setting("fft", M, 1e-8, nested=nested), numbers, status, seconds, 10.0, 0.1, 8 * M**2)
+
+
+def test_an_error_that_is_small_by_chance_is_no_price() -> None:
+    runs = [made(16, 1.0, 0.0005), made(32, 2.0, 0.02), made(64, 4.0, 0.005)]
+    offers = {
+        row["error"]: row["M"] for row in prices.price_list(runs, REFERENCE, dict.fromkeys(QUANTITIES, 0.0))
+    }
+    assert offers == {0.1: 16, 0.03: 16, 0.01: 64, 0.003: None, 0.001: None}
+
+
+def test_no_price_below_the_doubt_of_the_reference_nor_from_what_did_not_settle() -> None:
+    runs = [made(16, 1.0, 0.0, "stagnated"), made(16, 3.0, 0.0, nested=False)]
+    rows = prices.price_list(runs, REFERENCE, dict.fromkeys(QUANTITIES, 0.004))
+    assert {row["error"]: row["seconds"] for row in rows} == {
+        0.1: 3.0,
+        0.03: 3.0,
+        0.01: 3.0,
+        0.003: None,
+        0.001: None,
+    }
+
+
+def test_the_front_falls() -> None:
+    runs = [made(16, 1.0, 0.1), made(32, 2.0, 0.2), made(64, 3.0, 0.01), made(8, 0.5, 0.0, "stagnated")]
+    assert [r.setting.M for r in prices.front(runs, REFERENCE, "contact_area")] == [16, 64]
+
+
+def test_growth_finds_the_exponents() -> None:
+    (row,) = prices.growth([made(M, 1e-6 * M**3, 0.0) for M in (16, 32, 64)])
+    assert row["time"] == pytest.approx(3)
+    assert row["memory"] == pytest.approx(2)
+    assert prices.affordable([made(M, 1e-6 * M**3, 0.0) for M in (16, 32, 64)], row["way"], 1.0) == 100
+
+
+def test_every_way_has_a_name_of_its_own() -> None:
+    ways = settings([64], [1e-3, 1e-5])
+    assert len({w.way for w in ways}) == len(ways) == 9
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "t.json"
+    command = ["tradeoff", "table1-smooth", "--grids", "8,12,16", "--reference", "32", "--repeats", "1"]
+    assert main([*command, "--json", str(out)]) == 0
+    assert "cheapest way" in capsys.readouterr().out
+    found = json.loads(out.read_text())
+    assert {run["method"] for run in found["runs"]} == {"fft", "paper", "dense", "qp"}
+    assert all(run["status"] for run in found["runs"])
+    shown = build({"studies": [found]})
+    assert len(shown.figures) == 3
+
+
+@pytest.mark.parametrize("bad", [["--reference", "16"], ["--grids", "8,x"], ["--repeats", "0"]])
+def test_bad_input_is_refused(bad: list[str]) -> None:
+    command = ["tradeoff", "table1-smooth", "--grids", "16", "--reference", "32", *bad]
+    try:
+        status = main(command)
+    except SystemExit as refused:
+        status = int(refused.code or 0)
+    assert status == 2

@@ -1,0 +1,1 @@
+"""What an error costs: work and precision of every way to solve a scene, and the price list they make."""

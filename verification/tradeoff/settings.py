@@ -1,0 +1,55 @@
+"""The ways to solve one scene: method, grid, tolerance, and what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+Way = Literal["fft", "paper", "dense", "qp"]
+OTHERS: tuple[Way, ...] = ("paper", "dense", "qp")
+LARGEST = {"fft": 2048, "paper": 256, "dense": 64, "qp": 128}
+"""Elements a side beyond which a method takes minutes on one core."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One way: ``nested`` grids or the finest alone; ``oblique`` slopes and ``coupled`` shear, or not.
+
+    "qp" is L-BFGS-B on the energy at the scene's approach, which it is told; without slopes and coupling.
+    """
+
+    method: Way
+    M: int
+    tolerance: float
+    nested: bool = True
+    oblique: bool | None = None
+    coupled: bool | None = None
+
+    @property
+    def way(self) -> str:
+        """The setting without its grid, as a legend says it."""
+        parts: list[str] = [self.method]
+        if self.method == "fft":
+            parts.append(f"{self.tolerance:.0e}")
+        if not self.nested:
+            parts.append("one grid")
+        if self.oblique is False:
+            parts.append("flat")
+        if self.coupled is False:
+            parts.append("uncoupled")
+        return ", ".join(parts)
+
+
+def settings(grids: Sequence[int], tolerances: Sequence[float]) -> list[Setting]:
+    """Every way that is compared: production at each tolerance, then one thing changed at a time."""
+    middle = tolerances[len(tolerances) // 2]
+    ways: list[Setting] = []
+    for M in grids:
+        ways += [Setting("fft", M, tolerance) for tolerance in tolerances]
+        ways.append(Setting("fft", M, middle, nested=False))
+        ways.append(Setting("fft", M, middle, oblique=False))
+        ways.append(Setting("fft", M, middle, coupled=False))
+        ways.append(Setting("fft", M, middle, oblique=False, coupled=False))
+        ways += [Setting(other, M, middle) for other in OTHERS if LARGEST[other] >= M]
+    return ways
