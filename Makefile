@@ -7,7 +7,7 @@ OUT := out
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: report test lint setup clean nightly
+.PHONY: report test lint setup clean nightly mutation
 
 report: $(READY)
 	@mkdir -p $(OUT)
@@ -27,6 +27,14 @@ lint: $(READY)
 nightly: $(READY)
 	@mkdir -p $(OUT)
 	$(BIN)/python -m verification.properties --examples 10000 --seed $$(date +%Y%m%d) --json $(OUT)/hypothesis.json
+
+# Small faults that the tests must notice, in a copy of the committed tree; resumed, and extended by a larger N.
+N := 330
+mutation: $(READY)
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e ".[mutation]"
+	rm -rf $(OUT)/mutated && git clone -q . $(OUT)/mutated
+	cd $(OUT)/mutated && ../../$(BIN)/python -m verification.mutation --sample $(N) \
+		--log ../mutation.jsonl --json ../mutation.json
 
 setup: $(READY)
 

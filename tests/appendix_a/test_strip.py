@@ -80,6 +80,15 @@ def test_superposition_reaches_far_enough(monkeypatch: pytest.MonkeyPatch) -> No
     np.testing.assert_allclose(once, twice, rtol=0, atol=2e-9)
 
 
+def test_panels_cover_the_waves_on_either_side_and_shrink_to_the_centres() -> None:
+    s, weights = superposition.graded_nodes([-1.0, 1.0, 2.5, 0.0], 20.0)
+    assert weights.sum() == pytest.approx(2 * superposition.REACH * 20.0, rel=1e-13)
+    assert (s * weights).sum() == pytest.approx(0, abs=1e-9)
+    assert np.all(np.diff(s) > 0)
+    for centre in (-1.0, 1.0, 2.5, 0.0):
+        assert 0 < np.abs(s - centre).min() < 2.0 ** (1 - superposition.FINEST)
+
+
 def test_flamant_superposition_of_a_uniform_strip() -> None:
     nu, x = 0.3, 2.5
     s, weights = superposition.graded_nodes([-1.0, 1.0, x, 0.0], 20.0)

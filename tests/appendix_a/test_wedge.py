@@ -59,6 +59,12 @@ def test_residue_series_equals_the_integral(r: float, gamma: float) -> None:
     assert max(abs(a - b) for a, b in zip(integral, series, strict=True)) < mp.mpf(10) ** -23
 
 
+def test_thirty_digits_by_default() -> None:
+    point = (0.5, 0.2, 0.3)
+    assert reference.stresses(*point) == reference.stresses(*point, digits=30)
+    assert residues.stresses(*point) == residues.stresses(*point, digits=30)
+
+
 def test_zeros_of_the_wedge_are_zeros() -> None:
     for gamma, count in ((0.02, 3), (0.5, 6)):
         k = mp.sin(2 * (mp.pi / 2 - gamma)) / (mp.pi - 2 * gamma)

@@ -55,7 +55,8 @@ class Suite:
             importlib.import_module(name)
         found = self._forked(None, "", limit=None)
         if collected["status"] or found["status"]:
-            raise RuntimeError(f"the suite fails without a mutant: {collected} {found}")
+            killers = (collected["killer"], found["killer"])
+            raise RuntimeError(f"{self.tests[0]}: its suite fails without a mutant: {killers}")
         return float(found["seconds"])
 
     def verdict(self, module: str, source: str, limit: int) -> Verdict:

@@ -15,9 +15,9 @@ from verification.mutation.judge import Suite
 from verification.mutation.mutants import Candidate, candidates, mutant
 from verification.mutation.targets import Target
 
-ALLOWANCE = 4.0
+ALLOWANCE = 2.5
 """A trial may take this many times the unmutated suite's processor time ..."""
-LEAST = 20
+LEAST = 8
 """... but at least so many seconds: shrinking an invariant's counter-example costs some."""
 
 Record = dict[str, Any]

@@ -1,0 +1,28 @@
+"""The whole test suite in random orders, with other random examples each time."""
+
+from __future__ import annotations
+
+from reports.exhibit import Document, Exhibit, Table
+
+
+def build(document: Document) -> Exhibit:
+    """A row for each run: its seed, tests and failures."""
+    rows = [
+        (
+            run["seed"],
+            run["tests"],
+            len(run["not_passed"]),
+            run["processor_seconds"],
+            run["provenance"]["commit"],
+        )
+        for run in document["runs"]
+    ]
+    verdict = "No test flips" if document["no_test_flips"] else "Some test flips"
+    return Exhibit(
+        "Random order",
+        (
+            f"{verdict} in {len(rows)} runs with files and tests shuffled, and every search of random "
+            "examples seeded by the run's seed.",
+        ),
+        [Table("Runs.", ("seed", "tests", "not passed", "processor time (s)", "commit"), rows)],
+    )
