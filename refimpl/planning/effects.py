@@ -14,7 +14,8 @@ principal value without isotropic part, so ``<t> = -pi (c_l + c_u)/2 (beta <f> +
 flat body allows none but shear's. A symmetric scene has none either. Second order is the mean square slope.
 
 *Shear coupling.* ``c r`` is odd about each spot and ``|c| / a`` times mu in size next to ``a f``. Areas of
-single spots change to first order, with either sign; of a symmetric contact only to second.
+single spots change to first order, with either sign, which leaves their sum the root of their number; of a
+symmetric contact only to second.
 
 *Slope correction.* Tractions ``r tan theta`` down and ``f tan theta`` along, in place of none.
 
@@ -91,7 +92,9 @@ def shear_coupling(scales: Scales) -> Effect:
         return NONE
     strength = c / scales.pair.normal_compliance * scales.mu
     local = _ODD * strength
-    area = _EVEN * strength**2 if scales.outlook.symmetric else local + _EVEN * strength**2
+    area = _EVEN * strength**2
+    if not scales.outlook.symmetric:
+        area += local / math.sqrt(scales.outlook.spots)
     return scales.effect(scales.tilt(0.5 * c) + local * scales.outlook.least_slope, area, local)
 
 

@@ -1,0 +1,178 @@
+"""Named warnings: for each limit a scene that leaves it, with its number, and one that does not."""
+
+from __future__ import annotations
+
+import json
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.coefficient_error import SlopeError
+from refimpl.forces import plasticity_index
+from refimpl.planning.effects import Effect
+from refimpl.validity import Caution, Limit, cautions, plain_warning, softer_hardness
+
+STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
+HARD_STEEL = rf.Material(200e9, 0.30, hardness=7e9)
+SOFT_COPPER = rf.Material(118e9, 0.30, hardness=800e6)
+BALL = rf.Sphere(0.14)
+SMOOTH = rf.Scene(
+    upper=rf.Body(HARD_STEEL, BALL),
+    lower=rf.Body(SOFT_COPPER, rf.Flat()),
+    friction=rf.Friction(15e6, 0.08),
+    load=70.0,
+    side=1.61e-3,
+)
+
+
+def rough(rms: float, material: rf.Material = SOFT_COPPER, length: float = 104e-6) -> rf.Scene:
+    return replace(SMOOTH, lower=rf.Body(material, rf.GaussianRoughness(rms, length, seed=2)))
+
+
+STEEP = replace(  # the harder body's roughness is what both surfaces follow
+    SMOOTH,
+    upper=rf.Body(HARD_STEEL, BALL + rf.GaussianRoughness(8e-6, 104e-6, seed=2)),
+    lower=rf.Body(rf.Material(2.5e9, 0.38), rf.Flat()),
+)
+
+
+def named(s: rf.Solution) -> dict[Limit, Caution]:
+    return {w.limit: w for w in s.warnings if isinstance(w, Caution)}
+
+
+def test_a_smooth_ball_leaves_no_limit() -> None:
+    s = rf.solve(SMOOTH, 64)
+    assert s.warnings == ()
+
+
+def test_plasticity_index_is_eq_12() -> None:
+    warned = named(rf.solve(rough(0.6e-6), 64))[Limit.PLASTICITY]
+    modulus = SMOOTH.materials.reduced_modulus
+    assert softer_hardness(SMOOTH.materials) == 800e6
+    # 2.2 for sqrt(4.6) = 2.14, and one realisation's slopes on one grid
+    assert warned.number == pytest.approx(plasticity_index(modulus, 800e6, 0.6e-6, 104e-6), rel=0.15)
+    assert warned.allowed == 1
+    assert Limit.PLASTICITY not in named(rf.solve(rough(0.3e-6), 64))
+
+
+def test_peak_pressure_against_the_softer_hardness() -> None:
+    s = rf.solve(rough(0.5e-6), 64)
+    warned = named(s)[Limit.HARDNESS]
+    assert (warned.number, warned.allowed) == (s.max_pressure, 800e6)
+    assert Limit.HARDNESS not in named(rf.solve(SMOOTH, 32))
+    unknown = replace(SMOOTH, upper=rf.Body(STEEL, BALL), lower=rf.Body(COPPER, rf.Flat()), load=1e5)
+    assert not {Limit.HARDNESS, Limit.PLASTICITY} & set(named(rf.solve(unknown, 32)))
+
+
+def test_slopes_against_appendix_a() -> None:
+    s = rf.solve(STEEP, 64)
+    steep = named(s)
+    for limit in (Limit.RMS_SLOPE, Limit.MAX_SLOPE):
+        assert steep[limit].number > steep[limit].allowed == 0.02
+    assert steep[Limit.RMS_SLOPE].number == s.slope_error.at_rms
+    assert not {Limit.RMS_SLOPE, Limit.MAX_SLOPE} & set(named(rf.solve(rough(0.3e-6), 64)))
+
+
+def test_slopes_are_judged_where_the_user_forced_them_out() -> None:
+    forced = named(rf.solve(STEEP, 64, oblique=False))
+    assert Limit.MAX_SLOPE in forced
+
+
+def test_slopes_beyond_the_table() -> None:
+    s = rf.solve(SMOOTH, 16)
+    steeper = replace(s, slope_error=SlopeError(rms_slope=0.01, max_slope=0.7, at_rms=0.001, at_max=None))
+    warned = {c.limit: c for c in cautions(steeper, SMOOTH)}
+    assert Limit.RMS_SLOPE not in warned
+    assert warned[Limit.MAX_SLOPE].number == math.inf
+    assert "beyond" in warned[Limit.MAX_SLOPE]
+
+
+def test_contact_at_the_border() -> None:
+    s = rf.solve(replace(SMOOTH, side=0.6e-3), 32)
+    warned = named(s)[Limit.BORDER]
+    border = s.contact.copy()
+    border[1:-1, 1:-1] = False
+    assert warned.number == border.sum() > 0
+    assert Limit.BORDER not in named(rf.solve(SMOOTH, 32))
+    assert Limit.BORDER not in named(rf.solve(replace(SMOOTH, side=0.6e-3, periodic=True), 32))
+
+
+def test_elements_per_correlation_length_told_once() -> None:
+    s = rf.solve(rough(0.3e-6), 32)
+    warned = named(s)[Limit.CORRELATION]
+    assert warned.number == pytest.approx(104e-6 / (1.61e-3 / 32))
+    assert warned.allowed == 4
+    assert sum("correlation length" in w for w in s.warnings) == 1
+    assert Limit.CORRELATION not in named(rf.solve(rough(0.3e-6), 64))
+
+
+def test_elements_per_contact_radius() -> None:
+    s = rf.solve(replace(SMOOTH, load=0.05), 64)
+    warned = named(s)[Limit.RADIUS]
+    assert warned.number == pytest.approx(math.sqrt(s.contact.sum() / math.pi))
+    assert warned.number < warned.allowed == 3
+    assert Limit.RADIUS not in named(rf.solve(SMOOTH, 32))
+
+
+def test_ambiguous_support_of_tau() -> None:
+    scene = replace(
+        rough(0.504e-6, rf.Material(2.5e9, 0.38)),
+        upper=rf.Body(STEEL, BALL),
+        friction=rf.Friction(60e6, 0.3),
+        load=30.0,
+    )
+    s = rf.solve(scene, 23, tolerance=1e-11)
+    assert s.status is rf.Status.CYCLED
+    assert named(s)[Limit.TAU_SUPPORT].number == np.count_nonzero(s.withheld & s.contact) > 0
+    assert Limit.TAU_SUPPORT not in named(rf.solve(SMOOTH, 23))
+
+
+def test_a_term_left_out_that_matters() -> None:
+    s = rf.solve(SMOOTH, 32)
+    assert Limit.LEFT_OUT not in named(s)
+    mattered = replace(s, left_out={"shear coupling": Effect(0.0, 1e-3), "obliqueness": Effect(1e-9, 0.0)})
+    found = [c for c in cautions(mattered, SMOOTH) if c.limit is Limit.LEFT_OUT]
+    assert [(c.number, c.allowed) for c in found] == [(1e-3, 1e-8)]
+    assert "shear coupling" in found[0]
+
+
+def test_surfaces_apart_leave_no_limit() -> None:
+    assert named(rf.solve(rough(8e-6), 16, approach=-1e-6)) == {}
+
+
+def test_warnings_are_texts_with_numbers() -> None:
+    s = rf.solve(rough(0.5e-6), 32)
+    first = named(s)[Limit.HARDNESS]
+    again = pickle.loads(pickle.dumps(first))
+    assert (again, again.limit, again.number, again.allowed) == (
+        first,
+        first.limit,
+        first.number,
+        first.allowed,
+    )
+    told = {w["name"]: w for w in s.summary()["warnings"]}
+    assert told["peak pressure"]["limit"] == 800e6
+    assert json.dumps(told)
+    assert plain_warning("resampled") == {
+        "name": "remark",
+        "number": None,
+        "limit": None,
+        "text": "resampled",
+    }
+
+
+def test_hardness_in_a_scene_file() -> None:
+    text = rf.scene_to_toml(SMOOTH)
+    assert text.count("hardness") == 2
+    assert "hardness" not in rf.scene_to_toml(rf.read_scene("hertz"))
+
+
+@pytest.mark.parametrize("hardness", [0.0, -1.0, math.nan, math.inf, "soft"])
+def test_a_hardness_is_a_positive_pressure(hardness: float) -> None:
+    with pytest.raises(rf.InputError) as caught:
+        rf.Material(1e9, 0.3, hardness)
+    assert caught.value.field == "hardness"

@@ -1,0 +1,67 @@
+"""`solve --explain`: the plan in at most 100 columns, as JSON, and without a solve."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import refimpl
+from verification.cli import main
+
+Capture = pytest.CaptureFixture[str]
+
+
+@pytest.mark.parametrize("scene", refimpl.shipped_scenes())
+@pytest.mark.parametrize("size", [["--grid", "64"], ["--accuracy", "0.01"]])
+def test_the_table_fits_100_columns(
+    scene: str, size: list[str], capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("something was solved")
+
+    monkeypatch.setattr(refimpl, "solve", refuse)
+    assert main(["solve", scene, *size, "--explain"]) == 0
+    text = capsys.readouterr().out
+    assert max(map(len, text.splitlines())) <= 100
+    for name in ("shear coupling", "obliqueness", "shear tilt", "slope correction", "tau support"):
+        assert name in text
+    assert "nothing is solved" in text
+
+
+def test_it_says_what_a_frictionless_smooth_scene_does_without(capsys: Capture) -> None:
+    assert main(["solve", "hertz", "--grid", "64", "--explain"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    for name in ("shear coupling", "obliqueness", "shear tilt", "slope correction", "tau support"):
+        row = next(line for line in lines if line.strip().startswith(name))
+        assert " out " in row
+    assert any("no friction" in line for line in lines)
+
+
+def test_json_holds_the_estimates(tmp_path: Path, capsys: Capture) -> None:
+    path = tmp_path / "plan.json"
+    arguments = [
+        "solve",
+        "table1-rough",
+        "--accuracy",
+        "0.05",
+        "--explain",
+        "--no-tilted",
+        "--json",
+        str(path),
+    ]
+    assert main(arguments) == 0
+    capsys.readouterr()
+    plan = json.loads(path.read_text())
+    terms = {term["name"]: term for term in plan["terms"]}
+    assert plan["budget"] == 0.5 * plan["demand"] == 0.025
+    assert plan["grid"] is None
+    assert terms["shear coupling"]["effect"]["area"] > 0
+    assert plan["resolution"]["asked"] > 4
+    assert not terms["shear tilt"]["included"]
+
+
+def test_bad_input_is_refused_as_in_a_solve(capsys: Capture) -> None:
+    assert main(["solve", "hertz", "--grid", "0", "--explain"]) == 2
+    assert "grid = 0" in capsys.readouterr().err
