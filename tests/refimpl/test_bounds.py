@@ -178,6 +178,42 @@ def test_bounds_hold_for_any_state(seed: int, kind: str) -> None:
     assert min(ratios) > 1e-4  # useful bounds: the norm is at most a hundred times the true error's
 
 
+@pytest.mark.parametrize("oblique", [False, True])
+@pytest.mark.parametrize("factor", [0.9, 1.1])
+def test_the_exact_state_of_another_load_is_bounded_by_the_load_error_alone(
+    factor: float, oblique: bool
+) -> None:
+    base = scene(2, tau=0.0)
+    other = rf.solve(replace(base, load=factor * base.load), M, tolerance=1e-12, oblique=oblique)
+    problem = replace(other.problem, load=base.load)
+    bounds = proven_bounds(problem, other.pressure, other.traction, other.slopes)
+    ratio = assert_true(bounds, problem, other.pressure, other.traction, other.slopes)
+    assert ratio > 0.1
+    assert bounds.normal_force == pytest.approx(abs(factor - 1) * base.load)
+
+
+def test_elements_that_the_state_forgot_are_bounded() -> None:
+    """One of four flat elements carries just so much that its neighbours' gap is closed to nothing: on them
+    the correction would overshoot, and without that part the bound would be 9 % short in the norm."""
+    base = replace(scene(0, tau=0.0, beta=0.0), lower=rf.Body(POLYMER, np.zeros((2, 2))))
+    base = replace(base, upper=rf.Body(STEEL, rf.Flat()))
+    found = rf.solve(base, 2, approach=1e-7, oblique=False)
+    row = EnergyNorm(found.problem, np.ones((2, 2))).apply(np.array([[1.0, 0.0], [0.0, 0.0]]))
+    pressure = np.array([[1e-7 / row[0, 1], 0.0], [0.0, 0.0]])
+    bounds = proven_bounds(found.problem, pressure, 0 * pressure, found.slopes)
+    assert assert_true(bounds, found.problem, pressure, 0 * pressure, found.slopes) > 0.5
+
+
+def test_dual_norm_is_a_bound_whatever_conjugate_gradients_return(monkeypatch: pytest.MonkeyPatch) -> None:
+    norm = EnergyNorm(rf.solve(scene(1), M, tolerance=0.5).problem, np.ones((M, M)))
+    right, where = np.random.default_rng(3).standard_normal((M, M)), np.ones((M, M), dtype=bool)
+    z, az = norm.solve(right, where)
+    exact = norm.dual_norm(right, where)
+    for share in (0.0, 0.5, 1.5):
+        monkeypatch.setattr(norm, "solve", lambda *_, share=share: (share * z, share * az))
+        assert 0.99 * exact <= norm.dual_norm(right, where) < math.inf
+
+
 def test_bounds_of_a_converged_state_are_sharp_and_decide_every_element() -> None:
     found = rf.solve(scene(4), M)
     bounds = found.bounds

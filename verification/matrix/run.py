@@ -59,6 +59,7 @@ class Matrix:
                     "what": fault.what,
                     "kind": "seeded" if name in FAULTS else "local",
                     "tried": len(self.verdicts[name]),
+                    "broke": sum(status == Status.ERROR for status in self.verdicts[name].values()),
                     "caught_by": self.caught_by[name],
                 }
                 for name, fault in self.faults.items()
@@ -120,10 +121,10 @@ def _cheap(checks: Mapping[str, Case], cheap: float, excluded: dict[str, str]) -
         left = [id for id in checks if id not in excluded]
         ended = _forked(partial(_run_all, left, checks))
         for id, found in ended.items():
-            if found.status != Status.PASS:
+            if found.seconds > cheap:
+                excluded[id] = f"takes {found.seconds:.1f} s or more"
+            elif found.status != Status.PASS:
                 excluded[id] = f"{found.status} without a fault"
-            elif found.seconds > cheap:
-                excluded[id] = f"takes {found.seconds:.1f} s"
     return {id: found for id, found in ended.items() if id not in excluded}
 
 
