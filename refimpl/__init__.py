@@ -15,6 +15,7 @@ from refimpl.materials import Material
 from refimpl.outcome import Status
 from refimpl.scene import Body, Friction, Scene
 from refimpl.scene_file import read_scene, scene_to_toml, shipped_scenes
+from refimpl.sensitivity import Sensitivity, sensitivity
 from refimpl.solution import Solution
 from refimpl.solve import solve
 from refimpl.surfaces import (
@@ -39,6 +40,7 @@ __all__ = [
     "Material",
     "MeasuredSurface",
     "Scene",
+    "Sensitivity",
     "Solution",
     "Sphere",
     "Status",
@@ -47,6 +49,7 @@ __all__ = [
     "SurfaceWarning",
     "read_scene",
     "scene_to_toml",
+    "sensitivity",
     "shipped_scenes",
     "solve",
 ]

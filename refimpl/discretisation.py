@@ -43,6 +43,7 @@ class Prior(NamedTuple):
 AREA = Prior(0.22, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
 BULK = Prior(0.01, 1.0)  # friction without tau's share; unit of this and the last: value (edge / area)^1.5
 PEAK = Prior(0.05, 3.0, order=2.0)  # unit: peak times its drop to the neighbours
+BINORMAL = Prior(0.002, 1.0)  # unit: normal force, else as the next
 OTHER = Prior(0.1, 1.0)
 
 
@@ -85,12 +86,14 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
         "max_pressure": smooth(columns["max_pressure"], PEAK, results[-1].drop * fine["max_pressure"]),
         "approach": smooth(columns["approach"], OTHER, thinness * fine["approach"]),
         "normal_force": smooth(force, OTHER, thinness * fine["normal_force"]),
-        "binormal_force": smooth(columns["binormal_force"], OTHER, thinness * fine["normal_force"]),
+        "binormal_force": smooth(columns["binormal_force"], BINORMAL, thinness * fine["normal_force"]),
     }
 
 
 def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]:
-    """Discretisation parts of the finest grid's numbers."""
+    """Discretisation parts of the finest grid's numbers; none without contact."""
+    if not results[-1].touching:
+        return {}
     found = results[-1].numbers
     return {
         name: {"discretisation": estimate.bar(found[name])} for name, estimate in estimates(results).items()

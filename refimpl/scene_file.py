@@ -12,13 +12,14 @@ import tomli_w
 
 from refimpl.errors import InputError
 from refimpl.materials import Material
+from refimpl.parameters import check_tolerances
 from refimpl.scene import Body, Friction, Scene
 from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.base import SurfaceSum
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
 _OPTIONAL_KEYS = ("sliding_direction", "sliding_offset", "periodic")
-_SCENE_KEYS = ("load", "side", "upper", "lower", "friction", *_OPTIONAL_KEYS)
+_SCENE_KEYS = ("load", "side", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -26,7 +27,22 @@ def read_scene(path: str | Path) -> Scene:
 
     Paths of measured surfaces are relative to the file. Raises `InputError` naming the field.
     """
-    path = Path(path)
+    table, folder = _read(Path(path))
+    return scene_from_dict(table, folder)
+
+
+def read_tolerances(path: str | Path) -> dict[str, float]:
+    """The ``[tolerances]`` of a scene's file: relative half-widths (95 %) by parameter, none by default.
+
+    >>> read_tolerances("table1-smooth")
+    {}
+    """
+    table, folder = _read(Path(path))
+    return _tolerances(table, scene_from_dict(table, folder))
+
+
+def _read(path: Path) -> tuple[dict[str, Any], Path]:
+    """The parsed file, or shipped scene, and the folder that its paths are relative to."""
     if not path.is_file():
         if str(path) in shipped_scenes():
             path = Path(str(resources.files("refimpl").joinpath("data", "scenes", f"{path}.toml")))
@@ -38,7 +54,7 @@ def read_scene(path: str | Path) -> Scene:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError("scene", str(path), f"valid TOML ({error})") from error
-    return scene_from_dict(table, path.parent)
+    return table, path.parent
 
 
 def shipped_scenes() -> tuple[str, ...]:
@@ -58,7 +74,7 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
     friction = _table(table, "friction", {})
     _refuse_unknown("friction", friction, ("tau", "beta"))
     optional = {key: table[key] for key in _OPTIONAL_KEYS if key in table}
-    return Scene(
+    scene = Scene(
         upper=_body(table, "upper", folder),
         lower=_body(table, "lower", folder),
         friction=Friction(**friction),
@@ -66,6 +82,8 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
         side=_required(table, "side", "a length in m"),
         **optional,
     )
+    _tolerances(table, scene)
+    return scene
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
@@ -85,6 +103,12 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
 def scene_to_toml(scene: Scene) -> str:
     """The scene as TOML text that `read_scene` reads back."""
     return tomli_w.dumps(scene_to_dict(scene))
+
+
+def _tolerances(table: Mapping[str, Any], scene: Scene) -> dict[str, float]:
+    tolerances = dict(_table(table, "tolerances", {}))
+    check_tolerances(scene, tolerances)
+    return tolerances
 
 
 def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:

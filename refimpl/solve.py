@@ -16,6 +16,7 @@ from refimpl.dense_solver import solve_dense
 from refimpl.fft_solver import solve_fft
 from refimpl.forces import perimeter_corrected_area
 from refimpl.grid import Grid
+from refimpl.grid_result import GridResult
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.window import Window
@@ -24,12 +25,12 @@ from refimpl.paper import solve_paper
 from refimpl.plan import Method, Plan
 from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
 from refimpl.problem import Problem, pose
-from refimpl.refine import Quantity, refine
+from refimpl.refine import Quantity, refine, uncertainty
 from refimpl.request import Request
 from refimpl.scene import Scene
 from refimpl.solution import Cost, Solution
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning
-from refimpl.uncertainty import iteration_parts, merged, one_grid
+from refimpl.uncertainty import iteration_parts, merged
 from refimpl.validity import cautions
 
 
@@ -84,9 +85,7 @@ def solve(
         planned = _Planned(scene, request.plan(), approach, request.residual)
         return refine(planned.solve_at, accuracy, request.judged)
     solution = _solve_planned(scene, request.plan(), approach, request.residual)
-    return replace(
-        solution, uncertainty=merged(iteration_parts(solution), solution.uncertainty, one_grid(solution))
-    )
+    return replace(solution, uncertainty=uncertainty([GridResult.of(solution)]))
 
 
 class _Planned:

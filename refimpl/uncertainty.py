@@ -1,8 +1,8 @@
 """Error bars: how far each reported number may be from the exact solution of the model, in parts.
 
 Parts are absolute, in the number's unit, and meant as 95 % bounds that add. ``iteration`` follows
-from the certificate; ``tau support`` from the states of a settled cycle; ``discretisation`` from
-the contact's perimeter on one grid, or from a sequence of grids (`refimpl.discretisation`).
+from the certificate; ``tau support`` from the states of a settled cycle; ``discretisation`` from one
+grid or a sequence of grids (`refimpl.discretisation`).
 """
 
 from __future__ import annotations
@@ -47,15 +47,6 @@ def adhesive_share(solution: Solution) -> float:
 def edge_excess(solution: Solution) -> float:
     """Area that whole elements add along the contact's edge, ``A - A_corrected`` (m^2)."""
     return solution.contact_area - solution.contact_area_corrected
-
-
-def one_grid(solution: Solution) -> Uncertainty:
-    """Discretisation parts that a single grid can tell: the edge's, in the area and through tau in mu."""
-    excess = abs(edge_excess(solution))
-    return {
-        "contact_area": {"discretisation": excess},
-        "friction_coefficient": {"discretisation": excess * adhesive_share(solution)},
-    }
 
 
 def merged(*several: Mapping[str, Mapping[str, float]]) -> Uncertainty:

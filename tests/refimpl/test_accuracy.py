@@ -68,12 +68,15 @@ def test_bad_accuracies_are_refused(arguments: dict[str, object]) -> None:
         rf.solve(sliding_ball(0.3e-6, 1), **arguments)
 
 
-def test_parts_of_one_grid_are_iteration_and_edge() -> None:
-    found = rf.solve(sliding_ball(0.3e-6, 1), grid=64)
+def test_one_grid_has_bars_of_its_own() -> None:
+    scene = sliding_ball(0.3e-6, 1)
+    found, finer = rf.solve(scene, grid=64), rf.solve(scene, grid=256)
+    for name in ("friction_coefficient", "contact_area", "max_pressure", "approach", "binormal_force"):
+        bar = found.uncertainty[name]["discretisation"]
+        assert abs(getattr(found, name) - getattr(finer, name)) <= bar, name
+        assert finer.uncertainty[name]["discretisation"] < 0.4 * bar  # first order at least
     edge = found.contact_area - found.contact_area_corrected
-    assert found.uncertainty["contact_area"]["discretisation"] == pytest.approx(edge)
-    through_tau = edge * 15e6 / found.normal_force
-    assert found.uncertainty["friction_coefficient"]["discretisation"] == pytest.approx(through_tau)
+    assert edge < found.uncertainty["contact_area"]["discretisation"] < 2 * edge
     assert found.uncertainty["approach"]["iteration"] <= 1e-8 * found.approach
 
 

@@ -17,6 +17,7 @@ EPILOG = """examples:
   rough-friction solve scene.toml --grid 512 --json result.json --plot result.png --vtk result.vtu
   rough-friction solve hertz --grid 48 --method dense
   rough-friction solve scene.toml --accuracy 0.01
+  rough-friction solve scene.toml --budget
   rough-friction solve scene.toml --approach 1.2e-6
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
@@ -84,6 +85,11 @@ def add_parser(commands: Parsers) -> None:
     add("--slope-correction", action="store_true", help="exact tractions of oblique facets in Eq. (7)")
     add("--explain", action="store_true", help="print what the scene requires, and solve nothing")
     add("--tolerance", metavar="T", type=float, help="for the certificate (default 1e-8; paper 1e-4)")
+    add(
+        "--budget",
+        action="store_true",
+        help="uncertainty budget and derivatives (done for a file with [tolerances] in any case)",
+    )
     add("--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture")
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
     add_json(parser)
@@ -93,7 +99,10 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
+    from refimpl.budget import budget
     from refimpl.request import Request
+    from refimpl.scene_file import read_tolerances
+    from verification.cli import budget as budget_lines
     from verification.cli import explain, plot, vtk
 
     plot.check_suffix(options.plot)
@@ -118,11 +127,17 @@ def run(options: argparse.Namespace) -> int:
         emit(found, options.json, explain.explained(plan, options.scene))
         return 0
     solution = refimpl.solve(**vars(request))
+    tolerances = read_tolerances(options.scene)
+    budgets = budget(scene, solution, tolerances) if tolerances or options.budget else None
     if options.plot is not None:
         plot.draw(solution, scene, options.plot)
     if options.vtk is not None:
         vtk.write(solution, options.vtk)
-    emit(document(solution, options.scene), options.json, table(solution, options.scene))
+    found, text = document(solution, options.scene), table(solution, options.scene)
+    if budgets is not None:
+        found["budget"] = plain(budget_lines.document(budgets))
+        text += f"\n\n{budget_lines.table(budgets)}"
+    emit(found, options.json, text)
     good = refimpl.Status.CONVERGED, refimpl.Status.CYCLED  # a settled cycle is certified as well
     return 0 if solution.status in good else 1
 

@@ -1,0 +1,133 @@
+"""Where a number's uncertainty comes from, after ASME V&V 20 (2009): numerical, input, sampling, model form.
+
+Every entry is a half-width in the number's unit that holds with 95 %.
+
+- numerical: the sum of the solution's parts (iteration, tau support, discretisation), which are bounds.
+- input: ``sqrt(sum (dq/dp U_p)^2)`` over the scene's parameters with a stated tolerance, by the
+  derivatives of `refimpl.sensitivity` (V&V 20, section 3-2).
+- sampling: of a mean over realisations of roughness; of one realisation there is none to state.
+- model form: what is known of the model's own error. V&V 20 leaves it to comparison with experiment;
+  two of its sources can be bounded from within. "coefficients": a flat half-space's influence
+  coefficients on a slope (`refimpl.coefficient_error`), taken as if all of them were wrong by as much as
+  the worst neighbour at the contact's rms slope, which is a change of both moduli by that share.
+  "cosines": the printed cosines of Eqs (2) and (3) against the exact tractions of a facet.
+
+Independent sources add in squares; a model's error is no matter of chance, and is added as it is:
+``total = model form + sqrt(numerical^2 + input^2 + sampling^2)``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from refimpl.forces import facet_resultants
+from refimpl.parameters import check_tolerances
+from refimpl.scene import Scene
+from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
+from refimpl.solution import Solution
+
+
+@dataclass(frozen=True)
+class Budget:
+    """One number's uncertainty in parts (95 % half-widths in its unit).
+
+    ``inputs`` holds each toleranced parameter's share, ``sources`` each part of the model form's;
+    ``sampling`` is None where no ensemble was given. An unbounded part is infinite.
+    """
+
+    value: float
+    numerical: float
+    inputs: Mapping[str, float]
+    sources: Mapping[str, float]
+    sampling: float | None = None
+
+    @property
+    def input(self) -> float:
+        """All tolerances together."""
+        return math.hypot(*self.inputs.values())
+
+    @property
+    def model_form(self) -> float:
+        """All known sources of the model's own error together."""
+        return sum(self.sources.values())
+
+    @property
+    def total(self) -> float:
+        """Model form, and the rest in squares."""
+        return self.model_form + math.hypot(self.numerical, self.input, self.sampling or 0.0)
+
+
+@dataclass(frozen=True)
+class Budgets:
+    """The budgets of a solution's numbers, with the derivatives that they rest on."""
+
+    numbers: Mapping[str, Budget]
+    derivatives: Sensitivity
+    tolerances: Mapping[str, float] = field(default_factory=dict)
+
+
+def budget(
+    scene: Scene,
+    solution: Solution,
+    tolerances: Mapping[str, float] | None = None,
+    sampling: Mapping[str, float] | None = None,
+) -> Budgets:
+    """Budgets of mu, A, f_max and Q.
+
+    Parameters
+    ----------
+    tolerances : relative 95 % half-widths by the names of `refimpl.parameters`; none by default
+    sampling : 95 % half-widths of ensemble means by the numbers' names, where there is an ensemble
+
+    Raises `InputError` for unknown names, and as `refimpl.sensitivity` does.
+    """
+    tolerances = dict(tolerances or {})
+    check_tolerances(scene, tolerances)
+    derivatives = sensitivity(scene, solution)
+    sources = _model_form(solution, derivatives)
+    numbers = {
+        number: Budget(
+            value=derivatives.found[number],
+            numerical=math.fsum(solution.uncertainty.get(number, {}).values()),
+            inputs={
+                name: abs(derivatives.derivatives[number][name] * derivatives.parameters[name]) * tolerance
+                for name, tolerance in tolerances.items()
+            },
+            sources=sources[number],
+            sampling=(sampling or {}).get(number),
+        )
+        for number in NUMBERS
+    }
+    return Budgets(numbers, derivatives, tolerances)
+
+
+def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[str, float]]:
+    """Both sources for each number; infinite where the slope is beyond Appendix A's table."""
+    wrong = solution.slope_error.at_rms
+    cosines = _cosines(solution, derivatives)
+    moduli = [name for name in derivatives.parameters if name.endswith(".E")]
+    found = {}
+    for number in NUMBERS:
+        stiffness = sum(
+            derivatives.derivatives[number][name] * derivatives.parameters[name] for name in moduli
+        )
+        coefficients = math.inf if wrong is None else abs(stiffness) * wrong
+        found[number] = {"coefficients": coefficients, "cosines": cosines[number]}
+    return found
+
+
+def _cosines(solution: Solution, derivatives: Sensitivity) -> dict[str, float]:
+    """Change of each number between printed and exact resultants of the same tractions.
+
+    A normal force that the exact sum finds too large or too small is a load misjudged by as much.
+    """
+    exact = facet_resultants(
+        solution.pressure, solution.traction, solution.slopes, solution.grid.element_area
+    )
+    misjudged = exact.normal - solution.normal_force
+    change = {number: abs(derivatives.derivatives[number]["load"] * misjudged) for number in NUMBERS}
+    change["friction_coefficient"] = abs(exact.friction / exact.normal - solution.friction_coefficient)
+    change["binormal_force"] = abs(exact.binormal - solution.binormal_force)
+    return change

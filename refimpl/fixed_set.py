@@ -1,0 +1,98 @@
+"""The contact problem on a contact set that stays as it is: a smooth system, and its answer to a change.
+
+Unknown are the pressures on the set and the approach, ``x = (f, delta)``; the equations are Eq. (6) with
+equality on the set, written ``u + K (h - delta) = 0`` with ``K = cos theta_x cos theta_y``, and
+``N = P``. Cosines, shear and load all follow from ``x``, so one residual holds the whole model; its
+Jacobian is applied by a difference quotient and inverted by GMRES (Knoll and Keyes 2004).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from refimpl.forces import Forces, resultants
+from refimpl.friction import Mask, local_friction
+from refimpl.grid import Array
+from refimpl.operators.fft import FFTInfluence
+from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.operators.window import Window
+from refimpl.problem import Problem
+from refimpl.slopes import Slopes
+
+_MARGIN = 2  # elements around the contact: its slopes are central differences
+_STEP = 1e-4  # of the quotient, in peaks: the model is nonlinear by slopes^2 only, rounding costs 1e-12
+_TOLERANCE = 1e-6  # of GMRES, relative: a thousandth of what a derivative is asked to be good for
+_RESTART, _CYCLES = 80, 5
+
+
+class Response(NamedTuple):
+    """Answer of pressures (window's shape, Pa) and approach (m) to a unit of change; GMRES's residual."""
+
+    pressure: Array
+    approach: float
+    residual: float
+
+
+class FixedSet:
+    """A solved state's contact set and its support of tau, on the window of the grid that holds them."""
+
+    def __init__(self, problem: Problem, pressure: Array, support: Mask, slopes: Slopes) -> None:
+        M, grid = problem.grid.M, problem.grid
+        self.window = Window.full(M) if problem.periodic else Window.around(pressure > 0, margin=_MARGIN)
+        cut = self.window.slices
+        self.pressure, self.support = pressure[cut], support[cut]
+        self.contact = self.pressure > 0
+        self.peak = float(self.pressure.max())
+        self.operator: FFTInfluence | PeriodicInfluence = (
+            PeriodicInfluence(grid, problem.direction)
+            if problem.periodic
+            else FFTInfluence(grid, problem.direction, source=self.window)
+        )
+        self.problem = problem.windowed(self.window)
+        self._slopes = Slopes(slopes.tan_x[cut], slopes.tan_y[cut])
+        u, K, _ = self._state(self.problem, self.pressure)
+        weight = self.pressure / self.pressure.sum()
+        self.approach = float(np.sum(weight * (u / K + self.problem.gap)))
+        self._base = self.residual(self.problem, self.pressure, self.approach)
+
+    def forces(self, problem: Problem, pressure: Array) -> Forces:
+        """N, F and Q of a state on the set (N)."""
+        return self._state(problem, pressure)[2]
+
+    def residual(self, problem: Problem, pressure: Array, approach: float) -> Array:
+        """Misfit of Eq. (6) on the set over the base approach, then that of the load over the load."""
+        u, K, forces = self._state(problem, pressure)
+        misfit = (u + K * (problem.gap - approach))[self.contact] / self.approach
+        return np.append(misfit, forces.normal / (problem.load or forces.normal) - 1)
+
+    def response(self, change: Array) -> Response:
+        """Solve ``J dx = -change``, the change being a derivative of the residual."""
+        size = len(change)
+        jacobian = LinearOperator((size, size), matvec=self._jacobian, dtype=np.float64)
+        x, _ = gmres(jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES)
+        left = float(np.linalg.norm(jacobian @ x + change) / np.linalg.norm(change))
+        return Response(*self._unpacked(x), left)
+
+    def _jacobian(self, x: Array) -> Array:
+        x = np.ravel(x)
+        scale = _STEP / max(float(np.abs(x).max()), np.finfo(float).tiny)
+        pressure, approach = self._unpacked(scale * x)
+        moved = self.residual(self.problem, self.pressure + pressure, self.approach + approach)
+        return np.asarray((moved - self._base) / scale)
+
+    def _unpacked(self, x: Array) -> tuple[Array, float]:
+        """Pressures on the window and approach of a vector in peaks and base approaches."""
+        pressure = np.zeros(self.contact.shape)
+        pressure[self.contact] = self.peak * x[:-1]
+        return pressure, self.approach * float(x[-1])
+
+    def _state(self, problem: Problem, pressure: Array) -> tuple[Array, Array, Forces]:
+        """Displacement u (m), obliqueness and forces; facet tractions take the slopes of the base state."""
+        traction = local_friction(problem.friction, pressure, self.support)
+        lower, upper = problem.displacements(self.operator, pressure, traction, self._slopes)
+        slopes = problem.slopes(lower, upper)
+        forces = resultants(pressure, traction, slopes, problem.grid.element_area)
+        return lower + upper, slopes.obliqueness, forces

@@ -1,0 +1,82 @@
+"""The numbers a scene is made of, by name: read them, and make the same scene with one of them changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+
+from refimpl.errors import InputError, require_number
+from refimpl.scene import Body, Scene
+from refimpl.surfaces import Surface, SurfaceSum
+
+BODIES = ("upper", "lower")
+_OF_SURFACES = ("rms", "correlation_length", "radius")
+_TOLERANCE = "a relative tolerance between 0 and 1 (half-width, 95 %)"
+
+
+def parameters(scene: Scene) -> dict[str, float]:
+    """All parameters with their values, SI; a surface's parts count from 0.
+
+    ``load``, ``friction.tau``, ``friction.beta``, ``upper.material.E``, ``upper.material.nu``,
+    ``upper.surface[0].rms`` and so on.
+
+    >>> from refimpl.scene_file import read_scene
+    >>> parameters(read_scene("hertz"))["load"]
+    70.0
+    """
+    found = {"load": scene.load, "friction.tau": scene.friction.tau, "friction.beta": scene.friction.beta}
+    for name in BODIES:
+        body = getattr(scene, name)
+        found |= {f"{name}.material.E": body.material.E, f"{name}.material.nu": body.material.nu}
+        for k, part in enumerate(body.surface.parts):
+            found |= {f"{name}.surface[{k}].{key}": getattr(part, key) for key in _keys(part)}
+    return found
+
+
+def with_parameter(scene: Scene, name: str, value: float) -> Scene:
+    """The scene with one parameter changed.
+
+    Raises `InputError` for a name that is none of `parameters(scene)`, and for a value out of range.
+    """
+    if name not in parameters(scene):
+        raise InputError("parameter", name, f"one of {', '.join(parameters(scene))}")
+    head, _, key = name.rpartition(".")
+    if not head:
+        return replace(scene, load=value)
+    if head == "friction":
+        return replace(scene, friction=replace(scene.friction, **{key: value}))
+    which, _, place = head.partition(".")
+    body: Body = getattr(scene, which)
+    if place == "material":
+        body = Body(replace(body.material, **{key: value}), body.surface)
+    else:
+        parts = list(body.surface.parts)
+        k = int(place[len("surface[") : -1])
+        parts[k] = replace(parts[k], **{key: value})  # type: ignore[type-var]  # parts with keys are dataclasses
+        body = Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
+    return replace(scene, upper=body) if which == "upper" else replace(scene, lower=body)
+
+
+def moving(scene: Scene) -> dict[str, float]:
+    """The parameters that derivatives are had for: those that are not zero.
+
+    The correlation length of a periodic surface is left out: another length is another realisation.
+    """
+    return {
+        name: value
+        for name, value in parameters(scene).items()
+        if value != 0 and not (scene.periodic and name.endswith("correlation_length"))
+    }
+
+
+def check_tolerances(scene: Scene, tolerances: Mapping[str, float]) -> None:
+    """Raise `InputError` unless every name is a parameter that moves and every tolerance is relative."""
+    for name, tolerance in tolerances.items():
+        if name not in moving(scene):
+            raise InputError(f"tolerances.{name!r}", tolerance, f"one of {', '.join(moving(scene))}")
+        require_number(f"tolerances.{name!r}", tolerance, _TOLERANCE, at_least=0, below=1)
+
+
+def _keys(part: Surface) -> tuple[str, ...]:
+    known = {field.name for field in fields(part)}  # type: ignore[arg-type]  # all surfaces are dataclasses
+    return tuple(key for key in _OF_SURFACES if key in known)

@@ -1,0 +1,222 @@
+"""What a solution's numbers change by when the scene's numbers change.
+
+Pressures answer smoothly while the contact set stays as it is, so that friction, binormal force and
+peak pressure follow from one linear solve a parameter (`refimpl.fixed_set`). The area does not: at a
+fixed set it is constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` is added
+to friction.
+
+- Load, moduli and friction leave the surfaces alone, and the edges of the contact move by what the
+  linear answer grows like there: pressure falls off as ``k sqrt(d)`` at a distance d from an edge, so an
+  edge that moves by V changes it by ``k V / (2 sqrt d)``, and the relative change of the outermost
+  elements, ``df / f = V / (2 d)``, beyond that of the elements inside, measures V up to one factor.
+  It is taken from the load, for which the area is differenced over two full solves.
+- Shapes and roughness bring contact to new places, which no fixed set foresees: the area is differenced
+  over two full solves for each.
+
+The scatter stated beside the area (and through tau beside friction) is that of counting elements in
+two solves, and of comparing the edge with 5 x 5 or with 9 x 9 elements.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import binary_erosion, uniform_filter
+
+from refimpl.discretisation import AREA, EDGE_SHARE
+from refimpl.errors import InputError
+from refimpl.fixed_set import FixedSet
+from refimpl.grid import Array
+from refimpl.grid_result import alike
+from refimpl.parameters import moving, parameters, with_parameter
+from refimpl.problem import Problem, pose
+from refimpl.scene import Scene
+from refimpl.solution import Solution
+from refimpl.solve import solve
+from refimpl.uncertainty import edge_excess
+
+NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")
+_STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
+_STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
+_SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
+_WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
+_TOP_RATIO = 0.5  # of Poisson
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Derivatives of a solution's numbers with respect to the scene's parameters, SI.
+
+    ``derivatives[number][parameter]``, and ``scatter`` of the same shape: the 95 % bound of what
+    counting elements leaves uncertain (0 for what is smooth). ``found`` and ``parameters`` are the
+    numbers and parameters themselves. ``residual`` is the worst of the linear solves.
+    """
+
+    found: Mapping[str, float]
+    parameters: Mapping[str, float]
+    derivatives: Mapping[str, Mapping[str, float]]
+    scatter: Mapping[str, Mapping[str, float]]
+    residual: float
+
+    def relative(self, number: str, parameter: str) -> float:
+        """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p."""
+        derivative = self.derivatives[number][parameter]
+        return derivative * self.parameters[parameter] / self.found[number]
+
+
+def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
+    """Derivatives of mu, A, f_max and Q with respect to every parameter of `moving(scene)`.
+
+    ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, and two
+    solves on the solution's grid for the load and for each number of a surface. Raises `InputError`
+    for a solution that is not in contact or was not found under the scene's load.
+    """
+    if not solution.contact.any():
+        raise InputError("solution", solution.status.value, "a solution in contact")
+    if abs(solution.normal_force / scene.load - 1) > 1e-3:
+        raise InputError("solution", solution.normal_force, f"one under the scene's load of {scene.load:g} N")
+    base = solution.problem
+    support = solution.contact & ~solution.withheld
+    fixed = FixedSet(base, solution.pressure, support, solution.slopes)
+    values = moving(scene)
+    answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
+    over_load = _differenced(scene, solution, "load", scene.load)
+    edge = _Edge(fixed, over_load, answers["load"].pressure)
+    areas = {
+        name: _differenced(scene, solution, name, value)
+        if ".surface" in name
+        else edge.derivative(answers[name].pressure)
+        for name, value in values.items()
+    }
+    return _gathered(scene, solution, answers, areas)
+
+
+@dataclass(frozen=True, eq=False)
+class _Answer:
+    """Derivatives at the fixed set: pressures (window's shape), their peak, F and Q over the parameter."""
+
+    pressure: Array
+    peak: float
+    friction: float
+    binormal: float
+    residual: float
+
+
+def _answer(scene: Scene, base: Problem, fixed: FixedSet, name: str, value: float) -> _Answer:
+    low, high = value * (1 - _STEP), value * (1 + _STEP)
+    if name.endswith(".nu"):
+        high = min(high, _TOP_RATIO)
+    span = high - low
+    below, above = (
+        _changed(scene, base, with_parameter(scene, name, at)).windowed(fixed.window) for at in (low, high)
+    )
+    residuals = [fixed.residual(problem, fixed.pressure, fixed.approach) for problem in (below, above)]
+    found = fixed.response((residuals[1] - residuals[0]) / span)
+    before = fixed.forces(below, fixed.pressure + (low - value) * found.pressure)
+    after = fixed.forces(above, fixed.pressure + (high - value) * found.pressure)
+    return _Answer(
+        pressure=found.pressure,
+        peak=float(found.pressure.flat[int(np.argmax(fixed.pressure))]),
+        friction=(after.friction - before.friction) / span,
+        binormal=(after.binormal - before.binormal) / span,
+        residual=found.residual,
+    )
+
+
+def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
+    """The changed scene's problem; surfaces are sampled again only where they changed."""
+    if changed.upper.surface is scene.upper.surface and changed.lower.surface is scene.lower.surface:
+        return replace(base, pair=changed.materials, friction=changed.friction, load=changed.load)
+    return pose(changed, base.grid, base.terms, None)
+
+
+def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> tuple[float, float]:
+    """``dA/dp`` by a central difference of two solves, and the 95 % bound of its count's scatter."""
+    terms = solution.problem.terms
+    step = _STRIDE
+    if name.endswith("correlation_length"):  # stretches the whole surface about its corner
+        step = min(step, _SHIFT * value / scene.side)
+    areas = [
+        solve(
+            with_parameter(scene, name, value * factor),
+            solution.grid.M,
+            oblique=terms.oblique,
+            slope_correction=terms.slope_correction,
+            coupled=terms.coupled,
+            tilted=terms.tilted,
+            tolerance=solution.tolerance,
+        ).contact_area
+        for factor in (1 - step, 1 + step)
+    ]
+    span = 2 * step * abs(value)
+    element = solution.grid.element_area
+    count = max(edge_excess(solution), 0.0) / (EDGE_SHARE * element)
+    scatter = AREA.scatter * math.sqrt(2 * count * alike(solution.contact)) * element
+    return (areas[1] - areas[0]) / span * math.copysign(1.0, value), 2 * scatter / span
+
+
+class _Edge:
+    """Motion of the contact's edge, calibrated by the load: the area's derivative from a pressure's."""
+
+    def __init__(self, fixed: FixedSet, over_load: tuple[float, float], loaded: Array) -> None:
+        self.fixed = fixed
+        wrapped = np.pad(fixed.contact, 1, mode="wrap" if fixed.problem.periodic else "constant")
+        self.elements = (wrapped & ~binary_erosion(wrapped, border_value=1))[1:-1, 1:-1]
+        derivative, counted = over_load
+        self.everywhere = np.ones(fixed.contact.shape)
+        self.factors = [
+            derivative / growth if (growth := self._growth(loaded, size)) else 0.0 for size in _WIDTHS
+        ]
+        self.counted = counted / abs(derivative) if derivative else 0.0
+
+    def derivative(self, pressure: Array) -> tuple[float, float]:
+        """``dA/dp`` (m^2 a unit) and its scatter for a derivative of the pressures."""
+        near, far = (
+            factor * self._growth(pressure, size) for factor, size in zip(self.factors, _WIDTHS, strict=True)
+        )
+        return near, math.hypot(self.counted * near, near - far)
+
+    def _growth(self, pressure: Array, size: int) -> float:
+        """Sum over the edge of the relative change there, less that of all ``size x size`` elements around.
+
+        The difference is blind to pressures that scale as they are, which moves no edge.
+        """
+        mode = "wrap" if self.fixed.problem.periodic else "constant"
+
+        def ratio(where: Array, width: int) -> Array:
+            change, level = (
+                uniform_filter(where * field, width, mode=mode)[self.elements]
+                for field in (pressure, self.fixed.pressure)
+            )
+            return np.asarray(change / level)
+
+        return float(np.sum(ratio(self.elements.astype(np.float64), 3) - ratio(self.everywhere, size)))
+
+
+def _gathered(
+    scene: Scene,
+    solution: Solution,
+    answers: Mapping[str, _Answer],
+    areas: Mapping[str, tuple[float, float]],
+) -> Sensitivity:
+    load, slip = scene.load, scene.friction.tau / scene.load
+    derivatives: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
+    scatter: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
+    for name, answer in answers.items():
+        area, loose = areas[name]
+        friction = answer.friction / load + slip * area
+        if name == "load":
+            friction -= solution.friction_coefficient / load
+        found = (friction, area, answer.peak, answer.binormal)
+        for number, derivative, spread in zip(NUMBERS, found, (slip * loose, loose, 0.0, 0.0), strict=True):
+            derivatives[number][name], scatter[number][name] = derivative, spread
+    return Sensitivity(
+        found={number: float(getattr(solution, number)) for number in NUMBERS},
+        parameters={name: parameters(scene)[name] for name in answers},
+        derivatives=derivatives,
+        scatter=scatter,
+        residual=max(answer.residual for answer in answers.values()),
+    )

@@ -1,0 +1,123 @@
+"""Derivatives against finite differences of full solves, exact similarity laws and Hertz's exponents."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.parameters import parameters, with_parameter
+from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
+
+STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
+M, TIGHT = 48, 1e-11
+
+
+def sliding(tau: float = 0.0, periodic: bool = False) -> rf.Scene:
+    ball = rf.GaussianRoughness(2e-6, 400e-6, seed=1) if periodic else rf.Sphere(radius=0.02)
+    return rf.Scene(
+        upper=rf.Body(STEEL, ball),
+        lower=rf.Body(POLYMER, rf.GaussianRoughness(rms=2e-6, correlation_length=400e-6, seed=3)),
+        friction=rf.Friction(tau=tau, beta=0.2),
+        load=20.0,
+        side=1.61e-3,
+        sliding_direction=0.7,
+        periodic=periodic,
+    )
+
+
+def differences(scene: rf.Scene, name: str, step: float, **options: object) -> dict[str, float]:
+    """Central differences of full solves, which must not change the contact set."""
+    value = parameters(scene)[name]
+    low, high = (
+        rf.solve(with_parameter(scene, name, value * (1 + s)), M, tolerance=TIGHT, **options)
+        for s in (-step, step)
+    )
+    assert np.array_equal(low.contact, high.contact)
+    return {number: (getattr(high, number) - getattr(low, number)) / (2 * step * value) for number in NUMBERS}
+
+
+@pytest.mark.parametrize("options", [{}, {"slope_correction": True}, {"oblique": False}], ids=str)
+def test_smooth_numbers_agree_with_finite_differences(options: dict[str, bool]) -> None:
+    scene = sliding()
+    found = sensitivity(scene, rf.solve(scene, M, tolerance=TIGHT, **options))
+    names = ("load", "friction.beta", "lower.material.nu", "lower.surface[0].rms", "upper.surface[0].radius")
+    for name in names if not options else names[:3]:
+        expected = differences(scene, name, 1e-5, **options)
+        for number in ("friction_coefficient", "max_pressure", "binormal_force"):
+            # GMRES leaves 1e-6 and the quotients' rounding 1e-5, of the number's own scale if larger
+            scale = max(abs(expected[number]), abs(found.found[number] / found.parameters[name]))
+            assert abs(found.derivatives[number][name] - expected[number]) <= 1e-4 * scale, (name, number)
+
+
+def test_correlation_length_agrees_where_the_set_stays() -> None:
+    scene, name = sliding(), "lower.surface[0].correlation_length"
+    found = sensitivity(scene, rf.solve(scene, M, tolerance=TIGHT))
+    expected = differences(scene, name, 1e-6)
+    assert found.derivatives["max_pressure"][name] == pytest.approx(expected["max_pressure"], rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def adhesive() -> Sensitivity:
+    scene = sliding(tau=5e5)
+    return sensitivity(scene, rf.solve(scene, 2 * M))
+
+
+def test_stresses_scale_together(adhesive: Sensitivity) -> None:
+    """All moduli, tau and the load times s: f times s, and nothing else changes - exactly, grid by grid."""
+    stresses = ("load", "friction.tau", "upper.material.E", "lower.material.E")
+    for number, power in (("friction_coefficient", 0), ("max_pressure", 1), ("contact_area", 0)):
+        # smooth numbers to GMRES's 1e-6; the area through the edge's motion, which is linear in the answer
+        assert sum(adhesive.relative(number, name) for name in stresses) == pytest.approx(power, abs=2e-4)
+
+
+def test_the_area_agrees_with_wide_differences_within_its_scatter(adhesive: Sensitivity) -> None:
+    scene = sliding(tau=5e5)
+    for name in ("lower.material.E", "lower.surface[0].rms"):
+        value = parameters(scene)[name]
+        low, high = (rf.solve(with_parameter(scene, name, value * s), 2 * M) for s in (0.85, 1.15))
+        for number in ("contact_area", "friction_coefficient"):
+            expected = (getattr(high, number) - getattr(low, number)) / (0.3 * value)
+            bound = 2 * adhesive.scatter[number][name] + 0.05 * abs(expected)  # both sides count elements
+            assert abs(adhesive.derivatives[number][name] - expected) <= bound, (name, number)
+
+
+def test_hertz_exponents() -> None:
+    scene = rf.read_scene("hertz")
+    found = sensitivity(scene, rf.solve(scene, 96))
+    exponents = {"load": (2 / 3, 1 / 3), "upper.surface[0].radius": (2 / 3, -2 / 3)}
+    for name, (area, peak) in exponents.items():
+        assert found.relative("max_pressure", name) == pytest.approx(peak, abs=2e-3)
+        scatter = found.scatter["contact_area"][name] / abs(found.derivatives["contact_area"][name])
+        assert scatter < 0.1
+        assert found.relative("contact_area", name) == pytest.approx(area, rel=scatter)
+
+
+def test_periodic_scenes_have_no_derivative_by_length() -> None:
+    scene = sliding(periodic=True)
+    found = sensitivity(scene, rf.solve(scene, M, tolerance=TIGHT))
+    assert not any(name.endswith("correlation_length") for name in found.parameters)
+    expected = differences(scene, "load", 1e-5)
+    assert found.derivatives["max_pressure"]["load"] == pytest.approx(expected["max_pressure"], rel=1e-4)
+
+
+def test_parameters_are_read_and_changed_by_name() -> None:
+    scene = sliding(tau=1e6)
+    for name, value in parameters(scene).items():
+        changed = parameters(with_parameter(scene, name, 0.9 * value))
+        assert changed.pop(name) == pytest.approx(0.9 * value)
+        assert changed.items() <= parameters(scene).items()
+    with pytest.raises(rf.InputError, match=r"upper\.colour"):
+        with_parameter(scene, "upper.colour", 1.0)
+    with pytest.raises(rf.InputError, match="load"):
+        with_parameter(scene, "load", -1.0)
+
+
+def test_what_has_no_sensitivity_is_refused() -> None:
+    scene = sliding()
+    with pytest.raises(rf.InputError, match="contact"):
+        sensitivity(scene, rf.solve(scene, 32, approach=-1e-6))
+    with pytest.raises(rf.InputError, match="load"):
+        sensitivity(replace(scene, load=2 * scene.load), rf.solve(scene, 32))

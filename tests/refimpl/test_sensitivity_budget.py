@@ -1,0 +1,119 @@
+"""Budgets after V&V 20: what each part is, how parts add, and tolerances in a scene's file."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import refimpl as rf
+from refimpl.budget import Budget, Budgets, budget
+from refimpl.forces import facet_resultants
+from refimpl.scene_file import read_tolerances, scene_to_toml
+from refimpl.sensitivity import NUMBERS
+
+STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
+SCENE = rf.Scene(
+    upper=rf.Body(STEEL, rf.Sphere(radius=0.02)),
+    lower=rf.Body(COPPER, rf.GaussianRoughness(rms=2e-6, correlation_length=400e-6, seed=3)),
+    friction=rf.Friction(tau=40e6, beta=0.1),
+    load=100.0,
+    side=1.61e-3,
+)
+TOLERANCES = {"lower.material.E": 0.02, "friction.tau": 0.1, "load": 0.01, "lower.surface[0].rms": 0.05}
+
+
+@pytest.fixture(scope="module")
+def solution() -> rf.Solution:
+    return rf.solve(SCENE, 64)
+
+
+@pytest.fixture(scope="module")
+def found(solution: rf.Solution) -> Budgets:
+    return budget(SCENE, solution, TOLERANCES, sampling={"contact_area": 1e-9})
+
+
+def test_inputs_are_derivatives_times_tolerances(found: Budgets) -> None:
+    mu = found.numbers["friction_coefficient"]
+    slope = found.derivatives.derivatives["friction_coefficient"]["friction.tau"]
+    assert mu.inputs["friction.tau"] == pytest.approx(abs(slope) * 40e6 * 0.1)
+    assert mu.input == pytest.approx(math.sqrt(sum(part**2 for part in mu.inputs.values())))
+    assert set(mu.inputs) == set(TOLERANCES)
+
+
+def test_input_of_the_peak_is_what_a_changed_scene_gives(found: Budgets) -> None:
+    stiffer = rf.Scene(
+        SCENE.upper,
+        rf.Body(rf.Material(118e9 * 1.02, 0.3), SCENE.lower.surface),
+        SCENE.friction,
+        100.0,
+        1.61e-3,
+    )
+    change = rf.solve(stiffer, 64).max_pressure - rf.solve(SCENE, 64).max_pressure
+    share = found.numbers["max_pressure"].inputs["lower.material.E"]
+    assert share == pytest.approx(change, rel=0.05)  # a step of 2 % is no derivative
+
+
+def test_numerical_is_the_solutions_own_bar(found: Budgets, solution: rf.Solution) -> None:
+    for number in NUMBERS:
+        bar = sum(solution.uncertainty[number].values())
+        assert found.numbers[number].numerical == pytest.approx(bar)
+    assert found.numbers["contact_area"].numerical > 0
+
+
+def test_cosines_are_those_of_the_exact_facets(found: Budgets, solution: rf.Solution) -> None:
+    exact = facet_resultants(
+        solution.pressure, solution.traction, solution.slopes, solution.grid.element_area
+    )
+    mu = found.numbers["friction_coefficient"]
+    assert mu.sources["cosines"] == pytest.approx(abs(exact.friction / exact.normal - mu.value))
+    # second order in the slope: about its square, times mu
+    assert 0 < mu.sources["cosines"] < 3 * solution.slope_error.max_slope**2
+
+
+def test_coefficients_act_like_a_change_of_both_moduli(found: Budgets, solution: rf.Solution) -> None:
+    wrong = solution.slope_error.at_rms
+    assert wrong is not None
+    relative = sum(
+        found.derivatives.relative("max_pressure", f"{body}.material.E") for body in ("upper", "lower")
+    )
+    peak = found.numbers["max_pressure"]
+    assert peak.sources["coefficients"] == pytest.approx(abs(relative) * wrong * peak.value)
+
+
+def test_parts_add_in_squares_and_model_form_as_it_is() -> None:
+    part = Budget(1.0, numerical=3.0, inputs={"a": 4.0}, sources={"x": 1.0, "y": 0.5}, sampling=12.0)
+    assert part.total == pytest.approx(1.5 + 13.0)
+    assert Budget(1.0, 3.0, {}, {}).total == 3.0
+
+
+def test_sampling_is_stated_only_where_given(found: Budgets) -> None:
+    assert found.numbers["contact_area"].sampling == 1e-9
+    assert found.numbers["friction_coefficient"].sampling is None
+
+
+def test_tolerances_stand_in_the_scenes_file(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    stated = '\n[tolerances]\n"lower.material.E" = 0.02\n"lower.surface[0].rms" = 0.05\n'
+    file.write_text(scene_to_toml(SCENE) + stated)
+    assert read_tolerances(file) == {"lower.material.E": 0.02, "lower.surface[0].rms": 0.05}
+    assert rf.read_scene(file).load == SCENE.load
+
+
+@pytest.mark.parametrize(
+    ("line", "named"),
+    [
+        ('"lower.material.G" = 0.02', "lower.material.G"),
+        ('"lower.material.E" = 2', "between 0 and 1"),
+        ('"lower.material.E" = "2 %"', "between 0 and 1"),
+        ("load = -0.1", "between 0 and 1"),
+        ('"upper.surface[0].rms" = 0.1', "upper.surface"),
+    ],
+)
+def test_bad_tolerances_are_refused(tmp_path: Path, line: str, named: str) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(f"{scene_to_toml(SCENE)}\n[tolerances]\n{line}\n")
+    with pytest.raises(rf.InputError, match="tolerances") as refused:
+        rf.read_scene(file)
+    assert named in str(refused.value)

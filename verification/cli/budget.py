@@ -1,0 +1,84 @@
+"""The uncertainty budget of a solve as a table and as JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from verification.cli.output import columns
+
+if TYPE_CHECKING:
+    from refimpl.budget import Budget, Budgets
+
+# number of a budget, its name in the table
+NAMES = {
+    "friction_coefficient": "mu",
+    "contact_area": "A",
+    "max_pressure": "f_max",
+    "binormal_force": "Q",
+}
+
+
+def document(budgets: Budgets) -> dict[str, object]:
+    """SI units; half-widths of 95 %; infinity, where a part is unbounded, for the caller to make null."""
+    return {
+        "tolerances": dict(budgets.tolerances),
+        "numbers": {number: _parts(part) for number, part in budgets.numbers.items()},
+        "derivatives": {name: dict(row) for name, row in budgets.derivatives.derivatives.items()},
+        "derivatives_scatter": {name: dict(row) for name, row in budgets.derivatives.scatter.items()},
+    }
+
+
+def table(budgets: Budgets) -> str:
+    """Parts of each number in per cent of it, and per cents that it changes by for one of a parameter."""
+    header = ["", *(NAMES[number] for number in budgets.numbers)]
+    numbers = list(budgets.numbers.values())
+    rows = [
+        ["numerical", *(_share(part, part.numerical) for part in numbers)],
+        ["input", *(_share(part, part.input) for part in numbers)],
+        *(
+            [f"  {name}, {tolerance:.2g}", *(_share(part, part.inputs[name]) for part in numbers)]
+            for name, tolerance in budgets.tolerances.items()
+        ),
+        ["sampling", *(_share(part, part.sampling) for part in numbers)],
+        ["model form", *(_share(part, part.model_form) for part in numbers)],
+        *(
+            [f"  {source}", *(_share(part, part.sources[source]) for part in numbers)]
+            for source in numbers[0].sources
+        ),
+        ["total", *(_share(part, part.total) for part in numbers)],
+    ]
+    changes = [
+        [name, *(_relative(budgets, number, name) for number in budgets.numbers)]
+        for name in budgets.derivatives.parameters
+    ]
+    return (
+        f"uncertainty budget (95 %, in per cent of each number):\n{columns([header, *rows])}\n\n"
+        f"change in per cent for one per cent of a parameter:\n{columns([header, *changes])}"
+    )
+
+
+def _parts(part: Budget) -> dict[str, object]:
+    return {
+        "value": part.value,
+        "numerical": part.numerical,
+        "input": part.input,
+        "inputs": dict(part.inputs),
+        "sampling": part.sampling,
+        "model_form": part.model_form,
+        "model_form_sources": dict(part.sources),
+        "total": part.total,
+    }
+
+
+def _share(part: Budget, width: float | None) -> str:
+    """A half-width in per cent of the number; "-" for none stated or a number of zero."""
+    if width is None or part.value == 0:
+        return "-"
+    return f"{100 * width / abs(part.value):.2g}" if math.isfinite(width) else "unbounded"
+
+
+def _relative(budgets: Budgets, number: str, name: str) -> str:
+    if budgets.derivatives.found[number] == 0:
+        return "-"
+    return f"{budgets.derivatives.relative(number, name):+.3f}"
