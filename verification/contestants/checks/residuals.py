@@ -218,3 +218,19 @@ def sliding_elimination(entrant: Entrant) -> Measured:
     coupling = Coupling(tau=0.0, beta=0.5, shear_compliance=-COMPLIANCE, sliding_direction=2.2)
     pressed = entrant.press(rough_bump(20, seed=13), 1.0, load=0.05 * MODULUS, coupling=coupling)
     return Measured(entrant.misfit(pressed, referee.eliminated(pressed.problem)))
+
+
+@check(
+    "sliding-periodic-residual",
+    title="A periodic rough plane sliding with coupling: what was claimed is so",
+    claim="With shear beta f in an oblique direction the residuals meet the claim, with the periodic symbols",
+    source=PERIODIC_SOURCE + "; SPEC 1 for the sign of c",
+    metric="at_most",
+    tolerance=1.01,
+    tolerance_reason=CLAIM + ". An odd number of elements has no Nyquist frequency to disagree about",
+    catches=(*ALWAYS, Fault.SIGN_OF_C),
+)
+def sliding_periodic_residual(entrant: Entrant) -> Measured:
+    coupling = Coupling(tau=0.0, beta=0.5, shear_compliance=COMPLIANCE, sliding_direction=-0.9)
+    gap = wavy(45, seed=14)
+    return judged(entrant, entrant.press(gap, 1.0, load=0.02 * MODULUS, periodic=True, coupling=coupling))
