@@ -17,7 +17,8 @@ from verification.benchmarks.judge import judged, padded_box
 from verification.benchmarks.problems import problem
 from verification.benchmarks.rounds import Failed, Turns, error, in_turns, solved, tuned
 from verification.benchmarks.run import append
-from verification.benchmarks.summary import ratios, row
+from verification.benchmarks.summary import lines, ratios, row
+from verification.cli.output import columns
 from verification.contestants import own, referee
 
 
@@ -115,9 +116,10 @@ def test_turns_alternate_and_a_failure_ends_only_its_own() -> None:
 def test_ratios_pair_rounds_and_name_the_fastest_peer() -> None:
     """A slow spell in the second round meets both codes: the ratio does not hear of it."""
     all_turns = [turns(OWN, 1.0, 5.0, 2.0), turns("slow", 9.0, 45.0, 18.0), turns("fast", 3.0, 15.0, 8.0)]
-    table: Any = ratios([*all_turns, turns(SHEARED, 1.5, 7.0, 3.2)])
+    table: Any = ratios([*all_turns, turns("fast+options", 2.0, 5.0, 4.0), turns(SHEARED, 1.5, 7.0, 3.2)])
     assert table["slow"]["seconds"] == {"median": 9.0, "least": 9.0, "most": 9.0}
     assert table["fastest peer"] == {"code": "fast", "seconds over ours": 3.0}
+    assert table["fastest set-up of a peer"] == {"code": "fast+options", "seconds over ours": 2.0}
     assert table[SHEARED]["seconds"]["median"] == 1.5
     assert ratios([turns("alone", 1.0)]) == {}
 
@@ -131,6 +133,18 @@ def test_rows_count_convolutions_on_the_padded_box() -> None:
     assert entry["memory of the solve"]["median"] == 2e8
     assert entry["meets the target"] is True
     assert "seconds" not in row(Turns("absent", "smooth", 64, 1e-8, failure="left out"))
+
+
+def test_lines_show_ratios_and_who_was_left_out() -> None:
+    left_out = Turns("absent", "smooth", 64, 1e-8, failure="left out: 900 s expected")
+    both = [turns(OWN, 1.0), turns("peer", 3.0), left_out]
+    shown = lines([row(one) for one in both], [{"kind": "smooth", "M": 64, **ratios(both)}])
+    assert [cells[:4] for cells in shown[1:3]] == [
+        ["smooth 64", OWN, "1", ""],
+        ["smooth 64", "peer", "3", "3"],
+    ]
+    assert shown[3] == ["smooth 64", "absent", "", "", "", "", "left out: 900 s expected"]
+    assert "left out" in columns(shown)
 
 
 def test_names_are_checked() -> None:
@@ -169,13 +183,14 @@ def test_peak_memory_is_of_this_process() -> None:
     assert held.any()
 
 
-def test_a_run_from_the_command_line(tmp_path: Path) -> None:
+def test_a_run_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "record.json"
     main(["--grids", "32", "--codes", OWN, "--kinds", "smooth", "--rounds", "1", "--json", str(file)])
     (run,) = json.loads(file.read_text())["runs"]
     (entry,) = run["rows"]
     assert entry["meets the target"]
     assert entry["seconds"]["median"] > 0
+    assert "smooth 32" in capsys.readouterr().out
     assert run["conditions"]["versions"] == {OWN: codes()[OWN].version}
     with pytest.raises(Failed, match="KeyError"):
         solved("no such code", "smooth", 32, 1e-8, threads=1, limit=60)

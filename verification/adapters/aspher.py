@@ -8,6 +8,9 @@ here, so the exact one takes its place ("modestly faster", its authors say, up t
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 
 from verification.adapters.peer import Peer, PeerAnswer, closure, imported
@@ -17,8 +20,8 @@ _COARSEST = 64  # its own default
 _ITERATIONS = 5000
 
 
-def press(problem: ContactProblem) -> PeerAnswer:
-    """Pressures of ``solve_nested``, or of ``ContactSolver`` on grids that do not halve down to 64.
+def press(problem: ContactProblem, **options: str) -> PeerAnswer:
+    """Pressures of ``solve_nested`` with its ``options``, or of ``ContactSolver`` where M is not 64 2^k.
 
     Its Frank-Wolfe error is the mean gap under the pressure over the range of the gap, and over one unit of
     length where the gap is flat: the unit is ``P / (E* side)``, about the approach, to give that a meaning.
@@ -36,7 +39,7 @@ def press(problem: ContactProblem) -> PeerAnswer:
     }
     gap = problem.gap.ravel() / unit
     if _halves(problem.M):
-        found = hc.solve_nested(problem.M, gap, coarsest=_COARSEST, **common, **stop)
+        found = hc.solve_nested(problem.M, gap, coarsest=_COARSEST, **common, **stop, **options)
     else:
         found = hc.ContactSolver(problem.M, **common).solve(gap, precond="fourier", **stop)
     pressure = E * np.array(found.pressure, dtype=np.float64).reshape(problem.gap.shape)
@@ -58,3 +61,11 @@ solve = Peer(
     press=press,
 )
 """The contestant."""
+
+fastest = replace(
+    solve,
+    setup="solve_nested with precond_engine 'fft' and precision 'float_then_double': quickest exact set-up "
+    "found on Table 1's contact, 0.2 to 0.4 s instead of 0.7 s for the defaults at 512 x 512",
+    press=partial(press, precond_engine="fft", precision="float_then_double"),
+)
+"""The same with the options that serve this project's benchmark best."""

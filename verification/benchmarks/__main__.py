@@ -1,4 +1,4 @@
-"""``python -m verification.benchmarks``: measure in turns and append the run to a record."""
+"""``python -m verification.benchmarks``: measure in turns, append the run to a record and print it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from refimpl.errors import InputError
 from verification.benchmarks.codes import codes
 from verification.benchmarks.problems import FLATS
 from verification.benchmarks.run import append, measured
+from verification.benchmarks.summary import lines
+from verification.cli.output import columns
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Measure and append."""
+    """Measure, append and print."""
     parser = argparse.ArgumentParser(prog="python -m verification.benchmarks", description=__doc__)
     parser.add_argument("--grids", default="128,256,512", help="elements per side, by commas")
     parser.add_argument("--codes", help=f"by commas; default: what is installed of {', '.join(codes())}")
@@ -33,6 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         options.limit,
     )
     append(run, options.json)
+    print(columns(lines(run["rows"], run["ratios"]), indent=""))
 
 
 def known(option: str, names: str | None, allowed: Sequence[str]) -> list[str]:

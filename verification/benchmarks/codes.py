@@ -1,4 +1,7 @@
-"""The codes that take part: each peer's adapter, and this project's solver without and with coupling."""
+"""The codes that take part: each peer's adapter, and this project's solver without and with coupling.
+
+A plus in a name stands for more than the recommended set-up: coupling for ours, options for a peer.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,12 @@ from verification.provenance import DISTRIBUTION, versions
 
 OWN = "refimpl"
 SHEARED, SLOPED = f"{OWN}+friction", f"{OWN}+friction+slopes"
+PEERS = {
+    "tamaas": tamaas.solve,
+    "ContactMechanics": contactmechanics.solve,
+    "aspher": aspher.solve,
+    "aspher+options": aspher.fastest,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +85,6 @@ def codes() -> dict[str, Code]:
     own = f"{OWN} {versions()[DISTRIBUTION]}"
     settings = {OWN: (rf.Friction(), False), SHEARED: (FRICTION, False), SLOPED: (FRICTION, True)}
     found = {name: Code(name, own, partial(_own, *setting)) for name, setting in settings.items()}
-    for peer in (tamaas.solve, contactmechanics.solve, aspher.solve):
-        name = peer.distribution
+    for name, peer in PEERS.items():
         found[name] = Code(name, peer.version if peer.installed else None, partial(_peer, peer))
     return found

@@ -7,6 +7,7 @@ import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from verification.benchmarks.codes import OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.rounds import (
@@ -30,7 +31,7 @@ _GROWTH = 8.0  # seconds from one grid to the twice finer one: four times the el
 
 def measured(
     grids: Sequence[int], names: Sequence[str], kinds: Sequence[str], rounds: int, threads: int, limit: float
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """One run: tolerances found for each code, then rounds; ready for JSON."""
     before = os.getloadavg()
     rows: list[object] = []

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import statistics
 from collections.abc import Iterable, Sequence
+from typing import Any
 
-from verification.benchmarks.codes import OWN, SHEARED, SLOPED
+from verification.benchmarks.codes import OWN
 from verification.benchmarks.rounds import TARGET, Turns, error
 
 JUDGED = ("gap", "balance", "penetration", "tension", "area", "peak", "converged", "operations")
@@ -54,7 +55,8 @@ def row(turns: Turns) -> dict[str, object]:
 
 
 def ratios(turns: Sequence[Turns]) -> dict[str, object]:
-    """Seconds of every code over ours on one problem, round by round; and the least of the peers'.
+    """Seconds of every code over ours on one problem, round by round; and the least of the peers': by the
+    recommended set-ups, and by any.
 
     Processor seconds beside: they hear less of what else the machine does.
     """
@@ -70,9 +72,35 @@ def ratios(turns: Sequence[Turns]) -> dict[str, object]:
             clock: spread(theirs[clock] / ours[clock] for theirs, ours in pairs)
             for clock in ("seconds", "processor seconds")
         }
-        if code not in (SHEARED, SLOPED):
+        if not code.startswith(OWN):
             medians[code] = spread(theirs["seconds"] / ours["seconds"] for theirs, ours in pairs)["median"]
-    if medians:
-        fastest = min(medians, key=lambda code: medians[code])
-        found["fastest peer"] = {"code": fastest, "seconds over ours": medians[fastest]}
+    recommended = {code: ratio for code, ratio in medians.items() if "+" not in code}
+    for name, of in (("fastest peer", recommended), ("fastest set-up of a peer", medians)):
+        if of:
+            fastest = min(of, key=lambda code: of[code])
+            found[name] = {"code": fastest, "seconds over ours": of[fastest]}
     return found
+
+
+def lines(rows: Sequence[Any], ratios: Sequence[Any]) -> list[list[str]]:
+    """The run as rows of text: problem, code, seconds, over ours, gap, convolutions, megabytes."""
+    over = {(r["kind"], r["M"], code): r[code] for r in ratios for code in r if isinstance(r[code], dict)}
+    text = [["problem", "code", "seconds", "over ours", "gap", "convolutions", "peak memory"]]
+    for entry in rows:
+        head = [f"{entry['kind']} {entry['M']}", entry["code"]]
+        if "seconds" not in entry:
+            text.append([*head, *[""] * 4, entry["failure"]])
+            continue
+        ratio = over.get((entry["kind"], entry["M"], entry["code"]))
+        equivalents = entry.get("convolution equivalents")
+        text.append(
+            [
+                *head,
+                f"{entry['seconds']['median']:.3g}",
+                "" if ratio is None else f"{ratio['seconds']['median']:.3g}",
+                f"{entry['gap']:.1e}",
+                "" if equivalents is None else f"{equivalents:.1f}",
+                f"{entry['peak memory']['median'] / 1e6:.0f} MB",
+            ]
+        )
+    return text
