@@ -40,10 +40,13 @@ def check(results: object) -> Mapping[str, Any]:
         raise ResultFileError(f"not a file of the format {FORMAT!r}")
     _require(results, TOP_KEYS, "the file")
     _require(results["provenance"], PROVENANCE_KEYS, "the provenance")
-    for erratum in results["errata"]:
-        _require(erratum, ERRATUM_KEYS, f"erratum {erratum.get('equation', '?')!r}")
-    for case in results["cases"]:
-        _require(case, CASE_KEYS, f"case {case.get('id', '?')!r}")
+    for key in ("cases", "errata"):
+        if not isinstance(results[key], list):
+            raise ResultFileError(f"{key} are no list")
+    for number, erratum in enumerate(results["errata"]):
+        _require(erratum, ERRATUM_KEYS, f"erratum {number}")
+    for number, case in enumerate(results["cases"]):
+        _require(case, CASE_KEYS, f"case {number}")
         if case["status"] not in STATUSES:
             raise ResultFileError(f"case {case['id']!r} has the unknown status {case['status']!r}")
     counted = {status: sum(c["status"] == status for c in results["cases"]) for status in STATUSES}
@@ -75,7 +78,9 @@ def by_subject(cases: list[Case]) -> dict[str, list[Case]]:
     return by([{**case, "subject": case["id"].partition("/")[0]} for case in cases], "subject")
 
 
-def _require(item: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
+def _require(item: object, keys: tuple[str, ...], where: str) -> None:
+    if not isinstance(item, Mapping):
+        raise ResultFileError(f"{where} is no table")
     missing = [key for key in keys if key not in item]
     if missing:
         raise ResultFileError(f"{where} lacks {', '.join(missing)}")

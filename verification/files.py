@@ -15,9 +15,13 @@ from pathlib import Path
 def replacing(path: Path) -> Iterator[Path]:
     """A temporary path beside `path`, of the same suffix, that takes its place when the block ends well.
 
-    The file appears in one step; after an error the old file, if any, is still there. Raises OSError where
-    the directory cannot be written to.
+    The file appears in one step; after an error the old file, if any, is still there. What is no regular
+    file, a device or a pipe, is written to and never replaced. Raises OSError where the directory cannot be
+    written to.
     """
+    if path.exists() and not path.is_file():
+        yield path
+        return
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
     os.close(handle)
     try:

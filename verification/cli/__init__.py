@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
 
-from verification.cli import appendix_a, report, solve, sweep, verify
+from verification.cli import appendix_a, report, solve, sweep, tradeoff, verify
 
-BAD_INPUT, INTERRUPTED = 2, 130
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+OUTPUT_REFUSED = (
+    errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO,
+)  # fmt: skip
 
 EPILOG = """exit status: 0 success, 1 a check failed or the solve did not converge, 2 bad input
 
@@ -37,11 +41,9 @@ def parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    top.add_argument(
-        "--version", action="version", version=f"rough-friction {version('rough-friction')}"
-    )
+    top.add_argument("--version", action="version", version=f"rough-friction {version('rough-friction')}")
     commands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
-    for module in (solve, verify, report, sweep, appendix_a):
+    for module in (solve, verify, report, sweep, tradeoff, appendix_a):
         module.add_parser(commands)
     return top
 
@@ -58,6 +60,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (InputError, AppendixInputError) as refused:
         print(f"{top.prog}: {' '.join(str(refused).split())}", file=sys.stderr)
         return BAD_INPUT
+    except OSError as failure:
+        if failure.errno not in OUTPUT_REFUSED:
+            raise
+        where = f" ({failure.filename})" if failure.filename else ""
+        print(f"{top.prog}: the output could not be written: {failure.strerror}{where}", file=sys.stderr)
+        return FAILED
+    except ArithmeticError as hopeless:
+        if type(hopeless) is not ArithmeticError:  # the solvers' own word; a division by zero is a bug
+            raise
+        print(f"{top.prog}: no solution was found: {hopeless}", file=sys.stderr)
+        return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
     return status

@@ -1,0 +1,378 @@
+"""What a machine does to a program: interrupts, kills, full and read-only disks, broken and hostile files.
+
+The tests may run as root, whom no file mode stops: a folder that refuses is played by the system calls' own
+error, a full disk by /dev/full, by a limit on the size of files, and by a tiny file system where one may be mounted.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import resource
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+import refimpl as rf
+from reports.generator import render
+from tests.reports.sample import case, results
+from verification import files
+from verification.cli import main
+from verification.sweep import engine
+from verification.sweep.store import open_store
+from verification.sweep.study import Study, study_from_dict
+
+SCENE = rf.scene_to_toml(rf.read_scene("hertz"))
+LONG = ["solve", "table1-rough", "--grid", "1024", "--tolerance", "1e-12"]
+STUDY = 'scene = "table1-rough"\nrealisations = 40\n[vary]\ngrid = [12, 16]\n'
+
+
+class Ended(NamedTuple):
+    """How a child ended: exit status (negative: the signal), and what it printed on stderr."""
+
+    status: int
+    err: str
+
+
+def forked(act: Callable[[], int], *, before: Callable[[], object] = lambda: None) -> Ended:
+    """Run in a forked child, so that limits and signals touch nobody else and nothing is imported anew."""
+    with tempfile.TemporaryFile() as err:
+        child = os.fork()
+        if child == 0:
+            os.dup2(err.fileno(), 2)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            sys.stderr, sys.stdout = os.fdopen(2, "w", closefd=False), os.fdopen(1, "w", closefd=False)
+            before()
+            try:
+                status = act()
+            except SystemExit as usage:
+                status = int(usage.code or 0)
+            finally:
+                sys.stderr.flush()
+            os._exit(status)
+        _, waited = os.waitpid(child, 0)
+        err.seek(0)
+        return Ended(os.waitstatus_to_exitcode(waited), err.read().decode())
+
+
+def one_line(ended: Ended, says: str, status: int = 1) -> None:
+    """The fault is told in one clear line, without a traceback."""
+    assert ended.status == status, ended.err
+    assert ended.err.count("\n") == 1, ended.err
+    assert ended.err.startswith("rough-friction")
+    assert says in ended.err
+
+
+def limited(size: int) -> Callable[[], None]:
+    """No file may grow beyond ``size`` bytes; the signal for it is ignored, so that the write says EFBIG."""
+
+    def act() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return act
+
+
+@pytest.fixture
+def tiny_disk(tmp_path: Path) -> Iterator[Path | None]:
+    """A mounted file system of 64 kB with 12 kB left, or None where none may be mounted."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", str(folder)]
+    if shutil.which("mount") is None or subprocess.run(mount, capture_output=True).returncode != 0:
+        yield None
+        return
+    try:
+        (folder / "ballast").write_bytes(bytes(52_000))
+        yield folder
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+# --- interrupts and kills ---
+
+
+def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
+    code = "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    child = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    assert child.stdout is not None
+    assert child.stdout.readline() == "ready\n"
+    return child
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL, signal.SIGTERM])
+def test_an_interrupted_solve_leaves_the_old_result_and_no_other_file(
+    tmp_path: Path, how: signal.Signals
+) -> None:
+    (tmp_path / "s.json").write_text("old")
+    act = forked_solve(tmp_path, how)
+    assert act.status == (130 if how is signal.SIGINT else -how)
+    assert "Traceback" not in act.err
+    assert [p.name for p in tmp_path.iterdir()] == ["s.json"]
+    assert (tmp_path / "s.json").read_text() == "old"
+
+
+def forked_solve(folder: Path, how: signal.Signals) -> Ended:
+    """A solve that a timer interrupts while it iterates."""
+
+    def act() -> int:
+        signal.signal(signal.SIGALRM, lambda *_: os.kill(os.getpid(), how))
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        return main([*LONG, "--json", str(folder / "s.json")])
+
+    return forked(act)
+
+
+def small(realisations: int = 40) -> Study:
+    return study_from_dict({"scene": "table1-rough", "realisations": realisations, "vary": {"grid": [12]}})
+
+
+def test_an_interrupted_sweep_keeps_what_it_finished_and_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY)
+    tail = ["study.toml", "--store", "s.sqlite", "--workers", "1", "--csv", "s.csv"]
+    child = started(["sweep", *tail], tmp_path)
+    deadline = time.monotonic() + 60
+    while rows(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
+        time.sleep(0.02)
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=60)
+    assert child.returncode == 130
+    assert "Traceback" not in err
+    kept = rows(tmp_path / "s.sqlite")
+    assert 2 <= kept < 80
+    assert not (tmp_path / "s.csv").exists()
+    done = engine.sweep(study_from_dict(tomllib_of(STUDY)), tmp_path / "s.sqlite", workers=0)
+    assert (done.found, done.found + done.finished) == (kept, 80)
+
+
+def tomllib_of(text: str) -> dict[str, object]:
+    import tomllib
+
+    return tomllib.loads(text)
+
+
+def rows(store: Path) -> int:
+    """Finished runs of a store, 0 before it has its table."""
+    if not store.exists():
+        return 0
+    connection = sqlite3.connect(store)
+    try:
+        return int(connection.execute("select count(*) from runs").fetchone()[0])
+    except sqlite3.OperationalError:
+        return 0
+    finally:
+        connection.close()
+
+
+# --- disks ---
+
+
+@pytest.mark.parametrize("option", ["--json", "--plot", "--vtk"])
+def test_a_full_disk_costs_the_new_file_and_not_the_old(tmp_path: Path, option: str) -> None:
+    path = tmp_path / {"--json": "s.json", "--plot": "s.png", "--vtk": "s.vtu"}[option]
+    path.write_text("old")
+    command = ["solve", "hertz", "--grid", "16", option, str(path)]
+    one_line(forked(lambda: main(command), before=limited(500)), "File too large")
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_disk_that_is_really_full(tmp_path: Path, tiny_disk: Path | None) -> None:
+    if tiny_disk is None:
+        command = ["solve", "hertz", "--grid", "8", "--json", "/dev/full"]
+    else:
+        (tiny_disk / "more").write_bytes(bytes(65536 - 52000 - 4096))
+        command = ["solve", "hertz", "--grid", "8", "--json", str(tiny_disk / "s.json")]
+    one_line(forked(lambda: main(command)), "No space left")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+def test_devices_are_written_to_and_never_replaced() -> None:
+    for name, status in (("/dev/full", 1), ("/dev/null", 0)):
+        assert forked(lambda: main(["solve", "hertz", "--grid", "8", "--json", name])).status == status
+        assert Path(name).is_char_device()
+        assert not Path(name).is_file()
+
+
+def test_a_full_disk_stops_a_sweep_that_goes_on_when_there_is_room(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY)
+    store = tmp_path / "s.sqlite"
+    engine.sweep(small(2), store, workers=0)
+    command = ["sweep", str(tmp_path / "study.toml"), "--store", str(store), "--workers", "1"]
+    # above SQLite's shared memory of 32 kB, below what the log of 80 runs takes
+    ended = forked(lambda: main(command), before=limited(50_000))
+    one_line(ended, "disk I/O error", 2)
+    kept = rows(store)
+    assert kept >= 2
+    assert sqlite3.connect(store).execute("pragma integrity_check").fetchone() == ("ok",)
+    again = engine.sweep(small(3), store, workers=0)
+    assert len(again.rows) == 3
+
+
+@pytest.mark.parametrize("refusal", [errno.EROFS, errno.EACCES])
+def test_a_read_only_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], refusal: int
+) -> None:
+    """Played by the error of the system call: the tests may run as root, whom no mode stops."""
+
+    def refuses(*_: object, **__: object) -> None:
+        raise OSError(refusal, os.strerror(refusal), str(tmp_path))
+
+    monkeypatch.setattr(files.tempfile, "mkstemp", refuses)
+    assert main(["solve", "hertz", "--grid", "8", "--json", str(tmp_path / "s.json")]) == 1
+    one_line(Ended(1, capsys.readouterr().err), os.strerror(refusal))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unwritable_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "r.json").write_text(json.dumps(results(case("a/1"))))
+    tail = ["--results", str(tmp_path / "r.json"), "--output"]
+    (tmp_path / "file").write_text("no folder")
+    assert main(["report", *tail, str(tmp_path / "file")]) == 2
+    one_line(Ended(2, capsys.readouterr().err), "--output", 2)
+
+    def refuses(*_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), "report")
+
+    monkeypatch.setattr(files.tempfile, "mkstemp", refuses)
+    assert main(["report", *tail, str(tmp_path / "report")]) == 1
+    one_line(Ended(1, capsys.readouterr().err), "Read-only")
+
+
+def test_an_unwritable_folder_is_refused_before_any_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in (tmp_path / "none" / "s.json", tmp_path):
+        with pytest.raises(SystemExit) as refused:
+            main([*LONG, "--json", str(path)])
+        assert refused.value.code == 2
+        assert capsys.readouterr().err.count("\n") == 1
+
+
+# --- two at once, broken files ---
+
+
+def test_two_sweeps_on_one_file_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "study.toml").write_text(STUDY)
+    with open_store(tmp_path / "s.sqlite"):
+        command = ["sweep", str(tmp_path / "study.toml"), "--store", str(tmp_path / "s.sqlite")]
+        assert main(command) == 2
+    one_line(Ended(2, capsys.readouterr().err), "no other sweep", 2)
+
+
+WHOLE = json.dumps(results(case("a/1"), case("a/2", "fail")))
+CORRUPTED = {
+    "cut": WHOLE[: len(WHOLE) // 2], "empty": "", "null": "null", "list": "[]", "number": "1e400",
+    "deep": "[" * 100_000, "binary": "\x00\x01\x02", "wrong counts": WHOLE.replace('"pass": 1', '"pass": 7'),
+    "no cases": WHOLE.replace('"cases"', '"kases"'), "cases a number": json.dumps(results() | {"cases": 3}),
+    "case a text": json.dumps(results() | {"cases": ["x"]}), "counts a list": json.dumps(results() | {"counts": []}),
+    "provenance null": json.dumps(results() | {"provenance": None}),
+    "errata of numbers": json.dumps(results() | {"errata": [1]}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CORRUPTED)
+def test_corrupted_results_are_refused(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "r.json").write_text(CORRUPTED[name])
+    assert main(["report", "--results", str(tmp_path / "r.json"), "--output", str(tmp_path / "out")]) == 2
+    one_line(Ended(2, capsys.readouterr().err), "--results", 2)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_corrupted_store_is_refused_and_left_as_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    store = tmp_path / "s.sqlite"
+    engine.sweep(small(3), store, workers=0)
+    content = bytearray(store.read_bytes())
+    content[100:4000] = b"\xa5" * 3900
+    store.write_bytes(content)
+    (tmp_path / "study.toml").write_text(STUDY)
+    assert main(["sweep", str(tmp_path / "study.toml"), "--store", str(store)]) == 2
+    one_line(Ended(2, capsys.readouterr().err), "store", 2)
+    assert store.read_bytes() == bytes(content)
+
+
+def test_fifty_megabytes_of_toml_are_refused_unread(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "huge.toml"
+    with path.open("wb") as file:
+        file.write(b"load = 1.0\n")
+        file.truncate(50 * 2**20)
+    for command in (["solve"], ["sweep"]):
+        begun = time.process_time()
+        assert main([*command, str(path)]) == 2
+        assert time.process_time() - begun < 1.0
+        one_line(Ended(2, capsys.readouterr().err), "at most", 2)
+
+
+# --- hostile texts ---
+
+HOSTILE = (
+    "<script>alert(1)</script>",
+    '"><img src=x onerror=alert(1)>',
+    "javascript:alert(1)",
+    "' onmouseover='alert(1)",
+    "{{ 7 * 7 }}{% raw %}",
+    "</title><svg onload=alert(1)>",
+    "\u202etxt.exe",
+)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_hostile_texts_are_shown_and_not_run(text: str) -> None:
+    names = ("title", "claim", "source", "note", "unit", "tolerance_reason")
+    hostile = case(
+        "a/1", **dict.fromkeys(names, text), tags=[text], data={text: 1.0, "t": text, "m": {text: text}}
+    )
+    document = results(hostile)
+    document["provenance"] |= {"command": text, "commit": text}
+    page = render(document)
+    for dangerous in ("<script>alert", "<img src=x", "<svg onload", "onmouseover='alert"):
+        assert dangerous not in page
+    assert "49" not in page.split("<body>")[1].replace("149", "") or "{{ 7 * 7 }}" in page
+    assert "default-src 'none'" in page
+
+
+def test_a_hostile_scene_name_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = "\x1b]0;owned\x07\nroot# rm -rf"
+    assert main(["solve", name]) == 2
+    err = capsys.readouterr().err
+    one_line(Ended(2, err), "scene", 2)
+    assert "\x1b" not in err
+    (tmp_path / "<script>.toml").write_text(SCENE)
+    assert main(["solve", str(tmp_path / "<script>.toml"), "--grid", "8"]) == 0
+
+
+def test_a_scene_without_a_solution_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def hopeless(*_: object, **__: object) -> None:
+        raise ArithmeticError("no approach balances the load")
+
+    monkeypatch.setattr(rf, "solve", hopeless)
+    assert main(["solve", "hertz", "--grid", "8"]) == 1
+    one_line(Ended(1, capsys.readouterr().err), "no approach balances the load")
+
+
+def test_a_division_by_zero_is_a_bug_and_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rf, "solve", lambda *_, **__: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        main(["solve", "hertz", "--grid", "8"])
