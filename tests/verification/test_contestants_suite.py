@@ -85,6 +85,12 @@ def test_the_laxest_claim_lets_no_broken_solver_through(fault: Fault) -> None:
     assert any(run(lax, [name])[0].status == "fail" for name in naming(fault))
 
 
+def test_single_precision_that_says_so_is_held_to_what_it_says() -> None:
+    noisy = naming(Fault.SINGLE_PRECISION)
+    honest = Limited(BROKEN[Fault.SINGLE_PRECISION](), replace(own.solve.abilities, precision=1e-6))
+    assert {r.status for r in run(honest, noisy)} == {"pass"}
+
+
 def test_the_periodic_problem_solved_silently_is_seen_by_its_peak() -> None:
     gap = rough_bump(32, seed=70)
     entrant, silent = Entrant(own.solve), Entrant(Wrong(asked(periodic)))
