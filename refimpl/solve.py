@@ -30,7 +30,7 @@ from refimpl.request import Request
 from refimpl.scene import Scene
 from refimpl.solution import Cost, Solution
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning
-from refimpl.uncertainty import iteration_parts, merged
+from refimpl.uncertainty import merged
 from refimpl.validity import cautions
 
 
@@ -98,8 +98,9 @@ class _Planned:
     def solve_at(self, M: int) -> Solution:
         """The solution on a grid, solved again if the terms left out together exceed their budget."""
         solution = _solve_planned(self.scene, self.plan.on(self.scene, M), self.approach, self.tolerance)
+        plan = self.plan
         changes = effects_left_out(
-            self.plan.left_out, solution.problem, solution.pressure, solution.approach, self.plan.decided_on
+            plan.left_out, solution.problem, solution.pressure, plan.outlook, plan.decided_on
         )
         sizes = {name: effect.larger for name, effect in changes.items()}
         if sum(sizes.values()) <= self.plan.budget:
@@ -168,7 +169,7 @@ def _solution(
         friction_coefficient=state.forces.friction / load if load else math.nan,
         contact_area=float(np.count_nonzero(contact)) * grid.element_area,
     )
-    changes = effects_left_out(plan.left_out, problem, state.pressure, state.approach)
+    changes = effects_left_out(plan.left_out, problem, state.pressure, plan.outlook)
     largest = float(state.pressure.max())
     total = float(state.pressure.sum())
     return Solution(

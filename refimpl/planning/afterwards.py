@@ -8,7 +8,7 @@ from dataclasses import replace
 from refimpl.grid import Array
 from refimpl.planning import effects
 from refimpl.planning.effects import Effect, Scales
-from refimpl.planning.outlook import found
+from refimpl.planning.outlook import Outlook, found
 from refimpl.problem import Problem
 
 _ESTIMATES = {
@@ -19,7 +19,7 @@ _ESTIMATES = {
 
 
 def effects_left_out(
-    names: tuple[str, ...], problem: Problem, pressure: Array, approach: float, grid: int | None = None
+    names: tuple[str, ...], problem: Problem, pressure: Array, before: Outlook, grid: int | None = None
 ) -> dict[str, Effect]:
     """Effect by name of each term left out as small; costs nothing when there is none.
 
@@ -28,7 +28,7 @@ def effects_left_out(
     """
     if not names or not pressure.any():
         return {}
-    outlook = found(problem, pressure, approach)
+    outlook = found(problem, pressure, before)
     finer = max(1.0, (grid or 0) / problem.grid.M) ** 2
     outlook = replace(outlook, elements=round(finer * outlook.elements))
     scales = Scales(outlook, problem.pair, problem.friction)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import ndimage
@@ -83,44 +84,68 @@ def expected(problem: Problem) -> Outlook:
     contact[order[:elements]] = True
     # a sphere's gap at the contact's edge is half the approach
     approach = problem.approach or 2 * float(gap.ravel()[order[elements - 1]])
+    near = gap < 2 * approach
+    window = Window.around(near, margin=1).shape if near.any() else (0, 0)
     mask = contact.reshape(gap.shape)
-    return _described(problem, mask, mask / elements, mean_pressure, _PEAKED * mean_pressure, approach)
+    del order, count, squares, carried, near  # whole-grid arrays, before the next ones
+    seen = _Seen(approach, *_symmetries(problem), window)
+    return _described(problem, mask, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
 
 
-def found(problem: Problem, pressure: Array, approach: float) -> Outlook:
-    """The same description of a solved contact; ``approach`` from first touch (m)."""
+def found(problem: Problem, pressure: Array, before: Outlook) -> Outlook:
+    """The same description of a solved contact; what the heights alone say is taken from ``before``."""
     contact: Mask = pressure > 0
-    total = float(pressure.sum())
-    weighted = float(np.vdot(pressure, pressure)) / total
-    mean_pressure = total / int(np.count_nonzero(contact))
-    return _described(problem, contact, pressure / total, mean_pressure, weighted, approach)
+    loaded = pressure[contact]
+    total = float(loaded.sum())
+    seen = _Seen(before.approach, before.symmetric, before.mirrored, before.window)
+    return _described(problem, contact, loaded, total / loaded.size, float(loaded @ loaded) / total, seen)
+
+
+class _Seen(NamedTuple):
+    """What does not depend on where contact is."""
+
+    approach: float
+    symmetric: bool
+    mirrored: bool
+    window: tuple[int, int]
 
 
 def _described(
-    problem: Problem, contact: Mask, weights: Array, mean_pressure: float, pressure: float, approach: float
+    problem: Problem, contact: Mask, loads: Array, mean_pressure: float, pressure: float, seen: _Seen
 ) -> Outlook:
-    lower, upper = problem.heights
+    """``loads`` weighs the elements in contact, in their order."""
+    window = Window.full(len(contact)) if problem.periodic else Window.around(contact, margin=1)
+    near, where = problem.windowed(window), contact[window.slices]
+    lower, upper = near.heights
+    weights = loads / loads.sum()
     share = problem.pair.upper.normal_compliance / problem.pair.normal_compliance
-    common = _slopes(problem, share * lower + (1 - share) * upper)
-    bodies = [_slopes(problem, z).tan_x for z in (lower, upper)]
-    edge = contact.copy()
-    edge[1:-1, 1:-1] = False
-    elements = int(np.count_nonzero(contact))
-    near = problem.gap < 2 * approach
+    along, across = _on(where, near, share * lower + (1 - share) * upper)
+    tangents = [_on(where, near, z)[0] for z in (lower, upper)]
+    elements = loads.size
+    border = int(np.count_nonzero(contact)) - int(np.count_nonzero(contact[1:-1, 1:-1]))
     return Outlook(
         elements=elements,
-        spots=_spots(contact),
+        spots=_spots(where),
         mean_pressure=mean_pressure,
         pressure=pressure,
-        approach=approach,
-        slope_squared=float(np.vdot(weights, common.tan_x**2 + common.tan_y**2)),
-        least_slope=min(math.sqrt(float(np.vdot(weights, tan**2))) for tan in bodies),
-        least_mean_slope=min(abs(float(np.vdot(weights, tan))) for tan in bodies),
-        border=0.0 if problem.periodic else int(np.count_nonzero(edge)) / elements,
-        symmetric=all(_alike(z, z[::-1, ::-1]) for z in (lower, upper)),
-        mirrored=_mirrored(problem, lower, upper),
-        window=Window.around(near, margin=1).shape if near.any() else (0, 0),
+        slope_squared=float(weights @ (along**2 + across**2)),
+        least_slope=min(math.sqrt(float(weights @ tan**2)) for tan in tangents),
+        least_mean_slope=min(abs(float(weights @ tan)) for tan in tangents),
+        border=0.0 if problem.periodic else border / elements,
+        **seen._asdict(),
     )
+
+
+def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
+    """Slopes along and across the sliding direction on the marked elements."""
+    slopes = _slopes(problem, heights)
+    return slopes.tan_x[where], slopes.tan_y[where]
+
+
+def _symmetries(problem: Problem) -> tuple[bool, bool]:
+    lower, upper = problem.heights
+    turned = all(_alike(z, z[::-1, ::-1]) for z in (lower, upper))
+    return turned, _mirrored(problem, lower, upper)
 
 
 def _slopes(problem: Problem, heights: Array) -> Slopes:
