@@ -117,6 +117,7 @@ def _draw(canvas: Canvas, data: Data) -> None:
     axes.set_xticks(range(len(data["fault"])), data["fault"], rotation=90, fontsize=7.5)
     axes.set_yticks(range(len(data["subject"])), data["subject"], fontsize=8)
     axes.set(xlim=(-0.7, len(data["fault"]) - 0.3), ylim=(len(data["subject"]) - 0.4, -0.6))
+    axes.grid(alpha=0.15)
     axes.set_xlabel("seeded fault (red numbers: seen by one check alone)")
     axes.set_ylabel("subject (number of its checks)")
 
