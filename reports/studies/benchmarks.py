@@ -11,6 +11,7 @@ from reports.drawing import COLOURS, MARKERS, Data, Figure
 from reports.exhibit import Cell, Document, Exhibit, Table
 
 OURS = "refimpl"
+STYLES = ("-", "--", ":")  # by the number of pluses in a code's name
 Row = Mapping[str, Any]
 
 
@@ -141,15 +142,17 @@ def _figure(kinds: Sequence[str]) -> Figure:
 
 
 def _draw(canvas: Canvas, data: Data) -> None:
-    """One panel a surface, one line a code, the same colour in all."""
+    """One panel a surface, one colour a code; dashes and dots where it does more, or has other options."""
     codes = list(dict.fromkeys(name.partition(", ")[2] for name in data["seconds"]))
+    families = list(dict.fromkeys(code.partition("+")[0] for code in codes))
     panels = canvas.subplots(1, len(data["kinds"]), squeeze=False, sharey=True)[0]
     for axes, kind in zip(panels, data["kinds"], strict=True):
         grids = set()
-        for k, code in enumerate(codes):
+        for code in codes:
             line = data["seconds"].get(f"{kind}, {code}")
             if line is not None:
-                axes.plot(*line, marker=MARKERS[k % 6], color=COLOURS[k % 6], label=code)
+                k, style = families.index(code.partition("+")[0]) % 6, STYLES[code.count("+") % 3]
+                axes.plot(*line, style, marker=MARKERS[k], color=COLOURS[k], label=code)
                 grids |= set(line[0])
         axes.set(title=f"{kind} flat", xlabel="elements per side", xscale="log", yscale="log")
         axes.set_xticks(sorted(grids), [str(M) for M in sorted(grids)])
