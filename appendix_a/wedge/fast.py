@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from appendix_a.errors import InputError
 from appendix_a.wedge.transform import Complex, remainders
 
 Real = NDArray[np.float64]
@@ -29,6 +30,8 @@ POINTS_PER_SWEEP = 2048
 HALF_PI_TAIL = 6.123233995736766e-17
 """pi/2 minus its double."""
 FACE_ULP = 2.3e-16
+MOST_NODES = 500_000
+"""Two seconds for one point: narrower wedges, or points further out, are refused."""
 HORNER_RUN = 64
 """Terms between two restarts: the power's rounding error stays below 64 units in the last place."""
 
@@ -47,12 +50,19 @@ class Line:
 
 
 def line_for(log_r: Real, gamma: float) -> Line:
-    """The line that serves all given log(r) at once; they have one sign where |log r| > DAMPED_RANGE."""
+    """The line that serves all given log(r) at once; they have one sign where |log r| > DAMPED_RANGE.
+
+    Raises InputError for a wedge so narrow that the sum would take more than MOST_NODES.
+    """
     extreme = float(np.max(np.abs(log_r), initial=0.0))
     distance = min(0.5, 0.5 * DAMPED_RANGE / max(extreme, 1.0))
     c = -distance if log_r.size and log_r.flat[0] > 0 else distance - 1.0
     h = 2 * np.pi * distance / ALIASING
-    return Line(c, h, int(np.ceil(CUTOFF / (2 * (np.pi / 2 - gamma)) / h)))
+    n = np.ceil(CUTOFF / (2 * (np.pi / 2 - gamma)) / h)
+    if n > MOST_NODES:
+        least = f"a wedge of at least {CUTOFF / h / MOST_NODES:.2g} rad at this r: its cost has no bound"
+        raise InputError("gamma", gamma, least)
+    return Line(c, h, int(n))
 
 
 def laurent_sums(line: Line, upper: Complex, log_zeta: Complex) -> Complex:

@@ -1,4 +1,4 @@
-"""``python -m verification.extremes --json FILE``: run the study (about ten minutes); the same command goes on."""
+"""``python -m verification.extremes --json FILE``: run the study (four minutes), or go on with it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Condition numbers of the dense flexibility against the grid, and what they cost in digits and iterations."""
+"""Condition numbers of the dense flexibility against the grid, and their cost in digits and iterations."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CG_TOLERANCE = 1e-10
 def measure(M: int) -> dict[str, float]:
     """Extreme eigenvalues (unit elements), condition number, digits lost by a direct solve, CG iterations.
 
-    The right-hand side is formed in long double from known pressures, so that the error of the solve is its own.
+    The right-hand side is formed in long double from known pressures: the solve's error is its own.
     """
     matrix = DenseInfluence(Grid(float(M), M), 0.0).normal_matrix
     values = np.linalg.eigvalsh(matrix)
@@ -31,7 +31,7 @@ def measure(M: int) -> dict[str, float]:
 
 
 def conjugate_gradients(matrix: Array, right: Array) -> int:
-    """Steps of the plain method to `CG_TOLERANCE` of the first residual: about sqrt(condition) ln(2/tol) / 2."""
+    """Steps of the plain method to `CG_TOLERANCE`: about sqrt(condition) ln(2 / tolerance) / 2."""
     residual, direction = right.copy(), right.copy()
     first = old = float(residual @ residual)
     for step in range(1, 10 * len(right)):

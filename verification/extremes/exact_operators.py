@@ -23,7 +23,7 @@ Exact = Any
 
 @cache
 def normal(M: int, periodic: bool) -> Exact:
-    """``I[1/rho]`` between all pairs of unit elements, ``(M^2, M^2)``; the mean mode of periodic ones is 0."""
+    """``I[1/rho]`` between all pairs of unit elements, ``(M^2, M^2)``; periodic: without mean."""
     if periodic:
         return _from_modes(M, "normal")
     return _pairs(M, lambda i, j: kernel_reference.normal(i, j, 1.0, 1.0))

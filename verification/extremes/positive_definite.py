@@ -1,7 +1,7 @@
 """Why ``a + beta c`` is positive definite for any beta, and so has one contact state; and where that ends.
 
-**a.** Its matrix holds the values at the centres of unit elements, ``a(i, j) = I[1/rho]``: a collocation matrix,
-for which it does not suffice that 1/rho has a positive Fourier transform. With
+**a.** Its matrix holds the values at the centres of unit elements, ``a(i, j) = I[1/rho]``: a collocation
+matrix, for which it does not suffice that 1/rho has a positive Fourier transform. With
 ``1/rho = 2/sqrt(pi) int_0^inf exp(-rho^2 u^2) du`` the element's integral separates,
 
     a(i, j) = 2/sqrt(pi) int_0^inf G_u(i) G_u(j) du,    G_u(i) = int_{-1/2}^{1/2} exp(-u^2 (i - s)^2) ds > 0,
@@ -17,9 +17,9 @@ begin with a positive one: gamma_u(q) > 0. At q = 0 it is a sum of positive numb
 symbol is positive, and f.a f = (2 pi)^-2 int symbol |f^|^2 > 0 for every pressure f != 0 on any finite set of
 elements, square or oblong.
 
-**c.** ``I[s/rho^2]`` is odd in s, so c is skew: f.c f = 0, and f.(a + beta c) f = f.a f > 0 for every beta. Every
-principal submatrix has that property too, so a + beta c is a P-matrix, and the complementarity problem of
-Eqs (6) and (7) at a given approach has exactly one solution, slopes and tau's support being held (Samelson,
+**c.** ``I[s/rho^2]`` is odd in s, so c is skew: f.c f = 0, and f.(a + beta c) f = f.a f > 0 for every beta.
+Every principal submatrix has that property too, so a + beta c is a P-matrix, and the complementarity
+problem of Eqs (6) and (7) at a given approach has exactly one solution, slopes and tau's support being held (Samelson,
 Thrall and Wesler 1958). Two approaches d1 < d2 with solutions f1, f2 give, since each pressure meets only
 gaps that are not negative,
 
@@ -27,8 +27,8 @@ gaps that are not negative,
 
 so that K.f grows with the approach, and without slopes (K = 1, N = sum f dA) each load has one state too.
 
-**Where it ends.** (1) tau's support: it follows the contact it changes; `lawful_states` counts. (2) Slopes: K, the
-weights of the load and the mean surface follow the pressure. (3) The slope correction: the matrix becomes
+**Where it ends.** (1) tau's support: it follows the contact it changes; `lawful_states` counts. (2) Slopes: K,
+the weights of the load and the mean surface follow the pressure. (3) The slope correction: the matrix is
 ``a (1 - beta tan theta_x) + ...``, whose symmetric part may vanish where beta tan theta_x reaches 1.
 """
 

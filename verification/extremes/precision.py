@@ -1,4 +1,4 @@
-"""Digits lost in float32, float64, long double and mpmath (30 digits), quantity by quantity, with cause and cure.
+"""Digits lost in float32, float64, long double and mpmath (30 digits), with cause and cure.
 
 Each quantity is one formula evaluated in each arithmetic on inputs that all of them hold exactly, against the
 same formula, or a better one, in 80 digits. Lost is what the arithmetic carries less what the result keeps.
@@ -144,7 +144,7 @@ def _offset_gap(a: Arithmetic) -> Any:
     return [f - min(far) for f in far]
 
 
-def _slope_of_far_heights(a: Arithmetic) -> Any:
+def _far_slope(a: Arithmetic) -> Any:
     far = [a.number(h) + a.number(FAR) for h in HEIGHTS]
     return [(far[k + 1] - far[k - 1]) / a.number(2) for k in range(1, len(far) - 1)]
 
@@ -219,23 +219,23 @@ def quantities() -> tuple[Quantity, ...]:
         Quantity("tangential kernel, textbook, at x = 1e-9", _textbook_tangential(close), known,
                  "odd in x: even parts of the corner terms cancel", "differences of angles first"),
         Quantity("tangential kernel, this code, at x = 1e-9", _own_form(CERRUTI, close), known, "none", ""),
-        Quantity("gap of heights 1e6 ranges away", _offset_gap, lambda: _in_many_digits(_offset_gap)(),
-                 "the data's own digits: the offset takes 20 bits", "none possible; mid-heights are taken off at once", False),
-        Quantity("slope of heights 1e6 ranges away", _slope_of_far_heights, lambda: _in_many_digits(_slope_of_far_heights)(),
+        Quantity("gap of heights 1e6 ranges away", _offset_gap, _in_many_digits(_offset_gap),
+                 "the data's own digits: the offset takes 20 bits", "none possible", False),
+        Quantity("slope of heights 1e6 ranges away", _far_slope, _in_many_digits(_far_slope),
                  "the data's own digits", "as above", False),
         Quantity("convolution by FFT, largest error", _convolution, _convolution_exact,
                  "log2 n butterflies: relative to the largest", "none needed", False),
         Quantity("convolution by FFT, each value", _convolution, _convolution_exact,
                  "small values carry the rounding of the largest", "dense solver where that matters"),
-        Quantity("linear solve, 24 unknowns", _linear_solve, lambda: _in_many_digits(_linear_solve)(),
+        Quantity("linear solve, 24 unknowns", _linear_solve, _in_many_digits(_linear_solve),
                  "condition number of the flexibility", "CG works on the residual", False),
         Quantity("sum of 4096 pressures, one by one", _running_sum, lambda: [mp.fsum(MANY)],
                  "n eps", "numpy sums pairwise"),
         Quantity("sum of 4096 pressures, pairwise", _pairwise_sum, lambda: [mp.fsum(MANY)], "none", ""),
-        Quantity("1 - cos(theta) at slope 1e-3", _cosine_less_one, lambda: _in_many_digits(_cosine_less_one)(),
-                 "second order in the slope, below eps at 1e-8", "forces use the cosine itself, never 1 - cos"),
-        Quantity("v - min v where u differs by 1e-6", _vanishing_gap, lambda: _in_many_digits(_vanishing_gap)(),
-                 "contact is where v is constant", "none needed: the certificate's floor, eps approach", False),
+        Quantity("1 - cos(theta) at slope 1e-3", _cosine_less_one, _in_many_digits(_cosine_less_one),
+                 "second order in the slope, below eps at 1e-8", "forces use the cosine itself"),
+        Quantity("v - min v where u differs by 1e-6", _vanishing_gap, _in_many_digits(_vanishing_gap),
+                 "contact is where v is constant", "none: the certificate's floor", False),
     ]  # fmt: skip
     return tuple(found)
 

@@ -12,7 +12,7 @@ DIGITS_MOST = 17.0
 
 
 class Verdict(StrEnum):
-    """How a state ended. WRONG is what must never be: a number that is off although it was reported as good."""
+    """How a state ended. WRONG must never be: a number that is off and was reported as good."""
 
     RIGHT = "right"
     HONEST = "honest failure"  # refused by InputError, or a status that says no
@@ -51,7 +51,7 @@ class Extreme:
     at: str
     x: float
     run: Callable[[], Judged]
-    seconds: float = 8.0  # of processor time before it counts as one that does not end
+    seconds: float = 4.0  # of processor time before it counts as one that does not end
 
     @property
     def id(self) -> str:

@@ -12,7 +12,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import verification.extremes.axes  # registers the axes
+import verification.extremes.axes  # noqa: F401  # registers the axes
 from verification.case import jsonable
 from verification.extremes import conditioning, precision, uniqueness
 from verification.extremes.limits import LIMITS
@@ -23,7 +23,7 @@ from verification.provenance import provenance
 FORMAT = "rough-friction extremes, version 1"
 SAVED_EVERY = 20  # states: what a kill may cost
 Row = dict[str, Any]
-"""One state as JSON: id, axis, series, at, x, verdict, status, error, digits, limit, oracle, note, data, seconds."""
+"""One state as JSON: what `Extreme` and `Judged` hold, its id, digits and seconds of processor time."""
 
 
 class OutOfTime(Exception):
@@ -70,7 +70,7 @@ def run(names: Iterable[str] = (), kept: Mapping[str, Row] | None = None) -> Ite
 
 
 def summary(rows: Iterable[Row]) -> list[Row]:
-    """The table axis x series: range, verdicts, and the fewest and the median of the digits that right ones keep."""
+    """The table axis x series: range, verdicts, fewest and median digits of the right ones."""
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["axis"], row["series"]), []).append(row)

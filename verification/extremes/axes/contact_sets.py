@@ -42,7 +42,8 @@ def at_the_border() -> dict[str, Array]:
     bowl = 1e-6 * np.add.outer((x - 0.5) ** 2, (x - 0.5) ** 2)
     return {
         "corner": peak(0, 0), "edge": peak(0, 3), "far corner": peak(M - 1, M - 1),
-        "ramp": ramp, "tilted": ramp + ramp.T, "bowl": bowl, "one row": 1e-7 * (x[:, None] < 0.2) * np.ones(M),
+        "ramp": ramp, "tilted": ramp + ramp.T, "bowl": bowl,
+        "one row": 1e-7 * (x[:, None] < 0.2) * np.ones(M),
     }  # fmt: skip
 
 

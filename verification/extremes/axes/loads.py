@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 import refimpl as rf
 from verification.extremes.judge import by_oracle
 from verification.extremes.state import Extreme, axis
-from verification.scenes import POLYMER, STEEL, TABLE1, pressed
+from verification.scenes import POLYMER, TABLE1, pressed
 
 M = 5
 PRESSURES = [10.0**k for k in range(-16, 3)]
@@ -46,10 +47,10 @@ def loads() -> Iterator[Extreme]:
             for method in ("fft", "dense"):
                 yield Extreme(
                     "load", f"{series}, {method}", f"p/E* = {pressure:.0e}", pressure,
-                    lambda s=replace(scene, load=load), m=method: by_oracle(s, M, m),
+                    partial(by_oracle, replace(scene, load=load), M, method),
                 )  # fmt: skip
     for load in (1e-15, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6):
         yield Extreme(
             "load", "atoms, fft", f"{load:.0e} N", load,
-            lambda s=replace(atoms(), load=load): by_oracle(s, 5, "fft"),
+            partial(by_oracle, replace(atoms(), load=load), M, "fft"),
         )  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -96,8 +97,8 @@ def topography() -> Iterator[Extreme]:
                 series = f"largest slope, {'corrected, ' * correction}{method}"
                 yield Extreme(
                     "topography", series, f"{math.degrees(angle):.3g} deg", math.degrees(angle),
-                    lambda z=sloped(angle), m=method, c=correction: by_oracle(
-                        rough_ball(z, load=1e3), M, m, slope_correction=c
+                    partial(
+                        by_oracle, rough_ball(sloped(angle), load=1e3), M, method, slope_correction=correction
                     ),
                 )  # fmt: skip
         for offset in OFFSETS:

@@ -1,6 +1,6 @@
 """Units: the same scene in lengths, moduli and loads scaled by 1e-12 ... 1e12; the solution must follow.
 
-Scaling all lengths by s (the load by s^2), or all stresses and the load by e, changes no dimensionless number.
+Scaling all lengths by s (the load by s^2), or stresses and load by e, changes no dimensionless number.
 The load alone scales by s^3 where the side scales by s, heights by s^2 and stresses of friction by s, since
 without slope terms Eq. (7) reads u = side f / E*: pressure scales by s. Powers of two change no bit of a
 mantissa, so the scaled solution must be the same to the last bit; powers of ten round the input.
@@ -27,7 +27,7 @@ SIZES = {"fft": 24, "dense": 12}
 
 
 def scene(length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, periodic: bool) -> rf.Scene:
-    """A sphere (or, periodic, a flat) on a rough flat with lengths, stresses, or the load similarly scaled."""
+    """A sphere (or, periodic, a flat) on a rough flat with lengths, stresses or load scaled."""
     z = HEIGHTS[: SIZES["dense"], : SIZES["dense"]] * (length * similar**2)
     ball: rf.Surface = rf.Flat() if periodic else rf.Sphere(0.14 * length)
     return rf.Scene(
