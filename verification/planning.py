@@ -1,0 +1,140 @@
+"""Random scenes on which the plan's estimates are held against what leaving each term out really changes.
+
+Four kinds: smooth balls (on a flat or in a cup), balls on roughness, rough planes (free or periodic), and
+two rough bodies. Moduli over 2.5 decades, Poisson's ratios of 0 to 0.5 (a quarter of the pairs identical),
+rms slopes of 3e-4 to 0.1, contact over 1 % to 50 % of a plane, tau and beta each absent in half of the
+scenes. The effect is the difference of two solves on one grid, of mu over local friction and of A.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.fft_solver import solve_fft
+from refimpl.grid import Grid
+from refimpl.operators.fft import Counter
+from refimpl.plan import EVERYTHING, Plan, make_plan
+from refimpl.planning import effects
+from refimpl.planning.effects import Effect, Scales
+from refimpl.problem import Problem, Terms, pose
+
+SIDE = 1e-3
+TOLERANCE = 1e-9  # of each solve: a thousandth of the smallest effects that are judged
+RMS_SLOPE_PER_RMS = math.sqrt(2 * 2.3)  # Eq. (9): rms slope = this times rms over length
+
+WITHOUT = {
+    "shear coupling": Terms(coupled=False, oblique=True, slope_correction=False),
+    "shear tilt": Terms(coupled=True, oblique=True, slope_correction=False, tilted=False),
+    "obliqueness": Terms(coupled=True, oblique=False, slope_correction=False),
+}
+ESTIMATES = {
+    "shear coupling": effects.shear_coupling,
+    "shear tilt": effects.shear_tilt,
+    "obliqueness": effects.obliqueness,
+}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One term in one scene: its estimate, its effect, and whether the plan at an accuracy leaves it out."""
+
+    scene: int
+    term: str
+    estimate: Effect
+    effect: Effect
+    left_out: bool
+
+
+def random_scene(rng: np.random.Generator) -> rf.Scene:
+    """One scene of the four kinds."""
+    lower, upper = _materials(rng)
+    modulus = 1 / (1 / lower.plane_strain_modulus + 1 / upper.plane_strain_modulus)
+    kind = rng.choice(["smooth", "rough", "planes", "both rough"])
+    length = SIDE * rng.uniform(0.06, 0.25)
+    slope = 10 ** rng.uniform(-3.5, -1)
+    seed = int(rng.integers(1_000_000_000))
+    roughness = rf.GaussianRoughness(slope * length / RMS_SLOPE_PER_RMS, length, seed)
+    other = rf.GaussianRoughness(
+        roughness.rms * 10 ** rng.uniform(-1, 0.5), length * rng.uniform(0.7, 1.5), seed + 1
+    )
+    radius, contact_radius = SIDE * 10 ** rng.uniform(1, 3), SIDE * rng.uniform(0.1, 0.35)
+    load = 4 / 3 * modulus * contact_radius**3 / radius
+    pressure = max(load / (math.pi * contact_radius**2), 0.7 * modulus * slope)
+    bottom: rf.Surface = roughness
+    top: rf.Surface = rf.Sphere(radius)
+    if kind == "smooth":
+        pressure = load / (math.pi * contact_radius**2)
+        bottom = rf.Sphere(-radius * rng.uniform(1, 5)) if rng.random() < 0.3 else rf.Flat()
+    elif kind == "planes":
+        pressure = 0.7 * modulus * slope
+        load = 10 ** rng.uniform(-2, -0.3) * pressure * SIDE**2
+        top = other if rng.random() < 0.5 else rf.Flat()
+    elif kind == "both rough":
+        top = top + other
+    tau = rng.integers(2) * pressure * 10 ** rng.uniform(-2.5, -0.5)
+    beta = rng.integers(2) * 10 ** rng.uniform(-2, -0.4)
+    return rf.Scene(
+        upper=rf.Body(upper, top),
+        lower=rf.Body(lower, bottom),
+        friction=rf.Friction(float(tau), float(beta)),
+        load=float(load),
+        side=SIDE,
+        sliding_direction=float(rng.uniform(0, 2 * math.pi)) if rng.random() < 0.5 else 0.0,
+        periodic=bool(kind == "planes" and rng.random() < 0.5),
+    )
+
+
+def _materials(rng: np.random.Generator) -> tuple[rf.Material, rf.Material]:
+    moduli, ratios = 10 ** rng.uniform(9, 11.5, 2), rng.uniform(0, 0.5, 2)
+    lot = rng.random()
+    if lot < 0.25:
+        moduli[1], ratios[1] = moduli[0], ratios[0]
+    elif lot < 0.6:
+        moduli[1] = moduli[0] * 10 ** rng.uniform(-0.3, 0.3)
+    first, second = (rf.Material(float(E), float(nu)) for E, nu in zip(moduli, ratios, strict=True))
+    return first, second
+
+
+def trials(seed: int, scenes: int, M: int, accuracy: float) -> list[Trial]:
+    """Every term that is not exactly zero, in each scene, with the plan's word at the accuracy."""
+    rng = np.random.default_rng(seed)
+    found: list[Trial] = []
+    for number in range(scenes):
+        scene = random_scene(rng)
+        plan = make_plan(scene, M, "fft", demand=accuracy)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", rf.SurfaceWarning)
+            problem = pose(scene, Grid(SIDE, M), EVERYTHING, None)
+        found += _trials_of(number, problem, plan)
+    return found
+
+
+def _trials_of(number: int, problem: Problem, plan: Plan) -> list[Trial]:
+    scales = Scales(plan.outlook, problem.pair, problem.friction)
+    whole = _mu_and_area(problem)
+    result = []
+    for name, terms in WITHOUT.items():
+        estimate = ESTIMATES[name](scales)
+        if estimate == effects.NONE:
+            continue
+        mu, area = _mu_and_area(replace(problem, terms=terms))
+        change = abs(mu - whole[0]) / scales.mu if scales.mu else 0.0
+        effect = Effect(change, abs(area - whole[1]) / whole[1])
+        out = not plan.includes(name)
+        result.append(Trial(number, name, estimate, effect, out))
+    return result
+
+
+def _mu_and_area(problem: Problem) -> tuple[float, float]:
+    """Friction coefficient and contact area (m^2); raises `RuntimeError` without convergence."""
+    outcome, state = solve_fft(problem, TOLERANCE, Counter())
+    if not state.certificate.meets(10 * TOLERANCE):
+        raise RuntimeError(f"{outcome.status.value}: {state.certificate.worst:.1e}")
+    assert problem.load is not None
+    area = float(np.count_nonzero(state.pressure > 0)) * problem.grid.element_area
+    return state.forces.friction / problem.load, area
