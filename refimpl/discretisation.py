@@ -74,10 +74,11 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
     def sheared(name: str, share: Array) -> Estimate:
         """A number that contains ``share`` times the contact area."""
         rest = smooth(columns[name] - share * area, BULK, thinness * fine[name])
-        value = rest.value + share[-1] * whole.value
-        return Estimate(value, math.hypot(rest.spread, share[-1] * whole.spread))
+        value = rest.value + float(share[-1]) * whole.value
+        return Estimate(value, math.hypot(rest.spread, float(share[-1]) * whole.spread))
 
     whole = _area(results, area, spacing)
+    normal = smooth(force, OTHER, thinness * fine["normal_force"])
     return {
         "friction_coefficient": sheared("friction_coefficient", slip),
         "friction_force": sheared("friction_force", slip * force),
@@ -85,7 +86,7 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
         "contact_area_corrected": whole,
         "max_pressure": smooth(columns["max_pressure"], PEAK, results[-1].drop * fine["max_pressure"]),
         "approach": smooth(columns["approach"], OTHER, thinness * fine["approach"]),
-        "normal_force": smooth(force, OTHER, thinness * fine["normal_force"]),
+        **({} if results[-1].loaded else {"normal_force": normal}),
         "binormal_force": smooth(columns["binormal_force"], BINORMAL, thinness * fine["normal_force"]),
     }
 
@@ -116,6 +117,8 @@ def line(values: Array, weights: Array, prior: Prior, edge: Array | None = None)
     >>> line(np.array([1.04, 1.02, 1.01]), np.array([8.0, 2.8, 1.0]), Prior(0.001, 1.0)).value < 1.015
     True
     """
+    if not np.any(values):
+        return Estimate(0.0, 0.0)
     sizes, shares = (np.zeros(1), np.ones(1)) if edge is None else _edge_sizes()
     rest = values - sizes[:, None] * (0 if edge is None else edge)
     precision = weights**-2.0

@@ -20,7 +20,8 @@ class GridResult:
     ``numbers`` by the names of `Solution`; ``edge`` is the area (m^2) that whole elements are expected
     to add along the contact's edge, ``alike`` how many of its elements come in and out together by
     symmetry, ``drop`` how sharp the peak is, ``slip`` is ``d mu / d A = tau / N`` (1/m^2), ``parts`` are
-    the uncertainties that the grid's own solution states (iteration, tau support).
+    the uncertainties that the grid's own solution states (iteration, tau support). ``loaded`` tells a
+    prescribed load, which knows no discretisation, from a prescribed approach.
     """
 
     M: int
@@ -31,6 +32,7 @@ class GridResult:
     drop: float
     slip: float
     parts: Mapping[str, Mapping[str, float]]
+    loaded: bool = True
 
     @property
     def touching(self) -> bool:
@@ -49,6 +51,7 @@ class GridResult:
             drop=drop_beside_peak(solution.pressure),
             slip=adhesive_share(solution),
             parts=merged(iteration_parts(solution), _own(solution)),
+            loaded=solution.problem.load is not None,
         )
 
 

@@ -1,0 +1,79 @@
+"""The study's result file: settings, summaries by number and class, and every verdict for the figure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from verification.coverage.judge import NUMBERS, Verdict, summary, verdicts
+from verification.coverage.scenes import CLASSES
+from verification.coverage.store import TOLERANCE, Rung, climb, ladders
+from verification.provenance import provenance
+
+GRIDS = (32, 64, 96, 128, 192, 256, 320, 384, 512)
+"""What may be asked for; the ladder of `refimpl.refine` has some more between them."""
+REFERENCE, PERIODIC_GRIDS = 1024, (32, 64, 96, 128, 192, 256, 512)
+
+
+def grids_of(seed: int) -> tuple[int, ...]:
+    """A scene's grids, the last its reference: periodic scenes, ten times as dear, end at 512."""
+    periodic = list(CLASSES)[seed % len(CLASSES)].startswith("periodic")
+    return PERIODIC_GRIDS if periodic else (*GRIDS, REFERENCE)
+
+
+def document(accuracies: Sequence[float], seeds: Sequence[int], store: Path) -> dict[str, object]:
+    """Solve what the store lacks and judge all of it."""
+    for seed in seeds:
+        climb(store, [seed], grids_of(seed))
+    wanted = {seed: set(grids_of(seed)) for seed in seeds}
+    stored = {
+        seed: [rung for rung in rungs if rung.result.M in wanted[seed]]
+        for seed, rungs in ladders(store).items()
+        if seed in wanted
+    }
+    return {
+        "study": "accuracy= on random scenes",
+        "seeds": [seeds[0], seeds[-1]],
+        "tolerance": TOLERANCE,
+        "solves": solves(stored.values()),
+        "accuracies": [_judged(verdicts(stored, accuracy), accuracy) for accuracy in accuracies],
+        "provenance": provenance(),
+    }
+
+
+def solves(stored: Iterable[Sequence[Rung]]) -> dict[str, float]:
+    """How many, how long (s), and the worst residual among them."""
+    rungs = [rung for ladder in stored for rung in ladder]
+    return {
+        "count": len(rungs),
+        "seconds": sum(rung.seconds for rung in rungs),
+        "worst_residual": max(rung.worst for rung in rungs),
+        "not_converged": sum(rung.status not in ("converged", "cycled") for rung in rungs),
+    }
+
+
+def _judged(found: list[Verdict], accuracy: float) -> dict[str, object]:
+    of = {number: [verdict for verdict in found if verdict.number == number] for number in NUMBERS}
+    return {
+        "accuracy": accuracy,
+        "numbers": {number: summary(part) for number, part in of.items()},
+        "classes": {
+            kind: {number: summary(v for v in part if v.kind == kind) for number, part in of.items()}
+            for kind in CLASSES
+        },
+        "verdicts": {
+            number: {
+                "seed": [v.seed for v in part],
+                "class": [v.kind for v in part],
+                "grid": [v.grids[-1] for v in part],
+                "grids": [list(v.grids) for v in part],
+                "met": [v.met for v in part],
+                "bar": [v.bar for v in part],
+                "error": [v.error for v in part],
+                "reference_bound": [v.reference_bound for v in part],
+                "cheapest": [v.cheapest for v in part],
+                "cost": [v.cost for v in part],
+            }
+            for number, part in of.items()
+        },
+    }

@@ -1,0 +1,121 @@
+"""`accuracy=` replayed on stored grids: did the bar hold the error, how long was it, and what did it cost?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from refimpl.refine import OPENING, climb, relative_bar
+from verification.coverage.scenes import random_scene
+from verification.coverage.store import Rung
+
+NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
+EDGE_SIZE, EDGE_SIZE_BOUND = 0.88, 0.12
+"""Of the edge in the reference: the training scenes' median from 512 to 1024, and its scatter."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One number of one scene at one accuracy.
+
+    ``error`` and ``bar`` are relative to the reference and to the value; ``reference_bound`` is what the
+    reference itself may be wrong by. ``cheapest`` is the coarsest grid from which on every grid's error is
+    within the accuracy, ``cost`` the transforms' ``n log n`` of all grids solved over that of the cheapest.
+    """
+
+    seed: int
+    kind: str
+    number: str
+    accuracy: float
+    grids: tuple[int, ...]
+    met: bool
+    bar: float
+    error: float
+    reference_bound: float
+    cheapest: int | None
+    cost: float | None
+
+    @property
+    def covered(self) -> bool:
+        """Whether the true error lies inside the bar."""
+        return self.error <= self.bar
+
+
+def verdicts(ladders: Mapping[int, Sequence[Rung]], accuracy: float) -> list[Verdict]:
+    """All numbers of all scenes whose ladder has a reference, which is its finest grid."""
+    found = []
+    for seed, rungs in ladders.items():
+        drawn = random_scene(seed)
+        for number in NUMBERS:
+            if number != "friction_coefficient" or not drawn.scene.friction.is_zero:
+                found.append(_judged(rungs, drawn.kind, number, accuracy))
+    return found
+
+
+def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> Verdict:
+    """A grid is asked for only if the reference is at least twice as fine."""
+    reference, bound = _reference(rungs, number)
+    usable = {rung.result.M: rung for rung in rungs if 2 * rung.result.M <= rungs[-1].result.M}
+    climbed = climb(lambda M: usable[M].result, accuracy, number, [M for M in usable if M not in OPENING])
+    value = climbed.results[-1].numbers[number]
+    grids = tuple(result.M for result in climbed.results)
+    met = not climbed.refusal
+    errors = {M: _relative_error(rung, number, reference) for M, rung in usable.items() if M != OPENING[0]}
+    cheapest = next((M for M in errors if all(errors[N] <= accuracy for N in errors if N >= M)), None)
+    work = sum(usable[M].point_logs for M in grids)
+    return Verdict(
+        seed=rungs[0].seed,
+        kind=kind,
+        number=number,
+        accuracy=accuracy,
+        grids=grids,
+        met=met,
+        bar=relative_bar(climbed.results, number),
+        error=abs(value - reference) / abs(value),
+        reference_bound=bound / abs(value),
+        cheapest=cheapest,
+        cost=work / usable[cheapest].point_logs if met and cheapest is not None else None,
+    )
+
+
+def _reference(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
+    """The finest grid's number, without its edge's mean share, and a bound of what is left."""
+    finest = rungs[-1].result
+    value = finest.numbers[number]
+    if number == "max_pressure":
+        return value, abs(value - rungs[-2].result.numbers[number])
+    edge = finest.edge * (finest.slip if number == "friction_coefficient" else 1.0)
+    if number == "contact_area_corrected":
+        value = finest.numbers["contact_area"]
+    return value - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge
+
+
+def _relative_error(rung: Rung, number: str, reference: float) -> float:
+    return abs(rung.result.numbers[number] / reference - 1)
+
+
+def summary(found: Iterable[Verdict]) -> dict[str, float | int | None]:
+    """Shares and medians of verdicts on one number at one accuracy."""
+    found = list(found)
+    costs = [verdict.cost for verdict in found if verdict.cost is not None]
+    met = [verdict for verdict in found if verdict.met]
+    return {
+        "scenes": len(found),
+        "met": len(met) / len(found),
+        "covered": sum(verdict.covered for verdict in found) / len(found),
+        "covered_where_met": sum(verdict.covered for verdict in met) / len(met) if met else None,
+        "median_bar_over_error": float(np.median([_ratio(v.bar, v.error) for v in found])),
+        "median_cost": float(np.median(costs)) if costs else None,
+        "cost_at_most_2": sum(cost <= 2 for cost in costs) / len(costs) if costs else None,
+        "median_bar": float(np.median([verdict.bar for verdict in found])),
+        "median_reference_bound_over_bar": float(
+            np.median([_ratio(v.reference_bound, v.bar) for v in found])
+        ),
+    }
+
+
+def _ratio(over: float, under: float) -> float:
+    """Finite, for a median: errors below rounding count as rounding."""
+    return over / max(under, np.finfo(float).eps)
