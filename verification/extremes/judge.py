@@ -10,6 +10,7 @@ import mpmath as mp
 import numpy as np
 
 import refimpl as rf
+from refimpl.plan import Method
 from verification.extremes.oracle import NotSettled, Oracle
 from verification.extremes.state import Judged, Verdict, number
 
@@ -18,6 +19,7 @@ TOLERANCE = 1e-10
 WRONG_FROM = 1e-6
 """Relative error of a number that counts as wrong although the certificate met `TOLERANCE`. The certificate's
 gap bounds the square of the error in energy, so 1e-5 would be lawful; measured errors stay below 1e-7."""
+SOLVERS: tuple[Method, ...] = ("fft", "dense")
 GOOD = (rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.NO_CONTACT)
 
 
@@ -43,11 +45,11 @@ def guarded(run: Callable[[], Judged]) -> Judged:
         )
 
 
-def by_oracle(scene: rf.Scene, M: int, method: str = "fft", **options: Any) -> Judged:
+def by_oracle(scene: rf.Scene, M: int, method: Method = "fft", **options: Any) -> Judged:
     """Pressure, approach and forces against the exact discrete state."""
 
     def run() -> Judged:
-        solution = rf.solve(scene, M, method=method, tolerance=TOLERANCE, **options)  # type: ignore[arg-type]  # a Method
+        solution = rf.solve(scene, M, method=method, tolerance=TOLERANCE, **options)
         try:
             error, note = exact_error(scene, solution, **options)
         except NotSettled as unsettled:
@@ -77,8 +79,12 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
     further than rounding from the edge of contact counts as an error of 1.
     """
     M = solution.grid.M
-    settings = {"approach": options.get("approach"), "oblique": options.get("oblique", True) is not False}
-    oracle = Oracle(scene, M, slope_correction=options.get("slope_correction", False), **settings)
+    oracle = Oracle(
+        scene, M,
+        approach=options.get("approach"),
+        oblique=options.get("oblique", True) is not False,
+        slope_correction=options.get("slope_correction", False),
+    )  # fmt: skip
     if not solution.contact.any():
         return _untouched(oracle, solution)
     tau = scene.friction.tau

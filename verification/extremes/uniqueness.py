@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import refimpl as rf
 from refimpl.grid import Array
 from verification.extremes.exact_operators import normal, tangential
+from verification.extremes.judge import SOLVERS
 from verification.scenes import POLYMER, STEEL
 
 M = 3
@@ -90,8 +91,8 @@ def count(tau: float, scenes: int = SCENES) -> Count:
         this = scene(seed, tau, soft_below=seed % 2 == 0)
         lawful = lawful_states(this)
         numbers.append(len(lawful))
-        for method in ("fft", "dense"):
-            solution = rf.solve(this, M, method=method, oblique=False, tolerance=1e-10)  # type: ignore[arg-type]  # a Method
+        for method in SOLVERS:
+            solution = rf.solve(this, M, method=method, oblique=False, tolerance=1e-10)
             told = solution.status.value
             statuses[method][told] = statuses[method].get(told, 0) + 1
             among = any(np.array_equal(solution.contact, state) for state in lawful)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.extremes.judge import by_oracle
+from verification.extremes.judge import SOLVERS, by_oracle
 from verification.extremes.state import Extreme, axis
 from verification.scenes import POLYMER, TABLE1, pressed
 
@@ -50,18 +51,18 @@ def at_the_border() -> dict[str, Array]:
 @axis("contact set")
 def contact_sets() -> Iterator[Extreme]:
     """Prescribed approaches from apart to deep; peaks that alone carry the load; flats; borders."""
-    for method in ("fft", "dense"):
+    for method in SOLVERS:
         for approach in APPROACHES:
             for series, law in (("approach", COULOMB), ("approach with tau", TABLE1)):
                 scene = pressed(rms=None, lower=POLYMER, friction=law)
                 yield Extreme(
                     "contact set", f"{series}, {method}", f"{approach:g} m", approach,
-                    lambda s=scene, a=approach, m=method: by_oracle(s, M, m, approach=a),
+                    partial(by_oracle, scene, M, method, approach=approach),
                 )  # fmt: skip
         for load in (1e-12, 1e-6, 1e-3, 1e-2):
             yield Extreme(
                 "contact set", f"one element, {method}", f"{load:g} N", load,
-                lambda p=load, m=method: by_oracle(on(peak(2, 3, 1e-5), p), M, m),
+                partial(by_oracle, on(peak(2, 3, 1e-5), load), M, method),
             )  # fmt: skip
         for exponent in (-12, -6, 0, 3):
             for periodic in (False, True):
@@ -69,11 +70,11 @@ def contact_sets() -> Iterator[Extreme]:
                 scene = on(np.zeros((M, M)), 10.0**exponent, periodic=periodic)
                 yield Extreme(
                     "contact set", series, f"1e{exponent} N", 10.0**exponent,
-                    lambda s=scene, m=method: by_oracle(s, M, m),
+                    partial(by_oracle, scene, M, method),
                 )  # fmt: skip
         for k, (name, heights) in enumerate(at_the_border().items()):
             for load in (1e-4, 1.0, 100.0):
                 yield Extreme(
                     "contact set", f"border, {method}", f"{name}, {load:g} N", k + math.log10(load) / 10,
-                    lambda z=heights, p=load, m=method: by_oracle(on(z, p), M, m),
+                    partial(by_oracle, on(heights, load), M, method),
                 )  # fmt: skip

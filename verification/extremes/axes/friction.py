@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import refimpl as rf
-from verification.extremes.judge import by_oracle
+from verification.extremes.judge import SOLVERS, by_oracle
 from verification.extremes.state import Extreme, axis
 from verification.scenes import POLYMER, STEEL, pressed
 
@@ -28,7 +29,7 @@ def rubbed(tau: float, beta: float, *, soft_below: bool = True) -> rf.Scene:
 @axis("friction")
 def friction() -> Iterator[Extreme]:
     """Either sign of the coupling, half-space and periodic, slope terms kept, dropped and corrected."""
-    for method in ("fft", "dense"):
+    for method in SOLVERS:
         for tau in TAUS:
             for series, scene, options in (
                 ("tau", rubbed(tau, 0.0), {}),
@@ -37,7 +38,7 @@ def friction() -> Iterator[Extreme]:
             ):
                 yield Extreme(
                     "friction", f"{series}, {method}", f"tau/f = {tau:.3g}", tau,
-                    lambda s=scene, o=options, m=method: by_oracle(s, M, m, **o),
+                    partial(by_oracle, scene, M, method, **options),
                 )  # fmt: skip
         for beta in BETAS:
             for series, scene, options in (
@@ -48,5 +49,5 @@ def friction() -> Iterator[Extreme]:
             ):
                 yield Extreme(
                     "friction", f"{series}, {method}", f"beta = {beta:g}", beta,
-                    lambda s=scene, o=options, m=method: by_oracle(s, M, m, **o),
+                    partial(by_oracle, scene, M, method, **options),
                 )  # fmt: skip

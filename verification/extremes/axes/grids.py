@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 import refimpl as rf
 from verification.exact import hertz
-from verification.extremes.judge import GOOD, TOLERANCE, by_oracle, guarded, verdict
+from verification.extremes.judge import GOOD, SOLVERS, TOLERANCE, by_oracle, guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import POLYMER, STEEL, pressed
 
@@ -65,21 +66,19 @@ def grids() -> Iterator[Extreme]:
     scene = pressed(lower=POLYMER, load=30.0, direction=0.7)
     flat = replace(scene, upper=rf.Body(STEEL, rf.Flat()), periodic=True)
     for M in TINY:
-        for method in ("fft", "dense"):
+        for method in SOLVERS:
             for name, what in (("half-space", scene), ("periodic", flat)):
                 yield Extreme(
                     "grid", f"{name}, {method}", f"{M}", float(M),
-                    lambda s=what, n=M, m=method: by_oracle(s, n, m),
+                    partial(by_oracle, what, M, method),
                 )  # fmt: skip
     for M in PRIMES:
         for name, what in (("half-space", scene), ("periodic", flat)):
-            yield Extreme(
-                "grid", f"{name} primes, fft", f"{M}", float(M), lambda s=what, n=M: against_dense(s, n)
-            )
+            yield Extreme("grid", f"{name} primes, fft", f"{M}", float(M), partial(against_dense, what, M))
     for M in (31, 61, 127, 257, 509, LARGEST):
-        yield Extreme("grid", "Hertz, fft", f"{M}", float(M), lambda n=M: against_hertz(n), seconds=300.0)
+        yield Extreme("grid", "Hertz, fft", f"{M}", float(M), partial(against_hertz, M), seconds=300.0)
     for across in LINES:
         yield Extreme(
             "grid", "ridge of 24 elements, fft", f"{across} across", float(across),
-            lambda a=across: against_dense(ridge(24, a), 24),
+            partial(against_dense, ridge(24, across), 24),
         )  # fmt: skip

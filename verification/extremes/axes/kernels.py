@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 from refimpl.kernels import normal_integral, tangential_integral
@@ -46,16 +47,16 @@ def kernels() -> Iterator[Extreme]:
             for direction, y in (("on the axis", 0.0), ("off the axis", 0.75)):
                 yield Extreme(
                     "kernel", f"{kind} {direction}", f"{x:g} elements", x,
-                    lambda k=kind, a=x, b=y: against_digits(k, a, b, 1.0, 1.0),
+                    partial(against_digits, kind, x, y, 1.0, 1.0),
                 )  # fmt: skip
         for aspect in ASPECTS:
             for x in (0.25, 2.0, 50.0):
                 yield Extreme(
                     "kernel", f"{kind}, thin element", f"dy/dx = {aspect:.0e}, x = {x:g}", aspect,
-                    lambda k=kind, a=x, d=aspect: against_digits(k, a, 0.3 * d, 1.0, d),
+                    partial(against_digits, kind, x, 0.3 * aspect, 1.0, aspect),
                 )  # fmt: skip
         for length in LENGTHS:
             yield Extreme(
                 "kernel", f"{kind}, length", f"{length:.1e} m", length,
-                lambda k=kind, s=length: against_digits(k, 1.5 * s, 0.25 * s, s, s),
+                partial(against_digits, kind, 1.5 * length, 0.25 * length, length, length),
             )  # fmt: skip

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 import refimpl as rf
-from verification.extremes.judge import by_oracle
+from verification.extremes.judge import SOLVERS, by_oracle
 from verification.extremes.state import Extreme, axis
 from verification.scenes import POLYMER, TABLE1, pressed
 
@@ -44,7 +44,7 @@ def loads() -> Iterator[Extreme]:
     for series, scene in scenes.items():
         for pressure in PRESSURES:
             load = pressure * scene.materials.reduced_modulus * scene.side**2
-            for method in ("fft", "dense"):
+            for method in SOLVERS:
                 yield Extreme(
                     "load", f"{series}, {method}", f"p/E* = {pressure:.0e}", pressure,
                     partial(by_oracle, replace(scene, load=load), M, method),

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import refimpl as rf
-from verification.extremes.judge import by_oracle, guarded
-from verification.extremes.state import Extreme, axis
+from refimpl.plan import Method
+from verification.extremes.judge import SOLVERS, by_oracle, guarded
+from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import STEEL, TABLE1, pressed
 
 M = 5
@@ -25,24 +27,27 @@ def pair(upper: rf.Material, lower: rf.Material, beta: float = 0.3) -> rf.Scene:
     return replace(scene, load=load, friction=replace(TABLE1, tau=tau, beta=beta))
 
 
+def of_ratios(upper: float, lower: float, method: Method) -> Judged:
+    """Bodies of two Poisson's ratios, which may be refused."""
+    return guarded(lambda: by_oracle(pair(rf.Material(2e11, upper), rf.Material(3e9, lower)), M, method))
+
+
 @axis("material")
 def materials() -> Iterator[Extreme]:
     """Poisson's ratio of one body, of both; the modulus of the lower body over the upper one's."""
-    for method in ("fft", "dense"):
+    for method in SOLVERS:
         for nu in RATIOS:
             yield Extreme(
                 "material", f"nu of the lower body, {method}", f"{nu!r}", nu,
-                lambda v=nu, m=method: guarded(lambda: by_oracle(pair(STEEL, rf.Material(3e9, v)), M, m)),
+                partial(of_ratios, STEEL.nu, nu, method),
             )  # fmt: skip
         for nu in RATIOS[1:-1]:
             yield Extreme(
                 "material", f"nu of both, {method}", f"{nu!r}", nu,
-                lambda v=nu, m=method: by_oracle(pair(rf.Material(2e11, v), rf.Material(3e9, v)), M, m),
+                partial(of_ratios, nu, nu, method),
             )  # fmt: skip
         for exponent in range(-6, 7):
             yield Extreme(
                 "material", f"modulus ratio, {method}", f"1e{exponent}", 10.0**exponent,
-                lambda r=10.0**exponent, m=method: by_oracle(
-                    pair(STEEL, rf.Material(STEEL.E * r, 0.1)), M, m
-                ),
+                partial(by_oracle, pair(STEEL, rf.Material(STEEL.E * 10.0**exponent, 0.1)), M, method),
             )  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from skfem import MeshTri
@@ -115,9 +116,7 @@ def wedges() -> Iterator[Extreme]:
     """All angles by all radii; the limits only where the slowest mode has died out by then."""
     for gamma in GAMMAS:
         for r in RADII:
-            yield Extreme(
-                "wedge", f"r = {r:g}", f"gamma = {gamma!r}", gamma, lambda g=gamma, s=r: wedge_at(g, s)
-            )
+            yield Extreme("wedge", f"r = {r:g}", f"gamma = {gamma!r}", gamma, partial(wedge_at, gamma, r))
         for r in LIMIT_RADII:
             # next to flat the field at the tip still decays like r^(4 gamma / pi): no limit within doubles
             if r > 1 or gamma == 0 or gamma >= 0.3:
@@ -126,7 +125,7 @@ def wedges() -> Iterator[Extreme]:
                     f"limit r = {r:g}",
                     f"gamma = {gamma!r}",
                     gamma,
-                    lambda g=gamma, s=r: wedge_at(g, s),
+                    partial(wedge_at, gamma, r),
                 )
 
 
@@ -139,11 +138,11 @@ def finite_elements() -> Iterator[Extreme]:
                 continue
             yield Extreme(
                 "finite elements", f"nu, {formulation}", f"{nu!r}", nu,
-                lambda f=formulation, v=nu: pressed(v, formulation=f),
+                partial(pressed, nu, formulation=formulation),
             )  # fmt: skip
         for nu in (0.3, 0.4999):
             for jitter in JITTERS:
                 yield Extreme(
                     "finite elements", f"distortion at nu = {nu}, {formulation}", f"{jitter:g}", jitter,
-                    lambda f=formulation, v=nu, j=jitter: pressed(v, formulation=f, jitter=j),
+                    partial(pressed, nu, formulation=formulation, jitter=jitter),
                 )  # fmt: skip

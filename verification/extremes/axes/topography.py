@@ -11,7 +11,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.extremes.judge import GOOD, TOLERANCE, by_oracle, guarded, verdict
+from refimpl.plan import Method
+from verification.extremes.judge import GOOD, SOLVERS, TOLERANCE, by_oracle, guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import POLYMER, STEEL, TABLE1
 
@@ -42,10 +43,10 @@ def rough_ball(heights: Array, radius: float = 0.14, load: float = 1.0) -> rf.Sc
 def sloped(angle: float) -> Array:
     """Noise whose largest central difference is the tangent of an angle."""
     step = np.abs(np.gradient(NOISE, SIDE / M, axis=0)).max()
-    return NOISE * (math.tan(angle) / step)
+    return np.asarray(NOISE * (math.tan(angle) / step))
 
 
-def moved(offset: float, *, dyadic: bool, method: str) -> Judged:
+def moved(offset: float, *, dyadic: bool, method: Method) -> Judged:
     """Heights plus an offset against the same heights without one: no more is lost than the data lost."""
 
     def run() -> Judged:
@@ -55,7 +56,7 @@ def moved(offset: float, *, dyadic: bool, method: str) -> Judged:
         here, there = (
             rf.solve(
                 replace(rough_ball(h), upper=rf.Body(STEEL, rf.Flat())), M, method=method, tolerance=TOLERANCE
-            )  # type: ignore[arg-type]  # a Method
+            )
             for h in (z, far)
         )
         if here.status not in GOOD:
@@ -86,11 +87,11 @@ def ties() -> dict[str, Array]:
 @axis("topography")
 def topography() -> Iterator[Extreme]:
     """Amplitudes, slopes, offsets and ties for both solvers."""
-    for method in ("fft", "dense"):
+    for method in SOLVERS:
         for amplitude in AMPLITUDES:
             yield Extreme(
                 "topography", f"rms, {method}", f"{amplitude:.0e} m", amplitude,
-                lambda z=amplitude * NOISE, m=method: by_oracle(rough_ball(z), M, m),
+                partial(by_oracle, rough_ball(amplitude * NOISE), M, method),
             )  # fmt: skip
         for angle in SLOPES:
             for correction in (False, True):
@@ -105,12 +106,12 @@ def topography() -> Iterator[Extreme]:
             for dyadic in (True, False):
                 yield Extreme(
                     "topography", f"offset, {'dyadic ' * dyadic}heights, {method}", f"{offset:.3g}", offset,
-                    lambda o=offset, d=dyadic, m=method: moved(o, dyadic=d, method=m),
+                    partial(moved, offset, dyadic=dyadic, method=method),
                 )  # fmt: skip
         for k, (name, heights) in enumerate(ties().items()):
             for radius in (0.14, 1e300):
                 series = f"ties, {'ball' if radius < 1 else 'flat'}, {method}"
                 yield Extreme(
                     "topography", series, name, float(k),
-                    lambda z=heights, r=radius, m=method: by_oracle(rough_ball(z, r), M, m),
+                    partial(by_oracle, rough_ball(heights, radius), M, method),
                 )  # fmt: skip

@@ -9,11 +9,12 @@ mantissa, so the scaled solution must be the same to the last bit; powers of ten
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
 import refimpl as rf
+from refimpl.plan import Method
 from verification.extremes.judge import guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import COPPER, STEEL
@@ -23,7 +24,8 @@ LIMIT = 1e-12
 """Relative change allowed for powers of ten: rounding of the input, 1e-16, times what the solve amplifies."""
 HEIGHTS = 0.3e-6 * np.random.default_rng(2001).standard_normal((24, 24))
 TWOS, TENS = range(-40, 41, 4), range(-12, 13)
-SIZES = {"fft": 24, "dense": 12}
+SIZES: dict[Method, int] = {"fft": 24, "dense": 12}
+SETTINGS: tuple[tuple[Method, bool], ...] = (("fft", False), ("fft", True), ("dense", False))
 
 
 def scene(length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, periodic: bool) -> rf.Scene:
@@ -42,11 +44,11 @@ def scene(length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, per
 
 
 @cache
-def unscaled(method: str, periodic: bool, oblique: bool) -> rf.Solution:
+def unscaled(method: Method, periodic: bool, oblique: bool) -> rf.Solution:
     """The solution that all scaled ones are held against."""
     found = rf.solve(
         scene(periodic=periodic), SIZES[method], method=method, tolerance=TOLERANCE, oblique=oblique
-    )  # type: ignore[arg-type]  # a Method
+    )
     if found.status is not rf.Status.CONVERGED:
         raise ArithmeticError(f"the unscaled scene ended {found.status.value}")
     return found
@@ -74,7 +76,7 @@ def change(
     return found[worst], f"worst in {worst}"
 
 
-def run(method: str, periodic: bool, length: float, stress: float, similar: float, limit: float) -> Judged:
+def run(method: Method, periodic: bool, length: float, stress: float, similar: float, limit: float) -> Judged:
     """Solve the scaled scene and compare."""
 
     def compare() -> Judged:
@@ -82,7 +84,7 @@ def run(method: str, periodic: bool, length: float, stress: float, similar: floa
         base = unscaled(method, periodic, oblique)
         scaled = rf.solve(
             scene(length, stress, similar, periodic=periodic), SIZES[method],
-            method=method, tolerance=TOLERANCE, oblique=oblique,  # type: ignore[arg-type]  # a Method
+            method=method, tolerance=TOLERANCE, oblique=oblique,
         )  # fmt: skip
         error, note = change(scaled, base, length, stress, similar)
         return verdict(scaled, error, "the scaling law", note, limit)
@@ -110,7 +112,7 @@ def units() -> Iterator[Extreme]:
     """Every scaling for the production solver (half-space and periodic) and for the dense one."""
     seen = set()
     for what, at, factor, parts, limit in scalings():
-        for method, periodic in (("fft", False), ("fft", True), ("dense", False)):
+        for method, periodic in SETTINGS:
             series = f"{what}, {'periodic' if periodic else method}"
             if (series, at) in seen or (periodic and what == "load"):
                 continue
@@ -118,5 +120,5 @@ def units() -> Iterator[Extreme]:
             kind = "twos" if at.startswith("2^") else "tens"
             yield Extreme(
                 "units", f"{series}, {kind}", at, factor,
-                lambda m=method, p=periodic, f=parts, tol=limit: run(m, p, *f, tol),
+                partial(run, method, periodic, *parts, limit),
             )  # fmt: skip
