@@ -120,3 +120,19 @@ def test_patches_reach_every_module_that_holds_the_function() -> None:
     owners = {owner.__name__ for owner, _, _ in everywhere(normal_integral, None)}
     assert {"refimpl.kernels.points", "refimpl.operators.dense"} <= owners
     assert not any(name.startswith("tests") for name in owners)
+
+
+@pytest.mark.usefixtures("few")
+def test_dear_checks_are_added_to_a_file(tmp_path: Path) -> None:
+    main, path = import_module("verification.matrix.__main__").main, tmp_path / "matrix.json"
+    assert main(["--json", str(path), "--skip", "some/*"]) == 1
+    first = json.loads(path.read_text(encoding="utf-8"))
+    assert first["excluded"] == {"some/check": "left out on request"}
+    assert main(["--json", str(path), "--only", "some/*", "--against", "no-*", "--add"]) == 0
+    both = json.loads(path.read_text(encoding="utf-8"))
+    assert both["excluded"] == {}
+    assert both["faults"][0]["caught_by"] == ["some/check"]
+    assert [check["alone"] for check in both["checks"]] == [[], ["no-kernel"]]
+    assert len(both["added"]) == 1
+    with pytest.raises(ValueError, match="tried before: some/check"):
+        main(["--json", str(path), "--only", "some/*", "--add"])

@@ -81,20 +81,25 @@ class Matrix:
 
 
 def measure(
-    cheap: float = CHEAP, known: Mapping[str, float] | None = None, skip: Iterable[str] = ()
+    cheap: float = CHEAP,
+    known: Mapping[str, float] | None = None,
+    skip: Iterable[str] = (),
+    only: Iterable[str] = ("*",),
+    against: Iterable[str] = ("*",),
 ) -> Iterator[Matrix]:
     """Try every cheap check against every fault that it could see; yields the matrix after each fault.
 
     ``known`` holds seconds of an earlier run: what took longer than ``cheap`` then is not even timed.
-    ``skip`` are globs of checks to leave out.
+    ``skip`` are globs of checks to leave out, ``only`` of those to take, ``against`` of the faults.
     """
-    checks = {check.id: check for check in all_checks()}
+    checks = {check.id: check for check in all_checks() if _any(check.id, only)}
     for arguments in ((False, False), (True, False), (True, True)):
         manufacture(8, 1, 0.7, *arguments)  # made once, from sums that share nothing with what is judged
     local = {**IN_REFIMPL, **IN_APPENDIX}
     faults = {**FAULTS, **{name: fault_of(described) for name, described in local.items()}}
+    faults = {name: fault for name, fault in faults.items() if _any(name, against)}
     progress = Progress(len(faults) + 2)
-    excluded = {id: "left out on request" for id in checks if any(fnmatchcase(id, glob) for glob in skip)}
+    excluded = {id: "left out on request" for id in checks if _any(id, skip)}
     slow = {id: t for id, t in (known or {}).items() if id in checks and t > cheap}
     excluded |= {id: f"takes {t:.1f} s" for id, t in slow.items()}
     sound = _cheap(checks, cheap, excluded)
@@ -109,6 +114,10 @@ def measure(
         progress.tick(name)
         yield Matrix(checks, sound, excluded, {n: faults[n] for n in verdicts}, verdicts)
     progress.close()
+
+
+def _any(name: str, globs: Iterable[str]) -> bool:
+    return any(fnmatchcase(name, glob) for glob in globs)
 
 
 def _cheap(checks: Mapping[str, Case], cheap: float, excluded: dict[str, str]) -> dict[str, Ended]:
