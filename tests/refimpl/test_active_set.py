@@ -50,6 +50,12 @@ def test_nothing_to_do() -> None:
     assert not found.pressure.any()
 
 
+def test_blocks_are_exchanged_while_that_helps() -> None:
+    """One exchange of all fifty, not fifty of one."""
+    found = complementarity(np.eye(50), np.full(50, -1.0), np.zeros(50, dtype=bool))
+    assert found.solves == 2
+
+
 def test_everything_is_pressed() -> None:
     found = complementarity(np.diag([1.0, 2.0]), -np.ones(2), np.zeros(2, dtype=bool))
     np.testing.assert_allclose(found.pressure, [1.0, 0.5])

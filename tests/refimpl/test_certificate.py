@@ -53,6 +53,14 @@ def test_the_solved_state_is_certified() -> None:
     assert judged(approach=SOLVED.approach).certificate.worst < 1e-13
 
 
+@pytest.mark.parametrize("least", [0.1, 1e-300])
+def test_any_pressure_is_contact(least: float) -> None:
+    """Contact is f > 0, however small in pascals: friction there is lawful."""
+    pressure = SOLVED.pressure.copy()
+    pressure.flat[0] = least
+    assert judged(pressure, lawful(pressure)).certificate.unlawful == 0
+
+
 def test_the_numbers_are_spec_1s() -> None:
     """Gap over energy, penetration, balance: written out once more."""
     pressure = 1.01 * SOLVED.pressure
