@@ -1,4 +1,4 @@
-"""Seconds beside the published solvers, at the same recomputed error; the newest run of each grid counts."""
+"""Seconds beside the published solvers, at the same recomputed error; of each code the newest run counts."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ def build(document: Document) -> Exhibit:
     newest = _newest(runs)
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
     last = runs[-1]["conditions"]
+    versions = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
     return Exhibit(
         "Speed beside published solvers",
         (
@@ -29,57 +30,61 @@ def build(document: Document) -> Exhibit:
             f"tolerances whose result has a {last['target']}.",
             f"Threads for every code: {last['threads']}. Clock: {last['clock']}. Seconds are medians with "
             "the least and the most; ratios are medians of the ratios within rounds.",
-            f"Versions: {', '.join(dict.fromkeys(last['versions'].values()))}.",
+            f"Versions: {', '.join(versions)}.",
         ),
         [*(_table(kind, newest) for kind in kinds), _record(runs)],
         [(_figure(kinds), _series(kinds, newest))],
     )
 
 
-def _newest(runs: Sequence[Row]) -> dict[tuple[str, int], Row]:
-    """Rows, ratios and conditions of the newest run by surface and grid."""
-    found = {}
+def _newest(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
+    """By surface and grid, each code's newest row, with the ratios and the commit of its own run."""
+    found: dict[tuple[str, int], dict[str, Row]] = {}
     for run in runs:
-        for ratios in run["ratios"]:
-            key = (ratios["kind"], ratios["M"])
-            rows = [row for row in run["rows"] if (row["kind"], row["M"]) == key]
-            found[key] = {"rows": rows, "ratios": ratios}
-    return dict(sorted(found.items(), key=lambda item: (item[0][0] != "smooth", item[0])))
+        ratios = {(entry["kind"], entry["M"]): entry for entry in run["ratios"]}
+        for row in run["rows"]:
+            key = (row["kind"], row["M"])
+            origin = {"ratio": ratios[key].get(row["code"]), "commit": run["provenance"]["commit"]}
+            found.setdefault(key, {})[row["code"]] = {**row, **origin}
+    ordered = sorted(found.items(), key=lambda item: (item[0][0] != "smooth", item[0]))
+    return {key: list(rows.values()) for key, rows in ordered}
 
 
-def _table(kind: str, newest: Mapping[tuple[str, int], Row]) -> Table:
+def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
     head = (
         "grid", "code", "seconds", "over ours", "processor time over ours", "recomputed gap", "area (mm²)",
-        "peak (MPa)", "peak memory (MB)", "convolutions in all", "times one convolution",
+        "peak (MPa)", "peak memory (MB)", "convolutions in all", "times one convolution", "commit",
     )  # fmt: skip
     rows: list[Sequence[Cell]] = []
-    for (of, M), entry in newest.items():
+    for (of, M), entries in newest.items():
         if of == kind:
-            rows += [_cells(M, row, entry) for row in entry["rows"]]
+            rows += [_cells(M, row) for row in entries]
     caption = (
         f"{kind.capitalize()} flat. A convolution is rfft2 and irfft2 on the padded bounding box of the "
-        "final contact; others count by n log n."
+        "final contact; others count by n log n. Ratios are of a code's own run."
     )
     return Table(caption, head, rows)
 
 
-def _cells(M: int, row: Row, entry: Row) -> Sequence[Cell]:
+def _cells(M: int, row: Row) -> Sequence[Cell]:
+    commit = str(row["commit"])[:12]
     if "seconds" not in row:
-        return (f"{M}²", row["code"], row["failure"], *[None] * 8)
-    ratios = entry["ratios"].get(row["code"], {})
+        return (f"{M}²", row["code"], row["failure"], *[None] * 8, commit)
+    ratio = row["ratio"]
     coupled = row["code"].startswith(f"{OURS}+")
     return (
         f"{M}²",
         row["code"],
         _spread(row["seconds"]),
-        _spread(ratios["seconds"]) if ratios else None,
-        _spread(ratios["processor seconds"]) if ratios else None,
+        _spread(ratio["seconds"]) if ratio else None,
+        _spread(ratio["processor seconds"]) if ratio else None,
         None if coupled else row["gap"],
         f"{1e6 * row['area']:.5f}",
         f"{1e-6 * row['peak']:.3f}",
         round(1e-6 * row["peak memory"]["median"]),
         row.get("convolution equivalents"),
         row["times one convolution"]["median"],
+        commit,
     )
 
 
@@ -117,10 +122,10 @@ def _fastest(ratios: Row, which: str) -> str | None:
     return None if entry is None else f"{entry['code']}, {entry['seconds over ours']:.3g}"
 
 
-def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Row]) -> dict[str, Any]:
+def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Sequence[Row]]) -> dict[str, Any]:
     series: dict[str, dict[str, list[float]]] = {}
-    for (kind, M), entry in newest.items():
-        for row in entry["rows"]:
+    for (kind, M), entries in newest.items():
+        for row in entries:
             if "seconds" in row:
                 line = series.setdefault(f"{kind}, {row['code']}", {"M": [], "s": []})
                 line["M"].append(M)

@@ -128,10 +128,11 @@ def test_verdicts_are_shares_of_the_tolerance() -> None:
     assert any("C (not installed)" in text for text in EXHIBITS[0].paragraphs)
 
 
-def test_the_newest_run_of_a_grid_counts_and_the_record_keeps_all() -> None:
+def test_the_newest_run_of_a_code_counts_and_the_record_keeps_all() -> None:
     smooth, record = EXHIBITS[1].tables
     peers = [(cells[0], cells[3]) for cells in smooth.rows if cells[1] == "peer"]
     assert peers == [("128²", "4 (3.6 to 4.4)"), ("256²", "3 (2.7 to 3.3)")]
+    assert {cells[-1] for cells in smooth.rows} == {"0123456789ab"}
     assert ("128²", "slow", "left out: 900 s expected") in [tuple(cells[:3]) for cells in smooth.rows]
     assert [(cells[0], cells[6], cells[7]) for cells in record.rows] == [
         ("first", "peer, 2", None),
