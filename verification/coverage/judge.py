@@ -58,11 +58,13 @@ def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> V
     """A grid is asked for only if the reference is at least twice as fine."""
     reference, bound = _reference(rungs, number)
     usable = {rung.result.M: rung for rung in rungs if 2 * rung.result.M <= rungs[-1].result.M}
-    climbed = climb(lambda M: usable[M].result, accuracy, number, [M for M in usable if M not in OPENING])
+    ladder = [M for M in usable if M not in OPENING]
+    climbed = climb(lambda M: usable[M].result, accuracy, number, ladder)
     value = climbed.results[-1].numbers[number]
     grids = tuple(result.M for result in climbed.results)
     met = not climbed.refusal
-    errors = {M: _relative_error(rung, number, reference) for M, rung in usable.items() if M != OPENING[0]}
+    candidates = (OPENING[-1], *ladder)
+    errors = {M: _relative_error(usable[M], number, reference) for M in candidates}
     cheapest = next((M for M in errors if all(errors[N] <= accuracy for N in errors if N >= M)), None)
     work = sum(usable[M].point_logs for M in grids)
     return Verdict(
@@ -92,6 +94,16 @@ def _reference(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
     return value - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge
 
 
+def moved(rungs: Sequence[Rung]) -> float:
+    """How far the reference moves on one more grid, the ladder's last, over both stated bounds; the worst."""
+    shares = []
+    for number in NUMBERS:
+        (coarse, loose), (fine, tight) = _reference(rungs[:-1], number), _reference(rungs, number)
+        scale = np.finfo(float).eps * abs(fine)
+        shares.append(abs(fine - coarse) / max(loose + tight, scale))
+    return max(shares)
+
+
 def _relative_error(rung: Rung, number: str, reference: float) -> float:
     return abs(rung.result.numbers[number] / reference - 1)
 
@@ -99,6 +111,8 @@ def _relative_error(rung: Rung, number: str, reference: float) -> float:
 def summary(found: Iterable[Verdict]) -> dict[str, float | int | None]:
     """Shares and medians of verdicts on one number at one accuracy."""
     found = list(found)
+    if not found:
+        return {"scenes": 0}
     costs = [verdict.cost for verdict in found if verdict.cost is not None]
     met = [verdict for verdict in found if verdict.met]
     return {

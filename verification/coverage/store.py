@@ -35,7 +35,10 @@ def climb(path: Path, seeds: Iterable[int], grids: Iterable[int]) -> None:
     known = {(rung.seed, rung.result.M) for rung in rungs(path)}
     todo = [(seed, M) for seed in seeds for M in grids if (seed, M) not in known]
     progress = Progress(len(todo))
+    cut = path.exists() and not path.read_bytes().endswith(b"\n")
     with path.open("a", encoding="utf-8") as lines:
+        if cut:  # by a kill: what follows must not join it
+            lines.write("\n")
         for seed, M in todo:
             lines.write(json.dumps(asdict(_solved(seed, M)), allow_nan=False) + "\n")
             lines.flush()

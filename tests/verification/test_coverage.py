@@ -1,0 +1,142 @@
+"""The study of error bars: scenes that know no grid, a store that survives kills, made-up ladders judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.discretisation import EDGE_SHARE
+from refimpl.grid_result import GridResult
+from refimpl.solution import REPORTED
+from reports.drawing import svg
+from reports.studies import exhibit
+from verification.coverage.document import grids_of, reference_check, solves
+from verification.coverage.judge import NUMBERS, moved, summary, verdicts
+from verification.coverage.scenes import CLASSES, SIDE, random_scene
+from verification.coverage.shapes import measured_like
+from verification.coverage.store import Rung, climb, ladders, rungs
+
+GRIDS = (32, 64, 96, 128, 192, 256, 512)
+
+
+def rung(M: int, *, size: float = 0.85, wrong: float = 0.0, seed: int = 3) -> Rung:
+    """A disc on a grid, with an area wrong by a share; the finest grid of `GRIDS` is never wrong."""
+    h, radius = SIDE / M, 0.2 * SIDE
+    edge, limit = EDGE_SHARE * 8 * radius * h, np.pi * radius**2
+    numbers = dict.fromkeys(REPORTED, 1.0)
+    area = (limit + size * edge) * (1 + (wrong if M in GRIDS[:-1] else 0.0))
+    numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
+    numbers["friction_coefficient"] = 0.1 + 1e5 * area
+    result = GridResult(M, h, numbers, edge, 1.0, 1e-3, 1e5, {name: {"iteration": 0.0} for name in REPORTED})
+    return Rung(seed, result, "converged", 1e-8, float(M**2), 0.1)
+
+
+def test_a_lawful_ladder_is_covered_at_little_cost() -> None:
+    found = verdicts({3: [rung(M) for M in GRIDS]}, 0.02)
+    assert [verdict.number for verdict in found] == list(NUMBERS)
+    for verdict in found:
+        assert verdict.met
+        assert verdict.covered
+        assert verdict.grids[:2] == (32, 64)
+    area = found[1]
+    assert area.cheapest is not None
+    assert area.cheapest <= area.grids[-1]
+    assert area.cost == sum(M**2 for M in area.grids) / area.cheapest**2
+    assert summary(found)["covered"] == 1.0
+
+
+def test_a_bar_that_misses_the_error_is_seen() -> None:
+    found = verdicts({3: [rung(M, wrong=0.3) for M in GRIDS]}, 0.05)
+    by_number = {verdict.number: verdict for verdict in found}
+    assert not by_number["contact_area"].covered
+    assert by_number["max_pressure"].covered
+    assert summary(found)["covered"] == 0.25
+
+
+def test_what_the_grids_cannot_give_is_not_met() -> None:
+    area = verdicts({3: [rung(M) for M in GRIDS]}, 1e-4)[1]
+    assert not area.met
+    assert area.cost is None
+    assert area.grids[-1] == 256  # the reference itself is never asked for
+
+
+def test_a_reference_that_moves_is_seen() -> None:
+    assert moved([rung(M) for M in GRIDS]) < 1
+    assert moved([rung(M, wrong=0.1) for M in GRIDS]) > 1
+
+
+def test_frictionless_scenes_have_no_friction_to_judge() -> None:
+    seed = next(seed for seed in range(99) if random_scene(seed).scene.friction.is_zero)
+    found = verdicts({seed: [rung(M, seed=seed) for M in GRIDS]}, 0.02)
+    assert [verdict.number for verdict in found] == list(NUMBERS[1:])
+
+
+def test_scenes_repeat_and_know_no_grid() -> None:
+    for seed, kind in enumerate(CLASSES):
+        drawn, again = random_scene(seed), random_scene(seed)
+        assert drawn.kind == kind
+        coarse, fine = (np.array(d.scene.heights(rf.Grid(SIDE, M))) for d, M in ((drawn, 32), (again, 96)))
+        # every third centre of the fine grid is one of the coarse; mid-heights differ by what is not sampled
+        shift = fine[:, 1::3, 1::3] - coarse
+        assert np.ptp(shift, axis=(1, 2)).max() <= 1e-12 * SIDE, kind
+
+
+def test_measured_like_heights_have_the_rms_asked_for() -> None:
+    heights = measured_like(np.random.default_rng(1), 64, 2e-6, 0.8, roll_off=4)
+    assert heights.std() == pytest.approx(2e-6)
+    assert abs(heights.mean()) < 1e-20
+
+
+def test_the_store_resumes_after_a_kill(tmp_path: Path) -> None:
+    store = tmp_path / "store.jsonl"
+    climb(store, [0], [32, 48])
+    whole = store.read_text()
+    store.write_text(whole[:-100])  # killed while the last line was written
+    assert [found.result.M for found in rungs(store)] == [32]
+    climb(store, [0], [32, 48])
+    assert [found.result.M for found in ladders(store)[0]] == [32, 48]
+    assert solves(ladders(store).values())["not_converged"] == 0
+
+
+def test_the_reference_check_takes_scenes_that_are_not_periodic(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module = "verification.coverage.document"
+    monkeypatch.setattr(f"{module}.CHECK", 128)
+    monkeypatch.setattr(f"{module}.CHECKED", 1)
+    monkeypatch.setattr(f"{module}.grids_of", lambda seed: (32, 64) if seed == 6 else (32, 64, 1024))
+    store = tmp_path / "store.jsonl"
+    climb(store, [8], [32, 64])
+    found = reference_check([6, 8], store)
+    assert found["seeds"] == [8]
+    assert grids_of(6)[-1] == 512  # periodic
+
+
+def test_the_report_shows_the_study() -> None:
+    found = verdicts({3: [rung(M) for M in GRIDS]}, 0.02)
+    columns = ("seed", "class", "grid", "met", "bar", "error", "cost")
+    judged = {
+        "accuracy": 0.02,
+        "numbers": {number: summary(v for v in found if v.number == number) for number in NUMBERS},
+        "classes": {"rough ball": {number: summary(found) for number in NUMBERS}},
+        "verdicts": {
+            v.number: dict(
+                zip(columns, ([3], [v.kind], [256], [v.met], [v.bar], [v.error], [v.cost]), strict=True)
+            )
+            for v in found
+        },
+    }
+    document = {
+        "seeds": [3, 3],
+        "solves": {"count": 7, "seconds": 1.0, "worst_residual": 1e-8},
+        "reference_check": {"grid": 1024, "seeds": [3], "worst_over_bound": 0.5},
+        "accuracies": [judged],
+    }
+    shown = exhibit("coverage", document)
+    assert shown.tables[0].rows[0][:5] == ("mu", 0.02, 1, 100.0, 100.0)
+    ((figure, data),) = shown.figures
+    drawn = svg(figure, data)
+    assert drawn is not None
