@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.cli.output import Parsers, add_json, columns, emit, output_file
 
 if TYPE_CHECKING:
+    from verification.multilevel.ensemble import Ensemble
     from verification.sweep.engine import Progress, Sweep
 
 EPILOG = """examples:
   rough-friction sweep table3 --store table3.sqlite --workers 4 --csv table3.csv
   rough-friction sweep study.toml --parquet study.parquet
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
+  rough-friction sweep ensemble.toml --target-error 0.5%
 
 A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on where it
 was; runs that the store has are not done again. Exit status 1 when a run failed; its message is shown.
@@ -27,6 +30,10 @@ was; runs that the store has are not done again. Exit status 1 when a run failed
   grid = [128, 256]           #         sliding_direction sliding_offset tau beta (SI, rad); grid is needed
   lower_rms = [0.504e-6, 1.68e-6]
   [solve]                     # optional: method, oblique, slope_correction, tolerance
+
+With --target-error the study is an ensemble that varies the grid alone, each grid twice the one before, and
+realisations are as many as it takes: mean mu and A on the finest grid, each with a standard error of at most
+that share, by multilevel Monte Carlo.
 """
 
 
@@ -55,6 +62,12 @@ def add_parser(commands: Parsers) -> None:
     )
     add("--csv", metavar="FILE", type=output_file, help="export the study's rows as CSV")
     add("--parquet", metavar="FILE", type=output_file, help="export the study's rows as Parquet")
+    add(
+        "--target-error",
+        metavar="SHARE",
+        type=_share,
+        help="solve as many realisations as this relative standard error of mean mu and A takes (0.5%%)",
+    )
     add_json(parser)
     parser.set_defaults(run=run)
 
@@ -70,6 +83,8 @@ def run(options: argparse.Namespace) -> int:
     if options.parquet is not None:
         export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")
+    if options.target_error is not None:
+        return _ensemble(options, store)
     line = _Line()
     try:
         done = engine.sweep(
@@ -90,6 +105,66 @@ def run(options: argparse.Namespace) -> int:
         export.write_parquet(done.rows, options.parquet)
     emit(_document(done, store), options.json, _table(done, store))
     return 1 if done.failures else 0
+
+
+def _share(text: str) -> float:
+    """A share from text: 0.5% or 0.005.
+
+    >>> _share("0.5%"), _share("0.01")
+    (0.005, 0.01)
+    """
+    try:
+        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
+    except ValueError as alien:
+        raise argparse.ArgumentTypeError(f"{text!r} is no share like 0.5% or 0.005") from alien
+
+
+def _ensemble(options: argparse.Namespace, store: Path) -> int:
+    """Run an ensemble to its target; status 1 when a run failed or the target was not met."""
+    from refimpl.errors import InputError
+    from verification.multilevel.ensemble import ensemble
+    from verification.provenance import provenance
+    from verification.sweep import engine
+    from verification.sweep.study import read_study
+
+    if options.csv is not None or options.parquet is not None:
+        raise InputError(
+            "--target-error", options.target_error, "no --csv or --parquet beside it: use --json"
+        )
+    line = _Line()
+    try:
+        found = ensemble(
+            read_study(options.study),
+            store,
+            options.target_error,
+            workers=options.workers,
+            scheduler=options.scheduler,
+            tick=line.show,
+        )
+    except engine.WorkersLost as lost:
+        print(f"rough-friction sweep: {lost}", file=sys.stderr)
+        return 1
+    finally:
+        line.close()
+    document = {**asdict(found), "cost": found.cost if found.means else None, "provenance": provenance()}
+    emit(document, options.json, _ensemble_table(found))
+    return 0 if found.met else 1
+
+
+def _ensemble_table(found: Ensemble) -> str:
+    failed = [f"failed: {text}" for text in sorted(set(found.failures.values()))]
+    if not found.means:
+        return "\n".join(failed)
+    rows = [["mean", "value", "standard error", "95 % interval", "cost over plain sampling"]]
+    for name, e in found.means.items():
+        interval = f"+- {e.half_width / abs(e.mean):.2%}"
+        share = f"{found.cost / found.plain[name]:.0%}"
+        rows.append([name, f"{e.mean:.6g}", f"{e.standard_error / abs(e.mean):.2%}", interval, share])
+    terms = [["grid", "realisations", "processor time of one (s)"]]
+    for grid, number, seconds in zip(found.grids, found.samples, found.seconds, strict=True):
+        terms.append([str(grid), str(number), f"{seconds:.3g}"])
+    end = "" if found.met else "\nthe target was not met"
+    return f"{columns(rows)}\n\n{columns(terms)}{end}"
 
 
 def _document(done: Sweep, store: Path) -> dict[str, object]:

@@ -50,13 +50,15 @@ class Progress:
 class Sweep:
     """What a sweep did: runs found in the store, finished now, and failed (key to message).
 
-    ``rows`` are those of the study in its order; all of them exactly when nothing failed.
+    ``rows`` are those of the study in its order, all of them exactly when nothing failed; ``solve_seconds``
+    is the processor time that each took, whenever that was.
     """
 
     found: int
     finished: int
     failures: dict[str, str]
     rows: list[Row]
+    solve_seconds: list[float]
     seconds: float
 
 
@@ -97,9 +99,9 @@ def sweep(
                 else:
                     failures[run.key] = f"{type(failure).__name__}: {failure}"
                 meter.count(run, failed=failure is not None)
-        rows = list(kept.rows(runs))
+        rows, spent = list(kept.rows(runs)), list(kept.seconds(runs))
     found = len(runs) - len(missing)
-    return Sweep(found, len(missing) - len(failures), failures, rows, time.perf_counter() - started)
+    return Sweep(found, len(missing) - len(failures), failures, rows, spent, time.perf_counter() - started)
 
 
 Done = Iterator[tuple[Run, "Future[tuple[Row, float]]"]]

@@ -79,17 +79,17 @@ def file_digest(path: Path) -> str:
 
 
 def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
-    """Solve one run; the row of `OUTCOMES`, and the seconds it took.
+    """Solve one run; the row of `OUTCOMES`, and the processor seconds it took.
 
     Runs anywhere: in this process, a worker, or on a cluster. Raises RuntimeError where another version of
     the code is installed than the one that the inputs name, and what `refimpl.solve` raises.
     """
     if inputs["code"] != code_digest():
         raise RuntimeError("this worker's refimpl differs from the one that planned the sweep")
-    started = time.perf_counter()
+    started = time.process_time()
     settings = inputs["solve"]
     solution = rf.solve(scene_from_dict(inputs["scene"], Path()), inputs["grid"], **settings)
-    return outcome(solution), time.perf_counter() - started
+    return outcome(solution), time.process_time() - started
 
 
 def outcome(solution: rf.Solution) -> Row:

@@ -50,6 +50,14 @@ class Store:
             if found is not None:
                 yield dict(zip(COLUMNS, found, strict=True))
 
+    def seconds(self, runs: Iterable[Run]) -> Iterator[float]:
+        """Processor seconds of the finished ones among ``runs``, in that order."""
+        for run in runs:
+            yield from (
+                self._connection.execute("select seconds from runs where key = ?", (run.key,)).fetchone()
+                or ()
+            )
+
 
 @contextmanager
 def open_store(path: Path) -> Iterator[Store]:

@@ -1,0 +1,112 @@
+"""Multilevel ensembles: the estimator on made-up samples, the allocation, and a small real ensemble."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from refimpl.errors import InputError
+from reports.studies.multilevel import build
+from verification.cli import main
+from verification.multilevel.__main__ import document
+from verification.multilevel.ensemble import Ensemble, ensemble
+from verification.multilevel.estimator import Estimate, allocation, estimate
+from verification.sweep.study import study_from_dict
+
+TABLE = {"scene": "table1-rough", "vary": {"grid": [16, 32]}, "solve": {"tolerance": 1e-3}}
+
+
+def test_the_terms_add_up() -> None:
+    found = estimate([np.array([1.0, 3.0]), np.array([0.5, 0.5, 0.5])])
+    assert found.mean == pytest.approx(2.5)
+    assert found.standard_error == pytest.approx(1.0)
+    assert found.freedom == pytest.approx(1.0)
+    assert found.half_width == pytest.approx(12.7062, rel=1e-5)  # Student's t at one degree of freedom
+    assert estimate([np.ones(3), np.ones(2)]).half_width == 0
+
+
+def test_intervals_cover_as_often_as_they_say() -> None:
+    """4000 ensembles of three terms, 5 samples in the last: 95 % within four standard deviations, 1.4 %."""
+    random = np.random.default_rng(5)
+    covered = 0
+    for _ in range(4000):
+        found = estimate([random.normal(1.0, s, n) for s, n in ((1.0, 40), (0.3, 12), (0.2, 5))])
+        covered += abs(found.mean - 3.0) <= found.half_width
+    assert covered / 4000 == pytest.approx(0.95, abs=0.014)
+
+
+def test_the_allocation_is_the_cheapest_that_meets_the_target() -> None:
+    variances, costs = np.array([[1.0], [0.04]]), np.array([1.0, 16.0])
+    numbers = allocation(variances, costs, np.array([0.1]))
+    assert numbers.tolist() == [180, 9]
+    assert (variances[:, 0] / numbers).sum() <= 0.01 + 1e-12
+
+    def price(first: int) -> float:
+        return first + 16 * 0.04 / (0.01 - 1.0 / first)
+
+    assert price(180) <= min(price(n) for n in range(101, 400)) * 1.001
+
+
+def test_several_quantities_all_meet_theirs() -> None:
+    variances = np.array([[1.0, 0.1], [0.01, 0.1]])
+    target = np.array([0.1, 0.05])
+    numbers = allocation(variances, np.array([1.0, 4.0]), target)
+    assert np.all((variances / numbers[:, None]).sum(axis=0) <= target**2 + 1e-12)
+
+
+def test_an_ensemble_resumes_and_repeats(tmp_path: Path) -> None:
+    study = study_from_dict(TABLE)
+    first = ensemble(study, tmp_path / "a.sqlite", 0.05, workers=0)
+    again = ensemble(study, tmp_path / "a.sqlite", 0.05, workers=0)
+    assert first.met
+    assert all(e.standard_error <= 0.05 * e.mean for e in first.means.values())
+    assert again == first
+    shown = build(json.loads(json.dumps(document([first, again], 0.05))))
+    assert len(shown.tables) == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"vary": {"grid": [16, 48]}}, "vary.grid"),
+        ({"vary": {"grid": [16]}}, "vary.grid"),
+        ({"vary": {"grid": [16, 32], "load": [1.0]}}, "vary"),
+    ],
+)
+def test_a_study_that_is_no_ensemble_is_refused(tmp_path: Path, change: dict, field: str) -> None:
+    with pytest.raises(InputError) as refused:
+        ensemble(study_from_dict(TABLE | change), tmp_path / "a.sqlite", 0.05)
+    assert refused.value.field == field
+
+
+@pytest.mark.parametrize("target", [0.0, 1.0, -0.1])
+def test_a_target_out_of_range_is_refused(tmp_path: Path, target: float) -> None:
+    with pytest.raises(InputError, match="target-error"):
+        ensemble(study_from_dict(TABLE), tmp_path / "a.sqlite", target)
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, out = tmp_path / "e.toml", tmp_path / "e.json"
+    file.write_text('scene = "table1-rough"\n[vary]\ngrid = [16, 32]\n[solve]\ntolerance = 1e-3\n')
+    command = ["sweep", str(file), "--store", str(tmp_path / "s.sqlite"), "--workers", "1"]
+    assert main([*command, "--target-error", "8%", "--json", str(out)]) == 0
+    assert "cost over plain sampling" in capsys.readouterr().out
+    assert json.loads(out.read_text())["met"] is True
+    assert main([*command, "--target-error", "8%", "--csv", str(tmp_path / "x.csv")]) == 2
+
+
+def test_coverage_is_counted() -> None:
+    def made(mean: float) -> Ensemble:
+        part = Estimate(mean, 0.1, 0.2, 9.0)
+        names = ("friction_coefficient", "contact_area")
+        return Ensemble(
+            (1, 2), dict.fromkeys(names, part), (4, 4), (1.0, 1.0), dict.fromkeys(names, 80.0), True, {}
+        )
+
+    found = document([made(1.0), made(1.0), made(1.0), made(2.0)], 0.1)
+    assert found["quantities"]["contact_area"]["covered"] == 0
+    assert document([made(1.0), made(1.1)], 0.1)["quantities"]["contact_area"]["covered"] == 2
+    assert found["quantities"]["contact_area"]["cost over plain"] == pytest.approx(0.1)
