@@ -21,6 +21,7 @@ JUDGES = {
     "model-form": "judges the model against finite elements, within the model's own error",
     "surfaces": "judges a number that the paper quotes",
     "variational": "compares the cost or the results of other methods",
+    "golden/proven-anew": "judges the stored proofs by proving them again, without a solver",
     "contestants": "judges the suite itself by solvers that are wrong on purpose",
 }
 """Why a check stays that sees none of the faults, by the beginning of its name."""
@@ -113,7 +114,7 @@ def _draw(canvas: Canvas, data: Data) -> None:
     sole = data["seen by one check alone"]
     for row, column in zip(*np.nonzero(counts), strict=True):
         colour = RED if sole[column] else BLUE
-        axes.text(column, row, str(counts[row, column]), ha="center", va="center", color=colour, fontsize=8)
+        axes.text(column, row, str(counts[row, column]), ha="center", va="center", color=colour, fontsize=7)
     axes.set_xticks(range(len(data["fault"])), data["fault"], rotation=90, fontsize=7.5)
     axes.set_yticks(range(len(data["subject"])), data["subject"], fontsize=8)
     axes.set(xlim=(-0.7, len(data["fault"]) - 0.3), ylim=(len(data["subject"]) - 0.4, -0.6))
@@ -127,5 +128,5 @@ FIGURE = Figure(
     ("subject", "fault", "checks that see it", "seen by one check alone"),
     _draw,
     "How many checks of each subject see a fault.",
-    (10.5, 6.0),
+    (12.5, 6.0),
 )

@@ -200,7 +200,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
         ),
     ),
     "facet-forces": (
-        "facet tractions with the pressure's part against the slope",
+        "the facets' friction force times 0.999",
         lambda: wrapped(forces.facet_resultants, lambda f: f._replace(friction=0.999 * f.friction)),
     ),
     "eq-10": (
