@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
+from typing import Any
 
 
 class InputError(ValueError):
@@ -17,13 +18,28 @@ class InputError(ValueError):
 
     def __init__(self, field: str, value: object, allowed: str) -> None:
         self.field, self.value, self.allowed = field, value, allowed
-        shown = repr(value)
+        try:
+            shown = repr(value)
+        except ValueError:  # Python writes no whole number of more than 4300 digits
+            shown = "a number of thousands of digits"
         if len(shown) > 120:
             shown = shown[:117] + "..."
         super().__init__(f"{field} = {shown}: expected {allowed}")
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
         return type(self), (self.field, self.value, self.allowed)  # so that it crosses process borders
+
+
+def as_double(value: Any) -> float:
+    """The number as a double; infinite where it is a whole number that no double holds.
+
+    >>> as_double(10**400)
+    inf
+    """
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 def require_number(
@@ -41,7 +57,7 @@ def require_number(
     >>> require_number("nu", 0.3, "a ratio", above=-1, at_most=0.5)
     """
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        number = float(value)
+        number = as_double(value)
         if (
             math.isfinite(number)
             and (above is None or number > above)

@@ -52,7 +52,7 @@ def _read(path: Path) -> tuple[dict[str, Any], Path]:
         raise InputError("scene", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
         raise InputError("scene", str(path), f"valid TOML ({error})") from error
     return table, path.parent
 

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, as_double
 from refimpl.grid import Array, Grid
 
 
@@ -120,7 +120,7 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
 def finite(field: str, value: object, allowed: str) -> float:
     """``value`` as a float if it is a finite real number (no text, no truth value); else InputError."""
     number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    if not number or not math.isfinite(value):  # type: ignore[arg-type]  # `number` narrows it
+    if not number or not math.isfinite(as_double(value)):
         raise InputError(field, value, allowed)
     return float(value)  # type: ignore[arg-type]  # as above
 

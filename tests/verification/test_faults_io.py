@@ -1,7 +1,7 @@
 """What a machine does to a program: interrupts, kills, full and read-only disks, broken and hostile files.
 
-The tests may run as root, whom no file mode stops: a folder that refuses is played by the system calls' own
-error, a full disk by /dev/full, by a limit on the size of files, and by a tiny file system where one may be mounted.
+The tests may run as root, whom no file mode stops: a folder that refuses is played by the system call's
+error, a full disk by /dev/full, a limit on the size of files, or a tiny file system if one mounts.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -203,7 +204,8 @@ def test_a_disk_that_is_really_full(tmp_path: Path, tiny_disk: Path | None) -> N
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
 def test_devices_are_written_to_and_never_replaced() -> None:
     for name, status in (("/dev/full", 1), ("/dev/null", 0)):
-        assert forked(lambda: main(["solve", "hertz", "--grid", "8", "--json", name])).status == status
+        command = ["solve", "hertz", "--grid", "8", "--json", name]
+        assert forked(partial(main, command)).status == status
         assert Path(name).is_char_device()
         assert not Path(name).is_file()
 
@@ -281,7 +283,8 @@ CORRUPTED = {
     "cut": WHOLE[: len(WHOLE) // 2], "empty": "", "null": "null", "list": "[]", "number": "1e400",
     "deep": "[" * 100_000, "binary": "\x00\x01\x02", "wrong counts": WHOLE.replace('"pass": 1', '"pass": 7'),
     "no cases": WHOLE.replace('"cases"', '"kases"'), "cases a number": json.dumps(results() | {"cases": 3}),
-    "case a text": json.dumps(results() | {"cases": ["x"]}), "counts a list": json.dumps(results() | {"counts": []}),
+    "case a text": json.dumps(results() | {"cases": ["x"]}),
+    "counts a list": json.dumps(results() | {"counts": []}),
     "provenance null": json.dumps(results() | {"provenance": None}),
     "errata of numbers": json.dumps(results() | {"errata": [1]}),
 }  # fmt: skip

@@ -20,8 +20,8 @@ elements, square or oblong.
 **c.** ``I[s/rho^2]`` is odd in s, so c is skew: f.c f = 0, and f.(a + beta c) f = f.a f > 0 for every beta.
 Every principal submatrix has that property too, so a + beta c is a P-matrix, and the complementarity
 problem of Eqs (6) and (7) at a given approach has exactly one solution, slopes and tau's support being
-held (Samelson, Thrall and Wesler 1958). Two approaches d1 < d2 with solutions f1, f2 give, since each pressure meets only
-gaps that are not negative,
+held (Samelson, Thrall and Wesler 1958). Two approaches d1 < d2 with solutions f1, f2 give, since each
+pressure meets only gaps that are not negative,
 
     (f2 - f1).(a + beta c)(f2 - f1) <= (d2 - d1) K.(f2 - f1),
 

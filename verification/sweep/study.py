@@ -117,7 +117,7 @@ def read_study(path: str | Path) -> Study:
         raise InputError("study", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
         raise InputError("study", str(path), f"valid TOML ({error})") from error
     return study_from_dict(table, path.parent)
 
