@@ -1,0 +1,54 @@
+"""`rough-friction solve --budget`: the table's parts, the JSON, and tolerances read from the scene's file."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+import refimpl as rf
+from refimpl.budget import Budget, Budgets
+from refimpl.sensitivity import NUMBERS, Sensitivity
+from verification.cli import budget as lines
+from verification.cli import main
+
+
+def test_a_scene_with_tolerances_gets_a_budget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene, found = tmp_path / "scene.toml", tmp_path / "found.json"
+    text = rf.scene_to_toml(rf.read_scene("table1-smooth"))
+    scene.write_text(text + '\n[tolerances]\n"friction.tau" = 0.1\n')
+    assert main(["solve", str(scene), "--grid", "48", "--json", str(found)]) == 0
+    shown = capsys.readouterr().out
+    for word in ("numerical", "input", "friction.tau, 0.1", "sampling", "model form", "cosines", "total"):
+        assert word in shown
+    stated = json.loads(found.read_text())["budget"]
+    mu = stated["numbers"]["friction_coefficient"]
+    assert mu["inputs"]["friction.tau"] == pytest.approx(mu["input"])
+    independent = math.hypot(mu["numerical"], mu["input"])
+    assert mu["total"] == pytest.approx(mu["model_form"] + independent)
+    assert set(stated["derivatives"]) == set(NUMBERS)
+
+
+def test_no_budget_unless_asked_for(tmp_path: Path) -> None:
+    found = tmp_path / "found.json"
+    assert main(["solve", "hertz", "--grid", "32", "--json", str(found)]) == 0
+    assert "budget" not in json.loads(found.read_text())
+
+
+def test_bad_tolerances_are_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(rf.scene_to_toml(rf.read_scene("hertz")) + '\n[tolerances]\n"upper.colour" = 0.1\n')
+    assert main(["solve", str(scene)]) == 2
+    assert "upper.colour" in capsys.readouterr().err
+
+
+def test_unbounded_and_missing_parts_are_named() -> None:
+    empty: dict[str, dict[str, float]] = {number: {"load": 0.0} for number in NUMBERS}
+    derivatives = Sensitivity(dict.fromkeys(NUMBERS, 0.0), {"load": 1.0}, empty, empty, 0.0)
+    numbers = {"friction_coefficient": Budget(0.1, 0.001, {}, {"coefficients": math.inf})}
+    shown = lines.table(Budgets(numbers, derivatives))
+    assert "unbounded" in shown
+    sampling = next(line for line in shown.splitlines() if "sampling" in line)
+    assert sampling.split()[-1] == "-"
