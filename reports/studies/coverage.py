@@ -23,7 +23,6 @@ def build(document: Document) -> Exhibit:
     """Summary by number and accuracy, coverage by class, and every bar beside its error."""
     first, last = document["seeds"]
     solves = document["solves"]
-    checked = document["reference_check"]
     summary = (
         f"{last - first + 1} random scenes (seeds {first} to {last}, eight classes in turn), none of which "
         f"the estimator was fitted to; {solves['count']} solves in {solves['seconds'] / 60:.0f} minutes of "
@@ -32,15 +31,22 @@ def build(document: Document) -> Exhibit:
         "for. A bar holds when the value's distance from the reference is within it. Where the accuracy was "
         "not reached on these grids, the end is reported as such, with the bar that was."
     )
-    moved = (
-        f"On {checked['grid']} x {checked['grid']} elements the references of {len(checked['seeds'])} scenes "
-        f"move by at most {checked['worst_over_bound']:.2f} of their stated bounds."
-    )
     return Exhibit(
         "Accuracy asked for, and kept",
-        (summary, moved),
+        (summary, *_reference(document)),
         (_by_number(document), *(_by_class(judged) for judged in document["accuracies"])),
         tuple((FIGURE, _series(judged)) for judged in document["accuracies"]),
+    )
+
+
+def _reference(document: Document) -> tuple[str, ...]:
+    """How far the references moved on a finer grid, if that was looked at."""
+    checked = document["reference_check"]
+    if not checked["seeds"]:
+        return ()
+    return (
+        f"On {checked['grid']} x {checked['grid']} elements the references of {len(checked['seeds'])} scenes "
+        f"move by at most {checked['worst_over_bound']:.2f} of the stated bounds.",
     )
 
 

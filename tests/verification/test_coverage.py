@@ -101,18 +101,21 @@ def test_the_store_resumes_after_a_kill(tmp_path: Path) -> None:
     assert solves(ladders(store).values())["not_converged"] == 0
 
 
-def test_the_reference_check_takes_scenes_that_are_not_periodic(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_reference_is_checked_on_one_more_grid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     module = "verification.coverage.document"
     monkeypatch.setattr(f"{module}.CHECK", 128)
-    monkeypatch.setattr(f"{module}.CHECKED", 1)
-    monkeypatch.setattr(f"{module}.grids_of", lambda seed: (32, 64) if seed == 6 else (32, 64, 1024))
+    monkeypatch.setattr(f"{module}.grids_of", lambda seed: (32, 64))
     store = tmp_path / "store.jsonl"
     climb(store, [8], [32, 64])
     found = reference_check([6, 8], store)
     assert found["seeds"] == [8]
-    assert grids_of(6)[-1] == 512  # periodic
+    assert found["worst_over_bound"] is not None
+    assert reference_check([6], store)["worst_over_bound"] is None
+
+
+def test_periodic_scenes_end_at_a_coarser_reference() -> None:
+    ends = {kind: grids_of(seed)[-1] for seed, kind in enumerate(CLASSES)}
+    assert {kind for kind, end in ends.items() if end == 512} == {"periodic waves", "periodic rough"}
 
 
 def test_the_report_shows_the_study() -> None:
