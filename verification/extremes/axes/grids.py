@@ -80,5 +80,5 @@ def grids() -> Iterator[Extreme]:
     for across in LINES:
         yield Extreme(
             "grid", "ridge of 24 elements, fft", f"{across} across", float(across),
-            partial(against_dense, ridge(24, across), 24),
+            partial(against_dense, ridge(24, across), 24), 30.0,
         )  # fmt: skip

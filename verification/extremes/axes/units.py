@@ -22,21 +22,26 @@ from verification.scenes import COPPER, STEEL
 TOLERANCE = 1e-12
 LIMIT = 1e-12
 """Relative change allowed for powers of ten: rounding of the input, 1e-16, times what the solve amplifies."""
+FLAT = 1e-4
+"""Of heights and load where the load alone is scaled: 1e12 times the load has 1e4 times the height over side."""
 HEIGHTS = 0.3e-6 * np.random.default_rng(2001).standard_normal((24, 24))
 TWOS, TENS = range(-40, 41, 4), range(-12, 13)
 SIZES: dict[Method, int] = {"fft": 24, "dense": 12}
 SETTINGS: tuple[tuple[Method, bool], ...] = (("fft", False), ("fft", True), ("dense", False))
 
 
-def scene(length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, periodic: bool) -> rf.Scene:
+def scene(
+    length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, periodic: bool, oblique: bool = True
+) -> rf.Scene:
     """A sphere (or, periodic, a flat) on a rough flat with lengths, stresses or load scaled."""
-    z = HEIGHTS[: SIZES["dense"], : SIZES["dense"]] * (length * similar**2)
-    ball: rf.Surface = rf.Flat() if periodic else rf.Sphere(0.14 * length)
+    flat = 1.0 if oblique else FLAT
+    z = HEIGHTS[: SIZES["dense"], : SIZES["dense"]] * (length * similar**2 * flat)
+    ball: rf.Surface = rf.Flat() if periodic else rf.Sphere(0.14 * length / flat)
     return rf.Scene(
         upper=rf.Body(rf.Material(STEEL.E * stress, STEEL.nu), ball),
         lower=rf.Body(rf.Material(COPPER.E * stress, COPPER.nu), z),
-        friction=rf.Friction(15e6 * stress * similar, 0.08),
-        load=70.0 * length**2 * stress * similar**3,
+        friction=rf.Friction(15e6 * stress * similar * flat, 0.08),
+        load=70.0 * length**2 * stress * similar**3 * flat,
         side=1.61e-3 * length * similar,
         sliding_direction=0.7,
         periodic=periodic,
@@ -47,8 +52,9 @@ def scene(length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, per
 def unscaled(method: Method, periodic: bool, oblique: bool) -> rf.Solution:
     """The solution that all scaled ones are held against."""
     found = rf.solve(
-        scene(periodic=periodic), SIZES[method], method=method, tolerance=TOLERANCE, oblique=oblique
-    )
+        scene(periodic=periodic, oblique=oblique), SIZES[method],
+        method=method, tolerance=TOLERANCE, oblique=oblique,
+    )  # fmt: skip
     if found.status is not rf.Status.CONVERGED:
         raise ArithmeticError(f"the unscaled scene ended {found.status.value}")
     return found
@@ -83,7 +89,7 @@ def run(method: Method, periodic: bool, length: float, stress: float, similar: f
         oblique = similar == 1.0
         base = unscaled(method, periodic, oblique)
         scaled = rf.solve(
-            scene(length, stress, similar, periodic=periodic), SIZES[method],
+            scene(length, stress, similar, periodic=periodic, oblique=oblique), SIZES[method],
             method=method, tolerance=TOLERANCE, oblique=oblique,
         )  # fmt: skip
         error, note = change(scaled, base, length, stress, similar)

@@ -1,0 +1,63 @@
+"""The same scene solved in fresh processes with one or two threads, compared bit by bit."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.grid import Array
+from refimpl.plan import Method
+
+GRIDS: dict[Method, int] = {"fft": 256, "dense": 24}
+"""256: vectors of 65536 numbers, which BLAS sums in parallel; 24: matrices that it factorises in parallel."""
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+CHILD = "from verification.extremes.determinism import tell; tell({method!r}, {periodic!r})"
+NUMBERS = ("approach", "normal_force", "friction_force", "contact_area", "max_pressure")
+
+
+def solved(method: Method, periodic: bool) -> rf.Solution:
+    """Table 1's rough scene; for the periodic one a rough flat."""
+    scene = rf.read_scene("rough-planes" if periodic else "table1-rough")
+    if method == "dense" and not periodic:
+        scene = replace(scene, load=7.0)
+    return rf.solve(scene, GRIDS[method], method=method)
+
+
+def tell(method: Method, periodic: bool) -> None:
+    """Print the solution of this process, exactly (hexadecimal)."""
+    solution = solved(method, periodic)
+    numbers = {name: float(getattr(solution, name)).hex() for name in NUMBERS}
+    json.dump({"pressure": solution.pressure.tobytes().hex(), **numbers}, sys.stdout)
+
+
+def in_a_process(method: Method, periodic: bool, threads: int) -> dict[str, str]:
+    """What a fresh process with that many threads says."""
+    environment = os.environ | dict.fromkeys(THREADS, str(threads))
+    code = CHILD.format(method=method, periodic=periodic)
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    answer: dict[str, str] = json.loads(done.stdout)
+    return answer
+
+
+def difference(one: dict[str, str], other: dict[str, str]) -> float:
+    """Largest relative difference of the pressures (to the peak) and of the numbers; 0 for equal bits."""
+    if one == other:
+        return 0.0
+    first, second = (_pressures(answer["pressure"]) for answer in (one, other))
+    apart = [float(np.abs(first - second).max() / first.max())]
+    for name in NUMBERS:
+        a, b = float.fromhex(one[name]), float.fromhex(other[name])
+        apart.append(abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0)
+    return max(apart)
+
+
+def _pressures(text: str) -> Array:
+    return np.frombuffer(bytes.fromhex(text))
