@@ -1,0 +1,51 @@
+"""The examples run, print what they should, and draw their picture; here on small grids."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.documents import ROOT, agree
+
+EXAMPLES = {
+    "hertz": (["32"], "converged: peak 165.79 MPa, -2.9e-03 of Hertz' 166.27"),
+    "rough_friction": (["0.2"], "converged on 64 x 64\nmu = 0.1105 +- 0.0083\nA  = 0.1164 +- ... mm^2"),
+    "check_my_solver": (["contestant/pins"], "pass contestant/pins ... of 2.0e+00"),
+    "direction_scan": (
+        ["32", "2"],
+        "2 directions, 2 converged\nmu from 0.1408 to 0.1411, Q/P from -0.0011 to +0.0011",
+    ),
+}
+
+
+def test_no_example_is_left_out() -> None:
+    assert {path.stem for path in (ROOT / "examples").glob("*.py")} == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_an_example(name: str, tmp_path: Path) -> None:
+    (arguments, stated), picture = EXAMPLES[name], tmp_path / "picture.png"
+    script = ROOT / "examples" / f"{name}.py"
+    assert len(script.read_text(encoding="utf-8").splitlines()) <= 40
+    done = subprocess.run(
+        [sys.executable, str(script), *arguments, str(picture)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "MPLBACKEND": "agg"},
+        cwd=tmp_path,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert agree(done.stdout, stated), done.stdout
+    with Image.open(picture) as made:
+        assert min(made.size) > 150
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_its_picture_is_committed_and_small(name: str) -> None:
+    assert 5_000 < (ROOT / f"docs/{name}.png").stat().st_size <= 120_000
