@@ -23,7 +23,7 @@ TOLERANCE = 1e-12
 LIMIT = 1e-12
 """Relative change allowed for powers of ten: rounding of the input, 1e-16, times what the solve amplifies."""
 FLAT = 1e-4
-"""Of heights and load where the load alone is scaled: 1e12 times the load has 1e4 times the height over side."""
+"""Of heights and load where the load alone is scaled: 1e12 times the load has 1e4 times height / side."""
 HEIGHTS = 0.3e-6 * np.random.default_rng(2001).standard_normal((24, 24))
 TWOS, TENS = range(-40, 41, 4), range(-12, 13)
 SIZES: dict[Method, int] = {"fft": 24, "dense": 12}

@@ -1,0 +1,201 @@
+"""The study of extremes: oracle against hand-made answers, verdicts against sabotage, resumption."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import refimpl as rf
+import verification.extremes.axes  # noqa: F401  # registers the axes
+from appendix_a import wedge
+from refimpl.operators.fft import FFTInfluence
+from verification.extremes import (
+    exact_operators,
+    judge,
+    limits,
+    positive_definite,
+    precision,
+    study,
+    uniqueness,
+)
+from verification.extremes.__main__ import main
+from verification.extremes.axes.contact_sets import on
+from verification.extremes.oracle import Oracle
+from verification.extremes.state import Extreme, Verdict, axes, number, states
+from verification.scenes import POLYMER, pressed
+
+ALL = [state for name in axes() for state in states(name)]
+BALL = pressed(lower=POLYMER, load=30.0, direction=0.7, friction=rf.Friction(1e5, 0.3))
+
+
+def test_there_are_enough_states_and_their_names_are_their_own() -> None:
+    assert len(ALL) >= 400
+    assert len({state.id for state in ALL}) == len(ALL)
+    assert set(axes()) >= {
+        "units",
+        "load",
+        "contact set",
+        "material",
+        "friction",
+        "topography",
+        "grid",
+        "kernel",
+    }
+
+
+@pytest.mark.parametrize("limit", limits.LIMITS, ids=lambda limit: limit.states)
+def test_every_limit_names_states_that_exist(limit: limits.Limit) -> None:
+    assert any(fnmatchcase(state.id, limit.states) for state in ALL)
+
+
+def test_the_oracle_on_one_element_is_the_closed_form() -> None:
+    """One square element of edge s under pressure p: approach p s 4 asinh(1) (1/(pi E*))."""
+    scene = on(np.zeros((1, 1)), 3.0, friction=rf.Friction())
+    exact = Oracle(scene, 1).solve(np.ones((1, 1)), np.ones((1, 1), dtype=bool))
+    compliance = scene.materials.normal_compliance
+    pressure = scene.load / scene.side**2
+    assert float(exact.pressure[0]) == pytest.approx(pressure, rel=1e-15)
+    expected = compliance * pressure * scene.side * 4 * np.arcsinh(1.0)
+    assert float(exact.approach) == pytest.approx(expected, rel=1e-15)
+
+
+def test_the_oracle_satisfies_the_contact_conditions_wherever_it_starts() -> None:
+    oracle = Oracle(BALL, 4)
+    support = np.ones((4, 4), dtype=bool)
+    guesses = (np.eye(4), np.ones((4, 4)), np.arange(16.0).reshape(4, 4))
+    found = [oracle.solve(guess, support) for guess in guesses]
+    for other in found[1:]:
+        assert max(abs(found[0].pressure - other.pressure)) < 1e-15 * max(found[0].pressure)
+    assert abs(found[0].normal - BALL.load) < mp.mpf(10) ** -15
+    assert min(found[0].pressure) >= 0
+
+
+def test_exact_periodic_operators_are_the_symbols_eigenfunctions() -> None:
+    """A cosine of q under 2 pi / q, and under -2 pi i q_x / q^2."""
+    M = 5
+    i = np.indices((M, M))[0].ravel()
+    wave, sine = np.cos(2 * np.pi * i / M), np.sin(2 * np.pi * i / M)
+    q = 2 * np.pi / M
+    np.testing.assert_allclose(
+        exact_operators.normal(M, True).astype(float) @ wave, 2 * np.pi / q * wave, atol=1e-13
+    )
+    x = exact_operators.tangential(M, True)[0].astype(float)
+    np.testing.assert_allclose(x @ wave, 2 * np.pi / q * sine, atol=1e-13)
+
+
+SABOTAGE = {
+    "pressure": lambda s: replace(s, pressure=s.pressure * (1 + 1e-5)),
+    "one element": lambda s: replace(s, pressure=np.where(s.pressure == s.pressure.max(), 0.0, s.pressure)),
+    "approach": lambda s: replace(s, approach=s.approach * 1.001),
+    "friction": lambda s: replace(s, friction_force=-s.friction_force),
+    "normal": lambda s: replace(s, normal_force=s.normal_force * 1.00001),
+}
+
+
+@pytest.mark.parametrize("name", SABOTAGE)
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_wrong_number_with_a_good_status_is_wrong(
+    name: str, periodic: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene, solve = replace(BALL, periodic=periodic), rf.solve
+    assert judge.by_oracle(scene, 4).verdict is Verdict.RIGHT
+    monkeypatch.setattr(rf, "solve", lambda *a, **k: SABOTAGE[name](solve(*a, **k)))
+    assert judge.by_oracle(scene, 4).verdict is Verdict.WRONG
+
+
+def test_a_flipped_coupling_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    shear = FFTInfluence.shear
+    monkeypatch.setattr(FFTInfluence, "shear", lambda self, traction: -shear(self, traction))
+    assert judge.by_oracle(BALL, 4, oblique=False).verdict is Verdict.WRONG
+
+
+def test_verdicts() -> None:
+    assert number(1e-9, 1e-8, "value", "x").verdict is Verdict.RIGHT
+    assert number(float("nan"), 1e-8, "value", "x").verdict is Verdict.WRONG
+    refused = judge.guarded(lambda: rf.Material(-1.0, 0.3) and number(0.0, 1.0, "value", "x"))
+    assert (refused.verdict, refused.digits) == (Verdict.HONEST, None)
+
+    def by_zero() -> study.Row:
+        raise ZeroDivisionError("float division by zero")
+
+    assert judge.guarded(by_zero).verdict is Verdict.CRASH  # type: ignore[arg-type]  # it raises
+    failed = replace(rf.solve(BALL, 4), status=rf.Status.STAGNATED)
+    assert judge.verdict(failed, 1.0, "x").verdict is Verdict.HONEST
+
+
+def test_a_state_without_an_end_is_a_crash() -> None:
+    def endless() -> study.Row:
+        while True:
+            pass
+
+    row = study.judged(Extreme("a", "b", "c", 0.0, lambda: judge.guarded(endless), 0.2))  # type: ignore[arg-type]  # endless
+    assert (row["verdict"], row["status"]) == ("crash", "OutOfTime")
+
+
+def test_beta_changes_no_eigenvalue_and_the_slope_correction_does() -> None:
+    free, rubbed = (positive_definite.symmetric_part(4, beta, 0.3)[0] for beta in (0.0, 1e3))
+    assert rubbed == pytest.approx(free, rel=1e-11)
+    assert free > positive_definite.least_symbol() > 1.8
+    assert positive_definite.symmetric_part(4, 0.3, 0.3, slope=4.0)[0] < 0
+
+
+def test_without_tau_each_contact_set_is_the_only_one() -> None:
+    for seed in range(4):
+        lawful = uniqueness.lawful_states(uniqueness.scene(seed, 0.0))
+        assert len(lawful) == 1
+        solution = rf.solve(uniqueness.scene(seed, 0.0), uniqueness.M, oblique=False)
+        assert np.array_equal(solution.contact, lawful[0])
+
+
+def test_digits_lost_see_a_textbook_kernel() -> None:
+    lost = precision.table()["digits lost"]
+    assert isinstance(lost, dict)
+    assert lost["tangential kernel, textbook, at x = 1e-9"][1] > 6
+    assert lost["tangential kernel, this code, at x = 1e-9"][1] < 1
+
+
+@pytest.mark.parametrize(("gamma", "r"), [(np.pi / 2 - 1e-9, 0.5), (np.pi / 2 - 1e-4, 1e300), (1.56, 1e-300)])
+def test_needles_are_refused_at_once(gamma: float, r: float) -> None:
+    with pytest.raises(ValueError, match=r"gamma = .* a wedge of at least"):
+        wedge.stresses(r, 0.0, gamma)
+
+
+def test_a_killed_study_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "e.json"
+    rows = [study.judged(state) for state in list(states("kernel"))[:30]]
+    path.write_text(json.dumps(study.document(rows, complete=False)))
+    seen: list[str] = []
+    judged = study.judged
+    monkeypatch.setattr(study, "judged", lambda state: seen.append(state.id) or judged(state))
+    monkeypatch.setattr(study, "document", lambda rows, complete: {"states": rows, "counts": {"wrong": 0}})
+    found = study.study(path, ["kernel"])
+    assert len(found["states"]) == len(list(states("kernel")))
+    assert len(seen) == len(found["states"]) - 30
+    for content in ("", "[]", "{}", '{"format": 3}'):
+        path.write_text(content)
+        assert study.kept_rows(path) == {}
+
+
+def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(study.uniqueness, "TAUS", ())
+    monkeypatch.setattr(study.conditioning, "GRIDS", (2, 3))
+    path = tmp_path / "e.json"
+    assert main(["--json", str(path), "--axis", "kernel"]) == 0
+    found = json.loads(path.read_text())
+    assert (found["complete"], found["counts"]["wrong"]) == (True, 0)
+    with pytest.raises(SystemExit):
+        main(["--json", str(path), "--axis", "nonsense"])
+
+
+def test_the_committed_study_has_no_wrong_number() -> None:
+    path = Path(__file__).parents[2] / "reports" / "results" / "extremes.json"
+    found = json.loads(path.read_text())
+    assert found["complete"]
+    assert len(found["states"]) >= 400
+    assert found["counts"]["wrong"] == 0

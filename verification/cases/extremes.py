@@ -1,0 +1,172 @@
+"""Extremes: every axis of the study as a case, a sample of all axes for the quick tier, their foundations."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+import verification.extremes.axes  # noqa: F401  # registers the axes
+from verification.case import Measured
+from verification.extremes import conditioning, positive_definite, precision, uniqueness
+from verification.extremes.state import Verdict, axes, states
+from verification.extremes.study import Row, judged, run, summary
+from verification.registry import case
+
+CLAIM = "at the extremes a result is right, refused or named a failure: none is wrong with status CONVERGED"
+EVERY = 60
+COSTLY = ("grid", "finite elements", "wedge")
+
+
+def told(rows: list[Row]) -> Measured:
+    """The number of wrong results, with the table of verdicts and digits."""
+    counts = {
+        verdict: sum(r["verdict"] == verdict for r in rows)
+        for verdict in ("right", "honest failure", "crash")
+    }
+    table = [
+        [row[name] for name in ("series", "from", "to", "states", *Verdict, "fewest digits", "median digits")]
+        for row in summary(rows)
+    ]  # fmt: skip
+    digits: dict[str, list[Any]] = {}
+    for row in rows:
+        digits.setdefault(row["series"], []).append(row["digits"] if row["verdict"] == "right" else None)
+    wrong = [r["id"] for r in rows if r["verdict"] == "wrong"]
+    data = {"states": len(rows), **counts, "wrong ones": wrong, "table": table, "digits": digits}
+    return Measured(value=float(len(wrong)), data=data, note=f"{len(rows)} states: {counts}")
+
+
+def declare(axis: str) -> None:
+    """The case of one axis: all its states."""
+
+    @case(
+        f"extremes/{axis.replace(' ', '-')}",
+        title=f"Extremes of the axis {axis!r}",
+        claim=CLAIM,
+        source="exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes",
+        metric="at_most",
+        tolerance=0.0,
+        tolerance_reason="a count",
+        tier="full",
+        tags=("extremes",),
+    )
+    def all_states() -> Measured:
+        return told(list(run([axis])))
+
+
+for name in axes():
+    declare(name)
+
+
+@case(
+    "extremes/sample",
+    title="A sample of all cheap extremes",
+    claim=CLAIM,
+    source="exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes",
+    metric="at_most",
+    tolerance=0.0,
+    tolerance_reason="a count",
+    tags=("extremes",),
+)
+def sample() -> Measured:
+    cheap = [name for name in axes() if name not in COSTLY]
+    return told([judged(state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
+
+
+@case(
+    "extremes/unit-scaling",
+    title="Powers of two in length, modulus and load change no bit",
+    claim="a scene scaled by powers of two from 1e-12 to 1e12 gives the same mantissas",
+    source="similarity of Eqs (1)-(7)",
+    metric="at_most",
+    tolerance=0.0,
+    tolerance_reason="exact: every operation of the solvers commutes with powers of two, short of underflow",
+    tags=("extremes", "units"),
+)
+def powers_of_two() -> Measured:
+    chosen = [s for s in states("units") if "twos" in s.series][::6]
+    errors = {s.id: s.run().error for s in chosen}
+    return Measured(value=max(np.inf if e is None else e for e in errors.values()), data={"error": errors})
+
+
+@case(
+    "extremes/positive-definite",
+    title="a + beta c is positive definite for any beta",
+    claim="the symmetric part's least eigenvalue does not depend on beta and exceeds the symbol's least",
+    source="proof in verification.extremes.positive_definite",
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason="beta c of size 1e6 is skew to its own rounding, 1e6 x 1e-16; ten times that",
+    tags=("extremes", "eq7"),
+)
+def definite() -> Measured:
+    bound = positive_definite.least_symbol()
+    least = {
+        M: [float(positive_definite.symmetric_part(M, b, 0.3)[0]) for b in (0.0, 1.0, 1e3, 1e6)]
+        for M in (2, 4, 6)
+    }
+    spread = max(abs(v / values[0] - 1) for values in least.values() for v in values)
+    above = min(values[0] - bound for values in least.values())
+    corrected = {
+        t: float(positive_definite.symmetric_part(6, 0.3, 0.3, t)[0]) for t in (0.0, 0.3, 1.0, 2.0, 3.0)
+    }
+    data = {"least by M": least, "symbol": bound, "with the slope correction, by slope": corrected}
+    return Measured(value=spread if above > 0 else np.inf, data=data)
+
+
+@case(
+    "extremes/lawful-states",
+    title="Lawful states counted by trying every contact set",
+    claim="every CONVERGED contact set is lawful; without tau there is exactly one, with tau none or several",
+    source="brute force over the 511 contact sets of 3 x 3 elements",
+    metric="at_most",
+    tolerance=0.0,
+    tolerance_reason="a count",
+    tier="full",
+    tags=("extremes", "friction"),
+)
+def lawful() -> Measured:
+    found = [uniqueness.count(tau) for tau in uniqueness.TAUS]
+    names = ("none", "one", "several")
+    data: dict[str, object] = {name: [getattr(c, name) for c in found] for name in names}
+    data |= {"tau / mean pressure": list(uniqueness.TAUS), "statuses": [c.statuses for c in found]}
+    broken = sum(c.wrong for c in found) + (found[0].one != uniqueness.SCENES)
+    return Measured(value=float(broken), data=data)
+
+
+@case(
+    "extremes/precision",
+    title="Digits lost in float32, float64, long double and mpmath",
+    claim="this code's kernels lose less than a digit in every arithmetic; the textbook's lose up to nine",
+    source="80-digit values (mpmath)",
+    metric="at_most",
+    tolerance=1.0,
+    tolerance_reason="10 eps in each arithmetic",
+    tags=("extremes", "kernels"),
+)
+def digits() -> Measured:
+    table = precision.table()
+    lost = table["digits lost"]
+    assert isinstance(lost, dict)
+    own = [
+        value for row, values in lost.items() if "this code" in row for value in values if value is not None
+    ]
+    return Measured(value=max(0.0, *own), data=table)
+
+
+@case(
+    "extremes/condition-numbers",
+    title="Condition number of the dense flexibility",
+    claim="it grows like the grid, 1.66 M: largest eigenvalue, 3.03 M, over the symbol's least value",
+    source="dense eigenvalues; symbol of positive_definite",
+    metric="relative",
+    tolerance=0.01,
+    tolerance_reason="the least eigenvalue approaches the symbol's minimum like 1/M^2: 0.2 % at 40",
+    tier="full",
+    tags=("extremes", "eq7"),
+)
+def condition() -> Measured:
+    columns = conditioning.table()
+    reference = columns["largest"][-1] / positive_definite.least_symbol()
+    return Measured(value=columns["condition"][-1], reference=reference, data=columns)
