@@ -76,11 +76,12 @@ def coefficient_error(
 
 def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, upper: Material) -> SlopeError:
     """The error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
-    if not np.any(pressure > 0):
+    loaded = pressure > 0
+    squared, weights = tan_x[loaded] ** 2 + tan_y[loaded] ** 2, pressure[loaded]
+    if not squared.any():
         return SlopeError(0.0, 0.0, 0.0, 0.0)
-    squared = tan_x**2 + tan_y**2
-    rms = math.atan(math.sqrt(float(np.average(squared, weights=pressure))))
-    steepest = math.atan(math.sqrt(float(squared[pressure > 0].max())))
+    rms = math.atan(math.sqrt(float(np.average(squared, weights=weights))))
+    steepest = math.atan(math.sqrt(float(squared.max())))
     top = math.radians(_table()["slope_deg"][-1])
     at_rms, at_max = (
         coefficient_error(slope, lower, upper) if slope <= top else None for slope in (rms, steepest)

@@ -8,9 +8,11 @@ while CG reduces the residual tenfold and are then brought up to date; their own
 from __future__ import annotations
 
 import math
+import os
 from typing import Any
 
 import numpy as np
+import scipy.fft as sfft
 from numpy.typing import NDArray
 
 from refimpl.contact.certificate import State, certify
@@ -40,8 +42,22 @@ _SUPPORT_ITERATIONS = 200
 def solve_fft(problem: Problem, tolerance: float, counter: Counter) -> tuple[Outcome, State]:
     """Outcome and certified state of the problem, to a certificate of about ``tolerance``.
 
-    The outcome's status speaks of the loops only; the certificate is of the full grid.
+    The outcome's status speaks of the loops only; the certificate is of the full grid. Transforms run in
+    `transform_threads` threads, which changes no bit of them.
     """
+    with sfft.set_workers(transform_threads()):
+        return _solved(problem, tolerance, counter)
+
+
+def transform_threads() -> int:
+    """Threads of a transform: OMP_NUM_THREADS as for BLAS, or the cores that this process may use."""
+    said = os.environ.get("OMP_NUM_THREADS", "")
+    if said.isdigit() and int(said) > 0:
+        return int(said)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _solved(problem: Problem, tolerance: float, counter: Counter) -> tuple[Outcome, State]:
     iterations: dict[str, int] = {}
     nested = levels(problem)
     window = Window.full(nested[0].grid.M)
@@ -277,7 +293,7 @@ class _LevelSolver:
         return Outcome(
             pressure=self.full(self.cg.pressure),
             traction=self.full(local_friction(self.problem.friction, self.cg.pressure, self.support)),
-            slopes=Slopes(self.full(self.slopes.tan_x), self.full(self.slopes.tan_y)),
+            slopes=self.slopes.spread(self.window, self.whole.grid.M),
             status=status,
             withheld=self.full(withheld),
             visited=tuple(in_cycles),

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
+from refimpl.operators.window import Window
 
 
 @dataclass(frozen=True)
@@ -25,9 +26,13 @@ class Slopes:
 
     @classmethod
     def flat(cls, shape: tuple[int, ...]) -> Slopes:
-        """Zero slopes: every cosine is 1 and every sine is 0."""
-        zero = np.zeros(shape)
+        """Zero slopes: every cosine is 1 and every sine is 0. One zero, broadcast: no array is held."""
+        zero = np.broadcast_to(0.0, shape)
         return cls(zero, zero)
+
+    @property
+    def _is_flat(self) -> bool:
+        return not any(self.tan_x.strides)
 
     @classmethod
     def of_surface(
@@ -54,27 +59,41 @@ class Slopes:
     @cached_property
     def cos_x(self) -> Array:
         """``cos(theta_x)``."""
+        if self._is_flat:
+            return np.broadcast_to(1.0, self.tan_x.shape)
         return 1 / np.sqrt(1 + self.tan_x**2)
 
     @cached_property
     def cos_y(self) -> Array:
         """``cos(theta_y)``."""
+        if self._is_flat:
+            return np.broadcast_to(1.0, self.tan_y.shape)
         return 1 / np.sqrt(1 + self.tan_y**2)
 
     @cached_property
     def sin_x(self) -> Array:
         """``sin(theta_x)``."""
+        if self._is_flat:
+            return self.tan_x
         return self.tan_x * self.cos_x
 
     @cached_property
     def sin_y(self) -> Array:
         """``sin(theta_y)``."""
+        if self._is_flat:
+            return self.tan_y
         return self.tan_y * self.cos_y
 
     @cached_property
     def obliqueness(self) -> Array:
         """``cos(theta_x) cos(theta_y)``, the factor of Eq. (6)."""
-        return self.cos_x * self.cos_y
+        return self.cos_x if self._is_flat else self.cos_x * self.cos_y
+
+    def spread(self, window: Window, M: int) -> Slopes:
+        """The slopes of a window on its whole ``M x M`` grid, zero elsewhere."""
+        if self._is_flat:
+            return Slopes.flat((M, M))
+        return Slopes(window.spread(self.tan_x, M), window.spread(self.tan_y, M))
 
 
 def _difference(heights: Array, axis: int, periodic: bool) -> Array:

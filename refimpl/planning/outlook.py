@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from refimpl.friction import Mask
@@ -24,6 +25,8 @@ from refimpl.grid import Array
 from refimpl.operators.window import Window
 from refimpl.problem import Problem
 from refimpl.slopes import Slopes
+
+Indices = NDArray[np.intp]
 
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
@@ -68,16 +71,15 @@ def expected(problem: Problem) -> Outlook:
     gap, dA = problem.gap, problem.grid.element_area
     modulus = problem.pair.reduced_modulus
     slopes = _slopes(problem, gap)
-    order = np.argsort(gap, axis=None, kind="stable")
-    count = np.arange(1, gap.size + 1)
-    squares = np.cumsum((slopes.tan_x**2 + slopes.tan_y**2).ravel()[order])
-    carried = _STIFFNESS * modulus * dA * np.sqrt(squares * count)
+    stiffness = _STIFFNESS * modulus * dA
     if problem.load is not None:
+        order, carried = _touched(gap, slopes, stiffness, problem.load)
         elements = min(int(np.searchsorted(carried, problem.load)) + 1, gap.size)
         mean_pressure = problem.load / (elements * dA)
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
+        order, carried = _lowest(gap, slopes, stiffness, elements)
         mean_pressure = float(carried[elements - 1]) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
     contact = np.zeros(gap.size, dtype=bool)
@@ -87,9 +89,28 @@ def expected(problem: Problem) -> Outlook:
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
     mask = contact.reshape(gap.shape)
-    del order, count, squares, carried, near  # whole-grid arrays, before the next ones
+    del order, carried, slopes, near  # large arrays, before the next ones
     seen = _Seen(approach, *_symmetries(problem), window)
     return _described(problem, mask, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
+
+
+def _touched(gap: Array, slopes: Slopes, stiffness: float, load: float) -> tuple[Indices, Array]:
+    """The lowest elements in order, with what they carry: as many as the load needs, or all."""
+    count = min(gap.size, max(64, gap.size // 64))
+    while True:
+        order, carried = _lowest(gap, slopes, stiffness, count)
+        if carried[-1] >= load or count == gap.size:
+            return order, carried
+        count = min(gap.size, 4 * count)
+
+
+def _lowest(gap: Array, slopes: Slopes, stiffness: float, count: int) -> tuple[Indices, Array]:
+    """The ``count`` elements of the least gap, in order, and what the first 1, 2, ... of them carry."""
+    heights = gap.ravel()
+    chosen = np.sort(np.argpartition(heights, count - 1)[:count])  # ties in the grid's order
+    order = chosen[np.argsort(heights[chosen], kind="stable")]
+    squares = np.cumsum(slopes.tan_x.ravel()[order] ** 2 + slopes.tan_y.ravel()[order] ** 2)
+    return order, stiffness * np.sqrt(squares * np.arange(1, count + 1))
 
 
 def found(problem: Problem, pressure: Array, before: Outlook) -> Outlook:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from refimpl.operators.window import Window
 from refimpl.slopes import Slopes
 
 M, H = 9, 0.25
@@ -70,3 +71,23 @@ def test_distance_looks_only_where_asked() -> None:
     assert one.distance(two, np.array([True, False, True])) == 0.2
     assert one.distance(two, np.array([False, False, False])) == 0
     assert one.distance(one, np.array([True, True, True])) == 0
+
+
+def test_a_flat_holds_no_array_and_stays_flat_on_the_whole_grid() -> None:
+    flat = Slopes.flat((3, 4))
+    for values in (flat.tan_x, flat.sin_x, flat.cos_x, flat.sin_y, flat.cos_y, flat.obliqueness):
+        assert values.shape == (3, 4)
+        assert not any(values.strides)
+    assert np.all(flat.obliqueness == 1)
+    assert np.all(flat.sin_y == 0)
+    whole = flat.spread(Window(1, 4, 0, 4), 5)
+    assert whole.tan_x.shape == (5, 5)
+    assert not any(whole.tan_x.strides)
+
+
+def test_slopes_of_a_window_are_zero_elsewhere() -> None:
+    tilted = Slopes(np.ones((2, 2)), np.full((2, 2), 2.0))
+    whole = tilted.spread(Window(1, 3, 0, 2), 4)
+    assert whole.tan_x.sum() == 4
+    assert np.all(whole.tan_y[1:3, :2] == 2)
+    assert np.all(whole.cos_x[0] == 1)
