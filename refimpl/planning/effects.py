@@ -102,7 +102,7 @@ def shear_tilt(scales: Scales) -> Effect:
     """Of leaving shear's motion of the common surface out of its slopes."""
     if scales.friction.is_zero:
         return NONE
-    c = 0.5 * (scales.pair.lower.shear_compliance + scales.pair.upper.shear_compliance)
+    c = 0.5 * (abs(scales.pair.lower.shear_compliance) + abs(scales.pair.upper.shear_compliance))
     tilt = scales.tilt(c)
     area = scales.mu * tilt
     return scales.effect((1 + scales.mu**2) * tilt, area, area)
@@ -111,7 +111,7 @@ def shear_tilt(scales: Scales) -> Effect:
 def obliqueness(scales: Scales) -> Effect:
     """Of cosines 1 and sines 0 everywhere."""
     outlook = scales.outlook
-    bodies = scales.pair.lower.shear_compliance, scales.pair.upper.shear_compliance
+    bodies = abs(scales.pair.lower.shear_compliance), abs(scales.pair.upper.shear_compliance)
     if scales.friction.is_zero and outlook.symmetric:
         return Effect(0.0, outlook.slope_squared)  # the same on all sides: no chance in which elements tip
     slope = scales.tilt(max(bodies)) + outlook.slope_squared
