@@ -20,7 +20,7 @@ import pytest
 from verification.files import to_json, write_text
 from verification.provenance import provenance
 
-# A property holds or does not, however busy the machine is: hypothesis's limit of 200 ms for one example failed
+# A property holds or does not, however busy the machine is: the limit of 200 ms for one example failed
 # tests at random under load.
 hypothesis.settings.register_profile("unhurried", hypothesis.settings(), deadline=None)
 hypothesis.settings.load_profile("unhurried")

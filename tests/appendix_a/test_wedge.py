@@ -59,6 +59,13 @@ def test_residue_series_equals_the_integral(r: float, gamma: float) -> None:
     assert max(abs(a - b) for a, b in zip(integral, series, strict=True)) < mp.mpf(10) ** -23
 
 
+def test_the_reference_converges_on_the_faces_on_either_side_of_the_load() -> None:
+    for r, pressed in ((0.7, 1), (1.5, 0)):
+        _, sigma_theta, tau = reference.stresses(r, mp.pi / 2 - mp.mpf(0.4), 0.4, digits=10).values
+        assert abs(sigma_theta + pressed) < 1e-9
+        assert abs(tau) < 1e-9
+
+
 def test_thirty_digits_by_default() -> None:
     point = (0.5, 0.2, 0.3)
     assert reference.stresses(*point) == reference.stresses(*point, digits=30)

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl import dense_solver
+from refimpl.contact import active_set
+from refimpl.contact.active_set import restricted_solve
+from refimpl.operators.dense import DenseInfluence
+from refimpl.problem import Terms, pose
 
 M, SIDE = 3, 1e-3
 
@@ -30,3 +37,25 @@ def test_slopes_settle_even_where_pressure_does_not_follow_them_at_once(approach
     )
     assert solution.contact.sum() == 1
     assert solution.status is rf.Status.CONVERGED
+
+
+def test_slopes_that_do_not_settle_are_no_convergence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dense_solver, "_SLOPE_ITERATIONS", 1)
+    solution = rf.solve(spike(rf.Friction(tau=0.0, beta=0.1)), M, method="dense", oblique=True)
+    assert solution.status is rf.Status.ITERATION_LIMIT
+
+
+def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[int] = []
+
+    def counted(*arguments: Any) -> Any:
+        calls.append(1)
+        return restricted_solve(*arguments)
+
+    for module in (dense_solver, active_set):
+        monkeypatch.setattr(module, "restricted_solve", counted)
+    scene = spike(rf.Friction(tau=0.0, beta=0.1))
+    grid = rf.Grid(SIDE, M)
+    problem = pose(scene, grid, Terms(coupled=True, oblique=True, slope_correction=False), None)
+    outcome, _ = dense_solver.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
+    assert outcome.iterations["linear solves"] == len(calls) > 2

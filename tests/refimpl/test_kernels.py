@@ -160,3 +160,9 @@ def test_refuses_counts(table, count):
         table(4, count, 1.0)
     with pytest.raises(InputError, match=r"^dx = "):
         table(4, 4, -1.0)
+
+
+def test_the_first_offset_that_is_refused_is_named():
+    with pytest.raises(InputError) as refused:
+        normal_integral([0.0, np.inf, -np.inf], 0.0, 1.0, 1.0)
+    assert refused.value.value == np.inf

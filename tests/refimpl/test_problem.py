@@ -127,3 +127,20 @@ def test_a_window_is_the_same_problem() -> None:
     assert small.gap.shape == small.mean_surface.shape == (3, 4)
     np.testing.assert_array_equal(small.gap, problem.gap[1:4, 2:6])
     assert small.grid == problem.grid
+
+
+def test_shear_couples_by_the_difference_and_tilts_by_the_sum() -> None:
+    """Of what shear does to two bodies, either part may be left out; both together are each body's own."""
+    shear = operator().shear(F)
+    c_lower, c_upper = SCENE.materials.lower.shear_compliance, SCENE.materials.upper.shear_compliance
+    parts = {}
+    for coupled, tilted in ((True, True), (True, False), (False, True)):
+        terms = Terms(coupled=coupled, oblique=True, slope_correction=False, tilted=tilted)
+        lower, upper = posed(terms).displacements(operator(), 0 * F, F, SLOPES)
+        parts[coupled, tilted] = np.array([lower, upper])
+    tolerance = 1e-14 * np.abs(c_lower * shear).max()
+    both = np.array([c_lower * shear, -c_upper * shear])
+    couples = np.array([shear, shear]) * (c_lower - c_upper) / 2
+    tilts = np.array([shear, -shear]) * (c_lower + c_upper) / 2
+    for found, expected in zip(parts.values(), (both, couples, tilts), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
