@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from collections.abc import Mapping
 from importlib import resources
@@ -43,7 +44,7 @@ def read_tolerances(path: str | Path) -> dict[str, float]:
 
 def _read(path: Path) -> tuple[dict[str, Any], Path]:
     """The parsed file, or shipped scene, and the folder that its paths are relative to."""
-    if not path.is_file():
+    if not os.path.isfile(path):  # of any name, however long
         if str(path) in shipped_scenes():
             path = Path(str(resources.files("refimpl").joinpath("data", "scenes", f"{path}.toml")))
         else:

@@ -7,6 +7,7 @@ unpacks to (Python's zipfile never unpacks more than that), are held against MAX
 from __future__ import annotations
 
 import math
+import os
 import struct
 import tokenize
 import zipfile
@@ -77,7 +78,7 @@ def read(path: Path, unit: str | None, pixel_size: tuple[float, float] | None) -
 
 
 def _inspect(path: Path) -> None:
-    if not path.is_file():
+    if not os.path.isfile(path):  # of any name, however long
         raise InputError("path", str(path), "an existing file")
     try:
         size = path.stat().st_size

@@ -49,3 +49,24 @@ def test_a_numpy_header_without_its_end(tmp_path: Path, old: bytes) -> None:
     path.write_bytes(path.read_bytes().replace(old, b" ", 1))
     with pytest.raises(rf.InputError, match="path"):
         MeasuredSurface(path, unit="m", pixel_size=1e-6).heights(rf.Grid(8e-6, 4))
+
+
+def test_names_longer_than_the_system_takes(tmp_path: Path) -> None:
+    long = "x" * 5000
+    (tmp_path / "s.toml").write_text(f'scene = "{long}"\nrealisations = 1\n[vary]\ngrid = [8]\n')
+    for act in (
+        lambda: rf.read_scene(long),
+        lambda: read_study(long),
+        lambda: read_study(tmp_path / "s.toml"),
+        lambda: MeasuredSurface(long, unit="m", pixel_size=1e-6).heights(rf.Grid(8e-6, 4)),
+    ):
+        with pytest.raises(rf.InputError):
+            act()
+
+
+def test_a_study_of_more_runs_than_python_counts(tmp_path: Path) -> None:
+    (tmp_path / "s.toml").write_text(
+        'scene = "hertz"\nrealisations = 9999999999999999999\n[vary]\ngrid = [8]\n'
+    )
+    with pytest.raises(rf.InputError, match="runs"):
+        read_study(tmp_path / "s.toml")

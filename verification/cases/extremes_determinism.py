@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from refimpl.plan import Method
 from verification.case import Measured
 from verification.extremes.determinism import difference, in_a_process, solved
 from verification.registry import case
 
-SETTINGS = (("fft", False), ("fft", True), ("dense", False))
+SETTINGS: tuple[tuple[Method, bool], ...] = (("fft", False), ("fft", True), ("dense", False))
 SOURCE = "pressures and numbers compared in hexadecimal"
 
 

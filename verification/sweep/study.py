@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import math
+import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -109,7 +111,7 @@ def read_study(path: str | Path) -> Study:
     The scene is a shipped one's name or a path relative to the file. Raises InputError naming the field.
     """
     path = Path(path)
-    if not path.is_file():
+    if not os.path.isfile(path):  # of any name, however long
         if str(path) not in shipped_studies():
             raise InputError("study", str(path), f"a TOML file, or one of {', '.join(shipped_studies())}")
         path = Path(str(resources.files("verification").joinpath("studies", f"{path}.toml")))
@@ -149,7 +151,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
     study = Study(
-        scene=scene_to_dict(read_scene(beside if beside.is_file() else name)),
+        scene=scene_to_dict(read_scene(beside if os.path.isfile(beside) else name)),
         realisations=_whole("realisations", table.get("realisations", 1), at_least=1),
         first_seed=_whole("first_seed", table.get("first_seed", 1), at_least=0),
         normalise=normalise,
@@ -163,8 +165,9 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
 def _check(study: Study) -> None:
     if "grid" not in study.vary:
         raise InputError("vary.grid", None, "a list of elements per side")
-    if len(study) > MAX_RUNS:
-        raise InputError("vary", f"{len(study)} runs", f"at most {MAX_RUNS} runs")
+    runs = math.prod([study.realisations, *map(len, study.vary.values())])
+    if runs > MAX_RUNS:
+        raise InputError("vary", f"{runs} runs", f"at most {MAX_RUNS} runs")
     for side in ("upper", "lower"):
         gaussian = sum(part["kind"] == "gaussian" for part in study.scene[side]["surface"])
         if gaussian > 1:
@@ -213,7 +216,7 @@ def _measured_files(scene: Table) -> dict[str, str]:
     parts = [part for name in ("upper", "lower") for part in scene[name]["surface"]]
     paths = [Path(part["path"]) for part in parts if part["kind"] == "measured"]
     for path in paths:
-        if not path.is_file():
+        if not os.path.isfile(path):  # of any name, however long
             raise InputError("scene", str(path), "a measured surface's file")
     return {str(path): file_digest(path) for path in paths}
 
