@@ -27,8 +27,9 @@ def build(document: Document) -> Exhibit:
         "Every axis to the point of failure",
         (
             f"{len(rows)} states: {said}. Right: within its limit of an oracle that shares nothing with the "
-            "solver: the discrete problem in 34 digits, a scaling law, a closed form. Honest failure: refused, "
-            "or a status that says so. Crash: an exception without a reason, or no end in the time allowed.",
+            "solver: the discrete problem in 34 digits, a scaling law, a closed form. Honest failure: "
+            "refused, or a status that says so. Crash: an exception without a reason, or no end in the time "
+            "allowed.",
             "Unit scaling by powers of two must change no bit, by powers of ten no more than 1e-12.",
             "For any beta a + beta c is positive definite (the proof is in the code), so at fixed slopes and "
             "support of tau there is one state. It ends with tau, as the count of lawful states shows.",
