@@ -27,7 +27,7 @@ LIMITS = (
     ),
     Limit(
         "load/[bp][al]*, fft/p/E[*] = 1e+0[12]",
-        "mean pressures of ten times the reduced modulus end in ZeroDivisionError, OverflowError or STAGNATED",
+        "mean pressures of ten times E* end in ZeroDivisionError, OverflowError or STAGNATED",
         "slopes of a surface displaced by many element widths run off until their cosines underflow",
         "a reason beside the status; no elastic half-space is meant to be loaded like this",
     ),

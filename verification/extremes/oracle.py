@@ -199,7 +199,7 @@ def _solve(matrix: Exact, right: Exact) -> Exact:
 
 
 def _size(values: Exact) -> Exact:
-    return np.max(np.abs(values))
+    return np.max(np.abs(values)) or mp.mpf(1)
 
 
 def _cos(tan: Exact) -> Exact:
