@@ -55,8 +55,8 @@ def solve(
     method : "fft" the production solver, "dense" the plain reference for small grids, "paper" the
         paper's own scheme
     accuracy : refine until the error bar of ``quantity`` is this share of its value
-    quantity : "friction_coefficient" (the default with friction), "contact_area" (without) or
-        "max_pressure"
+    quantity : "friction_coefficient" (the default with friction), "contact_area" (without),
+        "contact_area_corrected" or "max_pressure"
     approach : prescribe the approach (m) instead of the scene's load
     oblique : False drops every slope term; None lets the scene decide
     slope_correction : exact facet tractions in Eq. (7) (SPEC 2)
