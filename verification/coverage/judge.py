@@ -47,11 +47,14 @@ def verdicts(ladders: Mapping[int, Sequence[Rung]], accuracy: float) -> list[Ver
     """All numbers of all scenes whose ladder has a reference, which is its finest grid."""
     found = []
     for seed, rungs in ladders.items():
-        drawn = random_scene(seed)
-        for number in NUMBERS:
-            if number != "friction_coefficient" or not drawn.scene.friction.is_zero:
-                found.append(_judged(rungs, drawn.kind, number, accuracy))
+        kind = random_scene(seed).kind
+        found += [_judged(rungs, kind, number, accuracy) for number in _numbers(seed)]
     return found
+
+
+def _numbers(seed: int) -> tuple[str, ...]:
+    """The numbers to judge: all, but for friction where there is none."""
+    return NUMBERS[1:] if random_scene(seed).scene.friction.is_zero else NUMBERS
 
 
 def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> Verdict:
@@ -83,21 +86,26 @@ def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> V
 
 
 def _reference(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
-    """The finest grid's number, without its edge's mean share, and a bound of what is left."""
-    finest = rungs[-1].result
+    """The finest grid's number, without its edge's mean share, and a bound of what is left.
+
+    What is smooth - the peak, friction without tau's share - is bounded by its change from the grid before.
+    """
+    before, finest = (rung.result for rung in rungs[-2:])
     value = finest.numbers[number]
     if number == "max_pressure":
-        return value, abs(value - rungs[-2].result.numbers[number])
-    edge = finest.edge * (finest.slip if number == "friction_coefficient" else 1.0)
-    if number == "contact_area_corrected":
-        value = finest.numbers["contact_area"]
-    return value - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge
+        return value, abs(value - before.numbers[number])
+    if number == "friction_coefficient":
+        rest, rest_before = (r.numbers[number] - r.slip * r.numbers["contact_area"] for r in (finest, before))
+        edge = finest.slip * finest.edge
+        return value - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge + abs(rest - rest_before)
+    area = finest.numbers["contact_area"]
+    return area - EDGE_SIZE * finest.edge, EDGE_SIZE_BOUND * finest.edge
 
 
 def moved(rungs: Sequence[Rung]) -> float:
     """How far the reference moves on one more grid, the ladder's last, over both stated bounds; the worst."""
     shares = []
-    for number in NUMBERS:
+    for number in _numbers(rungs[0].seed):
         (coarse, loose), (fine, tight) = _reference(rungs[:-1], number), _reference(rungs, number)
         scale = np.finfo(float).eps * abs(fine)
         shares.append(abs(fine - coarse) / max(loose + tight, scale))
