@@ -45,6 +45,31 @@ def test_slopes_that_do_not_settle_are_no_convergence(monkeypatch: pytest.Monkey
     assert solution.status is rf.Status.ITERATION_LIMIT
 
 
+@pytest.mark.parametrize("approach", [None, 3e-6])
+def test_facet_tractions_are_solved_for(approach: float | None) -> None:
+    """The certificate recomputes Eq. (7) with the facets' tractions from the arrays, by other code."""
+    heights = np.random.default_rng(4).uniform(0, 4e-5, (5, 5))
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(30e9, 0.3), rf.Flat()),
+        lower=rf.Body(rf.Material(1e9, 0.2), heights),
+        friction=rf.Friction(tau=1e6, beta=0.2),
+        load=3.0,
+        side=SIDE,
+        sliding_direction=0.7,
+    )
+    solution = rf.solve(scene, 5, method="dense", approach=approach, slope_correction=True, tolerance=1e-11)
+    assert solution.contact.sum() > 1
+    assert np.abs(solution.slopes.tan_x).max() > 0.05
+    assert solution.status is rf.Status.CONVERGED
+
+
+def test_one_pass_without_slopes() -> None:
+    scene, grid = spike(rf.Friction(tau=0.0, beta=0.1)), rf.Grid(SIDE, M)
+    problem = pose(scene, grid, Terms(coupled=True, oblique=False, slope_correction=False), None)
+    outcome, _ = dense_solver.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
+    assert outcome.iterations["slopes"] == 1
+
+
 def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
 
