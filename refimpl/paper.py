@@ -98,9 +98,7 @@ def _interpolated(coarse: Array) -> Array:
 class _Scheme:
     """Iterations one and two on one grid."""
 
-    def __init__(
-        self, problem: Problem, tolerance: float, counter: Counter, pressure: Array | None
-    ) -> None:
+    def __init__(self, problem: Problem, tolerance: float, counter: Counter, pressure: Array | None) -> None:
         self.problem = problem
         self.tolerance = tolerance
         self.trace = Trace(problem.grid.M)

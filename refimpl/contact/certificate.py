@@ -65,9 +65,7 @@ class State:
         return u / self.slopes.obliqueness + gap - self.approach
 
 
-def certify(
-    problem: Problem, operator: Influence, pressure: Array, traction: Array, slopes: Slopes
-) -> State:
+def certify(problem: Problem, operator: Influence, pressure: Array, traction: Array, slopes: Slopes) -> State:
     """Recompute displacements, slopes, approach and every residual from the returned arrays.
 
     ``slopes`` enter only through the facet tractions of the slope correction and through the

@@ -45,19 +45,25 @@ class ProjectedCG:
         self.normal_displacement = apply(pressure)
         self.contact: Mask = pressure > 0
         self._direction: Array | None = None
+        self._v: Array | None = None
         self._residual, self._product = pressure, 0.0
         self._length, self._trusted = FIRST_LENGTH, True
 
     def freeze(self, b: Array, K: Array, *, target: float | None, approach: float | None) -> None:
         """Hold ``b = K h + shear displacement`` (m), the weights ``K`` and the target or approach."""
         self._b, self._K, self._target, self._approach = b, K, target, approach
-        self._direction = None
+        self._direction = self._v = None
         if target is not None:
             self._scale_to_target()
 
     @property
     def separation(self) -> Array:
         """``v = (a f + b) / K`` (m): the approach where there is contact, more elsewhere."""
+        if self._v is None:
+            self._v = self._found_separation()
+        return self._v
+
+    def _found_separation(self) -> Array:
         return (self.normal_displacement + self._b) / self._K
 
     def approach(self, separation: Array) -> float:
@@ -87,8 +93,8 @@ class ProjectedCG:
         direction = self._conjugate(residual, self._projected(self._preconditioned(residual)))
         if not (self._trusted and self._step_to_trial(residual, direction)):
             self._step_then_cut(residual, direction)
-        v = self.separation
-        self.contact = self.contact | (v < self.approach(v))
+        self._v = self._found_separation()
+        self.contact = self.contact | (self._v < self.approach(self._v))
 
     def _projected(self, values: Array) -> Array:
         """``values`` on the contact set without what they have along the load's weights."""
@@ -129,7 +135,11 @@ class ProjectedCG:
         moved = self._apply(change)
         curvature = float(np.vdot(change, moved))
         best = float(np.vdot(residual, change)) / curvature if curvature > 0 else 0.0
-        share = min(max(best, 0.0), 1.0) if cut else min(best, self._room(change))
+        share = max(best, 0.0)
+        if cut:
+            share = min(share, 1.0)
+        elif share > 1 and (self.pressure + share * change).min() < 0:
+            share = self._room(change)
         self.pressure = trial if share == 1 else np.maximum(self.pressure + share * change, 0.0)
         self.normal_displacement = self.normal_displacement + share * moved
         self.contact = self.contact & ~((self.pressure == 0) & (negative | (change < 0)))
@@ -140,8 +150,6 @@ class ProjectedCG:
     def _room(self, change: Array) -> float:
         """The multiple of ``change`` at which the first pressure reaches zero."""
         falling = change < 0
-        if not falling.any():
-            return np.inf
         return float(np.min(self.pressure[falling] / -change[falling]))
 
     def _step_then_cut(self, residual: Array, direction: Array) -> None:

@@ -25,10 +25,11 @@ _NEAR_COUNT = int(np.ceil(NEAR / 2))  # offsets served by the closed form: 2i < 
 _SLAB = 16384  # elements: 128 kB per temporary
 
 
-def normal_table(n: int, m: int, dx: float, dy: float | None = None) -> Array:
+def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
     """``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of ``dx``.
 
-    ``dy = dx`` by default. Extend evenly to negative offsets. Same accuracy and errors as
+    ``dy = dx`` by default; ``known`` is a smaller square table of the same elements, to go on from: the
+    result is the same to the last bit. Extend evenly to negative offsets. Same accuracy and errors as
     ``normal_integral``.
 
     >>> table = normal_table(3, 3, 1.0)
@@ -36,22 +37,27 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None) -> Array:
     True
     """
     dx, dy, unit = _edges(n, m, dx, dy)
+    known = None if known is None else known / unit
     if dx != dy:
-        return unit * _table(LOVE, n, m, dx, dy)
-    return unit * (_symmetric_table(LOVE, n, m, dx) if n >= m else _symmetric_table(LOVE, m, n, dx).T)
+        return unit * _table(LOVE, n, m, dx, dy, known)
+    if n < m:
+        return unit * _symmetric_table(LOVE, m, n, dx, known).T
+    return unit * _symmetric_table(LOVE, n, m, dx, known)
 
 
-def tangential_table(n: int, m: int, dx: float, dy: float | None = None) -> Array:
+def tangential_table(
+    n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None
+) -> Array:
     """``tangential_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of ``dx``.
 
-    ``dy = dx`` by default. Extend oddly in x, evenly in y. Same accuracy and errors as
-    ``tangential_integral``.
+    ``dy = dx`` by default; ``known`` as for `normal_table`. Extend oddly in x, evenly in y. Same accuracy
+    and errors as ``tangential_integral``.
 
     >>> tangential_table(2, 2, 1.0)[0]
     array([0., 0.])
     """
     dx, dy, unit = _edges(n, m, dx, dy)
-    return unit * _table(CERRUTI, n, m, dx, dy)
+    return unit * _table(CERRUTI, n, m, dx, dy, None if known is None else known / unit)
 
 
 def _edges(n: int, m: int, dx: float, dy: float | None) -> tuple[float, float, float]:
@@ -63,9 +69,9 @@ def _edges(n: int, m: int, dx: float, dy: float | None) -> tuple[float, float, f
     return dx / unit, dy / unit, unit
 
 
-def _table(kernel: Kernel, n: int, m: int, dx: float, dy: float) -> Array:
+def _table(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> Array:
     table = _near_block(kernel, n, m, dx, dy)
-    for start, stop in _slabs(n, m):
+    for start, stop in _slabs(n, m, _adopted(table, known)):
         rows, columns = min(stop, n), min(stop, m)
         if start < n:
             table[start:rows, :columns] = _across_x(kernel, start, rows, columns, dx, dy)
@@ -74,10 +80,10 @@ def _table(kernel: Kernel, n: int, m: int, dx: float, dy: float) -> Array:
     return table
 
 
-def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float) -> Array:
+def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array | None) -> Array:
     """The same for square elements, ``n >= m``, and a kernel symmetric in x and y: half the work."""
     table = _near_block(kernel, n, m, edge, edge)
-    for start, stop in _slabs(n, m):
+    for start, stop in _slabs(n, m, _adopted(table, known)):
         columns = min(stop, m)
         rows = _across_x(kernel, start, stop, columns, edge, edge)
         table[start:stop, :columns] = rows
@@ -100,12 +106,27 @@ def _offsets(start: int, stop: int, edge: float) -> Array:
     return np.arange(start, stop, dtype=np.float64) * edge
 
 
-def _slabs(n: int, m: int) -> Iterator[tuple[int, int]]:
-    """``[start, stop)``, for rows and columns alike: thin near the load, where the order changes fast."""
+def _adopted(table: Array, known: Array | None) -> int:
+    """Copy the known entries into the table; how many rows and columns of it are known."""
+    if known is None:
+        return 0
+    rows, columns = min(len(known), len(table)), min(len(known), table.shape[1])
+    table[:rows, :columns] = known[:rows, :columns]
+    return int(min(len(known), *table.shape))
+
+
+def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
+    """``[start, stop)``, for rows and columns alike: thin near the load, where the order changes fast.
+
+    Where slabs start does not depend on n and m as long as both are larger; those that end within what is
+    ``known`` are passed over.
+    """
     start = _NEAR_COUNT
     while start < max(n, m):
         height = min(1 + start // 8, max(1, _SLAB // min(start, n, m)))
-        yield start, min(start + height, max(n, m))
+        stop = min(start + height, max(n, m))
+        if stop > known:
+            yield start, stop
         start += height
 
 

@@ -23,7 +23,7 @@ def unit_table(kind: str, n: int) -> Array:
     """
     table = _cache.get(kind)
     if table is None or len(table) < n:
-        table = _TABLES[kind](n, n, 1.0)
+        table = _TABLES[kind](n, n, 1.0, known=table)
         table.flags.writeable = False
         _cache[kind] = table
     return table[:n, :n]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -166,3 +168,14 @@ def test_the_first_offset_that_is_refused_is_named():
     with pytest.raises(InputError) as refused:
         normal_integral([0.0, np.inf, -np.inf], 0.0, 1.0, 1.0)
     assert refused.value.value == np.inf
+
+
+@pytest.mark.parametrize("table", [normal_table, tangential_table])
+@pytest.mark.parametrize("steps", [(1, 40), (3, 4, 5, 9), (40, 41, 150), (7, 300)])
+def test_a_grown_table_is_the_same_to_the_last_bit(
+    table: Callable[..., np.ndarray], steps: tuple[int, ...]
+) -> None:
+    grown = None
+    for n in steps:
+        grown = table(n, n, 1.0, known=grown)
+    assert np.array_equal(grown, table(steps[-1], steps[-1], 1.0))
