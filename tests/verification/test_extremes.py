@@ -98,8 +98,7 @@ SABOTAGE = {
 }
 
 
-@pytest.mark.parametrize("name", SABOTAGE)
-@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize(("name", "periodic"), [*((name, False) for name in SABOTAGE), ("pressure", True)])
 def test_a_wrong_number_with_a_good_status_is_wrong(
     name: str, periodic: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,9 +20,9 @@ def test_the_files_that_mutations_start_from_are_accepted(target: Target, tmp_pa
         assert outcome(target, valid, tmp_path) == "accepted"
 
 
-def test_two_thousand_inputs_without_a_traceback_or_a_hang() -> None:
-    found = campaign(2000, seed=9)
-    assert found["inputs"] >= 2000
+def test_a_thousand_inputs_without_a_traceback_or_a_hang() -> None:
+    found = campaign(1000, seed=9)
+    assert found["inputs"] >= 1000
     assert (found["tracebacks"], found["hangs"], found["faults"]) == (0, 0, [])
 
 
