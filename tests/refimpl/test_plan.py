@@ -195,7 +195,7 @@ def test_a_term_that_turns_out_to_matter_is_put_back(monkeypatch: pytest.MonkeyP
 
 
 def test_nothing_builds_a_cerruti_kernel_that_does_not_need_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object) -> None:
+    def refuse(*_: object, **__: object) -> None:
         raise AssertionError("a tangential kernel was built")
 
     monkeypatch.setattr(tables, "_cache", {})
