@@ -70,7 +70,7 @@ def _close(printed: str, stated: str) -> bool:
 
 def run(page: str, folder: Path) -> int:
     """Run a page's blocks in a folder; how many outputs were compared. AssertionError names what differs."""
-    compared, names, printed = 0, {"__name__": "page"}, ""
+    compared, names, printed = 0, {"__name__": "__main__"}, ""
     with contextlib.chdir(folder):
         for block in blocks(page):
             assert block.language in LANGUAGES, f"a {block.language} block is not run by anything"

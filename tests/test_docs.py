@@ -1,0 +1,87 @@
+"""The pages of docs/ tell the truth: every block runs, every number shown is the one printed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.documents import ROOT, Block, agree, blocks, commands, run
+
+DOCS = sorted((ROOT / "docs").glob("*.md"))
+
+
+@pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
+def test_a_page_is_true(path: Path, tmp_path: Path) -> None:
+    for name in ("tests", "examples"):  # as seen from a checkout
+        (tmp_path / name).symlink_to(ROOT / name)
+    page = path.read_text(encoding="utf-8")
+    stated = [b for b in blocks(page) if b.language == "text" and not b.file]
+    shown = [s for b in blocks(page) if b.language == "console" for _, s in commands(b) if s.strip()]
+    assert run(page, tmp_path) == len(stated) + len(shown)
+
+
+@pytest.mark.parametrize("path", [*DOCS, ROOT / "README.md"], ids=lambda path: path.stem)
+def test_what_a_page_points_to_is_there(path: Path) -> None:
+    page = re.sub(r"^```.*?^```$", "", path.read_text(encoding="utf-8"), flags=re.M | re.S)
+    links = [link for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page) if "://" not in link]
+    for link in links:
+        assert (path.parent / link).exists(), link
+    top = "refimpl|appendix_a|verification|reports|tests|docs|examples"
+    for name in re.findall(rf"`((?:{top})/[\w./-]*)`", page):
+        assert (ROOT / name).exists(), name
+
+
+def test_the_readme_leads_to_every_page() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert DOCS
+    assert [path.name for path in DOCS if f"docs/{path.name}" not in readme] == []
+
+
+@pytest.mark.parametrize(
+    ("printed", "stated"),
+    [
+        ("mu = 0.0894 (ok)", "mu = 0.0893 (ok)"),
+        ("mu  0.1\n", "  mu 0.1"),
+        ("7.2e-07 of 1 in 0.31 s", "7.1e-07 of 1 in ... s"),
+        ("one\ntwo\nthree", "one\n...\nthree"),
+    ],
+)
+def test_outputs_that_agree(printed: str, stated: str) -> None:
+    assert agree(printed, stated)
+
+
+@pytest.mark.parametrize(
+    ("printed", "stated"),
+    [
+        ("mu = 0.0895 (ok)", "mu = 0.0893 (ok)"),
+        ("mu = -0.0893 (ok)", "mu = 0.0893 (ok)"),
+        ("mu = 0.0893 (cycled)", "mu = 0.0893 (ok)"),
+        ("mu^3 = 0.0893", "mu^2 = 0.0893"),
+        ("65 x 65", "64 x 64"),
+        ("7.3e-06", "7.3e-07"),
+        ("one two three", "one\n...\nfour"),
+    ],
+)
+def test_outputs_that_do_not(printed: str, stated: str) -> None:
+    assert not agree(printed, stated)
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        "```python\nprint(1.5)\n```\n\n```text\n1.7\n```\n",
+        "```console\n$ rough-friction solve hertz --grid 8 --tolerance 1e-4\nstatus: STAGNATED\n```\n",
+        "```console\n$ rough-friction verify --list --tier full --only 'kernels/*' --json no/such\n```\n",
+        "```console\n$ make tea\n```\n",
+        "```fortran\nend\n```\n",
+    ],
+)
+def test_a_page_that_lies_is_found_out(page: str, tmp_path: Path) -> None:
+    with pytest.raises((AssertionError, SystemExit)):
+        run(page, tmp_path)
+
+
+def test_blocks_know_their_files() -> None:
+    assert blocks("```toml a.toml\nx = 1\n```\n") == [Block("toml", "a.toml", "x = 1\n")]
