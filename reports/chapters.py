@@ -73,7 +73,6 @@ CHAPTERS = (
             "model-form",
             "appendix-errata",
         ),
-        ("appendix_a_3d",),
     ),
     Chapter(
         "reproduction",
