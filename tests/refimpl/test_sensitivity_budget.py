@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 
 import pytest
@@ -100,16 +99,6 @@ def test_tolerances_stand_in_the_scenes_file(tmp_path: Path) -> None:
     file.write_text(scene_to_toml(SCENE) + stated)
     assert read_tolerances(file) == {"lower.material.E": 0.02, "lower.surface[0].rms": 0.05}
     assert rf.read_scene(file).load == SCENE.load
-
-
-def test_the_readmes_tolerances_are_lawful(tmp_path: Path) -> None:
-    readme = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
-    stated = next(
-        block for block in re.findall(r"```toml\n(.*?)```", readme, flags=re.S) if "[tolerances]" in block
-    )
-    file = tmp_path / "scene.toml"
-    file.write_text(scene_to_toml(SCENE) + "\n" + stated)
-    assert len(read_tolerances(file)) == 4
 
 
 @pytest.mark.parametrize(
