@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,6 +33,8 @@ from refimpl.surfaces import GaussianRoughness, SurfaceWarning
 from refimpl.uncertainty import merged
 from refimpl.validity import cautions
 
+Progress = Callable[[str], None]
+
 
 def solve(
     scene: Scene,
@@ -47,6 +49,7 @@ def solve(
     coupled: bool | None = None,
     tilted: bool | None = None,
     tolerance: float | None = None,
+    progress: Progress | None = None,
 ) -> Solution:
     """Solve a scene on ``grid x grid`` elements, or to a relative ``accuracy``; exactly one of them.
 
@@ -65,6 +68,7 @@ def solve(
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, what that deserves), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
+    progress : is called with a line of text at every step of the work
 
     Raises `InputError` for input that is out of range, before anything large is allocated.
     """
@@ -82,22 +86,24 @@ def solve(
         tolerance=tolerance,
     )
     if accuracy is not None:
-        planned = _Planned(scene, request.plan(), approach, request.residual)
+        planned = _Planned(scene, request.plan(), approach, request.residual, progress)
         return refine(planned.solve_at, accuracy, request.judged)
-    solution = _solve_planned(scene, request.plan(), approach, request.residual)
+    solution = _solve_planned(scene, request.plan(), approach, request.residual, progress)
     return replace(solution, uncertainty=uncertainty([GridResult.of(solution)]))
 
 
 class _Planned:
     """A plan made once for all grids of a refinement; terms that turn out to matter are put back for good."""
 
-    def __init__(self, scene: Scene, plan: Plan, approach: float | None, tolerance: float) -> None:
+    def __init__(
+        self, scene: Scene, plan: Plan, approach: float | None, tolerance: float, progress: Progress | None
+    ) -> None:
         self.scene, self.plan = scene, plan
-        self.approach, self.tolerance = approach, tolerance
+        self.asked = approach, tolerance, progress
 
     def solve_at(self, M: int) -> Solution:
         """The solution on a grid, solved again if the terms left out together exceed their budget."""
-        solution = _solve_planned(self.scene, self.plan.on(self.scene, M), self.approach, self.tolerance)
+        solution = _solve_planned(self.scene, self.plan.on(self.scene, M), *self.asked)
         plan = self.plan
         changes = effects_left_out(
             plan.left_out, solution.problem, solution.pressure, plan.outlook, plan.decided_on
@@ -109,9 +115,25 @@ class _Planned:
         return self.solve_at(M)
 
 
-def _solve_planned(scene: Scene, plan: Plan, approach: float | None, tolerance: float) -> Solution:
+class _Watched(Counter):
+    """A counter that tells someone who waits how often operators were applied on this grid."""
+
+    def __init__(self, M: int, tell: Progress) -> None:
+        super().__init__()
+        self._M, self._tell = M, tell
+
+    def add(self, what: str, points: int) -> None:
+        """Count, and tell."""
+        super().add(what, points)
+        self._tell(f"{self._M} x {self._M} elements, {sum(self.tally.values())} transforms")
+
+
+def _solve_planned(
+    scene: Scene, plan: Plan, approach: float | None, tolerance: float, progress: Progress | None
+) -> Solution:
     """Pose, solve, certify and gather on one grid."""
-    started, counter = time.perf_counter(), Counter()
+    started = time.perf_counter()
+    counter = Counter() if progress is None else _Watched(plan.M, progress)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SurfaceWarning)
         problem = pose(scene, Grid(scene.side, plan.M), plan.switches, approach)

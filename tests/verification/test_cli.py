@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +18,7 @@ from verification import registry, runner
 from verification.case import Case, Measured, Metric, Status, Tier
 from verification.cli import main, parser
 from verification.cli.appendix_a import numbers
-from verification.cli.output import columns
+from verification.cli.output import WIDTH, StatusLine, columns
 
 QUICK = "kernels/love-at-centre"
 FEM = ["appendix-a", "fem", "--slope-deg=6.5", "--wavelength=100", "--position=0.25", "--offsets=-3,3"]
@@ -59,6 +61,22 @@ def test_every_command_has_help(command: list[str], capsys: Capture) -> None:
         main([*command, "--help"])
     assert done.value.code == 0
     assert "usage: rough-friction" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", commands(), ids=" ".join)
+def test_every_help_has_examples_that_parse_and_fits_100_columns(
+    command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
+    with pytest.raises(SystemExit):
+        main([*command, "--help"])
+    shown = capsys.readouterr().out
+    assert max(map(len, shown.splitlines())) <= 100
+    examples = re.findall(r"^  rough-friction (.*)$", shown.replace("\\\n", ""), flags=re.M)
+    assert examples
+    for example in examples:
+        assert callable(parser().parse_args(shlex.split(example)).run), example
+    assert any(shlex.split(example)[: len(command)] == command for example in examples)
 
 
 def test_every_command_that_computes_takes_json(capsys: Capture) -> None:
@@ -180,6 +198,29 @@ def test_number_lists() -> None:
     assert numbers("-10,3") == [-10.0, 3.0]
     with pytest.raises(argparse.ArgumentTypeError):
         numbers("1;2")
+
+
+def test_tables_keep_within_their_width() -> None:
+    rows = [["case", "a reason that goes on " * 9], ["other", "short"]]
+    lines = columns(rows).splitlines()
+    assert max(map(len, lines)) <= WIDTH
+    assert " ".join(columns(rows).split()) == " ".join(" ".join(row) for row in rows).replace("  ", " ")
+    assert [line.startswith(" " * 9) for line in lines] == [False, *[True] * (len(lines) - 2), False]
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_status_line_is_for_terminals(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    line = StatusLine()
+    line.show("one " * 100)
+    line.show("too soon")
+    line.close()
+    line.show("two")
+    line.close()
+    shown = capsys.readouterr().err
+    assert shown.replace("\r\x1b[K", "|") == ("|" + ("one " * 100)[:78] + "||two|" if terminal else "")
 
 
 def test_columns_of_nothing_are_nothing() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import re
+import sys
 from pathlib import Path
 
 import meshio
@@ -64,6 +65,25 @@ def test_an_accuracy_is_met_by_the_error_bar_that_is_shown(scene: str, capsys: C
     assert 0 < float(bar[2]) <= 0.055 * float(bar[1])  # the table rounds the bar to one digit
 
 
+@pytest.mark.parametrize("terminal", [True, False])
+def test_progress_is_for_terminals(
+    terminal: bool, scene: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    assert main(["solve", scene, "--grid", "16"]) == 0
+    shown = capsys.readouterr().err
+    assert ("16 x 16 elements, 1 transforms" in shown) is terminal
+    assert shown.endswith("\r\x1b[K") is terminal
+    assert bool(shown) is terminal
+
+
+def test_tables_fit_the_terminal(scene: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    monkeypatch.chdir(Path(scene).parent)
+    assert main(["solve", "scene.toml", "--grid", "16", "--budget"]) == 0
+    assert main(["solve", "scene.toml", "--accuracy", "0.01", "--explain"]) == 0
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= 100
+
+
 def test_an_error_bar_is_the_sum_of_its_parts(scene: str) -> None:
     solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
     parts = {"approach": {"iteration": 1e-9, "discretisation": 2e-9}}
@@ -120,7 +140,9 @@ def test_exit_status(
     ended = dataclasses.replace(refimpl.solve(refimpl.read_scene(scene), grid=8), status=status)
     monkeypatch.setattr(refimpl, "solve", lambda *_, **__: ended)
     assert main(["solve", scene]) == exit_status
-    assert f"status: {status.name}" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert f"status: {status.name}" in printed
+    assert ("--" in printed.partition("friction coefficient")[0]) is (exit_status == 1)  # what to do next
 
 
 def test_without_contact_mu_is_not_a_number_in_words(scene: str, tmp_path: Path, capsys: Capture) -> None:

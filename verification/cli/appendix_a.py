@@ -15,12 +15,14 @@ from verification.cli.output import Parsers, add_json, columns, emit
 MAP_RANGES = {"slopes-deg": (0.1, 45.0), "wavelengths": (4.0, 1e4), "positions": (0.0, 0.5)}
 MAP_AXES = ("slope_deg", "wavelength", "position", "offset")
 
-EPILOG = """examples:
-  rough-friction appendix-a fem --slope-deg 6.5 --wavelength 100 --position 0.25 --nu 0.3 --offsets=-3,3
-  rough-friction appendix-a wedge --gamma-deg 10 --r 0.25,0.5,2 --theta-deg 0,30 --json -
-
-A list that starts with a minus sign needs the equals sign: --offsets=-3,3
-"""
+WAVE = "--slope-deg 6.5 --wavelength 100 --position 0.25 --nu 0.3 --offsets=-3,3"
+EXAMPLES = {
+    "strip": WAVE,
+    "wedge": "--gamma-deg 10 --r 0.25,0.5,2 --theta-deg 0,30 --json -",
+    "fem": WAVE,
+    "map": "--slopes-deg 2.5,6.5 --wavelengths 50 --positions 0 --json map.json",
+}
+MINUS = "A list that starts with a minus sign needs the equals sign: --offsets=-3,3"
 
 
 def add_parser(commands: Parsers) -> None:
@@ -29,7 +31,7 @@ def add_parser(commands: Parsers) -> None:
         "appendix-a",
         help="the plane problems of Appendix A",
         description="The plane problems of Appendix A: pressure on wavy boundaries and wedges.",
-        epilog=EPILOG,
+        epilog=_epilog("fem", "wedge"),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     problems = parser.add_subparsers(title="problems", metavar="PROBLEM", required=True)
@@ -87,13 +89,9 @@ def _wavy_options(parser: argparse.ArgumentParser) -> None:
 
 def _add_wedge(problems: Parsers) -> None:
     parser = _problem(problems, "wedge", wedge, "stresses of a wedge pressed on both faces near its tip")
-    parser.add_argument(
-        "--gamma-deg", type=float, required=True, help="slope angle of the faces (degrees)"
-    )
+    parser.add_argument("--gamma-deg", type=float, required=True, help="slope angle of the faces (degrees)")
     parser.add_argument("--r", type=numbers, required=True, help="distances from the tip")
-    parser.add_argument(
-        "--theta-deg", type=numbers, required=True, help="angles from the bisector (degrees)"
-    )
+    parser.add_argument("--theta-deg", type=numbers, required=True, help="angles from the bisector (degrees)")
     parser.add_argument(
         "--half-width", type=float, default=1.0, help="pressed length of each face (default 1)"
     )
@@ -102,10 +100,24 @@ def _add_wedge(problems: Parsers) -> None:
 def _problem(
     problems: Parsers, name: str, run: Callable[[argparse.Namespace], int], text: str
 ) -> argparse.ArgumentParser:
-    parser = problems.add_parser(name, help=text, description=text.capitalize() + ".")
+    parser = problems.add_parser(
+        name,
+        help=text,
+        description=text.capitalize() + ".",
+        epilog=_epilog(name),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     add_json(parser)
     parser.set_defaults(run=run)
     return parser
+
+
+def _epilog(*names: str) -> str:
+    lines = [
+        f"  rough-friction appendix-a {name} {EXAMPLES[name]}".replace(" --nu", " \\\n    --nu")
+        for name in names
+    ]
+    return "\n".join(["examples:", *lines, "", MINUS])
 
 
 def strip(options: argparse.Namespace) -> int:
@@ -153,9 +165,7 @@ def coefficient_map(options: argparse.Namespace) -> int:
         path = Path(folder) / "map.json"
         found.write(path)
         document = json.loads(path.read_text(encoding="utf-8"))
-    rows = [
-        [axis.replace("_", " "), " ".join(f"{x:g}" for x in getattr(found, axis))] for axis in MAP_AXES
-    ]
+    rows = [[axis.replace("_", " "), " ".join(f"{x:g}" for x in getattr(found, axis))] for axis in MAP_AXES]
     error = f"stated error, percentage points: {found.error_percentage_points.max():.2g}"
     emit(document, options.json, f"{columns(rows, indent='')}\n{error}")
     return 0

@@ -6,7 +6,7 @@ import argparse
 import time
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns, emit, judgement
+from verification.cli.output import columns, emit, judgement, wrapped
 
 if TYPE_CHECKING:
     from verification.contestants.isolated import Source
@@ -20,8 +20,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """The options that name a solver and say what it can do."""
     group = parser.add_argument_group(
         "bring your own solver",
-        "Run the suite of verification.contestants with it, one case after the other whatever --tier and "
-        "--jobs say: the cases that are within its abilities; the others are named.",
+        "Run the suite of verification.contestants with it, one case after the other whatever --tier\n"
+        "and --jobs say: the cases that are within its abilities; the others are named.",
     )
     who = group.add_mutually_exclusive_group()
     who.add_argument(
@@ -133,7 +133,7 @@ def _not_applicable(done: Run) -> list[str]:
     left_out = [r for r in done.results if r.status == "unavailable"]
     reasons = dict.fromkeys(r.note for r in left_out)
     lines = [
-        f"  {note}: {', '.join(r.id.partition('/')[2] for r in left_out if r.note == note)}"
+        wrapped(", ".join(r.id.partition("/")[2] for r in left_out if r.note == note), f"  {note}: ")
         for note in reasons
     ]
     return ["\n".join(["not applicable, and not passed:", *lines])] if lines else []

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import textwrap
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -13,6 +15,9 @@ from verification.files import to_json, write_text
 
 if TYPE_CHECKING:
     from verification.case import Result
+
+WIDTH = 100
+"""Columns that tables and texts keep within."""
 
 Parsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 
@@ -50,15 +55,51 @@ def emit(document: object, path: Path | None, table: str) -> None:
 
 
 def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
-    """Rows of texts as aligned columns; the last column is free.
+    """Rows of texts as aligned columns within `WIDTH`: the last one is wrapped where it must be.
 
     >>> print(columns([["mu", "0.1", "x"], ["approach", "12", "y"]]))
       mu        0.1  x
       approach  12   y
     """
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))] if rows else []
-    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
-    return "\n".join(indent + line.rstrip() for line in lines)
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]) - 1)] if rows else []
+    lines = []
+    for row in rows:
+        cells = (cell.ljust(width) + "  " for cell, width in zip(row[:-1], widths, strict=True))
+        lines.append(wrapped(row[-1], indent + "".join(cells)))
+    return "\n".join(lines)
+
+
+def wrapped(text: str, first: str) -> str:
+    """The text after its first words, wrapped within `WIDTH`; what follows starts below it.
+
+    >>> print(wrapped("word " * 20, "reason: "))
+    reason: word word word word word word word word word word word word word word word word word word
+            word word
+    """
+    room = max(WIDTH - len(first), 20)  # beside a very wide table, a narrow column is as good as it gets
+    lines = textwrap.wrap(text, room, break_long_words=False, break_on_hyphens=False) or [""]
+    return f"\n{' ' * len(first)}".join(lines).join((first, "")).rstrip()
+
+
+class StatusLine:
+    """What is being done, on one line of stderr that is rewritten; nothing when stderr is no terminal."""
+
+    def __init__(self) -> None:
+        self._shown, self._next = sys.stderr.isatty(), 0.0
+
+    def show(self, text: str) -> None:
+        """Rewrite the line, at most ten times a second."""
+        if self._shown and time.monotonic() >= self._next:
+            self._next = time.monotonic() + 0.1
+            sys.stderr.write(f"\r\x1b[K{text[:78]}")
+            sys.stderr.flush()
+
+    def close(self) -> None:
+        """Clear the line; the next text is shown at once."""
+        self._next = 0.0
+        if self._shown:
+            sys.stderr.write("\r\x1b[K")
+            sys.stderr.flush()
 
 
 def judgement(result: Result) -> str:

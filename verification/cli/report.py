@@ -13,7 +13,7 @@ from typing import Any
 
 from verification.cli.output import Parsers, add_json, columns, emit
 
-EPILOG = """example:
+EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
   rough-friction report --results results.json --output report
   rough-friction report --results results.json --against older.json --pdf
@@ -34,7 +34,7 @@ def add_parser(commands: Parsers) -> None:
     parser = commands.add_parser(
         "report",
         help="make the validation report",
-        description="Make the validation report, one HTML file, from a result file of 'verify' and the "
+        description="Make the validation report, one HTML file, from a result file of 'verify' and the\n"
         "committed results of long cases and studies.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,

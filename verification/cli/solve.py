@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from verification.cli.output import Parsers, add_json, columns, emit, output_file
+from verification.cli.output import Parsers, StatusLine, add_json, columns, emit, output_file, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -28,6 +28,13 @@ DEFAULT_GRID = 256
 # Those of refimpl, which --help does not wait for.
 METHODS = ("fft", "dense", "paper")
 ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
+
+# What to do about an end that is no success.
+NEXT = {
+    "STAGNATED": "a residual below stopped above the tolerance: loosen --tolerance, or coarsen --grid",
+    "ITERATION_LIMIT": "not done within the limits: a looser --tolerance or --accuracy, or more memory",
+    "NO_CONTACT": "nothing touches: prescribe a larger --approach, or leave it out to press with the load",
+}
 
 # attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 QUANTITIES = (
@@ -56,7 +63,12 @@ def add_parser(commands: Parsers) -> None:
     size = parser.add_mutually_exclusive_group().add_argument
     size("--grid", metavar="N", type=int, help=f"N x N elements (default {DEFAULT_GRID})")
     size("--accuracy", metavar="A", type=float, help="refine until the error bar is this share of mu")
-    add("--quantity", choices=ACCURATE, help="what --accuracy is about (default mu; without friction, A)")
+    add(
+        "--quantity",
+        metavar="Q",
+        choices=ACCURATE,
+        help=f"what --accuracy is about: {', '.join(ACCURATE)} (default mu; without friction, A)",
+    )
     add(
         "--method",
         choices=METHODS,
@@ -126,9 +138,15 @@ def run(options: argparse.Namespace) -> int:
         found = explain.document(plan, options.scene)
         emit(found, options.json, explain.explained(plan, options.scene))
         return 0
-    solution = refimpl.solve(**vars(request))
     tolerances = read_tolerances(options.scene)
-    budgets = budget(scene, solution, tolerances) if tolerances or options.budget else None
+    line = StatusLine()
+    try:
+        solution = refimpl.solve(**vars(request), progress=line.show)
+        line.close()
+        line.show("uncertainty budget: what every parameter changes")
+        budgets = budget(scene, solution, tolerances) if tolerances or options.budget else None
+    finally:
+        line.close()
     if options.plot is not None:
         plot.draw(solution, scene, options.plot)
     if options.vtk is not None:
@@ -171,7 +189,7 @@ def table(solution: Solution, scene: str) -> str:
     ]
     parts = [
         f"{scene}: {size} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
-        f"status: {solution.status.name}",
+        + wrapped(NEXT.get(solution.status.name, ""), f"status: {solution.status.name}  "),
         columns(found),
         f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
         f"left out:\n{columns(left_out)}" if left_out else "",
@@ -193,7 +211,7 @@ def _change(effect: Mapping[str, float]) -> str:
 
 
 def _warned(warning: Mapping[str, object]) -> str:
-    return f"warning ({warning['name']}): {warning['text']}"
+    return wrapped(str(warning["text"]), f"warning ({warning['name']}): ")
 
 
 def _bar(value: float) -> str:

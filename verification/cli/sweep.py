@@ -20,20 +20,21 @@ EPILOG = """examples:
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
   rough-friction sweep ensemble.toml --target-error 0.5%
 
-A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on where it
-was; runs that the store has are not done again. Exit status 1 when a run failed; its message is shown.
+A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on
+where it was; runs that the store has are not done again. Exit status 1 when a run failed; its
+message is shown.
 
   scene = "table1-rough"      # a shipped scene, or a scene file relative to this file
   realisations = 75           # of every Gaussian roughness; seeds from first_seed (default 1)
   normalise = true            # scale each realisation to its rms (default: as the scene says)
-  [vary]                      # any of: grid load upper_rms lower_rms correlation_length
-  grid = [128, 256]           #         sliding_direction sliding_offset tau beta (SI, rad); grid is needed
+  [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
+  grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad); grid is needed
   lower_rms = [0.504e-6, 1.68e-6]
   [solve]                     # optional: method, oblique, slope_correction, tolerance
 
-With --target-error the study is an ensemble that varies the grid alone, each grid twice the one before, and
-realisations are as many as it takes: mean mu and A on the finest grid, each with a standard error of at most
-that share, by multilevel Monte Carlo.
+With --target-error the study is an ensemble that varies the grid alone, each grid twice the one
+before, and realisations are as many as it takes: mean mu and A on the finest grid, each with a
+standard error of at most that share, by multilevel Monte Carlo.
 """
 
 

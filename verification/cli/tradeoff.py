@@ -9,10 +9,10 @@ from verification.cli.output import Parsers, add_json, columns, emit
 
 EPILOG = """examples:
   rough-friction tradeoff table1-smooth --grids 32,64,128,256 --reference 1024
-  rough-friction tradeoff table1-rough --grids 64,128,256,512,1024 --reference 2048 --json tradeoff.json
+  rough-friction tradeoff table1-rough --grids 64,128,256,512 --reference 2048 --json tradeoff.json
 
-Times are processor seconds of this machine; run it with little else going on. Every way is solved N times for
-its least time, and once more for its memory.
+Times are processor seconds of this machine; run it with little else going on. Every way is solved
+N times for its least time, and once more for its memory.
 """
 
 
