@@ -29,6 +29,7 @@ from refimpl.grid_result import GridResult
 
 EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.85, 0.07  # c0, s_c
+_RAN_OFF = 1e100  # of any number in SI units: squares still fit a double
 DECAY = 1.5  # order of the scatter where no other is known: the area's
 
 
@@ -92,10 +93,10 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
 
 
 def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]:
-    """Discretisation parts of the finest grid's numbers; none without contact."""
-    if not results[-1].touching:
-        return {}
+    """Discretisation parts of the finest grid's numbers; none without contact or of a state that ran off."""
     found = results[-1].numbers
+    if not results[-1].touching or not all(abs(value) < _RAN_OFF for value in found.values()):
+        return {}
     return {
         name: {"discretisation": estimate.bar(found[name])} for name, estimate in estimates(results).items()
     }

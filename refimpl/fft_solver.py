@@ -35,6 +35,8 @@ _MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 _STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
+_UPDATES = 600  # of what is held, in one settling: 36 sigma^2 reach 1e-8, and sigma above 4 is given up
+_STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
 _LEAST_RELAXATION = 1 / 16  # below this, updates that do not contract are given up
 _SUPPORT_ITERATIONS = 200
 
@@ -176,6 +178,7 @@ class _LevelSolver:
         self.slopes = Slopes.flat(window.shape)
         self.traction = np.zeros(window.shape)
         self._held: tuple[Array, Array] | None = None
+        self._ran_off = False
         pair = self.problem.pair
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
         # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
@@ -197,20 +200,24 @@ class _LevelSolver:
             states.append(visit(self.problem, self.cg.pressure, self.traction, self.slopes))
             rule.next(self.cg.pressure > 0)
             in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
-            if rule.settled:
+            if rule.settled or self._ran_off:
                 break
         lawful = not np.any(rule.withheld & (self.cg.pressure > 0))
         status = self._ended()
         if status is Status.CONVERGED and not lawful:
             status = Status.CYCLED
-        return self._outcome(status if rule.settled else Status.ITERATION_LIMIT, rule, in_cycles)
+        return self._outcome(
+            status if rule.settled or self._ran_off else Status.ITERATION_LIMIT, rule, in_cycles
+        )
 
     def settle(self, tolerance: float, support: Mask | None = None) -> bool:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
         self._tolerance, self._budget = tolerance, self.cg_iterations + _CG_LIMIT
         self.residual = best = self._update(support)
         stalled, changed = 0, False
-        while self.residual > tolerance and self.cg_iterations < self._budget:
+        for _ in range(_UPDATES):
+            if self.residual <= tolerance or self.cg_iterations >= self._budget or self._ran_off:
+                break
             before = self.support
             self._reduce(max(_REDUCTION * self.residual, 0.3 * tolerance))
             self.residual = self._update(support) if self._lags else max(self.cg.residuals())
@@ -255,11 +262,13 @@ class _LevelSolver:
         )
         slopes = problem.slopes(lower, upper)
         change = slopes.distance(self.slopes, pressure > 0)
-        self.slopes = slopes
-        target, balance = self._target(slopes.obliqueness)
-        shear, K = lower + upper - self.cg.normal_displacement, slopes.obliqueness
+        self._ran_off = not slopes.obliqueness.min() > _STEEPEST
+        if not self._ran_off:
+            self.slopes = slopes
+        target, balance = self._target(self.slopes.obliqueness)
+        shear, K = lower + upper - self.cg.normal_displacement, self.slopes.obliqueness
         self._hold(shear, K, target)
-        residual = max(*self.cg.residuals(), balance, change)
+        residual = math.inf if self._ran_off else max(*self.cg.residuals(), balance, change)
         if self._held is not None and self._relaxation < 1 and residual > self._tolerance:
             shear = self._held[0] + self._relaxation * (shear - self._held[0])
             K = self._held[1] + self._relaxation * (K - self._held[1])

@@ -175,3 +175,18 @@ def test_threads_of_the_transforms_change_no_bit(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setenv("OMP_NUM_THREADS", said)
     assert fft_solver.transform_threads() == (int(said) if said in "12" else len(os.sched_getaffinity(0)))
     assert np.array_equal(rf.solve(scene, 48).pressure, one.pressure)
+
+
+@pytest.mark.parametrize("pressure", [10.0, 100.0])
+def test_slopes_that_run_off_end_with_a_status(pressure: float) -> None:
+    """Mean pressures of many E*: no division by a vanished cosine, no bars on numbers without meaning."""
+    bowl = rf.Body(COPPER, rf.GaussianRoughness(rms=0.5e-6, correlation_length=104e-6, seed=3))
+    load = pressure * SMOOTH.materials.reduced_modulus * SMOOTH.side**2
+    s = rf.solve(replace(SMOOTH, lower=bowl, load=load), 5)
+    assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)
+
+
+def test_a_coupling_that_cannot_be_lagged_ends_in_time() -> None:
+    s = rf.solve(replace(SMOOTH, friction=rf.Friction(0.0, 1e6), lower=rf.Body(COPPER, rf.Flat())), 8)
+    assert s.status is rf.Status.STAGNATED
+    assert sum(s.cost.applications.values()) < 20_000
