@@ -15,7 +15,7 @@ ROUNDING = 1e-14
 KERNELS = pytest.mark.parametrize("kernel", [normal_integral, tangential_integral])
 aspects = st.floats(-3, 3).map(lambda power: 10.0**power)
 offsets = st.one_of(
-    st.floats(0, 4),
+    st.floats(0, 4).map(lambda x: x if x > 1e-200 else 0.0),  # scaled results stay normal numbers
     st.floats(0, 6).map(lambda power: 10.0**power),
     st.integers(0, 10).map(lambda k: k / 2),
 )
