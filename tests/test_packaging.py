@@ -1,6 +1,6 @@
 """What ships: every file of the packages is declared as package data, and the types are announced.
 
-That a wheel really installs and runs elsewhere is checked by `.ci/package`, which takes a minute and an index.
+That a wheel installs and runs elsewhere is checked by `.ci/package`, which takes a minute and an index.
 """
 
 from __future__ import annotations
