@@ -13,6 +13,9 @@ from appendix_a.fem.geometry import sinusoid_boundary
 from appendix_a.fem.map2d import compute
 from appendix_a.fem.sinusoid import setup_for
 from appendix_a.leading_order import slope_of_error
+from appendix_a.strip import first_order
+from refimpl import Material
+from refimpl.coefficient_error import coefficient_error
 from verification.case import Measured
 from verification.cases.appendix_fem import POINTS, POINTS_REASON, percent
 from verification.registry import case
@@ -120,3 +123,21 @@ def whole_map() -> Measured:
         "stated error by wavelength": stated.max(axis=(0, 2)).tolist(),
     }
     return Measured(value=float(stated.max()), unit="percentage points", data=data)
+
+
+@case(
+    "appendix-fem/small-slope-error",
+    title="What a solution states as its coefficient error, on a small slope",
+    claim="at 0.1 degrees on a flank the error read from the map is that of first-order theory",
+    source="appendix_a.strip.first_order; refimpl.coefficient_error",
+    metric="relative",
+    tolerance=0.005,
+    tolerance_reason="second order over first: of the slope's size, 0.0017; 0.0010 measured, times five",
+    tags=("appendix-a", "map"),
+)
+def small_slope_error() -> Measured:
+    slope, wavelength, flank, nu = 0.1, 64.0, 0.25, 0.3
+    wavy, flat = first_order(slope, wavelength, flank, nu, offsets=[-2.0, 2.0])
+    body = Material(E=200e9, nu=nu)
+    stated = coefficient_error(float(np.radians(slope)), body, wavelength=wavelength, position=flank)
+    return Measured(stated, float(np.max(np.abs((wavy - flat) / flat))))

@@ -8,8 +8,10 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
+from refimpl.forces import facet_resultants, plasticity_index, smooth_friction_coefficient
 from refimpl.grid import Array, Grid
 from refimpl.operators.fft import FFTInfluence
+from refimpl.slopes import Slopes
 from verification.case import Measured
 from verification.registry import case
 
@@ -164,3 +166,67 @@ def skew_coupling() -> Measured:
         share = abs(float(np.vdot(one, moved))) / float(np.linalg.norm(one) * np.linalg.norm(moved))
         worst = max(worst, share)
     return Measured(value=worst)
+
+
+@case(
+    "balance/flat-tips",
+    title="Friction of contact at flat tips",
+    claim="with every cosine 1 and every sine 0 a solved contact's F / N is Eq. (10)'s tau / f_m + beta",
+    source="paper Eq. (10): Eqs (1)-(3) at theta = 0, an identity",
+    metric="relative",
+    tolerance=2e-14,
+    tolerance_reason="three sums of 4096 positive terms, in numpy's blocks of 128: 25 roundings each at "
+    "most, 75 eps in all; one measured",
+    tags=("eq10",),
+)
+def flat_tips() -> Measured:
+    scene = rf.read_scene("table1-smooth")
+    solution = rf.solve(scene, 64, oblique=False)
+    tau, beta = scene.friction.tau, scene.friction.beta
+    # of the elements that carry tau: a settled cycle withholds it from some, and Eq. (1) from none
+    area = np.count_nonzero(solution.contact & ~solution.withheld) * solution.grid.element_area
+    return Measured(
+        value=smooth_friction_coefficient(tau, beta, solution.normal_force / area),
+        reference=solution.friction_force / solution.normal_force,
+        note=f"{solution.status.value}, {int(solution.withheld.sum())} elements withheld from tau",
+    )
+
+
+@case(
+    "balance/plasticity-index",
+    title="Plasticity index as printed",
+    claim="E' = 100 H and 50 nm of roughness over 11 um give psi = 2.2 x 100 x 0.05 / 11 = 1, the threshold",
+    source="paper Eq. (12)",
+    metric="relative",
+    tolerance=1e-15,
+    tolerance_reason="four factors in double precision, each wrong by eps = 2e-16 at most",
+    tags=("eq12",),
+)
+def plasticity_threshold() -> Measured:
+    return Measured(plasticity_index(80e9, 0.8e9, 50e-9, 11e-6), 1.0)
+
+
+@case(
+    "balance/facet-vectors",
+    title="Resultants of facets, added as vectors",
+    claim="N, F and Q of tilted facets are the sums of pressure times the facet's area vector (the cross "
+    "product of its edges) and of friction times its edge along the sliding direction",
+    source="SPEC 1, exact tractions of a facet; statics",
+    metric="at_most",
+    tolerance=4e-15,
+    tolerance_reason="over the sum of magnitudes: 400 terms in numpy's blocks of 128 meet 18 roundings at "
+    "most; 5e-17 measured",
+    tags=("slope-correction",),
+)
+def facet_vectors() -> Measured:
+    random, edge = np.random.default_rng(12), 3e-6
+    pressure, traction = random.uniform(0.0, 1e9, (2, 20, 20))
+    tan_x, tan_y = random.uniform(-1.0, 1.0, (2, 20, 20))
+    zero, one = np.zeros_like(tan_x), np.ones_like(tan_x)
+    along, across = edge * np.stack((one, zero, tan_x), -1), edge * np.stack((zero, one, tan_y), -1)
+    # onto the lower body, whose area vector points up and out of it
+    terms = edge * traction[..., None] * along - pressure[..., None] * np.cross(along, across)
+    F, Q, up = (math.fsum(terms[..., k].ravel()) for k in range(3))
+    found = facet_resultants(pressure, traction, Slopes(tan_x, tan_y), edge**2)
+    off = np.abs([found.normal + up, found.friction - F, found.binormal - Q])
+    return Measured(float(off.max() / np.abs(terms).sum()), data={"N, F, Q (N)": list(found)})

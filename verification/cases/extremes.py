@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+import refimpl as rf
 import verification.extremes.axes  # noqa: F401  # registers the axes
 from verification.case import Measured
 from verification.extremes import conditioning, positive_definite, precision, uniqueness
@@ -170,3 +171,24 @@ def condition() -> Measured:
     columns = conditioning.table()
     reference = columns["largest"][-1] / positive_definite.least_symbol()
     return Measured(value=columns["condition"][-1], reference=reference, data=columns)
+
+
+@case(
+    "extremes/beyond-rounding",
+    title="A tolerance below rounding is not met, and no solver says so",
+    claim="asked for residuals of 1e-18 every method returns another status than CONVERGED",
+    source="double precision: eps = 2.2e-16",
+    metric="equal",
+    tolerance=0.0,
+    tolerance_reason="a count",
+    tags=("extremes", "certificate"),
+)
+def beyond_rounding() -> Measured:
+    scene, beyond = rf.read_scene("hertz"), 1e-18
+    found = {
+        "fft": rf.solve(scene, 8, method="fft", tolerance=beyond),
+        "dense": rf.solve(scene, 8, method="dense", tolerance=beyond),
+        "paper": rf.solve(scene, 8, method="paper", tolerance=beyond),
+    }
+    claimed = sum(solution.status is rf.Status.CONVERGED for solution in found.values())
+    return Measured(float(claimed), 0.0, data={"status": {m: s.status.value for m, s in found.items()}})

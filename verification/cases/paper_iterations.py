@@ -127,3 +127,21 @@ def iterations() -> Measured:
         steps = [run.periodic_steps + run.correction_steps for run in (nested, alone)]
         ratios.append(steps[0] / steps[1])
     return Measured(max(ratios), data=data)
+
+
+@case(
+    "paper/nested-grids",
+    title="Three grids, from coarse to fine",
+    claim="the scheme solves on M/4 and M/2 elements per side before M, and counts its approaches on each",
+    source="paper section 5, third iteration; section 6.2: 128, 256, 512",
+    metric="equal",
+    tolerance=0.0,
+    tolerance_reason="grids are counted",
+    tags=("scheme",),
+)
+def nested_grids() -> Measured:
+    size = 64
+    _, trace = traced(rf.read_scene("table1-smooth"), size, PAPER_TOLERANCE)
+    visited = [level.M for level in (*trace.coarser, trace) if level.approaches > 0]
+    wrong = set(visited) ^ {size // 4, size // 2, size}
+    return Measured(float(len(wrong)), 0.0, unit="grids", data={"elements per side": visited})

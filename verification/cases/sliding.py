@@ -162,3 +162,33 @@ def identical_materials() -> Measured:
     still = rf.solve(replace(alike, friction=rf.Friction()), 128, oblique=False)
     difference = float(np.abs(rubbed.pressure - still.pressure).max()) / still.max_pressure
     return Measured(value=difference, note=f"mu = {rubbed.friction_coefficient:.4f}")
+
+
+@case(
+    "sliding/offset",
+    title="Where two equal balls meet when one has slid",
+    claim="after the upper of two equal balls has slid by s, the contact lies s/2 behind its lowest point: "
+    "the lower ball has stayed where it was",
+    source="SPEC 2: the lower surface is sampled at x + offset; symmetry",
+    metric="at_most",
+    tolerance=1e-9,
+    tolerance_reason="in elements: the offset is 8 by 6 elements, so the grid is symmetric about the exact "
+    "place; the solver's tolerance, 1e-10, times the 7 elements of the radius. The other sign is off by 10",
+    tags=("sign", "direction"),
+)
+def offset_of_equal_balls() -> Measured:
+    spacing, copper, size = SCENE.side / 32, SCENE.lower.material, 32
+    scene = rf.Scene(
+        upper=rf.Body(copper, rf.Sphere(RADIUS)),
+        lower=rf.Body(copper, rf.Sphere(-RADIUS)),
+        friction=rf.Friction(),
+        load=SCENE.load,
+        side=SCENE.side,
+        sliding_direction=math.atan2(3.0, 4.0),
+        sliding_offset=10 * spacing,
+    )
+    solution = rf.solve(scene, size, tolerance=1e-10)
+    centres = np.arange(size) + 0.5 - size / 2
+    total = float(solution.pressure.sum())
+    x, y = (float(solution.pressure.sum(axis=1 - k) @ centres) / total for k in (0, 1))
+    return Measured(math.hypot(x + 4.0, y + 3.0), unit="elements", note=f"centroid at {x:.6f}, {y:.6f}")
