@@ -34,7 +34,7 @@ def test_its_commands_are_those_of_the_set_up() -> None:
     assert all(line.startswith(("make ", ".venv/bin/rough-friction ")) for line in shown)
 
 
-@pytest.mark.parametrize("target", ["report", "test", "clean"])
+@pytest.mark.parametrize("target", ["setup", "report", "test", "clean"])
 def test_the_make_targets_exist(target: str) -> None:
     assert f"make {target}" in README
     assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), flags=re.M)
