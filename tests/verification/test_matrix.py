@@ -18,6 +18,7 @@ from verification.matrix import run as running
 from verification.matrix.appendix_faults import IN_APPENDIX
 from verification.matrix.checks import SAMPLES, all_checks, run, traced
 from verification.matrix.local_faults import IN_REFIMPL
+from verification.matrix.merge import merged
 from verification.matrix.patches import everywhere, fault
 
 
@@ -136,3 +137,15 @@ def test_dear_checks_are_added_to_a_file(tmp_path: Path) -> None:
     assert len(both["added"]) == 1
     with pytest.raises(ValueError, match="tried before: some/check"):
         main(["--json", str(path), "--only", "some/*", "--add"])
+
+
+def test_an_added_part_brings_the_faults_description_up_to_date() -> None:
+    def document(what: str, check: str) -> dict[str, object]:
+        fault = {"name": "f", "what": what, "kind": "local", "tried": 1, "broke": 0, "caught_by": [check]}
+        row = {"id": check, "catches": ["f"], "alone": ["f"], "among_few": []}
+        return {"format": "1", "faults": [fault], "checks": [row], "excluded": {}, "provenance": {}}
+
+    found = merged(document("times 0.9", "some/check"), document("times 0.999", "other/check"))
+    assert [fault["what"] for fault in found["faults"]] == ["times 0.999"]
+    assert [fault["tried"] for fault in found["faults"]] == [2]
+    assert [check["among_few"] for check in found["checks"]] == [["f"], ["f"]]

@@ -19,6 +19,7 @@ def merged(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
     faults = {fault["name"]: {**fault, "caught_by": list(fault["caught_by"])} for fault in old["faults"]}
     for fault in new["faults"]:
         known = faults.setdefault(fault["name"], {**fault, "tried": 0, "broke": 0, "caught_by": []})
+        known["what"] = fault["what"]
         known["tried"] += fault["tried"]
         known["broke"] += fault["broke"]
         known["caught_by"] += fault["caught_by"]
