@@ -129,6 +129,14 @@ def picture(figure: drawing.Figure, data: Mapping[str, Any]) -> Mapping[str, Any
     }
 
 
+def pictures(case: Case, evidence: Evidence) -> list[Mapping[str, Any]]:
+    """The case's figures; none where its long twin, which has the same ones with less scatter, passed."""
+    twin = f"{case['id']}-full"
+    if any(other["id"] == twin and other["status"] == "pass" for other in evidence.cases):
+        return []
+    return [picture(f, case["data"]) for f in figures.figures_of(case["id"], case["data"])]
+
+
 LEADING = (
     ("reproduction/fig8-exponential-full", "reproduction/fig8-exponential"),
     ("fem3d/error-map", "appendix-figures/fig12", "appendix-fem/map"),

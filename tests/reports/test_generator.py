@@ -180,3 +180,10 @@ def test_the_same_results_make_the_same_page() -> None:
 def test_what_is_not_a_result_file_is_refused(broken: object) -> None:
     with pytest.raises(ResultFileError):
         check(broken)
+
+
+def test_a_quick_case_leaves_its_figure_to_its_long_twin() -> None:
+    data = {"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}
+    quick, long = case("new/1", data=data), case("new/1-full", data=data)
+    assert len(Page(render(results(quick, long))).images) == 1
+    assert len(Page(render(results(quick, {**long, "status": "fail"}))).images) == 2
