@@ -48,9 +48,7 @@ def render(
         judgement=judgement,
         facts=facts,
         rerun=rerun,
-        pictures=lambda case: [
-            picture(f, case["data"]) for f in figures.figures_of(case["id"], case["data"])
-        ],
+        pictures=lambda case: pictures(case, evidence),
         picture=picture,
         cell=cell,
     )
