@@ -11,8 +11,9 @@ import refimpl as rf
 from refimpl import dense_solver
 from refimpl.contact import active_set
 from refimpl.contact.active_set import restricted_solve
+from refimpl.friction import Mask
 from refimpl.operators.dense import DenseInfluence
-from refimpl.problem import Terms, pose
+from refimpl.problem import Problem, Terms, pose
 
 M, SIDE = 3, 1e-3
 
@@ -43,6 +44,35 @@ def test_slopes_that_do_not_settle_are_no_convergence(monkeypatch: pytest.Monkey
     monkeypatch.setattr(dense_solver, "_SLOPE_ITERATIONS", 1)
     solution = rf.solve(spike(rf.Friction(tau=0.0, beta=0.1)), M, method="dense", oblique=True)
     assert solution.status is rf.Status.ITERATION_LIMIT
+
+
+def sliding_spike() -> tuple[Problem, DenseInfluence]:
+    scene, grid = spike(rf.Friction(tau=0.0, beta=0.1)), rf.Grid(SIDE, M)
+    terms = Terms(coupled=True, oblique=True, slope_correction=False)
+    return pose(scene, grid, terms, None), DenseInfluence(grid, scene.sliding_direction)
+
+
+def test_the_loops_themselves_say_that_slopes_did_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the certificate makes of the state that they left."""
+    monkeypatch.setattr(dense_solver, "_SLOPE_ITERATIONS", 1)
+    outcome, _ = dense_solver.solve_dense(*sliding_spike())
+    assert outcome.status is rf.Status.ITERATION_LIMIT
+
+
+def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    problem, operator = sliding_spike()
+    solver = dense_solver._DenseSolver(problem, operator)
+
+    def jittered(support: Mask) -> None:
+        k = solver.picard  # relative changes: 1, then 3e-12, 5e-12, 7e-12, ...
+        solver.pressure = 1e6 * (1 + (-1) ** k * k * 1e-12) * np.eye(M)
+
+    monkeypatch.setattr(solver, "_solve_frozen", jittered)
+    solver.settle_slopes(np.ones((M, M), dtype=bool))
+    assert solver.slopes_settled
+    assert solver.picard == 3
 
 
 @pytest.mark.parametrize("approach", [None, 3e-6])

@@ -188,3 +188,29 @@ def test_window():
     assert Window(2, 4, 1, 5).filling(6) == Window(2, 4, 1, 5)  # 3 and 7 elements pad to 4 and 8
     assert Window(20, 37, 60, 64).filling(64) == Window(20, 38, 60, 64)  # 33 pad to 36, room for 18
     assert Window(2, 4, 1, 5).spread(np.ones((2, 4)), 6).sum() == 8
+    assert Window(2, 5, 0, 6).interior(6) == Window(3, 4, 0, 6)
+    assert Window(0, 6, 2, 5).interior(6) == Window(0, 6, 3, 4)
+    assert Window.full(6).interior(6) == Window.full(6)
+
+
+def test_kernels_count_by_their_symmetry():
+    def counted(M, source, target):
+        counter = Counter()
+        operator = FFTInfluence(Grid(1.0, M), 0.0, source=source, target=target, counter=counter)
+        operator.normal(np.zeros(operator.source.shape))
+        return counter.point_logs
+
+    # 13 offsets an axis, on a circle of 16: even around zero, so an eighth of an application
+    assert counted(7, None, None) == 256 * 8 + 32 * 5
+    # the offsets 1 to 5, on a circle of 6, are not
+    apart = counted(6, Window(0, 2, 0, 2), Window(2, 6, 2, 6))
+    assert apart == pytest.approx(36 * math.log2(36) + 18 * math.log2(18), rel=1e-15)
+
+
+def test_periodic_applications_count_their_points():
+    counter = Counter()
+    operator = PeriodicInfluence(Grid(1.0, 8), 0.7, counter=counter)
+    for kind in KINDS:
+        getattr(operator, kind)(np.zeros((8, 8)))
+    assert counter.tally == {"normal": 1, "shear": 2}
+    assert counter.point_logs == 3 * 64 * 6

@@ -65,6 +65,7 @@ TARGETS = (
     Target("contact", "refimpl/contact/preconditioner.py", _tests("projected_cg")),
     Target("contact", "refimpl/contact/projected_cg.py", _tests("projected_cg", "solve")),
     Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "solve")),
-    Target("equilibrium", "refimpl/fft_solver.py", _tests("tau_cycle", "solve", "solve_full_contact")),
+    Target("equilibrium", "refimpl/fft_solver.py",
+           _tests("fft_solver", "solve", "solve_full_contact", "tau_cycle")),
 )  # fmt: skip
 """What the mutation score speaks of."""
