@@ -86,6 +86,17 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def read_run(path: Path) -> Any:
+    """A result file of `verify`, checked; raises InputError for anything else."""
+    from refimpl.errors import InputError
+    from reports.results import ResultFileError, check
+
+    try:
+        return check(_read("--results", path))
+    except ResultFileError as alien:
+        raise InputError("--results", str(path), f"a result file of 'verify' ({alien})") from alien
+
+
 def _read(option: str, path: Path) -> Any:
     from refimpl.errors import InputError
 

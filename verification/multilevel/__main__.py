@@ -1,4 +1,4 @@
-"""``python -m verification.multilevel``: do the intervals cover, and at what share of plain sampling's cost?"""
+"""``python -m verification.multilevel``: do the intervals cover, and at what share of plain sampling?"""
 
 from __future__ import annotations
 
