@@ -28,9 +28,7 @@ def imported(source: str) -> Iterator[tuple[int, str]]:
         elif isinstance(node, ast.ImportFrom):
             names = ["a relative import"] if node.level else [node.module or ""]
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
-            names = [
-                a.value for a in node.args if isinstance(a, ast.Constant) and isinstance(a.value, str)
-            ]
+            names = [a.value for a in node.args if isinstance(a, ast.Constant) and isinstance(a.value, str)]
         for name in names:
             top = name.partition(".")[0]
             if top in (*PACKAGES, "tests", "a relative import"):

@@ -114,9 +114,7 @@ class Case:
         subject, _, slug = self.id.partition("/")
         if not subject or not slug or any(c.isspace() for c in self.id):
             raise ValueError(f"case {self.id!r}: an id is 'subject/slug', without blanks")
-        if not math.isfinite(self.tolerance) or (
-            self.tolerance < 0 and self.metric is not Metric.AT_LEAST
-        ):
+        if not math.isfinite(self.tolerance) or (self.tolerance < 0 and self.metric is not Metric.AT_LEAST):
             raise ValueError(f"case {self.id!r}: tolerance {self.tolerance!r} is not finite and >= 0")
         if self.metric is Metric.EQUAL and self.tolerance != 0:
             raise ValueError(f"case {self.id!r}: 'equal' is exact; its tolerance is 0")
@@ -211,9 +209,7 @@ def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
     if scale == 0:
         raise ValueError("a relative error against a reference of zero")
     if uncertainty / scale > tolerance:
-        raise ValueError(
-            f"the reference is uncertain by {uncertainty / scale:.3g}, more than the tolerance"
-        )
+        raise ValueError(f"the reference is uncertain by {uncertainty / scale:.3g}, more than the tolerance")
     return _finite("error", abs(value - reference) / scale)
 
 

@@ -77,9 +77,7 @@ def fit_order(spacing: Sequence[float], error: Sequence[float]) -> Order:
     return Order(float(order), float(np.exp(intercept)), tuple(local.tolist()), scatter)
 
 
-def extrapolate(
-    spacing: Sequence[float], value: Sequence[float], expected_order: float
-) -> Extrapolation:
+def extrapolate(spacing: Sequence[float], value: Sequence[float], expected_order: float) -> Extrapolation:
     """Limit of `value` for spacing to zero, and the uncertainty of the finest grid's value.
 
     Credible: least-squares fit of ``limit + C h**p``; the uncertainty at the finest h is ``1.25 |C h**p| +

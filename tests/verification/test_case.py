@@ -18,9 +18,7 @@ def declare(
     function: Callable[[], Measured], metric: str = "relative", tolerance: float = 0.1, **other: Any
 ) -> Case:
     texts = {"title": "t", "claim": "c", "source": "s", "tolerance_reason": "measured", **other}
-    return Case(
-        "subject/slug", metric=cast(Metric, metric), tolerance=tolerance, function=function, **texts
-    )
+    return Case("subject/slug", metric=cast(Metric, metric), tolerance=tolerance, function=function, **texts)
 
 
 @pytest.mark.parametrize(
@@ -79,9 +77,7 @@ def test_numbers_that_cannot_be_judged_are_errors(metric: str, measured: Any) ->
     assert result.note
 
 
-@pytest.mark.parametrize(
-    "raised", [RuntimeError("broken"), SystemExit(0), AssertionError(), MemoryError()]
-)
+@pytest.mark.parametrize("raised", [RuntimeError("broken"), SystemExit(0), AssertionError(), MemoryError()])
 def test_whatever_a_case_raises_is_an_error(raised: BaseException) -> None:
     def function() -> Measured:
         raise raised

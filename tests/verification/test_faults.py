@@ -24,9 +24,7 @@ SAMPLES = (
         bowl=5, E=(120, 30), nu=(-20, 30), pressure=15, tau=30, beta=30, angle=200,
     ),
 )  # fmt: skip
-SOLVERS = {
-    method: partial(rf.solve, method=method, tolerance=1e-12) for method in ("fft", "dense")
-}
+SOLVERS = {method: partial(rf.solve, method=method, tolerance=1e-12) for method in ("fft", "dense")}
 STATES = {"friction": (False, False), "oblique": (True, False), "slope-correction": (True, True)}
 
 
@@ -52,9 +50,7 @@ def invariant(name: str) -> None:
 def manufactured(kind: str) -> None:
     state = manufacture(8, 1, 0.7, *STATES[kind])
     for solver in SOLVERS.values():
-        found = solver(
-            state.scene, state.M, oblique=state.oblique, slope_correction=state.slope_correction
-        )
+        found = solver(state.scene, state.M, oblique=state.oblique, slope_correction=state.slope_correction)
         assert np.array_equal(found.contact, state.pressure > 0)
         assert np.abs(found.pressure - state.pressure).max() <= 1e-11 * state.pressure.max()
         assert abs(found.approach / state.approach - 1) <= 1e-11

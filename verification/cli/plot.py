@@ -43,9 +43,7 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
     hertz = hertz_of(scene, solution.normal_force)
     _profile(axes[1, 0], solution, hertz, axis=0)
     _profile(axes[1, 1], solution, hertz, axis=1)
-    figure.legend(
-        *axes[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False
-    )
+    figure.legend(*axes[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     figure.suptitle(
         f"$\\mu$ = {solution.friction_coefficient:.4f},  A = {solution.contact_area / MILLI**2:.4g} mm$^2$,  "
         f"$f_{{max}}$ = {solution.max_pressure / MEGA:.4g} MPa,  {solution.status.value};  "
@@ -91,9 +89,7 @@ def _profile(axes: Axes, solution: Solution, hertz: HertzSphere | None, axis: in
     s = solution.grid.centres - solution.grid.side / 2
     for name, colour in (("pressure", BLUE), ("traction", ORANGE)):
         line = np.take(getattr(solution, name), middle, axis=1 - axis)
-        axes.plot(
-            s / MILLI, line / MEGA, color=colour, label=name, marker=".", markersize=3, linewidth=1
-        )
+        axes.plot(s / MILLI, line / MEGA, color=colour, label=name, marker=".", markersize=3, linewidth=1)
     if hertz is not None:
         fine = np.linspace(s[0], s[-1], 2001)
         label = "Hertz, smooth and frictionless"
