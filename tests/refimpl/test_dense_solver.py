@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from refimpl import dense_solver
 from refimpl.contact import active_set
 from refimpl.contact.active_set import restricted_solve
 from refimpl.friction import Mask
+from refimpl.grid import Array
 from refimpl.operators.dense import DenseInfluence
 from refimpl.problem import Problem, Terms, pose
 
@@ -59,6 +61,30 @@ def test_the_loops_themselves_say_that_slopes_did_not_settle(monkeypatch: pytest
     assert outcome.status is rf.Status.ITERATION_LIMIT
 
 
+A, B = np.eye(M, dtype=bool), np.ones((M, M), dtype=bool)
+
+
+@pytest.mark.parametrize(("last", "status"), [(A, rf.Status.CONVERGED), (B, rf.Status.CYCLED)])
+def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
+    last: Mask, status: rf.Status, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Contact goes from A to B and back, which withholds all but A from tau."""
+    problem, operator = sliding_spike()
+    contacts = iter((A, B, A, last))
+
+    def settle_slopes(solver: dense_solver._DenseSolver, support: Mask) -> Array:
+        solver.pressure, solver.slopes_settled = np.where(next(contacts), 0.5, 0.0), True
+        return np.where(support, 0.5, 0.0)
+
+    monkeypatch.setattr(dense_solver._DenseSolver, "settle_slopes", settle_slopes)
+    sliding = replace(problem, friction=rf.Friction(tau=0.5, beta=0.1))
+    outcome, _ = dense_solver.solve_dense(sliding, operator)
+    assert outcome.status is status
+    assert np.array_equal(outcome.withheld, ~A)
+    assert len(outcome.visited) == 2
+    assert outcome.iterations["tau supports"] == 4
+
+
 def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -70,6 +96,7 @@ def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
         solver.pressure = 1e6 * (1 + (-1) ** k * k * 1e-12) * np.eye(M)
 
     monkeypatch.setattr(solver, "_solve_frozen", jittered)
+    assert not solver.slopes_settled
     solver.settle_slopes(np.ones((M, M), dtype=bool))
     assert solver.slopes_settled
     assert solver.picard == 3

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -136,22 +137,32 @@ def test_the_smallest_grids(M: int) -> None:
     assert difference(paper.pressure, dense.pressure) <= 1e-8
 
 
-def test_a_cycle_of_tau_is_named() -> None:
-    soft = rf.Material(2.5e9, 0.38)
-    scene = rf.Scene(
-        upper=rf.Body(rf.Material(200e9, 0.30), rf.Sphere(0.14)),
-        lower=rf.Body(soft, rf.GaussianRoughness(0.504e-6, 104e-6, seed=2)),
-        friction=rf.Friction(60e6, 0.3),
-        load=30.0,
-        side=1.61e-3,
-    )
-    paper = rf.solve(scene, 23, method="paper", tolerance=1e-6)
-    assert paper.status is Status.CYCLED
-    assert paper.certificate.unlawful == np.count_nonzero(paper.withheld & paper.contact) > 0
+A, B = np.eye(8, dtype=bool), np.ones((8, 8), dtype=bool)
 
 
-def scheme(M: int = 8) -> _Scheme:
+@pytest.mark.parametrize(("last", "status"), [(A, Status.CONVERGED), (B, Status.CYCLED)])
+def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
+    last: Mask, status: Status, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Contact goes from A to B and back, which withholds all but A from tau."""
+    one = scheme(friction=rf.Friction(tau=0.5, beta=0.1))
+    contacts = iter((A, B, A, last))
+
+    def balance(approach: float | None, support: Mask | None) -> float:
+        one.pressure = np.where(next(contacts), 0.5, 0.0)
+        return 1e-6
+
+    monkeypatch.setattr(one, "balance", balance)
+    outcome = one.settle_tau(None)
+    assert outcome.status is status
+    assert np.array_equal(outcome.withheld, ~A)
+    assert len(outcome.visited) == 2
+    assert outcome.iterations["tau supports"] == 4
+
+
+def scheme(M: int = 8, friction: rf.Friction | None = None) -> _Scheme:
     scene = rf.read_scene("hertz")
+    scene = scene if friction is None else replace(scene, friction=friction)
     plan = make_plan(scene, M, "paper", oblique=False, slope_correction=False)
     return _Scheme(pose(scene, Grid(scene.side, M), plan.switches, None), 1e-9, Counter(), None)
 
