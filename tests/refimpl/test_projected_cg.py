@@ -147,6 +147,33 @@ def test_one_application_a_step_once_lengths_are_trusted(load: float) -> None:
     assert 12 <= counted <= 12 + untrusted
 
 
+def test_an_exact_step_restores_the_trust() -> None:
+    cg = start()
+    assert cg._trusted
+    cg._trusted = False
+    cg.freeze(BOWL, np.ones((M, M)), target=1e7, approach=None)
+    cg.iterate()
+    assert cg._trusted
+
+
+@pytest.mark.parametrize(("target", "approach"), [(1e4, None), (1e7, None), (1e9, None), (None, 4e-7)])
+def test_the_unit_of_pressure_changes_no_bit(target: float | None, approach: float | None) -> None:
+    """Powers of two scale without rounding, so every decision must be the same."""
+    unit = 2.0**-60
+    one = start()
+    spectral = one._precondition
+    other = ProjectedCG(
+        lambda f: (A @ f.ravel()).reshape(f.shape) / unit, lambda r: unit * spectral(r), unit * one.pressure
+    )
+    one.freeze(WEIGHTS * BOWL, WEIGHTS, target=target, approach=approach)
+    other.freeze(WEIGHTS * BOWL, WEIGHTS, target=None if target is None else unit * target, approach=approach)
+    for _ in range(15):
+        one.iterate()
+        other.iterate()
+        assert np.array_equal(other.pressure, unit * one.pressure)
+        assert np.array_equal(other.contact, one.contact)
+
+
 def test_relative_gap() -> None:
     assert relative_gap(0.0, 0.0) == 0
     assert relative_gap(1.0, 2.0) == 0.5

@@ -190,3 +190,25 @@ def test_a_coupling_that_cannot_be_lagged_ends_in_time() -> None:
     s = rf.solve(replace(SMOOTH, friction=rf.Friction(0.0, 1e6), lower=rf.Body(COPPER, rf.Flat())), 8)
     assert s.status is rf.Status.STAGNATED
     assert sum(s.cost.applications.values()) < 20_000
+
+
+@METHODS
+@pytest.mark.parametrize("periodic", [False, True])
+def test_the_unit_of_pressure_changes_no_bit(method: str, periodic: bool) -> None:
+    """Powers of two scale without rounding, so every decision must be the same."""
+
+    def scene(unit: float) -> rf.Scene:
+        rough = rf.GaussianRoughness(0.5e-6, 200e-6, seed=3)
+        return replace(
+            SMOOTH,
+            upper=rf.Body(rf.Material(200e9 * unit, 0.3), rf.Flat() if periodic else rf.Sphere(0.14)),
+            lower=rf.Body(rf.Material(2.5e9 * unit, 0.3), rough),
+            friction=rf.Friction(15e6 * unit, 0.08),
+            load=20.0 * unit,
+            periodic=periodic,
+        )
+
+    one, other = (rf.solve(scene(unit), 16, method=method) for unit in (1.0, 2.0**-40))
+    assert one.status is other.status
+    assert one.cost.applications == other.cost.applications
+    assert np.array_equal(other.pressure, 2.0**-40 * one.pressure)
