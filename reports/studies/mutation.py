@@ -30,11 +30,24 @@ def build(document: Document) -> Exhibit:
             "the same, counts neither way. Bounds are Clopper and Pearson's, at "
             f"{document['confidence']:.0%}; counted as survivors, equivalent ones leave a score of "
             f"{document['score_raw']:.1%}.",
+            *notes(document),
         ),
         [
             Table("Scores by subject and by kind of change.", HEAD, rows),
             Table("Survivors.", ("where", "line", "as changed", "explanation"), survivors),
         ],
+    )
+
+
+def notes(document: Document) -> tuple[str, ...]:
+    """What the sample can speak of: tests were written against the survivors of the first seed's."""
+    if document["seed"] != 1:
+        return (
+            "Nothing was changed because of this sample before it was judged: its score is a fair estimate.",
+        )
+    return (
+        "Tests were sharpened against this sample's survivors, so its score says that none is left open; "
+        "how many others would survive is what the fresh sample estimates.",
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -141,3 +142,30 @@ def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = pose(scene, grid, Terms(coupled=True, oblique=True, slope_correction=False), None)
     outcome, _ = dense_solver.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
     assert outcome.iterations["linear solves"] == len(calls) > 2
+
+
+def test_newton_steps_beyond_the_bracket_halve_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Newton's proposals are played; ``g = h = 0`` and ``K = 1``, so that ``q`` is minus the approach."""
+    problem, operator = sliding_spike()
+    solver = dense_solver._DenseSolver(problem, operator)
+    assert problem.load is not None
+    target = problem.load / problem.grid.element_area
+    proposals, tried = iter((1.0, 5.0, 0.5, 9.0)), list[float]()
+
+    def restricted(G: Array, right: Array, active: Mask) -> Array:
+        """The pressures whose sum is the target at the proposal."""
+        return np.tile([1 / M**2, (next(proposals) - target) / M**2], (M**2, 1))
+
+    def contact(G: Array, q: Array, active: Mask) -> SimpleNamespace:
+        """A force that grows in proportion to the approach, and is the load near 4."""
+        tried.append(-q[0])
+        share = 1.0 if abs(tried[-1] - 4) < 1e-6 else tried[-1] / 4
+        pressure = np.full(M**2, target * share / M**2)
+        return SimpleNamespace(pressure=pressure, active=np.ones(M**2, dtype=bool), solves=1)
+
+    monkeypatch.setattr(dense_solver, "restricted_solve", restricted)
+    monkeypatch.setattr(dense_solver, "complementarity", contact)
+    zero, one = np.zeros(M**2), np.ones(M**2)
+    solver._solve_load(dense_solver._Frozen(np.eye(M**2), zero, one, one, 0.0), zero)
+    assert tried == pytest.approx([1.0, 5.0, 3.0, 4.0], rel=1e-9)
+    assert solver.solves == 8
