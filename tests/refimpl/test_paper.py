@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl import paper as module
 from refimpl.contact.certificate import State
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
@@ -249,3 +250,13 @@ def test_the_unit_of_pressure_changes_no_bit() -> None:
     assert one.status is other.status
     assert one.cost.iterations == other.cost.iterations
     assert np.array_equal(other.pressure, 2.0**-40 * one.pressure)
+
+
+@pytest.mark.parametrize(
+    ("limit", "value"), [("_STEPS", 1), ("_PASSES", 1), ("_APPROACHES", 1), ("_SUPPORTS", 1)]
+)
+def test_a_loop_that_meets_its_limit_says_so(limit: str, value: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the certificate makes of the state that it left."""
+    monkeypatch.setattr(module, limit, value)
+    one = scheme(friction=rf.Friction(tau=1e6, beta=0.1))
+    assert one.settle_tau(None).status is Status.ITERATION_LIMIT
