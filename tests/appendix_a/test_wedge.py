@@ -80,6 +80,7 @@ def test_zeros_of_the_wedge_are_zeros() -> None:
             assert len(roots) == (2 if mp.im(roots[0]) == 0 else 1)
             for w in roots:
                 assert (2 * n - 1) * mp.pi <= mp.re(w) <= 2 * n * mp.pi
+                assert mp.im(w) >= 0  # of a conjugate pair the upper one
                 assert abs(mp.sin(w) + k * w) < 1e-12
 
 
