@@ -19,7 +19,7 @@ from refimpl.contact.certificate import State, certify
 from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.friction import Mask, TauSupport, local_friction
-from refimpl.grid import Array
+from refimpl.grid import Array, inner
 from refimpl.nesting import foundation_pressure, levels, prolonged, sharpened, touching
 from refimpl.operators.base import Influence
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
@@ -286,8 +286,8 @@ class _LevelSolver:
             return None, 0.0
         weights, offset = problem.load_weights(self.slopes, self.support)
         dA = problem.grid.element_area
-        found = float(np.vdot(weights, pressure))
-        target = (problem.load + offset) / dA + float(np.vdot(K, pressure)) - found
+        found = inner(weights, pressure)
+        target = (problem.load + offset) / dA + inner(K, pressure) - found
         balance = abs(found * dA - offset - problem.load) / problem.load
         # shear on slopes that alone exceeds the load leaves no balance: keep some contact and fail by it
         return max(target, 1e-3 * problem.load / dA), balance

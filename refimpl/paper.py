@@ -24,7 +24,7 @@ from scipy.ndimage import map_coordinates
 
 from refimpl.contact.certificate import State, certify
 from refimpl.friction import Mask, TauSupport, local_friction
-from refimpl.grid import Array
+from refimpl.grid import Array, inner
 from refimpl.nesting import coarsened
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.tables import unit_table
@@ -198,7 +198,7 @@ class _Scheme:
         else:
             self.settled = False
         weights, offset = problem.load_weights(self.slopes, tau_on)
-        return float(np.vdot(weights, self.pressure)) * problem.grid.element_area - offset
+        return inner(weights, self.pressure) * problem.grid.element_area - offset
 
     def _bring_up_to_date(self, support: Mask | None) -> tuple[Array, Mask]:
         """Slopes, and the displacement of everything but ``a f``, from the pressure so far."""
@@ -217,10 +217,10 @@ class _Scheme:
             residual = (u - answer) * inside
             step = self._invert(residual) * inside
             moved = flexibility(step)
-            curvature = float(np.vdot(step, moved))
+            curvature = inner(step, moved)
             if curvature <= 0:
                 break
-            length = float(np.vdot(step, residual)) / curvature
+            length = inner(step, residual) / curvature
             found = pressure + length * step
             excluded = inside & (found <= 0)
             inside = inside & ~excluded

@@ -16,7 +16,7 @@ from collections.abc import Callable
 import numpy as np
 
 from refimpl.friction import Mask
-from refimpl.grid import Array
+from refimpl.grid import Array, inner
 
 Apply = Callable[[Array], Array]
 
@@ -70,16 +70,16 @@ class ProjectedCG:
         """The prescribed approach, or the pressure-weighted mean of ``v`` (m)."""
         if self._approach is not None:
             return self._approach
-        return float(np.vdot(self.pressure, separation)) / float(self.pressure.sum())
+        return inner(self.pressure, separation) / float(self.pressure.sum())
 
     def residuals(self) -> tuple[float, float]:
         """Complementarity gap over elastic energy, and penetration over approach, of the frozen problem."""
         v = self.separation
         approach, lowest = self.approach(v), float(v.min())
-        energy = 0.5 * float(np.vdot(self.pressure, self.normal_displacement))
-        gap = float(np.vdot(self.pressure, v - lowest))
+        energy = 0.5 * inner(self.pressure, self.normal_displacement)
+        gap = inner(self.pressure, v - lowest)
         total = float(self.pressure.sum())  # zero where a step to a prescribed approach overshot
-        off = abs(float(np.vdot(self.pressure, v)) / total - approach) if total > 0 else 0.0
+        off = abs(inner(self.pressure, v) / total - approach) if total > 0 else 0.0
         scale = abs(approach) or 1.0
         return relative_gap(gap, energy), max(off, approach - lowest) / scale
 
@@ -101,7 +101,7 @@ class ProjectedCG:
         if self._target is None:
             return values
         weights = self._K * self.contact
-        values -= (float(np.vdot(weights, values)) / float(np.vdot(weights, weights))) * weights
+        values -= (inner(weights, values) / inner(weights, weights)) * weights
         return values
 
     def _preconditioned(self, residual: Array) -> Array:
@@ -110,10 +110,10 @@ class ProjectedCG:
         return step
 
     def _conjugate(self, residual: Array, step: Array) -> Array:
-        product = float(np.vdot(residual, step))
+        product = inner(residual, step)
         direction = step
         if self._direction is not None and self._product > 0:
-            quotient = (product - float(np.vdot(self._residual, step))) / self._product
+            quotient = (product - inner(self._residual, step)) / self._product
             direction = step + max(0.0, quotient) * (self._direction * self.contact)
             direction = self._projected(direction)
         self._direction, self._residual, self._product = direction, residual, product
@@ -126,15 +126,15 @@ class ProjectedCG:
         cut = bool(negative.any())
         if cut:
             trial[negative] = 0.0
-            total = float(np.vdot(self._K, trial))
+            total = inner(self._K, trial)
             if total <= 0:
                 return False
             if self._target is not None:
                 trial *= self._target / total
         change = trial - self.pressure
         moved = self._apply(change)
-        curvature = float(np.vdot(change, moved))
-        best = float(np.vdot(residual, change)) / curvature if curvature > 0 else 0.0
+        curvature = inner(change, moved)
+        best = inner(residual, change) / curvature if curvature > 0 else 0.0
         share = max(best, 0.0)
         if cut:
             share = min(share, 1.0)
@@ -155,9 +155,9 @@ class ProjectedCG:
     def _step_then_cut(self, residual: Array, direction: Array) -> None:
         """The exact step along the direction, then the cut: two applications, and no guess."""
         moved = self._apply(direction)
-        curvature = float(np.vdot(direction, moved))
+        curvature = inner(direction, moved)
         if curvature > 0:  # zero when the constraint alone fixes the set's pressure
-            self._length = float(np.vdot(residual, direction)) / curvature
+            self._length = inner(residual, direction) / curvature
             self.pressure = self.pressure + self._length * direction
             self.normal_displacement = self.normal_displacement + self._length * moved
             self._trusted = True
@@ -173,7 +173,7 @@ class ProjectedCG:
 
     def _scale_to_target(self, *, displace: bool = True) -> None:
         assert self._target is not None
-        factor = self._target / float(np.vdot(self._K, self.pressure))
+        factor = self._target / inner(self._K, self.pressure)
         self.pressure = self.pressure * factor
         if displace:
             self.normal_displacement = self.normal_displacement * factor
