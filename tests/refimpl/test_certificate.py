@@ -140,3 +140,10 @@ def test_traction_without_contact_is_unlawful() -> None:
     )
     assert lawful.certificate.unlawful == 0
     assert unlawful.certificate.unlawful == 1
+
+
+def test_a_certificate_cannot_be_changed() -> None:
+    certificate = judged().certificate
+    for name in vars(certificate):
+        with pytest.raises(AttributeError, match="cannot assign"):
+            setattr(certificate, name, 0)
