@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from refimpl.contact.active_set import complementarity
-from refimpl.contact.preconditioner import SpectralPreconditioner
+from refimpl.contact.preconditioner import SpectralPreconditioner, _over_q
 from refimpl.contact.projected_cg import ProjectedCG, relative_gap
 from refimpl.grid import Grid
 from refimpl.operators.dense import DenseInfluence
@@ -178,6 +178,7 @@ def test_relative_gap() -> None:
     assert relative_gap(0.0, 0.0) == 0
     assert relative_gap(1.0, 2.0) == 0.5
     assert relative_gap(1.0, 0.0) == np.inf
+    assert relative_gap(1.0, -1.0) == np.inf
 
 
 @pytest.mark.parametrize("shape", [(4, 12), (12, 4), (12, 12)])
@@ -186,3 +187,37 @@ def test_the_mean_has_half_of_the_smallest_frequency(shape: tuple[int, int]) -> 
     precondition = SpectralPreconditioner(shape, 0.5, 3.0, Counter(), band_limited=True)
     q = np.pi / (max(shape) * 0.5)
     np.testing.assert_allclose(precondition(np.ones(shape)), q / (2 * np.pi * 3.0), rtol=1e-14)
+
+
+def test_a_trial_is_a_little_shorter_than_the_last_length() -> None:
+    """At first than what the preconditioned spectrum, between 1 and 2, suggests."""
+    asked: list[np.ndarray] = []
+    cg = start(np.ones((M, M)))
+    apply = cg._apply
+
+    def recording(f: np.ndarray) -> np.ndarray:
+        asked.append(f)
+        return apply(f)
+
+    cg._apply = recording
+    cg.freeze(np.zeros((M, M)), np.ones((M, M)), target=None, approach=1e-6)
+    cg.iterate()
+    assert cg._direction is not None
+    np.testing.assert_allclose(asked[0], 0.8 * 0.7 * cg._direction, rtol=1e-6)
+
+
+def test_one_fold_is_nearly_the_full_sum() -> None:
+    """Its docstring's figures, against twenty folds."""
+    n, spacing = 12, 0.5
+    folded = 1 / (2 * np.pi * 3.0 * SpectralPreconditioner((n, n), spacing, 3.0, Counter())._symbol)
+    q_x = (2 * np.pi * np.fft.fftfreq(n, spacing)[:, None]).astype(np.float64)
+    q_y = (2 * np.pi * np.fft.rfftfreq(n, spacing)[None, :]).astype(np.float64)
+    error = np.abs(folded / _over_q(q_x, q_y, spacing, folds=20) - 1)
+    assert error.max() <= 0.085
+    assert error.mean() <= 0.02
+
+
+def test_a_preconditioners_cost_is_of_the_next_fast_length() -> None:
+    counter = Counter()
+    SpectralPreconditioner((11, 7), 0.5, 3.0, counter)(np.ones((11, 7)))
+    assert counter.point_logs == pytest.approx(96 * np.log2(96), rel=1e-14)  # 12 and 8
