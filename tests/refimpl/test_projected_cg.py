@@ -207,7 +207,7 @@ def test_a_trial_is_a_little_shorter_than_the_last_length() -> None:
 
 
 def test_one_fold_is_nearly_the_full_sum() -> None:
-    """Measured against twenty folds: 0.081 in the band's corner, 0.025 in the mean; without one 0.22, 0.06."""
+    """Against twenty folds: 0.081 off in the band's corner, 0.025 in the mean; without one 0.22, 0.06."""
     n, spacing = 12, 0.5
     folded = 1 / (2 * np.pi * 3.0 * SpectralPreconditioner((n, n), spacing, 3.0, Counter())._symbol)
     q_x = (2 * np.pi * np.fft.fftfreq(n, spacing)[:, None]).astype(np.float64)
