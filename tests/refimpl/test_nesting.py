@@ -102,9 +102,10 @@ def test_touching_is_a_damped_jacobi_step() -> None:
 def test_sharpening_by_hand(loaded: bool) -> None:
     contact = np.array([[True, True], [True, False]])
     pressure, misfit = np.array([[5.0, 1.0], [3.0, 7.0]]), np.array([[4.0, -10.0], [3.0, 100.0]])
-    found = sharpened(pressure, misfit, contact, lambda r: 2 * r + r.sum(), loaded=loaded)
+    corner = np.array([[1.0, 0.0], [0.0, 0.0]])
+    found = sharpened(pressure, misfit, contact, lambda r: 2 * r + r.sum() * corner, loaded=loaded)
     mean = -1.0 if loaded else 0.0  # of 4, -10 and 3: the load is kept before elements are cut at zero
     residual = np.array([[4.0, -10.0], [3.0, 0.0]]) - mean * contact  # of which a loaded sum is zero
-    step = 0.7 * (2 * residual + residual.sum())
+    step = 0.7 * (2 * residual + residual.sum() * corner)
     np.testing.assert_allclose(found, np.maximum((pressure + step) * contact, 0), rtol=1e-14)
     assert found[0, 1] == found[1, 1] == 0
