@@ -43,8 +43,7 @@ def notes(document: Document) -> tuple[str, ...]:
     """What the sample can speak of: tests were written against the survivors of the first seed's."""
     if document["seed"] != 1:
         return (
-            "Nothing was changed because of this sample before it was judged: its score is a fair estimate. "
-            "Tests written since kill its unexplained survivors.",
+            "Nothing was changed because of this sample before it was judged: its score is a fair estimate.",
         )
     return (
         "Tests were sharpened against this sample's survivors, so its score says that none is left open; "
