@@ -122,7 +122,8 @@ def test_closure_is_a_bound(name: str) -> None:
     pressure = np.asarray(own(problem).pressure)
     mean_displacement = 2 * referee.energy(problem, pressure) / (pressure.sum() * problem.element_area)
     if mean_displacement > 0:  # one periodic element under load stores no energy in the referee's symbols
-        assert closure(problem) / (0.5 * mean_displacement) <= problem.tolerance
+        rounding = 1e-12  # an exact equality where contact is full
+        assert closure(problem) / (0.5 * mean_displacement) <= problem.tolerance * (1 + rounding)
 
 
 @needs(tamaas.solve)

@@ -104,7 +104,9 @@ def tiny_disk(tmp_path: Path) -> Iterator[Path | None]:
 
 
 def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
-    code = "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
+    # a shell's background job ignores interrupts, and so would its children
+    code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    code += "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
     environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     child = subprocess.Popen(
         [sys.executable, "-c", code, *arguments],
@@ -131,6 +133,7 @@ def forked_solve(folder: Path, how: signal.Signals) -> Ended:
     """A solve that a timer interrupts while it iterates."""
 
     def act() -> int:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in a shell's background job
         signal.signal(signal.SIGALRM, lambda *_: os.kill(os.getpid(), how))
         signal.setitimer(signal.ITIMER_REAL, 0.3)
         return main([*LONG, "--json", str(folder / "s.json")])

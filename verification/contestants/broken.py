@@ -167,8 +167,8 @@ class Remembering:
         return right(replace(problem, spacing=kept))
 
 
-def _coarse_coefficients(rows: int, columns: int, edge: float) -> Array:
-    """A point force at the centre of every element but the loaded one itself."""
+def _coarse_coefficients(rows: int, columns: int, edge: float, *, known: Array | None) -> Array:
+    """A point force at the centre of every element but the loaded one itself; ``known`` is made anew."""
     table = normal_table(rows, columns, edge).copy()
     i, j = np.indices(table.shape)
     distance = np.hypot(i, j) * edge
