@@ -70,8 +70,8 @@ def coefficient_error(
     wavelength = min(wavelength, table["wavelength"][-1])
     if position is not None:
         require_number("position", position, "a share of the wavelength, 0 to 1", at_least=0, at_most=1)
-    positions = table["position"] if position is None else [position]
-    return max(_error(slope, wavelength, place, lower, upper) for place in positions)
+    positions = np.array(table["position"] if position is None else [position])
+    return _error(slope, wavelength, positions, lower, upper)
 
 
 def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, upper: Material) -> SlopeError:
@@ -90,29 +90,31 @@ def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, up
 
 
 def _error(
-    slope: float, wavelength: float, position: float, lower: Material, upper: Material | None
+    slope: float, wavelength: float, positions: Array, lower: Material, upper: Material | None
 ) -> float:
-    """Worst of both neighbours: ``|flat - rough| / |flat|``, bodies weighted by ``1 / E``."""
-    rough = _departure(slope, wavelength, position, lower.nu) / lower.E
+    """Worst of both neighbours anywhere: ``|flat - rough| / |flat|``, bodies weighted by ``1 / E``."""
+    rough = _departure(slope, wavelength, positions, lower.nu) / lower.E
     flat = _flat(lower.nu) / lower.E
     if upper is not None:  # a crest of one body is a valley of the other
-        rough = rough + _departure(slope, wavelength, (position + 0.5) % 1.0, upper.nu) / upper.E
+        rough = rough + _departure(slope, wavelength, (positions + 0.5) % 1.0, upper.nu) / upper.E
         flat += _flat(upper.nu) / upper.E
     return float(np.abs(rough).max() / abs(flat))
 
 
-def _departure(slope: float, wavelength: float, position: float, nu: float) -> Array:
-    """Rough minus flat displacement of both neighbours, ``(2,)``, in units of ``p a / E``."""
+def _departure(slope: float, wavelength: float, positions: Array, nu: float) -> Array:
+    """Rough minus flat displacement of both neighbours, ``(positions, 2)``, in units of ``p a / E``."""
     tangent = math.tan(slope)
     amplitude = tangent * wavelength / (2 * math.pi)
-    ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + position)
-    climb = amplitude * (math.cos(2 * math.pi * position) - np.cos(ends))
-    place = min(position, 1 - position)
+    at = positions[:, None]
+    ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + at)
+    climb = amplitude * (np.cos(2 * math.pi * at) - np.cos(ends))
     first = math.tan(math.radians(_table()["slope_deg"][0]))
-    parts = _rest()((max(tangent, first), math.log(wavelength), place)).ravel()
-    rest = tangent**2 * (1 + nu) * ((3 - 4 * nu) * parts[:2] + parts[2:])
-    if position > 0.5:  # mirrored: the neighbours change places
-        rest = rest[::-1]
+    points = np.empty((len(positions), 3))
+    points[:] = max(tangent, first), math.log(wavelength), 0.0
+    points[:, 2] = np.minimum(positions, 1 - positions)
+    parts = _rest()(points)
+    rest = tangent**2 * (1 + nu) * ((3 - 4 * nu) * parts[:, :2] + parts[:, 2:])
+    rest = np.where(at > 0.5, rest[:, ::-1], rest)  # mirrored: the neighbours change places
     departure: Array = rest - (1 + nu) * (1 - 2 * nu) * climb
     return departure
 

@@ -22,7 +22,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize, special
 
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
@@ -139,11 +139,11 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
     """What a mixture of Student's distributions exceeds, either way together, with 5 %."""
 
     def beyond(bound: float) -> float:
-        above = stats.t.sf((bound - centres) / scales, freedom)
-        below = stats.t.cdf((-bound - centres) / scales, freedom)
+        above = special.stdtr(freedom, (centres - bound) / scales)
+        below = special.stdtr(freedom, (-bound - centres) / scales)
         return float(shares @ (above + below)) - 0.05
 
-    widest = float(np.max(np.abs(centres)) + np.max(scales) * stats.t.ppf(0.975, freedom))
+    widest = float(np.max(np.abs(centres)) + np.max(scales) * special.stdtrit(freedom, 0.975))
     return float(optimize.brentq(beyond, 0.0, widest, rtol=1e-4)) if beyond(widest) < 0 else widest
 
 

@@ -8,11 +8,9 @@ while CG reduces the residual tenfold and are then brought up to date; their own
 from __future__ import annotations
 
 import math
-import os
 from typing import Any
 
 import numpy as np
-import scipy.fft as sfft
 from numpy.typing import NDArray
 
 from refimpl.contact.certificate import State, certify
@@ -44,22 +42,8 @@ _SUPPORT_ITERATIONS = 200
 def solve_fft(problem: Problem, tolerance: float, counter: Counter) -> tuple[Outcome, State]:
     """Outcome and certified state of the problem, to a certificate of about ``tolerance``.
 
-    The outcome's status speaks of the loops only; the certificate is of the full grid. Transforms run in
-    `transform_threads` threads, which changes no bit of them.
+    The outcome's status speaks of the loops only; the certificate is of the full grid.
     """
-    with sfft.set_workers(transform_threads()):
-        return _solved(problem, tolerance, counter)
-
-
-def transform_threads() -> int:
-    """Threads of a transform: OMP_NUM_THREADS as for BLAS, or the cores that this process may use."""
-    said = os.environ.get("OMP_NUM_THREADS", "")
-    if said.isdigit() and int(said) > 0:
-        return int(said)
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _solved(problem: Problem, tolerance: float, counter: Counter) -> tuple[Outcome, State]:
     iterations: dict[str, int] = {}
     nested = levels(problem)
     window = Window.full(nested[0].grid.M)
@@ -311,9 +295,7 @@ class _LevelSolver:
 
     def penetrating_outside(self, state: State, tolerance: float) -> Mask:
         """Elements that penetrate by more than the tolerance outside the window or on its edge."""
-        u = state.displacement_lower + state.displacement_upper
-        v = u / state.slopes.obliqueness + self.whole.gap
-        outside = v < state.approach * (1 - tolerance)
+        outside = state.separation < state.approach * (1 - tolerance)
         outside[self.window.interior(len(outside)).slices] = False
         return outside
 

@@ -12,6 +12,7 @@ from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.materials import Pair
 from refimpl.operators.base import Influence
+from refimpl.operators.transforms import keep_memory
 from refimpl.operators.window import Window
 from refimpl.outcome import Visited
 from refimpl.scene import Friction, Scene
@@ -155,6 +156,7 @@ def pose(scene: Scene, grid: Grid, terms: Terms, approach: float | None) -> Prob
     ``approach`` replaces the load if given: counted from first touch, or from the mean planes when
     the scene is periodic (m).
     """
+    keep_memory(grid.M**2)
     lower, upper = scene.heights(grid)
     gap = upper - lower
     gap = gap - gap.min()

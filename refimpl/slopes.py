@@ -51,7 +51,7 @@ class Slopes:
 
     def distance(self, other: Slopes, where: NDArray[np.bool_]) -> float:
         """Largest difference of the tangents on the marked elements."""
-        if self.tan_x is other.tan_x or not where.any():
+        if (self._is_flat and other._is_flat) or not where.any():
             return 0.0
         pairs = ((self.tan_x, other.tan_x), (self.tan_y, other.tan_y))
         return max(float(np.abs(a - b)[where].max()) for a, b in pairs)
@@ -88,6 +88,14 @@ class Slopes:
     def obliqueness(self) -> Array:
         """``cos(theta_x) cos(theta_y)``, the factor of Eq. (6)."""
         return self.cos_x if self._is_flat else self.cos_x * self.cos_y
+
+    def per_obliqueness(self, values: Array) -> Array:
+        """``values / obliqueness``, in place where that is 1 everywhere."""
+        return values if self._is_flat else values / self.obliqueness
+
+    def windowed(self, window: Window) -> Slopes:
+        """The slopes on a window of their grid."""
+        return Slopes(self.tan_x[window.slices], self.tan_y[window.slices])
 
     def spread(self, window: Window, M: int) -> Slopes:
         """The slopes of a window on its whole ``M x M`` grid, zero elsewhere."""

@@ -210,7 +210,7 @@ def _solution(
         surface_lower=surface_lower,
         surface_upper=surface_upper,
         separation=surface_upper - surface_lower,
-        clearance=state.clearance(problem.gap),
+        clearance=state.clearance,
         withheld=outcome.withheld,
         slope_error=slope_error(
             state.slopes.tan_x, state.slopes.tan_y, state.pressure, problem.pair.lower, problem.pair.upper

@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from refimpl.coefficient_error import SlopeError, slope_error
 from refimpl.materials import Pair
+from refimpl.operators.window import Window
 from refimpl.scene import Scene
 from refimpl.slopes import Slopes
 from refimpl.surfaces import Flat, Sphere
@@ -138,10 +139,13 @@ def _error_at_slopes(solution: Solution) -> SlopeError:
     term = solution.plan.term("obliqueness")
     if term.included or term.small:
         return solution.slope_error
-    surface = 0.5 * (solution.surface_lower + solution.surface_upper)
+    near = Window.around(solution.contact, margin=1)  # slopes in contact take no heights from farther away
+    if solution.problem.periodic:
+        near = Window.full(solution.grid.M)
+    surface = 0.5 * (solution.surface_lower[near.slices] + solution.surface_upper[near.slices])
     slopes = Slopes.of_surface(surface, solution.grid.spacing, 0.0, periodic=solution.problem.periodic)
     pair = solution.problem.pair
-    return slope_error(slopes.tan_x, slopes.tan_y, solution.pressure, pair.lower, pair.upper)
+    return slope_error(slopes.tan_x, slopes.tan_y, solution.pressure[near.slices], pair.lower, pair.upper)
 
 
 def _slope(limit: Limit, slope: float, error: float | None) -> Caution | None:

@@ -117,7 +117,7 @@ class _Frozen:
         self.pressure, self.traction = pressure, traction
         self.beta = problem.friction.beta
         self.K = slopes.obliqueness
-        self.coupling = self.beta * problem.pair.shear_compliance if problem.terms.shear_moves() else 0.0
+        self.coupling = self.beta * problem.pair.shear_compliance if problem.terms.coupled else 0.0
         self._set(np.maximum(pressure, 0.0))
         spurious = (self.f > 0) & (self.w >= norm.diagonal * self.f)
         if spurious.any():

@@ -9,8 +9,9 @@ import numpy as np
 from refimpl.contact.projected_cg import relative_gap
 from refimpl.forces import Forces, resultants
 from refimpl.friction import Mask, local_friction
-from refimpl.grid import Array
+from refimpl.grid import Array, inner
 from refimpl.operators.base import Influence
+from refimpl.operators.window import Window
 from refimpl.problem import Problem
 from refimpl.slopes import Slopes
 
@@ -48,21 +49,25 @@ class Certificate:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A solved state with what follows from it: displacements, slopes, approach (m, from first touch)."""
+    """A solved state with what follows from it: displacements, slopes, approach (m, from first touch).
+
+    ``separation`` is ``v`` of Eq. (6) from the undeformed gap (m): the approach where there is contact.
+    """
 
     pressure: Array
     traction: Array
     displacement_lower: Array
     displacement_upper: Array
     slopes: Slopes
+    separation: Array
     approach: float
     forces: Forces
     certificate: Certificate
 
-    def clearance(self, gap: Array) -> Array:
-        """``v - approach`` of Eq. (6) from the undeformed gap (m): zero in contact, not negative outside."""
-        u = self.displacement_lower + self.displacement_upper
-        return u / self.slopes.obliqueness + gap - self.approach
+    @property
+    def clearance(self) -> Array:
+        """``v - approach`` (m): zero in contact, not negative outside."""
+        return self.separation - self.approach
 
 
 def certify(problem: Problem, operator: Influence, pressure: Array, traction: Array, slopes: Slopes) -> State:
@@ -75,35 +80,37 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
     known = None if problem.terms.slope_correction else normal
     lower, upper = problem.displacements(operator, pressure, traction, slopes, normal_displacement=known)
     found = problem.slopes(lower, upper)
-    dA = problem.grid.element_area
-    v = (lower + upper) / found.obliqueness + problem.gap
-    total = float(pressure.sum())
-    in_contact: Mask = pressure > 0
-    mean_v = float(np.sum(pressure * v)) / total if total > 0 else float(v.min())
+    v = found.per_obliqueness(lower + upper)
+    v += problem.gap
+    box = Window.around((pressure != 0) | (traction != 0), margin=0)  # sums need look no further
+    f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
+    dA, total, lowest = problem.grid.element_area, float(f.sum()), float(v.min())
+    in_contact: Mask = f > 0
+    mean_v = inner(f, v[box.slices]) / total if total > 0 else lowest
     approach = mean_v if problem.approach is None else problem.approach
-    forces = resultants(pressure, traction, found, dA)
+    forces = resultants(f, r, on_slopes, dA)
     if problem.load is not None:
         balance = abs(forces.normal - problem.load) / problem.load
     else:
         balance = abs(mean_v - approach) / approach if total > 0 else 0.0
-    energy = 0.5 * float(np.sum(pressure * normal)) * dA
-    duality = float(np.sum(pressure * (v - v.min()))) * dA
-    peak = max(float(pressure.max()), np.finfo(float).tiny)
-    lawful = local_friction(problem.friction, pressure, in_contact)
+    energy = 0.5 * inner(f, normal[box.slices]) * dA
+    duality = inner(f, v[box.slices] - lowest) * dA
+    peak = max(float(f.max()), np.finfo(float).tiny)
     return State(
         pressure=pressure,
         traction=traction,
         displacement_lower=lower,
         displacement_upper=upper,
         slopes=found,
+        separation=v,
         approach=approach,
         forces=forces,
         certificate=Certificate(
             gap=relative_gap(duality, energy),
-            penetration=max(0.0, approach - float(v.min())) / (abs(approach) or 1.0),
-            negative_pressure=max(0.0, -float(pressure.min())) / peak,
+            penetration=max(0.0, approach - lowest) / (abs(approach) or 1.0),
+            negative_pressure=max(0.0, -float(f.min())) / peak,
             balance=balance,
-            slope=found.distance(slopes, in_contact),
-            unlawful=int(np.count_nonzero(traction != lawful)),
+            slope=on_slopes.distance(slopes.windowed(box), in_contact),
+            unlawful=int(np.count_nonzero(r != local_friction(problem.friction, f, in_contact))),
         ),
     )

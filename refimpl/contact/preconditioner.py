@@ -9,6 +9,7 @@ import scipy.fft as sfft
 
 from refimpl.grid import Array
 from refimpl.operators.fft import Counter
+from refimpl.operators.transforms import threads
 
 
 class SpectralPreconditioner:
@@ -40,27 +41,30 @@ class SpectralPreconditioner:
 
     def __call__(self, residual: Array) -> Array:
         """The preconditioned residual, same shape; the caller masks argument and result."""
-        self._counter.add("preconditioner", math.prod(self._padded))
-        spectrum = sfft.rfft2(residual, s=self._padded)
+        points = math.prod(self._padded)
+        self._counter.add("preconditioner", points)
+        workers = threads(points)
+        spectrum = sfft.rfft2(residual, s=self._padded, workers=workers)
         spectrum *= self._symbol
         n, m = self._shape
-        result: Array = sfft.irfft2(spectrum, s=self._padded, overwrite_x=True)[:n, :m]
+        result: Array = sfft.irfft2(spectrum, s=self._padded, overwrite_x=True, workers=workers)[:n, :m]
         return result
 
 
 def _over_q(q_x: Array, q_y: Array, spacing: float, *, folds: int) -> Array:
     """``1/q`` as sampled at element centres: elements' sincs, with ``folds`` neighbouring bands folded in.
 
-    One fold is within 8 % of the full sum in the corner of the band and 2 % in the mean.
+    One fold is within 8.1 % of the full sum in the corner of the band and 2.5 % in the mean (a test).
+    Even in ``q_x``, so only half of its rows are summed.
     """
-    q = np.hypot(q_x, q_y)
-    q[0, 0] = np.pi / (max(len(q_x), 2 * (q_y.size - 1)) * spacing)
-    if folds == 0:
-        return 1 / q
+    N = len(q_x)
+    q_x = q_x[: N // 2 + 1]
+    q = np.sqrt(q_x**2 + q_y**2)
+    q[0, 0] = np.pi / (max(N, 2 * (q_y.size - 1)) * spacing)
     turn = 2 * np.pi / spacing
-    total: Array = np.sinc(q_x / turn) * np.sinc(q_y / turn) / q
+    total: Array = np.sinc(q_x / turn) * np.sinc(q_y / turn) / q if folds else 1 / q
     for m, n in np.ndindex(2 * folds + 1, 2 * folds + 1):
         if (m, n) != (folds, folds):
             p_x, p_y = q_x + (m - folds) * turn, q_y + (n - folds) * turn
-            total += np.sinc(p_x / turn) * np.sinc(p_y / turn) / np.hypot(p_x, p_y)
-    return total
+            total += np.sinc(p_x / turn) * np.sinc(p_y / turn) / np.sqrt(p_x**2 + p_y**2)
+    return np.concatenate([total, total[(N - 1) // 2 : 0 : -1]])

@@ -78,8 +78,10 @@ class ProjectedCG:
         approach, lowest = self.approach(v), float(v.min())
         energy = 0.5 * inner(self.pressure, self.normal_displacement)
         gap = inner(self.pressure, v - lowest)
-        total = float(self.pressure.sum())  # zero where a step to a prescribed approach overshot
-        off = abs(inner(self.pressure, v) / total - approach) if total > 0 else 0.0
+        off = 0.0
+        if self._approach is not None:
+            total = float(self.pressure.sum())  # zero where a step overshot
+            off = abs(inner(self.pressure, v) / total - approach) if total > 0 else 0.0
         scale = abs(approach) or 1.0
         return relative_gap(gap, energy), max(off, approach - lowest) / scale
 
@@ -89,19 +91,20 @@ class ProjectedCG:
         if self._approach is not None:
             residual += self._K * self._approach
         residual *= self.contact
+        self._weights = self._K * self.contact
+        self._weights_squared = inner(self._weights, self._weights)
         residual = self._projected(residual)
         direction = self._conjugate(residual, self._projected(self._preconditioned(residual)))
         if not (self._trusted and self._step_to_trial(residual, direction)):
             self._step_then_cut(residual, direction)
-        self._v = self._found_separation()
-        self.contact = self.contact | (self._v < self.approach(self._v))
+        self._v = v = self._found_separation()
+        self.contact |= v < self.approach(v)
 
     def _projected(self, values: Array) -> Array:
         """``values`` on the contact set without what they have along the load's weights."""
         if self._target is None:
             return values
-        weights = self._K * self.contact
-        values -= (inner(weights, values) / inner(weights, weights)) * weights
+        values -= (inner(self._weights, values) / self._weights_squared) * self._weights
         return values
 
     def _preconditioned(self, residual: Array) -> Array:
@@ -142,7 +145,7 @@ class ProjectedCG:
             share = self._room(change)
         self.pressure = trial if share == 1 else np.maximum(self.pressure + share * change, 0.0)
         self.normal_displacement = self.normal_displacement + share * moved
-        self.contact = self.contact & ~((self.pressure == 0) & (negative | (change < 0)))
+        self.contact &= ~((self.pressure == 0) & (negative | (change < 0)))
         self._length *= _SHORTER * best
         self._trusted = _TRUSTED[0] < best < _TRUSTED[1]
         return True

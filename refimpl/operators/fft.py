@@ -9,18 +9,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 import scipy.fft as sfft
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
-from refimpl.operators.tables import signed_table
+from refimpl.operators.tables import signed_table, unit_table
+from refimpl.operators.transforms import threads
 from refimpl.operators.window import Window, padded_length
 
 Complex = NDArray[np.complex128]
-Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 @dataclass
@@ -63,6 +62,9 @@ class FFTInfluence:
         self.counter = counter if counter is not None else Counter()
         rows, columns = (n + m - 1 for n, m in zip(self.source.shape, self.target.shape, strict=True))
         self._padded = padded_length(rows), padded_length(columns)
+        shifts = self.target.i0 - self.source.i0, self.target.j0 - self.source.j0
+        placed = map(_places, self._padded, shifts, self.source.shape, self.target.shape)
+        self._from, self._to = zip(*placed, strict=True)
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""
@@ -93,12 +95,14 @@ class FFTInfluence:
         points, spacing = math.prod(self._padded), self.grid.spacing
         if not (_is_even(rows) and _is_even(columns)):
             self.counter.add("normal kernel", points // 2)
-            transform: Complex = sfft.rfft2(signed_table("normal", rows, columns) * spacing)
+            transform: Complex = sfft.rfft2(
+                signed_table("normal", rows, columns) * spacing, workers=threads(points)
+            )
             return transform
         self.counter.add("normal kernel", points // 8)
-        half = len(rows) // 2
-        quarter = signed_table("normal", rows[: half + 1], columns[: len(columns) // 2 + 1])
-        hat: Array = sfft.dctn(quarter * spacing, type=1)
+        half, across = len(rows) // 2, len(columns) // 2
+        quarter = unit_table("normal", max(half, across) + 1)[: half + 1, : across + 1]
+        hat: Array = sfft.dctn(quarter * spacing, type=1, overwrite_x=True, workers=threads(points))
         return np.concatenate([hat, hat[half - 1 : 0 : -1]])
 
     @cached_property
@@ -118,14 +122,21 @@ class FFTInfluence:
         return hat
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
-        n, m = self.target.shape
         N, K = self._padded
-        i, j = self.target.i0 - self.source.i0, self.target.j0 - self.source.j0
-        spectrum = sfft.fft(sfft.rfft(source, n=K, axis=1), n=N, axis=0)
+        workers = threads(N * K)
+        self._rows[:, self._from[1]] = source
+        spectrum = np.zeros((N, K // 2 + 1), dtype=np.complex128)
+        spectrum[self._from[0]] = sfft.rfft(self._rows, axis=1, workers=workers)
+        spectrum = sfft.fft(spectrum, axis=0, overwrite_x=True, workers=workers)
         spectrum *= hat
-        rows = _arc(sfft.ifft(spectrum, axis=0, overwrite_x=True), i, n)
-        result: Array = sfft.irfft(rows, n=K, axis=1).T
-        return _arc(result, j, m).T
+        rows = sfft.ifft(spectrum, axis=0, overwrite_x=True, workers=workers)[self._to[0]]
+        result: Array = sfft.irfft(rows, n=K, axis=1, workers=workers)[:, self._to[1]]
+        return result
+
+    @cached_property
+    def _rows(self) -> Array:
+        """The source's rows, zero but for the source."""
+        return np.zeros((self.source.shape[0], self._padded[1]))
 
 
 class WholeGridInfluence(FFTInfluence):
@@ -149,11 +160,17 @@ def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
 
 
 def _is_even(circle: NDArray[np.int_]) -> bool:
-    return len(circle) % 2 == 0 and np.array_equal(np.abs(circle[1:]), np.abs(circle[:0:-1]))
+    even = len(circle) % 2 == 0 and circle[0] == 0
+    return bool(even and np.array_equal(np.abs(circle[1:]), np.abs(circle[:0:-1])))
 
 
-def _arc(values: NDArray[Scalar], start: int, count: int) -> NDArray[Scalar]:
-    """``count`` rows of a circle from row ``start`` on."""
-    if 0 <= start <= len(values) - count:
-        return values[start : start + count]
-    return np.take(values, np.arange(start, start + count), axis=0, mode="wrap")
+def _places(n: int, shift: int, source: int, target: int) -> tuple[slice, slice]:
+    """Where source and target, ``shift`` further, lie on a circle of n points: neither across its end.
+
+    >>> _places(8, -2, 3, 5)
+    (slice(2, 5, None), slice(0, 5, None))
+    """
+    start = shift % n
+    if start <= n - target:
+        return slice(0, source), slice(start, start + target)
+    return slice(n - start, n - start + source), slice(0, target)

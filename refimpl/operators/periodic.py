@@ -15,6 +15,7 @@ import scipy.fft as sfft
 
 from refimpl.grid import Array, Grid
 from refimpl.operators.fft import Complex, Counter
+from refimpl.operators.transforms import threads
 from refimpl.operators.window import Window
 
 
@@ -66,5 +67,7 @@ class PeriodicInfluence:
         return np.complex128(-2j * np.pi) * q_s / squared
 
     def _filter(self, source: Array, symbol: Array | Complex) -> Array:
-        result: Array = sfft.irfft2(sfft.rfft2(source) * symbol, s=source.shape)
+        workers = threads(source.size)
+        spectrum = sfft.rfft2(source, workers=workers) * symbol
+        result: Array = sfft.irfft2(spectrum, s=source.shape, overwrite_x=True, workers=workers)
         return result

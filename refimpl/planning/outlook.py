@@ -70,16 +70,15 @@ def expected(problem: Problem) -> Outlook:
     """The contact to expect of a problem under its load, or at its approach."""
     gap, dA = problem.gap, problem.grid.element_area
     modulus = problem.pair.reduced_modulus
-    slopes = _slopes(problem, gap)
     stiffness = _STIFFNESS * modulus * dA
     if problem.load is not None:
-        order, carried = _touched(gap, slopes, stiffness, problem.load)
+        order, carried = _touched(problem, stiffness, problem.load)
         elements = min(int(np.searchsorted(carried, problem.load)) + 1, gap.size)
         mean_pressure = problem.load / (elements * dA)
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
-        order, carried = _lowest(gap, slopes, stiffness, elements)
+        order, carried = _lowest(problem, stiffness, elements)
         mean_pressure = float(carried[elements - 1]) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
     contact = np.zeros(gap.size, dtype=bool)
@@ -89,28 +88,44 @@ def expected(problem: Problem) -> Outlook:
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
     mask = contact.reshape(gap.shape)
-    del order, carried, slopes, near  # large arrays, before the next ones
+    del order, carried, near  # large arrays, before the next ones
     seen = _Seen(approach, *_symmetries(problem), window)
     return _described(problem, mask, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
 
 
-def _touched(gap: Array, slopes: Slopes, stiffness: float, load: float) -> tuple[Indices, Array]:
+def _touched(problem: Problem, stiffness: float, load: float) -> tuple[Indices, Array]:
     """The lowest elements in order, with what they carry: as many as the load needs, or all."""
-    count = min(gap.size, max(64, gap.size // 64))
+    size = problem.gap.size
+    count = min(size, max(64, size // 64))
     while True:
-        order, carried = _lowest(gap, slopes, stiffness, count)
-        if carried[-1] >= load or count == gap.size:
+        order, carried = _lowest(problem, stiffness, count)
+        if carried[-1] >= load or count == size:
             return order, carried
-        count = min(gap.size, 4 * count)
+        count = min(size, 4 * count)
 
 
-def _lowest(gap: Array, slopes: Slopes, stiffness: float, count: int) -> tuple[Indices, Array]:
+def _lowest(problem: Problem, stiffness: float, count: int) -> tuple[Indices, Array]:
     """The ``count`` elements of the least gap, in order, and what the first 1, 2, ... of them carry."""
-    heights = gap.ravel()
+    heights = problem.gap.ravel()
     chosen = np.sort(np.argpartition(heights, count - 1)[:count])  # ties in the grid's order
     order = chosen[np.argsort(heights[chosen], kind="stable")]
-    squares = np.cumsum(slopes.tan_x.ravel()[order] ** 2 + slopes.tan_y.ravel()[order] ** 2)
+    squares = np.cumsum(_gradient_squared(problem, order))
     return order, stiffness * np.sqrt(squares * np.arange(1, count + 1))
+
+
+def _gradient_squared(problem: Problem, where: Indices) -> Array:
+    """Squared gradient of the gap on some elements, by the differences of `Slopes.of_surface`."""
+    gap, total = problem.gap, np.zeros(len(where))
+    at = np.unravel_index(where, gap.shape)
+    for axis, (k, n) in enumerate(zip(at, gap.shape, strict=True)):
+        if problem.periodic:
+            before, after, steps = (k - 1) % n, (k + 1) % n, np.full(len(where), 2)
+        else:
+            before, after = np.maximum(k - 1, 0), np.minimum(k + 1, n - 1)
+            steps = np.maximum(after - before, 1)
+        high, low = ((*at[:axis], side, *at[axis + 1 :]) for side in (after, before))
+        total += ((gap[high] - gap[low]) / (steps * problem.grid.spacing)) ** 2
+    return total
 
 
 def found(problem: Problem, pressure: Array, before: Outlook) -> Outlook:
@@ -119,7 +134,8 @@ def found(problem: Problem, pressure: Array, before: Outlook) -> Outlook:
     loaded = pressure[contact]
     total = float(loaded.sum())
     seen = _Seen(before.approach, before.symmetric, before.mirrored, before.window)
-    return _described(problem, contact, loaded, total / loaded.size, float(loaded @ loaded) / total, seen)
+    weighted = float(np.sum(loaded**2)) / total
+    return _described(problem, contact, loaded, total / loaded.size, weighted, seen)
 
 
 class _Seen(NamedTuple):
@@ -134,7 +150,7 @@ class _Seen(NamedTuple):
 def _described(
     problem: Problem, contact: Mask, loads: Array, mean_pressure: float, pressure: float, seen: _Seen
 ) -> Outlook:
-    """``loads`` weighs the elements in contact, in their order."""
+    """``loads`` weighs the elements in contact, in their order. Sums are not BLAS's: bits vary there."""
     window = Window.full(len(contact)) if problem.periodic else Window.around(contact, margin=1)
     near, where = problem.windowed(window), contact[window.slices]
     lower, upper = near.heights
@@ -149,9 +165,9 @@ def _described(
         spots=_spots(where),
         mean_pressure=mean_pressure,
         pressure=pressure,
-        slope_squared=float(weights @ (along**2 + across**2)),
-        least_slope=min(math.sqrt(float(weights @ tan**2)) for tan in tangents),
-        least_mean_slope=min(abs(float(weights @ tan)) for tan in tangents),
+        slope_squared=float(np.sum(weights * (along**2 + across**2))),
+        least_slope=min(math.sqrt(float(np.sum(weights * tan**2))) for tan in tangents),
+        least_mean_slope=min(abs(float(np.sum(weights * tan))) for tan in tangents),
         border=0.0 if problem.periodic else border / elements,
         **seen._asdict(),
     )
@@ -177,7 +193,7 @@ def _spots(contact: Mask) -> float:
     """How many spots of equal size weigh as much: ``(sum n)^2 / sum n^2`` over the connected ones."""
     labels, _ = ndimage.label(contact, np.ones((3, 3)))
     sizes = np.bincount(labels.ravel())[1:].astype(np.float64)
-    return float(sizes.sum() ** 2 / (sizes @ sizes))
+    return float(sizes.sum() ** 2 / np.sum(sizes**2))
 
 
 def _alike(z: Array, image: Array) -> bool:

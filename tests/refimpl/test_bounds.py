@@ -16,6 +16,7 @@ from refimpl.contact.bounds import (
     NO_BOUND_PERIODIC,
     NO_BOUND_STEEP,
     Bounds,
+    _Frozen,
     proven_bounds,
 )
 from refimpl.contact.energy_norm import SMALLEST_SYMBOL, EnergyNorm
@@ -267,3 +268,18 @@ def test_no_bound_without_a_definite_norm_or_a_load() -> None:
     strong = replace(found.problem, friction=rf.Friction(0.0, 5.0))
     tilted = Slopes(np.full((M, M), 3.0), np.zeros((M, M)))
     assert math.isinf(proven_bounds(strong, found.pressure, 5 * found.pressure, tilted).energy)
+
+
+def test_coupling_that_is_left_out_widens_no_bound() -> None:
+    """Shear that only tilts the surface is held with the slopes; c does not stand in the contact's matrix."""
+    left_out = rf.solve(scene(3), M, coupled=False)
+    assert left_out.problem.terms.shear_moves()
+    assert left_out.problem.pair.shear_compliance != 0
+    frozen = _Frozen(
+        left_out.problem,
+        EnergyNorm(left_out.problem, left_out.slopes.obliqueness),
+        left_out.pressure,
+        left_out.traction,
+        left_out.slopes,
+    )
+    assert frozen.coupling == 0

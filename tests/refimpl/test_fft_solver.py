@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import replace
 
 import numpy as np
@@ -239,12 +238,3 @@ def test_a_finer_grid_starts_with_nearly_the_answer(approach: float | None) -> N
     assert np.count_nonzero((start > 0) != (exact > 0)) <= 0.08 * np.count_nonzero(exact)
     assert refined.settle(1e-8)
     assert refined.cg_iterations <= 12 < answer.cg_iterations  # measured: 11 instead of 14 and 19
-
-
-def test_threads_are_the_cores_of_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
-    monkeypatch.setattr(os, "cpu_count", lambda: 7)
-    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 2, 5}, raising=False)
-    assert fft_solver.transform_threads() == 3
-    monkeypatch.delattr(os, "sched_getaffinity")
-    assert fft_solver.transform_threads() == 7

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import replace
 
 import numpy as np
@@ -165,16 +164,6 @@ def test_numbers_repeat_after_other_solves() -> None:
     rf.solve(rf.read_scene("rough-planes"), 40)
     again = rf.solve(SMOOTH, 24)
     assert np.array_equal(first.pressure, again.pressure)
-
-
-@pytest.mark.parametrize("said", ["1", "2", "none", "0"])
-def test_threads_of_the_transforms_change_no_bit(monkeypatch: pytest.MonkeyPatch, said: str) -> None:
-    scene = rf.read_scene("table1-rough")
-    monkeypatch.setenv("OMP_NUM_THREADS", "1")
-    one = rf.solve(scene, 48)
-    monkeypatch.setenv("OMP_NUM_THREADS", said)
-    assert fft_solver.transform_threads() == (int(said) if said in "12" else len(os.sched_getaffinity(0)))
-    assert np.array_equal(rf.solve(scene, 48).pressure, one.pressure)
 
 
 @pytest.mark.parametrize("pressure", [10.0, 100.0])

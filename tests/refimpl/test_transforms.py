@@ -1,0 +1,59 @@
+"""Threads and kept memory: which transforms get them, and that neither changes a bit."""
+
+from __future__ import annotations
+
+import os
+import platform
+import resource
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.operators import transforms
+
+
+def test_threads_are_the_cores_of_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: 7)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 2, 5}, raising=False)
+    assert transforms.allowed_threads() == 3
+    monkeypatch.delattr(os, "sched_getaffinity")
+    assert transforms.allowed_threads() == 7
+
+
+@pytest.mark.parametrize("said", ["none", "0", "-2", ""])
+def test_a_number_of_threads_that_is_none_counts_for_nothing(
+    monkeypatch: pytest.MonkeyPatch, said: str
+) -> None:
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    by_itself = transforms.allowed_threads()
+    monkeypatch.setenv("OMP_NUM_THREADS", said)
+    assert transforms.allowed_threads() == by_itself
+
+
+def test_small_transforms_have_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
+    assert transforms.threads(256 * 256) == 1
+    assert transforms.threads(1024 * 1024) == 3
+
+
+@pytest.mark.parametrize("scene", ["table1-rough", "rough-planes"])
+def test_threads_change_no_bit(monkeypatch: pytest.MonkeyPatch, scene: str) -> None:
+    monkeypatch.setattr(transforms, "_WORTHWHILE", 1)
+    found = []
+    for said in ("1", "2", "3"):
+        monkeypatch.setenv("OMP_NUM_THREADS", said)
+        found.append(rf.solve(rf.read_scene(scene), 48).pressure)
+    assert np.array_equal(found[0], found[1])
+    assert np.array_equal(found[0], found[2])
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="only glibc is taught so")
+def test_kept_memory_is_not_touched_anew() -> None:
+    transforms.keep_memory(1024**2)
+    np.ones(1 << 20).sum()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(20):
+        np.ones(1 << 20).sum()  # 8 MB: 2048 pages, were they new each time
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 20 * 2048 / 2
