@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
+import refimpl as rf
 from reports.studies.tradeoff import build
 from verification.cli import main
 from verification.tradeoff import prices
-from verification.tradeoff.measure import QUANTITIES, Run
+from verification.tradeoff.measure import QUANTITIES, Run, run
 from verification.tradeoff.settings import Setting, settings
 
 REFERENCE = dict.fromkeys(QUANTITIES, 1.0)
@@ -55,7 +56,7 @@ def test_growth_finds_the_exponents() -> None:
 
 def test_every_way_has_a_name_of_its_own() -> None:
     ways = settings([64], [1e-3, 1e-5])
-    assert len({w.way for w in ways}) == len(ways) == 9
+    assert len({w.way for w in ways}) == len(ways) == 11
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -78,3 +79,15 @@ def test_bad_input_is_refused(bad: list[str]) -> None:
     except SystemExit as refused:
         status = int(refused.code or 0)
     assert status == 2
+
+
+def test_single_precision_settles_to_its_own_rounding_and_no_further() -> None:
+    """24 bits: displacements to some 1e-7, so a certificate of 1e-5 is met and one of 1e-12 cannot be."""
+    scene = rf.read_scene("table1-smooth")
+    double, single = (run(scene, Setting("fft", 32, 1e-5, single=one), 1) for one in (False, True))
+    assert single.status == double.status == "converged"
+    assert single.setting.way == "fft, 1e-05, single"
+    for name, value in double.numbers.items():
+        assert 0 <= abs(single.numbers[name] / value - 1) < 1e-5
+    assert single.numbers["max_pressure"] != double.numbers["max_pressure"]
+    assert run(scene, Setting("fft", 32, 1e-12, single=True), 1).status == "stagnated"

@@ -18,6 +18,7 @@ from refimpl import nesting
 from refimpl.grid import Array
 from refimpl.operators.window import Window, padded_length
 from verification.tradeoff.settings import Setting
+from verification.tradeoff.single import single_precision
 from verification.variational.energy import Energy, frictionless
 from verification.variational.minimisers import quasi_newton
 
@@ -61,7 +62,8 @@ def _solved(scene: rf.Scene, setting: Setting) -> tuple[dict[str, float], str, A
     if setting.method == "qp":
         return _minimised(scene, setting)
     coarsest = nullcontext() if setting.nested else mock.patch.object(nesting, "_COARSEST", setting.M)
-    with coarsest:
+    precision = single_precision() if setting.single else nullcontext()
+    with coarsest, precision:
         solution = _solution(scene, setting)
     numbers = {name: float(getattr(solution, name)) for name in QUANTITIES}
     return numbers, solution.status.value, solution.pressure, solution.cost.point_logs

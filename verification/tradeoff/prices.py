@@ -36,7 +36,7 @@ def price_list(
     """The cheapest way to every demanded error of every quantity, None where no way got there.
 
     A way counts only if all finer grids of the same way meet the demand too: an error that is small by chance
-    is no price. Demands below the reference's own ``doubt`` (relative, by quantity) have no answer.
+    is no price. Demands below twice the reference's own ``doubt`` (relative, by quantity) have no answer.
     """
     rows = []
     for quantity in QUANTITIES:

@@ -16,6 +16,7 @@ LARGEST = {"fft": 2048, "paper": 256, "dense": 64, "qp": 128}
 class Setting:
     """One way: ``nested`` grids or the finest alone; ``oblique`` slopes and ``coupled`` shear, or not.
 
+    ``single`` has the solver's convolutions in single precision; the certificate stays in double.
     "qp" is L-BFGS-B on the energy at the scene's approach, which it is told; without slopes and coupling.
     """
 
@@ -25,6 +26,7 @@ class Setting:
     nested: bool = True
     oblique: bool | None = None
     coupled: bool | None = None
+    single: bool = False
 
     @property
     def way(self) -> str:
@@ -38,6 +40,8 @@ class Setting:
             parts.append("flat")
         if self.coupled is False:
             parts.append("uncoupled")
+        if self.single:
+            parts.append("single")
         return ", ".join(parts)
 
 
@@ -47,6 +51,7 @@ def settings(grids: Sequence[int], tolerances: Sequence[float]) -> list[Setting]
     ways: list[Setting] = []
     for M in grids:
         ways += [Setting("fft", M, tolerance) for tolerance in tolerances]
+        ways += [Setting("fft", M, tolerance, single=True) for tolerance in tolerances[-2:]]
         ways.append(Setting("fft", M, middle, nested=False))
         ways.append(Setting("fft", M, middle, oblique=False))
         ways.append(Setting("fft", M, middle, coupled=False))

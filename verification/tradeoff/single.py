@@ -1,0 +1,53 @@
+"""The production solver with its convolutions in single precision: what that would buy, and where it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+from unittest import mock
+
+import numpy as np
+import scipy.fft as sfft
+from numpy.typing import NDArray
+
+from refimpl import fft_solver
+from refimpl.grid import Array
+from refimpl.operators.fft import Complex, FFTInfluence
+from refimpl.operators.transforms import threads
+
+
+class SingleInfluence(FFTInfluence):
+    """Convolutions on a window with 24 bits; tractions are scaled to their largest, whatever the unit."""
+
+    def _convolve(self, source: Array, hat: Array | Complex) -> Array:
+        N, K = self._padded
+        workers = threads(N * K)
+        unit = float(np.abs(source).max()) or 1.0
+        largest, single = self._rounded(hat)
+        rows = np.zeros((self.source.shape[0], K), dtype=np.float32)
+        rows[:, self._from[1]] = source / unit
+        spectrum = np.zeros((N, K // 2 + 1), dtype=np.complex64)
+        spectrum[self._from[0]] = sfft.rfft(rows, axis=1, workers=workers)
+        spectrum = sfft.fft(spectrum, axis=0, overwrite_x=True, workers=workers)
+        spectrum *= single
+        back = sfft.ifft(spectrum, axis=0, overwrite_x=True, workers=workers)[self._to[0]]
+        result = sfft.irfft(back, n=K, axis=1, workers=workers)[:, self._to[1]]
+        scaled: Array = unit * largest * result.astype(np.float64)
+        return scaled
+
+    def _rounded(self, hat: Array | Complex) -> tuple[float, NDArray[Any]]:
+        """A kernel's largest value, and the kernel over it in single precision; made once."""
+        found: dict[int, tuple[float, NDArray[Any]]] = self.__dict__.setdefault("_single", {})
+        if id(hat) not in found:
+            largest = float(np.abs(hat).max())
+            kind = np.complex64 if np.iscomplexobj(hat) else np.float32
+            found[id(hat)] = largest, (hat / largest).astype(kind)
+        return found[id(hat)]
+
+
+@contextmanager
+def single_precision() -> Iterator[None]:
+    """Solve with `SingleInfluence`; certificates, periodic scenes and what links grids stay as they are."""
+    with mock.patch.object(fft_solver, "FFTInfluence", SingleInfluence):
+        yield
