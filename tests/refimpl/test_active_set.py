@@ -9,7 +9,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from refimpl.contact import active_set
 from refimpl.contact.active_set import complementarity, restricted_solve
+from refimpl.friction import Mask
 
 
 def by_enumeration(G: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -97,6 +99,58 @@ def test_block_exchanges_alone_would_cycle() -> None:
         active = active ^ infeasible
     found = complementarity(G, q, np.array([True, False, False]))
     np.testing.assert_allclose(found.pressure, np.ones(3) / 3, atol=1e-14)
+
+
+CYCLIC = np.array([[1.0, 2.0, 0.0], [0.0, 1.0, 2.0], [2.0, 0.0, 1.0]])
+HARD = [
+    (CYCLIC, -np.ones(3), np.array([True, False, False])),
+    (np.kron(np.eye(4), CYCLIC), -np.ones(12), np.tile([True, False, False], 4)),
+    *(
+        (random_p_matrix(n, seed, skew), -np.ones(n), np.zeros(n, dtype=bool))
+        for n, seed, skew in ((15, 2, 30.0), (12, 0, 100.0), (20, 5, 50.0), (20, 13, 50.0))
+    ),
+]
+
+
+@pytest.mark.parametrize(("G", "q", "start"), HARD)
+def test_single_exchanges_follow_ten_of_blocks_without_progress(
+    G: np.ndarray, q: np.ndarray, start: Mask, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Judice and Pires's rule, judged by the history: one of the last ten counts was a new lowest, or not."""
+    visited: list[Mask] = []
+
+    def recorded(G: np.ndarray, right: np.ndarray, active: Mask) -> np.ndarray:
+        visited.append(active.copy())
+        return restricted_solve(G, right, active)
+
+    monkeypatch.setattr(active_set, "restricted_solve", recorded)
+    assert complementarity(G, q, start).solves == len(visited)
+    counts: list[int] = []
+    singles = 0
+    for active, after in itertools.pairwise(visited):
+        f = restricted_solve(G, -q, active)
+        infeasible = np.flatnonzero(np.where(active, f < 0, G @ f + q < 0))
+        counts.append(len(infeasible))
+        recent = range(max(0, len(counts) - 10), len(counts))
+        progress = any(counts[k] < min(counts[:k], default=len(q) + 1) for k in recent)
+        expected = infeasible if progress else infeasible[-1:]
+        assert np.flatnonzero(active ^ after).tolist() == expected.tolist()
+        singles += not progress
+    assert singles > 0
+
+
+def test_an_element_that_just_touches_is_no_contact() -> None:
+    """Gap and pressure zero: the support stays as it was."""
+    found = complementarity(np.eye(4), np.zeros(4), np.zeros(4, dtype=bool))
+    assert found.solves == 1
+    assert not found.active.any()
+
+
+def test_a_pressure_that_is_negative_by_rounding_is_returned_as_zero() -> None:
+    q = np.array([-1.0, 1e-17, -2.0])
+    found = complementarity(np.eye(3), q, np.ones(3, dtype=bool))
+    assert found.solves == 1
+    assert found.pressure.tolist() == [1.0, 0.0, 2.0]
 
 
 def test_a_matrix_without_the_property_is_named() -> None:

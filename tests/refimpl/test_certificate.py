@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.contact import certificate as module
 from refimpl.contact.certificate import Certificate, State, certify
+from refimpl.forces import Forces, resultants
 from refimpl.operators.dense import DenseInfluence
 from refimpl.problem import Problem, Terms, pose
 from refimpl.slopes import Slopes
@@ -121,6 +124,51 @@ def test_each_residual_counts_and_nan_never_passes(field: str) -> None:
     assert not replace(clean, **{field: 1e-3}).meets(1e-4)
     assert replace(clean, **{field: np.nan}).worst == np.inf
     assert not replace(clean, **{field: np.nan}).meets(1.0)
+
+
+def test_the_clearance_is_zero_in_contact_and_positive_outside() -> None:
+    state = judged()
+    assert np.abs(state.clearance[SOLVED.contact]).max() <= 1e-13 * state.approach
+    assert state.clearance[~SOLVED.contact].min() > 1e-6 * state.approach
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0])
+def test_at_an_approach_only_contact_can_be_off_balance(factor: float) -> None:
+    """Without a positive resultant there is no mean separation; other residuals judge such a state."""
+    pressure = factor * SOLVED.pressure
+    pressure.flat[0] = -0.1 * factor * SOLVED.max_pressure
+    certificate = judged(pressure, 0 * pressure, approach=SOLVED.approach).certificate
+    assert certificate.balance == 0
+    assert certificate.penetration > 0.1
+
+
+@pytest.mark.parametrize(
+    ("pressed", "sheared", "shape"),
+    [((3, 4), None, (1, 1)), ((3, 4), (6, 2), (4, 3)), (None, (6, 2), (1, 1)), (None, None, (M, M))],
+)
+def test_sums_look_no_further_than_tractions_reach(
+    pressed: tuple[int, int] | None,
+    sheared: tuple[int, int] | None,
+    shape: tuple[int, int],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What they cost is of the box around pressures and tractions, whatever these are in pascals."""
+    seen: list[tuple[int, ...]] = []
+
+    def recorded(pressure: np.ndarray, *others: Any) -> Forces:
+        seen.append(pressure.shape)
+        return resultants(pressure, *others)
+
+    monkeypatch.setattr(module, "resultants", recorded)
+    for size in (1.0, 2.0):
+        pressure, traction = np.zeros((2, M, M))
+        if pressed:
+            pressure[pressed] = size
+        if sheared:
+            traction[sheared] = size
+        state = judged(pressure, traction)
+        assert state.certificate.unlawful == (pressed is not None) + (sheared is not None)
+    assert seen == [shape, shape]
 
 
 def test_no_pressure_carries_no_load() -> None:

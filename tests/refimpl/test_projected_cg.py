@@ -218,6 +218,21 @@ def test_one_fold_is_nearly_the_full_sum() -> None:
     assert error.mean() <= 0.03
 
 
+def test_the_symbol_in_the_bands_corner_and_in_its_middle() -> None:
+    """By hand: bands meet there at odd multiples of pi/h, with sinc(1/2) = 2/pi and sinc(3/2) = -2/(3 pi)."""
+    n, spacing = 64, 0.5
+    precondition = SpectralPreconditioner(
+        shape=(n, n), spacing=spacing, compliance=1 / (2 * np.pi), counter=Counter()
+    )
+    sincs = {-1: 2 / np.pi, 1: 2 / np.pi, 3: -2 / (3 * np.pi)}
+    folded = sum(sincs[k] * sincs[m] / np.hypot(k, m) for k in sincs for m in sincs) * spacing / np.pi
+    assert precondition._symbol[n // 2, n // 2] == pytest.approx(1 / folded, rel=1e-12)
+    # long waves see the half-space alone: sincs and folds are of second order in q h
+    for k, m in ((1, 0), (0, 1), (1, 1), (-1, 1)):
+        q = 2 * np.pi * np.hypot(k, m) / (n * spacing)
+        assert precondition._symbol[k, m] == pytest.approx(q, rel=(q * spacing) ** 2)
+
+
 def test_a_preconditioners_cost_is_of_the_next_fast_length() -> None:
     counter = Counter()
     SpectralPreconditioner((11, 7), 0.5, 3.0, counter)(np.ones((11, 7)))
