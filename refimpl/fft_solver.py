@@ -54,13 +54,14 @@ def solve_fft(problem: Problem, tolerance: float, counter: Counter) -> tuple[Out
         iterations[f"CG at {solver.whole.grid.M}"] = solver.cg_iterations
         solver = solver.refined(fine)
     while True:
-        outcome = solver.solve(tolerance)
+        outcome, window = solver.solve(tolerance), solver.window
+        del solver  # what it holds is no longer needed when the whole grid's arrays come
         state = _certified(problem, outcome, counter)
-        outside = solver.penetrating_outside(state, tolerance)
+        outside = _penetrating_outside(state, window, tolerance)
         if not outside.any():
             outcome.iterations.update(iterations)
             return outcome, state
-        solver.widen(outside)
+        solver = _widened(problem, outcome, outside, counter)
 
 
 def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
@@ -77,6 +78,23 @@ def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
             counter=counter,
         )
     return certify(problem, operator, outcome.pressure, outcome.traction, outcome.slopes)
+
+
+def _penetrating_outside(state: State, window: Window, tolerance: float) -> Mask:
+    """Elements that penetrate by more than the tolerance outside a window or on its edge."""
+    outside = state.separation < state.approach * (1 - tolerance)
+    outside[window.interior(len(outside)).slices] = False
+    return outside
+
+
+def _widened(problem: Problem, outcome: Outcome, outside: Mask, counter: Counter) -> _LevelSolver:
+    """A solver that starts from a pressure found, on a window that also holds the penetrating elements."""
+    pressure = outcome.pressure
+    window = Window.around((pressure > 0) | outside, _MARGIN).filling(len(outside))
+    precondition = _preconditioner(problem, window, counter)
+    solver = _LevelSolver(problem, counter, window, precondition, pressure[window.slices])
+    solver.cg_iterations = sum(outcome.iterations.values())
+    return solver
 
 
 def _preconditioner(problem: Problem, window: Window, counter: Counter) -> SpectralPreconditioner:
@@ -103,7 +121,30 @@ class _LevelSolver:
         self.whole = problem
         self.counter = counter
         self.cg_iterations = 0
-        self._open(window, precondition, pressure)
+        grid, direction = problem.grid, problem.direction
+        self.window = window
+        self.problem = problem.windowed(window)
+        if problem.periodic:
+            operator: FFTInfluence | PeriodicInfluence = PeriodicInfluence(grid, direction, counter=counter)
+        else:
+            operator = FFTInfluence(grid, direction, source=window, counter=counter)
+        self.operator = operator
+        compliance = self.problem.pair.normal_compliance
+        self.cg = ProjectedCG(
+            lambda pressure: compliance * operator.normal(pressure),
+            precondition,
+            pressure,
+        )
+        self.slopes = Slopes.flat(window.shape)
+        self.traction = np.zeros(window.shape)
+        self._held: tuple[Array, Array] | None = None
+        self._ran_off = False
+        pair = self.problem.pair
+        # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
+        # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
+        sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
+        self._relaxation = 1 / (1 + sigma**2)
+        self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
     def refined(self, fine: Problem) -> _LevelSolver:
         """The solver of the twice finer level, started from this one's pressure and likely contact."""
@@ -141,34 +182,6 @@ class _LevelSolver:
             target=Window.full(grid.M),
             counter=self.counter,
         )
-
-    def _open(self, window: Window, precondition: SpectralPreconditioner, pressure: Array) -> None:
-        """Set up operator and CG on a window, starting from a pressure there."""
-        grid, direction = self.whole.grid, self.whole.direction
-        self.window = window
-        self.problem = self.whole.windowed(window)
-        if self.whole.periodic:
-            self.operator: FFTInfluence | PeriodicInfluence = PeriodicInfluence(
-                grid, direction, counter=self.counter
-            )
-        else:
-            self.operator = FFTInfluence(grid, direction, source=window, counter=self.counter)
-        compliance = self.problem.pair.normal_compliance
-        self.cg = ProjectedCG(
-            lambda pressure: compliance * self.operator.normal(pressure),
-            precondition,
-            pressure,
-        )
-        self.slopes = Slopes.flat(window.shape)
-        self.traction = np.zeros(window.shape)
-        self._held: tuple[Array, Array] | None = None
-        self._ran_off = False
-        pair = self.problem.pair
-        # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
-        # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
-        sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
-        self._relaxation = 1 / (1 + sigma**2)
-        self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
     def solve(self, tolerance: float) -> Outcome:
         """The settled state; tau's support follows the rule of `refimpl.friction`."""
@@ -292,18 +305,6 @@ class _LevelSolver:
             visited=tuple(in_cycles),
             iterations={f"CG at {self.whole.grid.M}": self.cg_iterations},
         )
-
-    def penetrating_outside(self, state: State, tolerance: float) -> Mask:
-        """Elements that penetrate by more than the tolerance outside the window or on its edge."""
-        outside = state.separation < state.approach * (1 - tolerance)
-        outside[self.window.interior(len(outside)).slices] = False
-        return outside
-
-    def widen(self, outside: Mask) -> None:
-        """Start again from the present pressure on a window that also holds the penetrating elements."""
-        pressure = self.full(self.cg.pressure)
-        window = Window.around((pressure > 0) | outside, _MARGIN).filling(len(outside))
-        self._open(window, _preconditioner(self.whole, window, self.counter), pressure[window.slices])
 
     def full(self, values: NDArray[Any]) -> NDArray[Any]:
         """A window array on the whole grid."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +13,13 @@ import pytest
 import refimpl as rf
 from refimpl import fft_solver
 from refimpl.contact.certificate import certify
-from refimpl.fft_solver import _certified, _LevelSolver, _preconditioner
+from refimpl.fft_solver import (
+    _certified,
+    _LevelSolver,
+    _penetrating_outside,
+    _preconditioner,
+    _widened,
+)
 from refimpl.friction import Mask
 from refimpl.nesting import foundation_pressure
 from refimpl.operators.fft import Counter, FFTInfluence
@@ -212,11 +220,14 @@ def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
     solver = level(problem, Window(22, 27, 21, 26))
     for _ in range(20):
         outcome = solver.solve(tolerance)
-        outside = solver.penetrating_outside(_certified(problem, outcome, Counter()), tolerance)
+        state = _certified(problem, outcome, Counter())
+        outside = _penetrating_outside(state, solver.window, tolerance)
         if not outside.any():
             break
         assert not outside[solver.window.interior(M).slices].any()
-        solver.widen(outside)
+        steps = solver.cg_iterations
+        solver = _widened(problem, outcome, outside, Counter())
+        assert solver.cg_iterations == steps
     assert np.abs(outcome.pressure - expected).max() <= 1e-6 * expected.max()
     assert solver.window.shape < (M, M)
     needed = Window.around(expected > 0, margin=1)
@@ -238,3 +249,16 @@ def test_a_finer_grid_starts_with_nearly_the_answer(approach: float | None) -> N
     assert np.count_nonzero((start > 0) != (exact > 0)) <= 0.08 * np.count_nonzero(exact)
     assert refined.settle(1e-8)
     assert refined.cg_iterations <= 12 < answer.cg_iterations  # measured: 11 instead of 14 and 19
+
+
+def test_a_solver_that_is_dropped_is_gone_at_once() -> None:
+    """No cycle of references keeps a level's arrays until the garbage is collected."""
+    gc.disable()
+    try:
+        solver = level(posed(BALL, 16))
+        solver.settle(1e-3)
+        gone = weakref.ref(solver.cg)
+        del solver
+        assert gone() is None
+    finally:
+        gc.enable()
