@@ -173,6 +173,103 @@ def test_the_unit_of_pressure_changes_no_bit(target: float | None, approach: flo
         other.iterate()
         assert np.array_equal(other.pressure, unit * one.pressure)
         assert np.array_equal(other.contact, one.contact)
+        assert other.residuals() == one.residuals()
+
+
+def springs(
+    stiffness: float, pressure: list[float], b: list[float], target: float | None = None
+) -> ProjectedCG:
+    """A row of elements that do not feel each other, ``a f = f / stiffness``, at the approach 0 or loaded."""
+    cg = ProjectedCG(lambda f: f / stiffness, lambda r: r.copy(), np.array([pressure]))
+    cg.freeze(np.array([b]), np.ones((1, len(b))), target=target, approach=0.0 if target is None else None)
+    return cg
+
+
+def test_a_step_beyond_the_trial_ends_where_the_first_pressure_vanishes() -> None:
+    """That element leaves the contact, and the rest keeps what the shorter step gave it."""
+    cg = springs(4.0, [1.0, 1.0, 1.0], [0.25, -1.25, -0.25])  # residuals -1/2, 1 and 0
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[0.0, 3.0, 1.0]], rtol=1e-15)
+    np.testing.assert_allclose(cg.normal_displacement, [[0.0, 0.75, 0.25]], rtol=1e-15)
+    assert cg.contact.tolist() == [[False, True, True]]
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[0.0, 5.0, 1.0]], rtol=1e-14)
+
+
+def test_a_pressure_that_vanishes_is_never_negative() -> None:
+    """However the length at which it does so rounds."""
+    for first, second in np.random.default_rng(4).uniform(1, 2, (50, 2)):
+        cg = springs(4.0, [first, second], [0.25 * first, -9.0])  # as above, the first residual is negative
+        cg.iterate()
+        assert 0 <= cg.pressure[0, 0] <= 1e-15
+        assert cg.pressure[0, 1] > second
+
+
+def test_an_exact_step_is_cut_at_zero_pressure_and_what_is_cut_leaves() -> None:
+    cg = springs(1.0, [1.0, 1.0], [1.0, -3.0])
+    cg._trusted = False
+    cg.iterate()
+    np.testing.assert_array_equal(cg.pressure, [[0.0, 3.0]])
+    assert cg.contact.tolist() == [[False, True]]
+    assert max(cg.residuals()) == 0
+
+
+def test_a_trial_that_leads_uphill_is_not_taken() -> None:
+    """Nothing moves, and only what the trial would have lowered to nothing leaves the contact."""
+    cg = springs(1.0, [1.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+    cg.contact[:] = True
+    uphill = np.array([[1.0, 0.5, -0.5]])
+    assert cg._step_to_trial(-uphill, uphill)
+    np.testing.assert_array_equal(cg.pressure, [[1.0, 0.0, 0.0]])
+    np.testing.assert_array_equal(cg.normal_displacement, [[1.0, 0.0, 0.0]])
+    assert cg.contact.tolist() == [[True, True, False]]
+    assert not cg._trusted
+
+
+@pytest.mark.parametrize(("ratio", "trusted"), [(0.3, False), (0.42, True), (2.4, True), (3.5, False)])
+def test_lengths_are_trusted_as_far_as_the_spectrum_goes(ratio: float, trusted: bool) -> None:
+    """Preconditioned, it lies between 0.9 and 2.2 (above): lengths up to 2.44 times the last are its own."""
+    stiffness = 0.8 * 0.7 * ratio  # which is the exact length, and the trial's is 0.8 * 0.7
+    cg = springs(stiffness, [1e3, 1e3], 2 * [-1e3 / stiffness - 1.0])
+    cg.iterate()
+    assert cg._length == pytest.approx(stiffness, rel=1e-9)
+    assert cg._trusted is trusted
+
+
+@pytest.mark.parametrize(("target", "approach"), [(1e12, None), (None, 1e-4)])
+def test_directions_are_conjugate_while_the_set_stays(target: float | None, approach: float | None) -> None:
+    """All elements in contact, on a slight unevenness: CG, which steepest descent is not."""
+    cg = start(np.full((M, M), 1e7))
+    cg.freeze(BOWL, np.ones((M, M)), target=target, approach=approach)
+    directions: list[np.ndarray] = []
+    for _ in range(8):
+        cg.iterate()
+        assert cg.contact.all()
+        assert cg._direction is not None
+        directions.append(cg._direction.ravel())
+    energies = np.array(directions) @ A @ np.array(directions).T
+    sizes = np.sqrt(np.diag(energies))
+    # rounding grows from step to step as the directions fall by a tenth each: measured 1e-11
+    assert np.abs(energies / np.outer(sizes, sizes) - np.eye(8)).max() <= 1e-9
+
+
+@pytest.mark.parametrize("target", [1e7, 1e8, 1e9, 1e10])
+def test_directions_keep_the_load_when_the_contact_changes(target: float) -> None:
+    cg = start(np.ones((M, M)))
+    cg.freeze(WEIGHTS * BOWL, WEIGHTS, target=target, approach=None)
+    while max(cg.residuals()) > 1e-6:
+        before = cg.contact.copy()
+        cg.iterate()
+        assert cg._direction is not None
+        assert not cg._direction[~before].any()
+        assert abs(np.vdot(WEIGHTS, cg._direction)) <= 1e-14 * M**2 * np.abs(cg._direction).max()
+
+
+def test_residuals_are_never_negative() -> None:
+    """A mean over one element may round to less than that element's own separation."""
+    for pressure in np.random.default_rng(2).uniform(1, 2, 50):
+        cg = springs(3.0, [pressure], [0.1], target=pressure)
+        assert min(cg.residuals()) >= 0
 
 
 def test_relative_gap() -> None:
