@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -205,6 +206,25 @@ def test_kernels_count_by_their_symmetry():
     # the offsets 1 to 5, on a circle of 6, are not
     apart = counted(6, Window(0, 2, 0, 2), Window(2, 6, 2, 6))
     assert apart == pytest.approx(36 * math.log2(36) + 18 * math.log2(18), rel=1e-15)
+    # -2 to 4 and -4 to 2, on a circle of 8: even with one more offset than was asked for
+    for edge in (Window(0, 3, 2, 5), Window(2, 5, 0, 3)):
+        assert counted(5, edge, Window.full(5)) == 64 * 6 + 8 * 3
+    # -2 to 5 fill a circle of 8, which then is not even
+    assert counted(6, Window(0, 3, 0, 3), Window.full(6)) == 64 * 6 + 32 * 5
+
+
+@pytest.mark.parametrize("operator", [FFTInfluence, PeriodicInfluence])
+def test_threads_are_by_the_points_of_a_transform(operator, monkeypatch):
+    """An application's own, and its kernel's."""
+    asked = []
+    module = sys.modules[operator.__module__]
+    monkeypatch.setattr(module, "threads", lambda points: asked.append(points) or 1)
+    counter = Counter()
+    for kind in KINDS:
+        getattr(operator(Grid(1.0, 12), 0.7, counter=counter), kind)(np.ones((12, 12)))
+    points = 24 * 24 if operator is FFTInfluence else 12 * 12
+    assert len(asked) >= 3
+    assert set(asked) == {points}
 
 
 def test_periodic_applications_count_their_points():
