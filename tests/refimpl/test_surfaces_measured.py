@@ -1,12 +1,8 @@
-"""Measured surfaces: files, window, gaps, level, refusals. All files are written here."""
+"""Measured surfaces' heights: window, gaps, level. All files are written here."""
 
 from __future__ import annotations
 
-import os
-import sys
-import time
 import warnings
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -14,194 +10,23 @@ import pytest
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface, SurfaceWarning, readers
+from refimpl.surfaces import MeasuredSurface, SurfaceWarning
 from refimpl.surfaces.gaps import fill
 from refimpl.surfaces.levelling import DEGREES, fit
-
-DX, DY = 1.5e-7, 3.1e-7  # pixels that are not square
-NX, NY = 60, 50
-SIDE = 8e-6  # the area is 9.0 x 15.5 um
-RNG = np.random.default_rng(5)
-ROUGH = 1e-8 * RNG.normal(size=(NX, NY))
-
-XML = """<?xml version="1.0" encoding="UTF-8"?>
-<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2"><Record1><Revision>ISO5436 - 2000</Revision>
-<FeatureType>SUR</FeatureType><Axes>
-<CX><AxisType>I</AxisType><DataType>L</DataType><Increment>{dx}</Increment><Offset>0</Offset></CX>
-<CY><AxisType>I</AxisType><DataType>L</DataType><Increment>{dy}</Increment><Offset>0</Offset></CY>
-<CZ><AxisType>A</AxisType><DataType>D</DataType></CZ></Axes></Record1>
-<Record3><MatrixDimension><SizeX>{nx}</SizeX><SizeY>{ny}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
-<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink></Record3></p:ISO5436_2>"""
-
-
-def write_x3p(path: Path, z: np.ndarray, dx: object = DX, dy: object = DY, data: bytes | None = None) -> Path:
-    """An X3P file as ISO 25178-72 has it: x runs fastest."""
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("main.xml", XML.format(dx=dx, dy=dy, nx=z.shape[0], ny=z.shape[1]))
-        archive.writestr("bindata/data.bin", z.T.astype("<f8").tobytes() if data is None else data)
-    return path
-
-
-def write_npy(path: Path, z: np.ndarray) -> MeasuredSurface:
-    np.save(path, z)
-    return MeasuredSurface(path, unit="m", pixel_size=(DX, DY), level="none")
-
-
-def points() -> tuple[np.ndarray, np.ndarray]:
-    """Where the pixels' centres are (m)."""
-    return (np.arange(NX)[:, None] + 0.5) * DX, (np.arange(NY)[None, :] + 0.5) * DY
-
-
-def elements(grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
-    """Where the central window's element centres are (m), from the same corner."""
-    x = (NX * DX - grid.side) / 2 + grid.centres + offset[0]
-    y = (NY * DY - grid.side) / 2 + grid.centres + offset[1]
-    return x[:, None], y[None, :]
-
-
-def quietly(surface: MeasuredSurface, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SurfaceWarning)
-        return surface.heights(grid, offset)
-
-
-# --- files ---
-
-
-@pytest.mark.parametrize("name", ["a.npy", "a.csv", "a.asc", "a.txt"])
-def test_plain_tables_are_indexed_along_x_then_y(tmp_path: Path, name: str) -> None:
-    path = tmp_path / name
-    if name.endswith("npy"):
-        np.save(path, ROUGH * 1e9)
-    else:
-        np.savetxt(path, ROUGH * 1e9, fmt="%.17g", delimiter="," if name.endswith("csv") else " ")
-    reading = MeasuredSurface(path, unit="nm", pixel_size=[DX, DY]).reading  # type: ignore[arg-type]  # as in TOML
-    np.testing.assert_allclose(reading.heights, ROUGH, rtol=1e-15, atol=0)
-    assert reading.pixel == (DX, DY)
-
-
-def test_x3p_keeps_its_oblong_pixels_and_its_axes(tmp_path: Path) -> None:
-    surface = MeasuredSurface(write_x3p(tmp_path / "a.x3p", ROUGH))
-    np.testing.assert_array_equal(surface.reading.heights, ROUGH)
-    np.testing.assert_allclose(surface.reading.pixel, (DX, DY), rtol=1e-15)
-    assert "x3p" in surface.describe(Grid(SIDE, 16))[0]
-
-
-def test_text_with_an_instruments_header_is_scaled_by_it(tmp_path: Path) -> None:
-    """Header: rows of constant y, a conversion factor of the heights."""
-    path = tmp_path / "a.asc"
-    header = (
-        f"h={NY} w={NX}\npixel size=1.500000e-007 m\ndata unit=rad\nheight conversion factor (-> m)=2.5e-8\n"
-    )
-    rows = "\n".join(" ".join(f"{v:.17g}" for v in row) for row in (ROUGH / 2.5e-8).T)
-    path.write_text(header + rows + "\n")
-    reading = MeasuredSurface(path).reading
-    np.testing.assert_allclose(reading.heights, ROUGH, rtol=1e-14, atol=0)
-    np.testing.assert_allclose(reading.pixel, (1.5e-7, 1.5e-7), rtol=1e-14)
-    with pytest.raises(InputError, match="states its own"):
-        MeasuredSurface(path, unit="um").reading  # noqa: B018  # reading is what raises
-
-
-def test_files_that_state_no_unit_need_one(tmp_path: Path) -> None:
-    for name in ("a.npy", "a.csv", "a.dat"):
-        path = tmp_path / name
-        np.save(path, ROUGH) if name.endswith("npy") else np.savetxt(path, ROUGH, delimiter=",")
-        if name.endswith("dat"):
-            np.savetxt(path, ROUGH, fmt="%.17g")
-        with pytest.raises(InputError, match="unit, pixel_size = \\('um', None\\): expected both"):
-            MeasuredSurface(path, unit="um").reading  # noqa: B018  # likewise
-    instrument = MeasuredSurface(tmp_path / "a.dat", unit="um", pixel_size=DX).reading
-    np.testing.assert_allclose(instrument.heights, ROUGH.T * 1e-6, rtol=1e-15, atol=0)
-
-
-def test_the_missing_optional_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
-    with pytest.raises(InputError, match=r"rough-friction\[instrument\]"):
-        MeasuredSurface(write_x3p(tmp_path / "a.x3p", ROUGH)).reading  # noqa: B018  # likewise
-    write_npy(tmp_path / "a.npy", ROUGH).heights(Grid(SIDE, 16))  # and is not missed where it is not needed
-
-
-def test_files_are_read_once_and_late(tmp_path: Path) -> None:
-    surface = MeasuredSurface(tmp_path / "late.npy", unit="m", pixel_size=(DX, DY))
-    write_npy(tmp_path / "late.npy", ROUGH)
-    first = surface.heights(Grid(SIDE, 16))
-    (tmp_path / "late.npy").unlink()
-    np.testing.assert_array_equal(surface.heights(Grid(SIDE, 16)), first)
-
-
-class Trap:
-    """Unpickled, it would leave a file behind."""
-
-    def __init__(self, sprung: Path) -> None:
-        self.sprung = sprung
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return os.mkdir, (str(self.sprung),)
-
-
-def hostile(folder: Path) -> dict[str, Path]:
-    whole = write_x3p(folder / "whole.x3p", ROUGH).read_bytes()
-    files = {
-        "truncated.x3p": whole[: len(whole) // 2],
-        "short.x3p": whole[:40],
-        "empty.x3p": b"",
-        "noise.x3p": RNG.bytes(4096),
-        "noise.dat": RNG.bytes(4096),
-        "words.asc": b"no numbers here\n" * 1000,
-        "ragged.asc": b"h=2 w=5\npixel size=1e-7 m\n1 2 3 4 5\n1 2\n",
-        "ragged.csv": b"1,2,3,4\n1,2\n",
-        "words.csv": b"a,b,c,d\n" * 5,
-        "bytes.csv": RNG.bytes(999),
-        "few.csv": b"1,2\n3,4\n",
-        "promise.npy": b"\x93NUMPY\x01\x00v\x00"
-        + b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000, 1000000), }".ljust(117)
-        + b"\n1234",
-        "header.npy": b"\x93NUMPY\x02\x00\xff\xff\xff\x7f" + b"(" * 9999,
-    }
-    for name, content in files.items():
-        (folder / name).write_bytes(content)
-    np.save(folder / "complex.npy", np.zeros((5, 5), complex))
-    np.save(folder / "cube.npy", np.zeros((5, 5, 5)))
-    traps = np.full((4, 4), Trap(folder / "sprung"), dtype=object)
-    np.save(folder / "pickle.npy", traps, allow_pickle=True)
-    np.savez(folder / "pickle.npz", z=traps)
-    (folder / "pickle.x3p").write_bytes((folder / "pickle.npz").read_bytes())
-    write_x3p(folder / "huge.x3p", np.empty((2**20, 0)), data=b"").write_bytes(
-        write_x3p(folder / "nodata.x3p", ROUGH, data=b"").read_bytes()
-    )
-    write_x3p(folder / "negative.x3p", ROUGH, dx=-DX)
-    write_x3p(folder / "nan.x3p", ROUGH, dx="nan")
-    (folder / "folder.x3p").mkdir()
-    return {path.name: path for path in folder.iterdir() if path.name != "whole.x3p"}
-
-
-def test_broken_and_hostile_files_get_one_clear_line(tmp_path: Path) -> None:
-    files = hostile(tmp_path)
-    assert len(files) >= 20
-    for name, path in {**files, "absent.x3p": tmp_path / "absent.x3p"}.items():
-        given = {"unit": "m", "pixel_size": DX} if path.suffix in (".npy", ".csv") else {}
-        with pytest.raises(InputError) as refusal:
-            MeasuredSurface(path, **given).heights(Grid(SIDE, 16))  # type: ignore[arg-type]  # mixed dict
-        assert "\n" not in str(refusal.value), name
-        assert len(str(refusal.value)) < 500, name
-    assert not (tmp_path / "sprung").exists()
-
-
-def test_zip_bombs_are_not_unpacked(tmp_path: Path) -> None:
-    bomb = write_x3p(tmp_path / "bomb.x3p", ROUGH, data=bytes(readers.MAX_BYTES + 1))
-    assert bomb.stat().st_size < readers.MAX_BYTES / 500
-    with pytest.raises(InputError, match="unpacked"):
-        MeasuredSurface(bomb).reading  # noqa: B018  # reading is what raises
-
-
-def test_large_junk_is_refused_at_once(tmp_path: Path) -> None:
-    path = tmp_path / "junk.asc"
-    path.write_bytes(b"junk\n" * 4_000_000)
-    start = time.process_time()
-    with pytest.raises(InputError, match="rows of numbers"):
-        MeasuredSurface(path).reading  # noqa: B018  # likewise
-    assert time.process_time() - start < 5  # 20 MB in CPU seconds; the text reader itself needs 18
-
+from tests.refimpl.measured import (
+    DX,
+    DY,
+    NX,
+    NY,
+    RNG,
+    ROUGH,
+    SIDE,
+    elements,
+    points,
+    quietly,
+    write_npy,
+    write_x3p,
+)
 
 # --- window and resampling ---
 
