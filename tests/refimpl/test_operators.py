@@ -209,6 +209,10 @@ def test_kernels_count_by_their_symmetry():
     # -2 to 4 and -4 to 2, on a circle of 8: even with one more offset than was asked for
     for edge in (Window(0, 3, 2, 5), Window(2, 5, 0, 3)):
         assert counted(5, edge, Window.full(5)) == 64 * 6 + 8 * 3
+    # -3 to 5 on one of 10, with room for -4
+    assert counted(7, Window(1, 4, 1, 4), Window.full(7)) == pytest.approx(
+        100 * math.log2(100) + 12 * math.log2(12), rel=1e-15
+    )
     # -2 to 5 fill a circle of 8, which then is not even
     assert counted(6, Window(0, 3, 0, 3), Window.full(6)) == 64 * 6 + 32 * 5
 
