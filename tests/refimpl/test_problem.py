@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl import problem as module
 from refimpl.forces import resultants
 from refimpl.friction import local_friction
 from refimpl.operators.dense import DenseInfluence
+from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.window import Window
-from refimpl.problem import Problem, Terms, pose
+from refimpl.problem import Problem, Terms, pose, visit
 from refimpl.slopes import Slopes
 
 SOFT, HARD = rf.Material(2e9, 0.1), rf.Material(50e9, 0.4)
@@ -77,6 +79,58 @@ def test_a_known_normal_displacement_is_used() -> None:
     plain = problem.displacements(A, F, r, flat)
     again = problem.displacements(A, F, r, flat, normal_displacement=known)
     np.testing.assert_allclose(again, plain, rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("coupled", "oblique", "tilted"), [(False, False, True), (False, True, False), (False, False, False)]
+)
+def test_shear_that_moves_nothing_that_enters_is_not_computed(
+    coupled: bool, oblique: bool, tilted: bool
+) -> None:
+    terms = Terms(coupled=coupled, oblique=oblique, slope_correction=False, tilted=tilted)
+    assert not terms.shear_moves()
+    counter = Counter()
+    lower, upper = posed(terms).displacements(
+        operator=FFTInfluence(rf.Grid(SIDE, M), 0.7, counter=counter),
+        pressure=F,
+        traction=0.2 * F,
+        slopes=SLOPES,
+    )
+    normal = operator().normal(F)
+    np.testing.assert_allclose(lower, SOFT.normal_compliance * normal, rtol=1e-12)
+    np.testing.assert_allclose(upper, HARD.normal_compliance * normal, rtol=1e-12)
+    assert counter.tally == {"normal": 1, "normal kernel": 1}
+
+
+@pytest.mark.parametrize("slope_correction", [False, True])
+def test_only_tractions_that_are_not_zero_are_applied(slope_correction: bool) -> None:
+    """Without friction nothing shears flat elements; on facets the pressure itself does."""
+    counter = Counter()
+    problem = posed(replace(ALL, slope_correction=slope_correction))
+    problem.displacements(FFTInfluence(problem.grid, 0.7, counter=counter), F, 0 * F, SLOPES)
+    assert counter.tally.get("shear", 0) == (2 if slope_correction else 0)
+
+
+def test_what_a_report_keeps_of_a_state() -> None:
+    """Friction over the prescribed load, or over the force at an approach; the area of what is pressed."""
+    forces = resultants(F, 0.2 * F, SLOPES, (SIDE / M) ** 2)
+    at_load = visit(posed(), F, 0.2 * F, SLOPES)
+    at_approach = visit(posed(load=None, approach=1e-7), F, 0.2 * F, SLOPES)
+    assert at_load.friction_coefficient == pytest.approx(forces.friction / 1.0, rel=1e-15)
+    assert at_approach.friction_coefficient == pytest.approx(forces.friction / forces.normal, rel=1e-15)
+    assert forces.normal != pytest.approx(1.0, rel=0.1)
+    for found in (at_load, at_approach):
+        assert found.contact_area == pytest.approx((F > 0).sum() * SIDE**2 / M**2, rel=1e-14)
+    apart = visit(posed(load=None, approach=-1e-7), 0 * F, 0 * F, SLOPES)
+    assert np.isnan(apart.friction_coefficient)
+    assert apart.contact_area == 0
+
+
+def test_memory_is_kept_for_the_grids_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept: list[int] = []
+    monkeypatch.setattr(module, "keep_memory", kept.append)
+    posed()
+    assert kept == [M * M]
 
 
 def test_facet_tractions_enter_with_the_slope_correction() -> None:
