@@ -29,7 +29,16 @@ def problem(M: int, *, approach: float | None = None, heights: np.ndarray | None
 
 @pytest.mark.parametrize(
     ("M", "expected"),
-    [(64, [64]), (126, [126]), (127, [127]), (128, [64, 128]), (192, [96, 192]), (256, [64, 128, 256])],
+    [
+        (64, [64]),
+        (126, [126]),
+        (127, [127]),
+        (128, [64, 128]),
+        (129, [129]),
+        (130, [65, 130]),
+        (192, [96, 192]),
+        (256, [64, 128, 256]),
+    ],
 )
 def test_levels_halve_even_grids_down_to_64(M: int, expected: list[int]) -> None:
     nested = levels(problem(M))
@@ -103,7 +112,13 @@ def test_sharpening_by_hand(loaded: bool) -> None:
     contact = np.array([[True, True], [True, False]])
     pressure, misfit = np.array([[5.0, 1.0], [3.0, 7.0]]), np.array([[4.0, -10.0], [3.0, 100.0]])
     corner = np.array([[1.0, 0.0], [0.0, 0.0]])
-    found = sharpened(pressure, misfit, contact, lambda r: 2 * r + r.sum() * corner, loaded=loaded)
+    found = sharpened(
+        pressure=pressure,
+        misfit=misfit,
+        contact=contact,
+        precondition=lambda r: 2 * r + r.sum() * corner,
+        loaded=loaded,
+    )
     mean = -1.0 if loaded else 0.0  # of 4, -10 and 3: the load is kept before elements are cut at zero
     residual = np.array([[4.0, -10.0], [3.0, 0.0]]) - mean * contact  # of which a loaded sum is zero
     step = 0.7 * (2 * residual + residual.sum() * corner)
