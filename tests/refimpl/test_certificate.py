@@ -190,8 +190,9 @@ def test_traction_without_contact_is_unlawful() -> None:
     assert unlawful.certificate.unlawful == 1
 
 
-def test_a_certificate_cannot_be_changed() -> None:
-    certificate = judged().certificate
-    for name in vars(certificate):
-        with pytest.raises(AttributeError, match="cannot assign"):
-            setattr(certificate, name, 0)
+def test_neither_a_state_nor_its_certificate_can_be_changed() -> None:
+    state = judged()
+    for judgement in (state, state.certificate):
+        for name in vars(judgement):
+            with pytest.raises(AttributeError, match="cannot assign"):
+                setattr(judgement, name, 0)

@@ -62,6 +62,18 @@ def test_the_loops_themselves_say_that_slopes_did_not_settle(monkeypatch: pytest
     assert outcome.status is rf.Status.ITERATION_LIMIT
 
 
+def test_slopes_that_settled_before_may_not_settle_now(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each support of tau is judged for itself."""
+    solver = dense_solver._DenseSolver(*sliding_spike())
+    support = np.ones((M, M), dtype=bool)
+    solver.settle_slopes(support)
+    assert solver.slopes_settled
+    monkeypatch.setattr(dense_solver, "_SLOPE_ITERATIONS", 1)
+    solver.problem = replace(solver.problem, load=0.2)
+    solver.settle_slopes(support)
+    assert not solver.slopes_settled
+
+
 A, B = np.eye(M, dtype=bool), np.ones((M, M), dtype=bool)
 
 
@@ -101,6 +113,26 @@ def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
     solver.settle_slopes(np.ones((M, M), dtype=bool))
     assert solver.slopes_settled
     assert solver.picard == 3
+
+
+@pytest.mark.parametrize(("changes", "passes"), [((1e-6, 5e-14), 2), ((1e-6, 5e-13, 0.0), 3)])
+def test_slopes_end_at_a_change_of_1e_13_of_the_peak(
+    changes: tuple[float, ...], passes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """SPEC's bound; what still shrinks above it goes on."""
+    problem, operator = sliding_spike()
+    solver = dense_solver._DenseSolver(problem, operator)
+    solver.pressure = 1e6 * np.eye(M)
+    monkeypatch.setattr(Problem, "slopes", lambda *displacements: solver.slopes)  # which stay
+    steps = iter((*changes, 0.0, 0.0))
+
+    def changed(support: Mask) -> None:
+        solver.pressure = (1 + next(steps)) * solver.pressure
+
+    monkeypatch.setattr(solver, "_solve_frozen", changed)
+    solver.settle_slopes(np.ones((M, M), dtype=bool))
+    assert solver.picard == passes
+    assert solver.slopes_settled
 
 
 @pytest.mark.parametrize("approach", [None, 3e-6])
