@@ -115,11 +115,13 @@ def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
     assert solver.picard == 3
 
 
-@pytest.mark.parametrize(("changes", "passes"), [((1e-6, 5e-14), 2), ((1e-6, 5e-13, 0.0), 3)])
+@pytest.mark.parametrize(
+    ("changes", "passes"), [((1e-6, 5e-14), 2), ((1e-6, 5e-13, 0.0), 3), ((1e-6, 2e-6, 1e-9, 0.0), 4)]
+)
 def test_slopes_end_at_a_change_of_1e_13_of_the_peak(
     changes: tuple[float, ...], passes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """SPEC's bound; what still shrinks above it goes on."""
+    """SPEC's bound; above it they go on, even where a change exceeds the one before."""
     problem, operator = sliding_spike()
     solver = dense_solver._DenseSolver(problem, operator)
     solver.pressure = 1e6 * np.eye(M)
@@ -160,6 +162,24 @@ def test_one_pass_without_slopes() -> None:
     assert outcome.iterations["slopes"] == 1
 
 
+@pytest.mark.parametrize("approach", [None, 3e-6])
+def test_pivoting_starts_from_the_contact_that_was_found_last(approach: float | None) -> None:
+    """Repeated, a pass takes one solve at an approach, and with Newton's own two at a load."""
+    heights = np.random.default_rng(4).uniform(0, 4e-5, (5, 5))
+    scene = replace(spike(rf.Friction(tau=0.0, beta=0.2)), lower=rf.Body(rf.Material(1e9, 0.2), heights))
+    grid = rf.Grid(SIDE, 5)
+    terms = Terms(coupled=True, oblique=True, slope_correction=False)
+    problem = pose(replace(scene, load=3.0), grid, terms, approach)
+    solver = dense_solver._DenseSolver(problem, DenseInfluence(grid, scene.sliding_direction))
+    support = np.ones((5, 5), dtype=bool)
+    solver.settle_slopes(support)
+    solves, passes = solver.solves, solver.picard
+    assert solves > passes * (1 if approach is not None else 2)
+    solver.settle_slopes(support)
+    assert solver.picard > passes
+    assert solver.solves - solves == (solver.picard - passes) * (1 if approach is not None else 2)
+
+
 def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
 
@@ -176,13 +196,16 @@ def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert outcome.iterations["linear solves"] == len(calls) > 2
 
 
-def test_newton_steps_beyond_the_bracket_halve_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Newton's proposals are played; ``g = h = 0`` and ``K = 1``, so that ``q`` is minus the approach."""
+@pytest.mark.parametrize("beyond", [(0.5, 9.0), (1.0, 5.0)])
+def test_newton_steps_that_are_not_within_the_bracket_halve_it(
+    beyond: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its ends are not. Proposals are played; ``g = h = 0`` and ``K = 1``, so ``q`` is minus the approach."""
     problem, operator = sliding_spike()
     solver = dense_solver._DenseSolver(problem, operator)
     assert problem.load is not None
     target = problem.load / problem.grid.element_area
-    proposals, tried = iter((1.0, 5.0, 0.5, 9.0)), list[float]()
+    proposals, tried = iter((1.0, 5.0, *beyond)), list[float]()
 
     def restricted(G: Array, right: Array, active: Mask) -> Array:
         """The pressures whose sum is the target at the proposal."""
