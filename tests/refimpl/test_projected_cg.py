@@ -214,6 +214,14 @@ def test_an_exact_step_is_cut_at_zero_pressure_and_what_is_cut_leaves() -> None:
     assert max(cg.residuals()) == 0
 
 
+def test_a_contact_that_is_not_at_its_approach_is_off_by_that() -> None:
+    """Whatever its pressure in pascals; the mean separation counts, on either side of the approach."""
+    for pressure in (0.25, 1e6):
+        for b in (-1.25, 1.25):
+            _, off = springs(2.0, [pressure, pressure], [b - pressure / 2, b - pressure / 2]).residuals()
+            assert off == pytest.approx(1.25, rel=1e-9)
+
+
 def test_a_trial_that_leads_uphill_is_not_taken() -> None:
     """Nothing moves, and only what the trial would have lowered to nothing leaves the contact."""
     cg = springs(1.0, [1.0, 0.0, 0.0], [0.0, 0.0, 0.0])
@@ -253,9 +261,10 @@ def test_directions_are_conjugate_while_the_set_stays(target: float | None, appr
     assert np.abs(energies / np.outer(sizes, sizes) - np.eye(8)).max() <= 1e-9
 
 
-@pytest.mark.parametrize("target", [1e7, 1e8, 1e9, 1e10])
+@pytest.mark.parametrize("target", [1e8, 10**9.5, 1e12])
 def test_directions_keep_the_load_when_the_contact_changes(target: float) -> None:
-    cg = start(np.ones((M, M)))
+    """Late changes leave something of the last direction, whose part off the contact must be made up for."""
+    cg = start()
     cg.freeze(WEIGHTS * BOWL, WEIGHTS, target=target, approach=None)
     while max(cg.residuals()) > 1e-6:
         before = cg.contact.copy()
