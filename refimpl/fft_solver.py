@@ -28,7 +28,7 @@ from refimpl.problem import Problem, visit
 from refimpl.slopes import Slopes
 
 _REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
-_COARSE_TOLERANCE = 3e-4  # a coarse state is only a start: its own grid error is larger than this
+_COARSE_TOLERANCE = 1e-3  # a coarse state is only a start: its own grid error is larger than this
 _MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
@@ -216,7 +216,7 @@ class _LevelSolver:
             if self.residual <= tolerance or self.cg_iterations >= self._budget or self._ran_off:
                 break
             before = self.support
-            self._reduce(max(_REDUCTION * self.residual, 0.3 * tolerance))
+            self._reduce(max(_REDUCTION * self.residual, self._share * tolerance))
             self.residual = self._update(support) if self._lags else max(self.cg.residuals())
             changed = changed or not np.array_equal(before, self.support)
             if self.residual < 0.5 * best:
@@ -240,6 +240,11 @@ class _LevelSolver:
             best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
             self.cg.iterate()
             self.cg_iterations += 1
+
+    @property
+    def _share(self) -> float:
+        """Of the tolerance, for the frozen problem: the rest is for what is held, or for rounding alone."""
+        return 0.3 if self._lags else 0.9
 
     @property
     def _lags(self) -> bool:

@@ -11,7 +11,7 @@ from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.problem import Problem
 
-_COARSEST = 64  # elements per side where nesting starts
+_COARSEST = 32  # elements per side where nesting starts
 
 
 def levels(problem: Problem) -> list[Problem]:

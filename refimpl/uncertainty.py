@@ -21,7 +21,7 @@ def iteration_parts(solution: Solution) -> Uncertainty:
     """What the certificate leaves open.
 
     Forces and lengths are uncertain by the worst residual. The area is uncertain by the elements
-    whose pressure or clearance is within ten worst residuals of zero.
+    whose pressure or clearance is within ten worst residuals of zero, and friction by tau on them.
     """
     worst = solution.certificate.worst
     margin = 10 * worst
@@ -29,13 +29,14 @@ def iteration_parts(solution: Solution) -> Uncertainty:
     lift = abs(solution.approach) or solution.grid.spacing
     marginal |= (solution.pressure == 0) & (solution.clearance <= margin * lift)
     area = float(np.count_nonzero(marginal)) * solution.grid.element_area
-    relative = ("max_pressure", "approach", "normal_force", "friction_force")
+    relative = ("max_pressure", "approach", "normal_force")
     parts: Uncertainty = {name: {"iteration": worst * abs(getattr(solution, name))} for name in relative}
     parts["binormal_force"] = {"iteration": worst * solution.normal_force}
     parts["contact_area"] = {"iteration": area}
-    slip = adhesive_share(solution)
-    friction = worst * abs(solution.friction_coefficient) + slip * area
-    parts["friction_coefficient"] = {"iteration": friction}
+    friction = worst * abs(solution.friction_force) + solution.friction.tau * area
+    parts["friction_force"] = {"iteration": friction}
+    share = worst * abs(solution.friction_coefficient) + adhesive_share(solution) * area
+    parts["friction_coefficient"] = {"iteration": share}
     return parts
 
 

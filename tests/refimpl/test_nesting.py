@@ -30,17 +30,17 @@ def problem(M: int, *, approach: float | None = None, heights: np.ndarray | None
 @pytest.mark.parametrize(
     ("M", "expected"),
     [
-        (64, [64]),
-        (126, [126]),
-        (127, [127]),
-        (128, [64, 128]),
-        (129, [129]),
-        (130, [65, 130]),
-        (192, [96, 192]),
-        (256, [64, 128, 256]),
+        (32, [32]),
+        (62, [62]),
+        (63, [63]),
+        (64, [32, 64]),
+        (65, [65]),
+        (66, [33, 66]),
+        (96, [48, 96]),
+        (128, [32, 64, 128]),
     ],
 )
-def test_levels_halve_even_grids_down_to_64(M: int, expected: list[int]) -> None:
+def test_levels_halve_even_grids_down_to_32(M: int, expected: list[int]) -> None:
     nested = levels(problem(M))
     assert [p.grid.M for p in nested] == expected
     assert all(p.gap.shape == p.mean_surface.shape == (p.grid.M, p.grid.M) for p in nested)
