@@ -208,14 +208,69 @@ def test_the_second_approach_is_hertzs(monkeypatch: pytest.MonkeyPatch) -> None:
     assert asked(monkeypatch, 2e-6, lambda d: (d / 3e-6) ** 1.5) == pytest.approx([2e-6, 3e-6], rel=1e-9)
 
 
-def test_the_third_approach_is_a_secants(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = asked(monkeypatch, 2e-6, lambda d: (d - 1e-6) / 4e-6)
-    assert found == pytest.approx([2e-6, 2e-6 * 4 ** (2 / 3), 5e-6], rel=1e-9)
+@pytest.mark.parametrize(("start", "force"), [(2e-6, 0.25), (10e-6, 2.25)])
+def test_the_third_approach_is_a_secants(start: float, force: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From below and from above."""
+    found = asked(monkeypatch, start, lambda d: (d - 1e-6) / 4e-6)
+    assert found == pytest.approx([start, start * force ** (-2 / 3), 5e-6], rel=1e-9)
 
 
 def test_without_contact_the_approach_grows_fourfold(monkeypatch: pytest.MonkeyPatch) -> None:
     found = asked(monkeypatch, 1e-6, lambda d: max(0.0, d / 15e-6 - 1 / 15))
     assert found[:3] == pytest.approx([1e-6, 4e-6, 16e-6], rel=1e-9)
+
+
+def test_a_force_that_falls_at_first_is_met_by_twice_the_approach(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The secant would go back, to what is known to be too little."""
+    forces = {1.0: 0.5, 0.5 ** (-2 / 3): 0.4}  # in units of 1e-6 m and of the load
+    found = asked(
+        monkeypatch, 1e-6, lambda d: next((f for x, f in forces.items() if math.isclose(d, x * 1e-6)), 1.0)
+    )
+    assert found == pytest.approx([1e-6, 1.5874e-6, 2 * 1.5874e-6], rel=1e-4)
+
+
+def test_iteration_one_starts_within_the_interference_and_the_contact_so_far(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    one = scheme(16)
+    begun: list[Mask] = []
+    iterate = one._iterate
+
+    def recorded(u: Array, inside: Mask, *, periodic: bool) -> Mask:
+        if periodic:
+            begun.append(inside.copy())
+        return iterate(u, inside, periodic=periodic)
+
+    monkeypatch.setattr(one, "_iterate", recorded)
+    one.contact(4e-6, None)
+    found = one.pressure > 0
+    one.contact(6e-6, None)
+    assert np.array_equal(begun[0], one.problem.gap < 4e-6)
+    assert 0 < found.sum() < begun[0].sum()
+    assert np.array_equal(begun[1], found)
+
+
+def test_passes_are_as_many_as_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    for passes in (1, 2):
+        monkeypatch.setattr(module, "_PASSES", passes)
+        one = scheme(16)
+        one.tolerance = 0.0
+        one.contact(4e-6, None)
+        assert one.trace.passes == passes
+        assert not one.settled
+
+
+def test_nothing_is_left_where_there_is_no_contact() -> None:
+    outcome, _, trace = run("hertz", 16, approach=-1e-9)
+    assert trace.periodicity_before == trace.periodicity_after == 0
+    assert not outcome.pressure.any()
+
+
+def test_a_trace_is_itself_only() -> None:
+    """It holds an array, which has no single truth to compare by."""
+    one, other = Trace(8), Trace(8)
+    assert {one, other, one} == {other, one}
+    assert one != other
 
 
 def test_approaches_stay_within_their_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
