@@ -229,6 +229,20 @@ def test_a_force_that_falls_at_first_is_met_by_twice_the_approach(monkeypatch: p
     assert found == pytest.approx([1e-6, 1.5874e-6, 2 * 1.5874e-6], rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    "forces",
+    [
+        {1.0: 0.0, 4.0: 3.0, 2.0: -1.0, 3.0: 0.0, 3.5: 1.0},  # the secant from 2 and 3 meets the load at 4
+        {1.0: 0.0, 4.0: 3.0, 2.0: 2.0, 1.5: 1.5, 1.25: 1.0},  # the one from 2 and 1.5 meets it at 1
+    ],
+)
+def test_an_end_of_the_bracket_is_not_tried_again(
+    forces: dict[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the force was there is known: the bracket is halved. Small integers, so that nothing rounds."""
+    assert asked(monkeypatch, 1.0, forces.__getitem__) == list(forces)
+
+
 def test_iteration_one_starts_within_the_interference_and_the_contact_so_far(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -248,6 +262,21 @@ def test_iteration_one_starts_within_the_interference_and_the_contact_so_far(
     assert np.array_equal(begun[0], one.problem.gap < 4e-6)
     assert 0 < found.sum() < begun[0].sum()
     assert np.array_equal(begun[1], found)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_an_element_that_just_touches_is_excluded(periodic: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Contact is pressure above zero; here elements do not feel each other."""
+    one = scheme()
+    for name in ("_apply", "_apply_periodic", "_invert"):
+        monkeypatch.setattr(one, name, np.copy)
+    u = np.zeros((8, 8))
+    u[2:4, 2:4] = 1.0
+    touching = np.ones((8, 8), dtype=bool)
+    assert np.array_equal(one._iterate(u, touching, periodic=periodic), u > 0)
+    assert np.array_equal(one.pressure, u)
+    # the first step is exact; the second finds nothing to do, and is none
+    assert (one.trace.periodic_steps, one.trace.correction_steps) == (periodic, not periodic)
 
 
 def test_passes_are_as_many_as_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
