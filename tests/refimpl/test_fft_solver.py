@@ -187,7 +187,9 @@ def test_without_a_support_tau_is_where_contact_is() -> None:
     assert solver.settle(1e-9)
     pressure, friction = solver.cg.pressure, solver.problem.friction
     assert 1 < np.count_nonzero(pressure) < 16**2
-    assert np.array_equal(solver.traction, np.where(pressure > 0, 1e6 + friction.beta * pressure, 0.0))
+    expected = np.where(pressure > 0, 1e6 + friction.beta * pressure, 0.0)
+    # the pressure is brought to the load once more after the traction: a change of rounding
+    np.testing.assert_allclose(solver.traction, expected, rtol=1e-14, atol=0)
 
 
 def test_the_certificate_knows_all_tractions_and_transforms_no_more() -> None:
