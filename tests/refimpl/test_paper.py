@@ -229,6 +229,32 @@ def test_a_force_that_falls_at_first_is_met_by_twice_the_approach(monkeypatch: p
     assert found == pytest.approx([1e-6, 1.5874e-6, 2 * 1.5874e-6], rel=1e-4)
 
 
+@pytest.mark.parametrize("nothing_known", [None, 0.0])
+def test_the_first_approach_is_a_small_part_of_the_gap(
+    nothing_known: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So that few elements touch; between flats, which have no gap, it is of an element's size."""
+    one = scheme()
+    load = one.problem.load
+    assert load is not None
+    press = Press(lambda approach: load)
+    monkeypatch.setattr(one, "contact", press)
+    one.balance(nothing_known, None)
+    assert 0.01 <= press.asked[0] / one.problem.gap.max() <= 0.2
+    one.problem = replace(one.problem, gap=0 * one.problem.gap)
+    one.balance(nothing_known, None)
+    assert press.asked[1] == one.problem.grid.spacing
+
+
+def test_without_a_support_tau_is_where_contact_is() -> None:
+    one = scheme(friction=rf.Friction(tau=1e6, beta=0.0))
+    one.pressure[2:5, 3] = 1e7, 1e-3, 0.0
+    _, tau_on = one._bring_up_to_date(None)
+    assert np.argwhere(tau_on).tolist() == [[2, 3], [3, 3]]
+    given = np.eye(8, dtype=bool)
+    assert np.array_equal(one._bring_up_to_date(given)[1], given)
+
+
 @pytest.mark.parametrize(
     "forces",
     [
