@@ -102,16 +102,16 @@ def test_cg_goes_on_while_it_gets_on(
 
 
 class Updates:
-    """Stands for the updates: the residual falls three times, and once the relaxation is ``small`` enough."""
+    """Stands for the updates: the residual falls at first, and once the relaxation is ``small`` enough."""
 
-    def __init__(self, solver: _LevelSolver, small: float, supports: tuple[Mask, ...]) -> None:
-        self.solver, self.small, self.supports = solver, small, supports
+    def __init__(self, solver: _LevelSolver, small: float, supports: tuple[Mask, ...], falls: int) -> None:
+        self.solver, self.small, self.supports, self.falls = solver, small, supports, falls
         self.residual, self.count = 1.0, 0
 
     def __call__(self, support: Mask | None) -> float:
         self.solver.support = self.supports[self.count % len(self.supports)]
         self.count += 1
-        if self.count <= 3 or self.solver._relaxation <= self.small:
+        if self.count <= self.falls or self.solver._relaxation <= self.small:
             self.residual *= 0.4
         return self.residual
 
@@ -121,11 +121,16 @@ ONE_OF_EIGHT = np.eye(8, dtype=bool)
 
 
 def settled(
-    monkeypatch: pytest.MonkeyPatch, small: float, supports: tuple[Mask, ...], tau: float, sigma: float = 0.3
+    monkeypatch: pytest.MonkeyPatch,
+    small: float,
+    supports: tuple[Mask, ...],
+    tau: float,
+    sigma: float = 0.3,
+    falls: int = 3,
 ) -> tuple[bool, Updates, float]:
     """What `settle` says of such updates, the updates, and the relaxation that it began with."""
     solver = level(posed(coupled(sigma, tau), 4))
-    began, updates = solver._relaxation, Updates(solver, small, supports)
+    began, updates = solver._relaxation, Updates(solver, small, supports, falls)
     monkeypatch.setattr(solver, "_update", updates)
     monkeypatch.setattr(solver, "_reduce", lambda goal: None)
     return solver.settle(1e-3), updates, began
@@ -140,6 +145,13 @@ def test_updates_that_stall_are_relaxed_until_they_contract(
     assert updates.solver._relaxation == 0.25 * began
     # a stall is a patience without halving; 0.4^8 < 1e-3
     assert updates.count == 3 + 2 * updates.solver._patience + 5
+
+
+def test_updates_that_stall_from_the_first_are_relaxed_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under tau, while its support stays: nothing cycles."""
+    meets, updates, began = settled(monkeypatch, 0.3, (ONE,), tau=0.5, falls=0)
+    assert meets
+    assert updates.solver._relaxation == 0.25 * began
 
 
 @pytest.mark.parametrize("sigma", [0.0, 0.3])
@@ -196,11 +208,13 @@ def test_without_a_support_tau_is_where_contact_is() -> None:
     np.testing.assert_allclose(solver.traction, expected, rtol=1e-14, atol=0)
 
 
-def test_the_certificate_knows_all_tractions_and_transforms_no_more() -> None:
-    """Tau may lie beside the pressure where a run was cut short."""
+@pytest.mark.parametrize("rows", [slice(2, 6), slice(6, 9)])
+def test_the_certificate_knows_all_tractions_and_transforms_no_more(rows: slice) -> None:
+    """Tau may lie around or beside the pressure where a run was cut short."""
     problem = posed(coupled(0.3, tau=1e6), 16)
     pressure, traction = np.zeros((16, 16)), np.zeros((16, 16))
-    pressure[3:5, 6:8], traction[2:6, 6:9] = 1e7, 1e6
+    pressure[3:5, 6:8], traction[rows, 6:9] = 1e7, 1e6
+    traction[3:5, 6:8] = 1e6
     flat = Slopes.flat((16, 16))
     outcome = Outcome(
         pressure, traction, flat, rf.Status.CONVERGED, withheld=pressure > 0, visited=(), iterations={}
@@ -334,6 +348,37 @@ def test_how_a_settling_ended(residual: float, steps: int, status: rf.Status) ->
     solver.residual, solver._tolerance = residual, 1e-8
     solver.cg_iterations, solver._budget = steps, 10
     assert solver._ended() is status
+
+
+@pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=0.0, beta=0.1), rf.Friction(tau=1.0)])
+def test_without_tau_one_settling_is_all(friction: rf.Friction, monkeypatch: pytest.MonkeyPatch) -> None:
+    solver = level(posed(replace(BALL, friction=friction), 8))
+    settlings: list[Mask | None] = []
+    settle = solver.settle
+
+    def recorded(tolerance: float, support: Mask | None = None) -> bool:
+        settlings.append(support)
+        return settle(tolerance, support)
+
+    monkeypatch.setattr(solver, "settle", recorded)
+    assert solver.solve(1e-8).status is rf.Status.CONVERGED
+    if friction.tau == 0:
+        assert settlings == [None]
+    else:
+        assert all(support is not None for support in settlings)
+        assert len(settlings) > 1
+
+
+@pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=1.0), rf.Friction(beta=0.1)])
+@pytest.mark.parametrize("coupled", [False, True])
+@pytest.mark.parametrize("oblique", [False, True])
+@pytest.mark.parametrize("slope_correction", [False, True])
+def test_what_lags(friction: rf.Friction, coupled: bool, oblique: bool, slope_correction: bool) -> None:
+    """Slopes, tractions on them, and shear where there is friction and the bodies differ."""
+    terms = Terms(coupled=coupled, oblique=oblique, slope_correction=slope_correction)
+    problem = pose(replace(BALL, friction=friction), rf.Grid(BALL.side, 4), terms, None)
+    sheared = coupled and max(friction.tau, friction.beta) > 0
+    assert level(problem)._lags is max(oblique, slope_correction, sheared)
 
 
 def test_any_pressure_is_contact() -> None:
