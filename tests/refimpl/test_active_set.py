@@ -139,11 +139,26 @@ def test_single_exchanges_follow_ten_of_blocks_without_progress(
     assert singles > 0
 
 
-def test_an_element_that_just_touches_is_no_contact() -> None:
-    """Gap and pressure zero: the support stays as it was."""
-    found = complementarity(np.eye(4), np.zeros(4), np.zeros(4, dtype=bool))
+@pytest.mark.parametrize("start", [False, True])
+def test_an_element_without_gap_and_pressure_stays_where_it_is(start: bool) -> None:
+    found = complementarity(np.eye(4), np.zeros(4), np.full(4, start))
     assert found.solves == 1
-    assert not found.active.any()
+    assert np.all(found.active == start)
+
+
+@pytest.mark.parametrize("gap", [-1e-17, 0.0, 1e-17])
+def test_gaps_are_judged_against_rounding(gap: float) -> None:
+    found = complementarity(np.eye(2), np.array([-1.0, gap]), np.array([True, False]))
+    assert found.solves == 1
+    assert found.active.tolist() == [True, False]
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-30])
+@pytest.mark.parametrize("start", [[False, False], [True, True]])
+def test_rounding_is_of_the_problems_own_size(unit: float, start: list[bool]) -> None:
+    found = complementarity(np.eye(2), unit * np.array([-1.0, 0.1]), np.array(start))
+    assert found.active.tolist() == [True, False]
+    assert found.pressure.tolist() == [unit, 0.0]
 
 
 def test_a_pressure_that_is_negative_by_rounding_is_returned_as_zero() -> None:
@@ -153,9 +168,20 @@ def test_a_pressure_that_is_negative_by_rounding_is_returned_as_zero() -> None:
     assert found.pressure.tolist() == [1.0, 0.0, 2.0]
 
 
-def test_a_matrix_without_the_property_is_named() -> None:
+@pytest.mark.parametrize("n", [2, 40])
+def test_a_matrix_without_the_property_is_named_in_time(n: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After some tens of exchanges an element: the hard problems above need up to seven."""
+    solves = 0
+
+    def counted(G: np.ndarray, right: np.ndarray, active: Mask) -> np.ndarray:
+        nonlocal solves
+        solves += 1
+        return restricted_solve(G, right, active)
+
+    monkeypatch.setattr(active_set, "restricted_solve", counted)
     with pytest.raises(ArithmeticError, match="no P-matrix"):
-        complementarity(-np.eye(2), -np.ones(2), np.zeros(2, dtype=bool))
+        complementarity(-np.eye(n), -np.ones(n), np.zeros(n, dtype=bool))
+    assert 10 * (n + 10) <= solves <= 100 * (n + 10)
 
 
 def test_restricted_solve_takes_several_right_sides() -> None:
