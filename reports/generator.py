@@ -138,7 +138,7 @@ def pictures(case: Case, evidence: Evidence) -> list[Mapping[str, Any]]:
 LEADING = (
     ("reproduction/fig8-exponential-full", "reproduction/fig8-exponential"),
     ("fem3d/error-map", "appendix-figures/fig12", "appendix-fem/map"),
-    ("benchmarks/peers", "hertz/peak-order"),
+    ("hertz/peak-order",),
 )
 """Cases whose first figure opens the report, each with its stand-ins."""
 

@@ -42,9 +42,7 @@ def build(document: Document) -> Exhibit:
 def notes(document: Document) -> tuple[str, ...]:
     """What the sample can speak of: tests were written against the survivors of the first seed's."""
     if document["seed"] != 1:
-        return (
-            "Nothing was changed because of this sample before it was judged: its score is a fair estimate.",
-        )
+        return ("No test was written and no mutant explained because of this sample before it was judged.",)
     return (
         "Tests were sharpened against this sample's survivors, so its score says that none is left open; "
         "how many others would survive is what the fresh sample estimates.",

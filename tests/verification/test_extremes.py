@@ -15,6 +15,7 @@ import refimpl as rf
 import verification.extremes.axes  # noqa: F401  # registers the axes
 from appendix_a import wedge
 from refimpl.operators.fft import FFTInfluence
+from verification.cases.extremes import told
 from verification.extremes import (
     exact_operators,
     judge,
@@ -198,3 +199,14 @@ def test_the_committed_study_has_no_wrong_number() -> None:
     assert found["complete"]
     assert len(found["states"]) >= 400
     assert found["counts"]["wrong"] == 0
+
+
+def test_a_crash_is_no_pass() -> None:
+    runs = {
+        "right": lambda: number(0.0, 0.1, "converged", "made up"),
+        "wrong": lambda: number(1.0, 0.1, "converged", "made up"),
+        "crash": lambda: judge.guarded(lambda: [][0]),  # type: ignore[arg-type]  # it never returns
+    }
+    rows = [study.judged(Extreme("made up", "made up", name, 1.0, run)) for name, run in runs.items()]
+    assert [row["verdict"] for row in rows] == list(runs)
+    assert told(rows).value == 2

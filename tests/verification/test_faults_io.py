@@ -1,4 +1,4 @@
-"""What a machine does to a program: interrupts, kills, full and read-only disks, broken and hostile files.
+"""What a machine does to a program: full and read-only disks, broken and hostile files.
 
 The tests may run as root, whom no file mode stops: a folder that refuses is played by the system call's
 error, a full disk by /dev/full, a limit on the size of files, or a tiny file system if one mounts.
@@ -14,64 +14,23 @@ import shutil
 import signal
 import sqlite3
 import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
 import refimpl as rf
 from reports.generator import render
 from tests.reports.sample import case, results
+from tests.verification.children import LONG, STUDY, Ended, forked, one_line, rows, small
 from verification import files
 from verification.cli import main
 from verification.sweep import engine
 from verification.sweep.store import open_store
-from verification.sweep.study import Study, study_from_dict
 
 SCENE = rf.scene_to_toml(rf.read_scene("hertz"))
-LONG = ["solve", "table1-rough", "--grid", "1024", "--tolerance", "1e-12"]
-STUDY = 'scene = "table1-rough"\nrealisations = 40\n[vary]\ngrid = [12, 16]\n'
-
-
-class Ended(NamedTuple):
-    """How a child ended: exit status (negative: the signal), and what it printed on stderr."""
-
-    status: int
-    err: str
-
-
-def forked(act: Callable[[], int], *, before: Callable[[], object] = lambda: None) -> Ended:
-    """Run in a forked child, so that limits and signals touch nobody else and nothing is imported anew."""
-    with tempfile.TemporaryFile() as err:
-        child = os.fork()
-        if child == 0:
-            os.dup2(err.fileno(), 2)
-            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-            sys.stderr, sys.stdout = os.fdopen(2, "w", closefd=False), os.fdopen(1, "w", closefd=False)
-            before()
-            try:
-                status = act()
-            except SystemExit as usage:
-                status = int(usage.code or 0)
-            finally:
-                sys.stderr.flush()
-            os._exit(status)
-        _, waited = os.waitpid(child, 0)
-        err.seek(0)
-        return Ended(os.waitstatus_to_exitcode(waited), err.read().decode())
-
-
-def one_line(ended: Ended, says: str, status: int = 1) -> None:
-    """The fault is told in one clear line, without a traceback."""
-    assert ended.status == status, ended.err
-    assert ended.err.count("\n") == 1, ended.err
-    assert ended.err.startswith("rough-friction")
-    assert says in ended.err
 
 
 def limited(size: int) -> Callable[[], None]:
@@ -98,88 +57,6 @@ def tiny_disk(tmp_path: Path) -> Iterator[Path | None]:
         yield folder
     finally:
         subprocess.run(["umount", str(folder)], check=True)
-
-
-# --- interrupts and kills ---
-
-
-def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
-    # a shell's background job ignores interrupts, and so would its children
-    code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
-    code += "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    child = subprocess.Popen(
-        [sys.executable, "-c", code, *arguments],
-        cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
-    assert child.stdout is not None
-    assert child.stdout.readline() == "ready\n"
-    return child
-
-
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL, signal.SIGTERM])
-def test_an_interrupted_solve_leaves_the_old_result_and_no_other_file(
-    tmp_path: Path, how: signal.Signals
-) -> None:
-    (tmp_path / "s.json").write_text("old")
-    act = forked_solve(tmp_path, how)
-    assert act.status == (130 if how is signal.SIGINT else -how)
-    assert "Traceback" not in act.err
-    assert [p.name for p in tmp_path.iterdir()] == ["s.json"]
-    assert (tmp_path / "s.json").read_text() == "old"
-
-
-def forked_solve(folder: Path, how: signal.Signals) -> Ended:
-    """A solve that a timer interrupts while it iterates."""
-
-    def act() -> int:
-        signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in a shell's background job
-        signal.signal(signal.SIGALRM, lambda *_: os.kill(os.getpid(), how))
-        signal.setitimer(signal.ITIMER_REAL, 0.3)
-        return main([*LONG, "--json", str(folder / "s.json")])
-
-    return forked(act)
-
-
-def small(realisations: int = 40) -> Study:
-    return study_from_dict({"scene": "table1-rough", "realisations": realisations, "vary": {"grid": [12]}})
-
-
-def test_an_interrupted_sweep_keeps_what_it_finished_and_goes_on(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY)
-    tail = ["study.toml", "--store", "s.sqlite", "--workers", "1", "--csv", "s.csv"]
-    child = started(["sweep", *tail], tmp_path)
-    deadline = time.monotonic() + 60
-    while rows(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
-        time.sleep(0.02)
-    child.send_signal(signal.SIGINT)
-    _, err = child.communicate(timeout=60)
-    assert child.returncode == 130
-    assert "Traceback" not in err
-    kept = rows(tmp_path / "s.sqlite")
-    assert 2 <= kept < 80
-    assert not (tmp_path / "s.csv").exists()
-    done = engine.sweep(study_from_dict(tomllib_of(STUDY)), tmp_path / "s.sqlite", workers=0)
-    assert (done.found, done.found + done.finished) == (kept, 80)
-
-
-def tomllib_of(text: str) -> dict[str, object]:
-    import tomllib
-
-    return tomllib.loads(text)
-
-
-def rows(store: Path) -> int:
-    """Finished runs of a store, 0 before it has its table."""
-    if not store.exists():
-        return 0
-    connection = sqlite3.connect(store)
-    try:
-        return int(connection.execute("select count(*) from runs").fetchone()[0])
-    except sqlite3.OperationalError:
-        return 0
-    finally:
-        connection.close()
 
 
 # --- disks ---

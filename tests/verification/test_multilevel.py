@@ -103,7 +103,14 @@ def test_coverage_is_counted() -> None:
         part = Estimate(mean, 0.1, 0.2, 9.0)
         names = ("friction_coefficient", "contact_area")
         return Ensemble(
-            (1, 2), dict.fromkeys(names, part), (4, 4), (1.0, 1.0), dict.fromkeys(names, 80.0), True, {}
+            (1, 2),
+            dict.fromkeys(names, part),
+            (4, 4),
+            (1.0, 1.0),
+            dict.fromkeys(names, 80.0),
+            dict.fromkeys(names, (mean, mean + 1)),
+            True,
+            {},
         )
 
     found = document([made(1.0), made(1.0), made(1.0), made(2.0)], 0.1)

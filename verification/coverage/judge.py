@@ -42,6 +42,11 @@ class Verdict:
         """Whether the true error lies inside the bar."""
         return self.error <= self.bar
 
+    @property
+    def covered_at_worst(self) -> bool:
+        """The same if the reference were off by its whole bound, in the direction that hurts."""
+        return self.error + self.reference_bound <= self.bar
+
 
 def verdicts(ladders: Mapping[int, Sequence[Rung]], accuracy: float) -> list[Verdict]:
     """All numbers of all scenes whose ladder has a reference, which is its finest grid."""
@@ -127,6 +132,7 @@ def summary(found: Iterable[Verdict]) -> dict[str, float | int | None]:
         "scenes": len(found),
         "met": len(met) / len(found),
         "covered": sum(verdict.covered for verdict in found) / len(found),
+        "covered_at_worst": sum(verdict.covered_at_worst for verdict in found) / len(found),
         "covered_where_met": sum(verdict.covered for verdict in met) / len(met) if met else None,
         "median_bar_over_error": float(np.median([_ratio(v.bar, v.error) for v in found])),
         "median_cost": float(np.median(costs)) if costs else None,

@@ -48,10 +48,13 @@ def document(done: Sequence[Ensemble], target: float) -> dict[str, Any]:
     for name in QUANTITIES:
         estimates = [e.means[name] for e in done]
         mean = float(np.mean([e.mean for e in estimates]))
+        finest = np.array([value for e in done for value in e.finest[name]])
         quantities[name] = {
             "mean": mean,
             "doubt": float(np.std([e.mean for e in estimates], ddof=1) / len(done) ** 0.5),
             "covered": int(sum(abs(e.mean - mean) <= e.half_width for e in estimates)),
+            "mean of the finest solves alone": float(finest.mean()),
+            "its standard error": float(finest.std(ddof=1) / len(finest) ** 0.5),
             "means": [e.mean for e in estimates],
             "half widths": [e.half_width for e in estimates],
             "standard error": float(np.mean([e.standard_error for e in estimates]) / mean),

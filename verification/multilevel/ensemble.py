@@ -25,7 +25,8 @@ _ROUNDS = 8
 class Ensemble:
     """Means on the finest grid; of every term its samples and the processor seconds of one.
 
-    ``plain`` is what as many solves on the finest grid as the standard error needs would cost (s).
+    ``plain`` is what as many solves on the finest grid as the standard error needs would cost (s), ``finest``
+    the values of the few that there were: their mean estimates the same without any coarser grid.
     """
 
     grids: tuple[int, ...]
@@ -33,6 +34,7 @@ class Ensemble:
     samples: tuple[int, ...]
     seconds: tuple[float, ...]
     plain: Mapping[str, float]
+    finest: Mapping[str, tuple[float, ...]]
     met: bool
     failures: Mapping[str, str]
 
@@ -76,9 +78,10 @@ def ensemble(
 
 @dataclass(frozen=True)
 class _Term:
-    """Samples ``(N, quantities)``, processor seconds of one sample and of its finer solve, failures."""
+    """Samples and finer solves ``(N, quantities)``, seconds of one sample and of one finer solve."""
 
     samples: Array
+    finer: Array
     seconds: float
     finer_seconds: float
     failures: Mapping[str, str]
@@ -100,18 +103,19 @@ def _solved(
     )
     done = engine.sweep(part, store, workers=workers, scheduler=scheduler, tick=tick)
     if done.failures:
-        return _Term(np.empty((0, len(QUANTITIES))), np.nan, np.nan, done.failures)
+        none = np.empty((0, len(QUANTITIES)))
+        return _Term(none, none, np.nan, np.nan, done.failures)
     values = np.array([[row[name] for name in QUANTITIES] for row in done.rows], dtype=float)
     by_grid = values.reshape(number, len(pair), len(QUANTITIES))
     samples = by_grid[:, -1] - by_grid[:, 0] if term else by_grid[:, 0]
     seconds = np.array(done.solve_seconds).reshape(number, len(pair)).mean(axis=0)
-    return _Term(samples, float(seconds.sum()), float(seconds[-1]), {})
+    return _Term(samples, by_grid[:, -1], float(seconds.sum()), float(seconds[-1]), {})
 
 
 def _gathered(grids: Sequence[int], terms: Sequence[_Term], target: float) -> Ensemble:
     failures = {key: text for term in terms for key, text in term.failures.items()}
     if failures:
-        return Ensemble(tuple(grids), {}, (), (), {}, False, failures)
+        return Ensemble(tuple(grids), {}, (), (), {}, {}, False, failures)
     means = {name: estimate([term.samples[:, k] for term in terms]) for k, name in enumerate(QUANTITIES)}
     plain = {
         # the scatter of one realisation hardly depends on the grid, and the coarsest knows it best
@@ -126,6 +130,7 @@ def _gathered(grids: Sequence[int], terms: Sequence[_Term], target: float) -> En
         samples=tuple(len(term.samples) for term in terms),
         seconds=tuple(term.seconds for term in terms),
         plain=plain,
+        finest={name: tuple(terms[-1].finer[:, k].tolist()) for k, name in enumerate(QUANTITIES)},
         met=all(e.standard_error <= target * abs(e.mean) for e in means.values()),
         failures={},
     )

@@ -1,0 +1,69 @@
+"""Children that limits, signals and shortages are tried on, and the studies that they run."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from verification.sweep.study import Study, study_from_dict
+
+LONG = ["solve", "table1-rough", "--grid", "1024", "--tolerance", "1e-12"]
+STUDY = 'scene = "table1-rough"\nrealisations = 40\n[vary]\ngrid = [12, 16]\n'
+
+
+class Ended(NamedTuple):
+    """How a child ended: exit status (negative: the signal), and what it printed on stderr."""
+
+    status: int
+    err: str
+
+
+def forked(act: Callable[[], int], *, before: Callable[[], object] = lambda: None) -> Ended:
+    """Run in a forked child, so that limits and signals touch nobody else and nothing is imported anew."""
+    with tempfile.TemporaryFile() as err:
+        child = os.fork()
+        if child == 0:
+            os.dup2(err.fileno(), 2)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            sys.stderr, sys.stdout = os.fdopen(2, "w", closefd=False), os.fdopen(1, "w", closefd=False)
+            before()
+            try:
+                status = act()
+            except SystemExit as usage:
+                status = int(usage.code or 0)
+            finally:
+                sys.stderr.flush()
+            os._exit(status)
+        _, waited = os.waitpid(child, 0)
+        err.seek(0)
+        return Ended(os.waitstatus_to_exitcode(waited), err.read().decode())
+
+
+def one_line(ended: Ended, says: str, status: int = 1) -> None:
+    """The fault is told in one clear line, without a traceback."""
+    assert ended.status == status, ended.err
+    assert ended.err.count("\n") == 1, ended.err
+    assert ended.err.startswith("rough-friction")
+    assert says in ended.err
+
+
+def small(realisations: int = 40) -> Study:
+    return study_from_dict({"scene": "table1-rough", "realisations": realisations, "vary": {"grid": [12]}})
+
+
+def rows(store: Path) -> int:
+    """Finished runs of a store, 0 before it has its table."""
+    if not store.exists():
+        return 0
+    connection = sqlite3.connect(store)
+    try:
+        return int(connection.execute("select count(*) from runs").fetchone()[0])
+    except sqlite3.OperationalError:
+        return 0
+    finally:
+        connection.close()

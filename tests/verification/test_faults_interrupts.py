@@ -1,0 +1,79 @@
+"""Interrupts and kills: the old result stays whole, no other file is left, and a sweep goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.verification.children import LONG, STUDY, Ended, forked, rows
+from verification.cli import main
+from verification.sweep import engine
+from verification.sweep.study import study_from_dict
+
+
+def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
+    # a shell's background job ignores interrupts, and so would its children
+    code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    code += "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    child = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    assert child.stdout is not None
+    assert child.stdout.readline() == "ready\n"
+    return child
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL, signal.SIGTERM])
+def test_an_interrupted_solve_leaves_the_old_result_and_no_other_file(
+    tmp_path: Path, how: signal.Signals
+) -> None:
+    (tmp_path / "s.json").write_text("old")
+    act = forked_solve(tmp_path, how)
+    assert act.status == (130 if how is signal.SIGINT else -how)
+    assert "Traceback" not in act.err
+    assert [p.name for p in tmp_path.iterdir()] == ["s.json"]
+    assert (tmp_path / "s.json").read_text() == "old"
+
+
+def forked_solve(folder: Path, how: signal.Signals) -> Ended:
+    """A solve that a timer interrupts while it iterates."""
+
+    def act() -> int:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in a shell's background job
+        signal.signal(signal.SIGALRM, lambda *_: os.kill(os.getpid(), how))
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        return main([*LONG, "--json", str(folder / "s.json")])
+
+    return forked(act)
+
+
+def test_an_interrupted_sweep_keeps_what_it_finished_and_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY)
+    tail = ["study.toml", "--store", "s.sqlite", "--workers", "1", "--csv", "s.csv"]
+    child = started(["sweep", *tail], tmp_path)
+    deadline = time.monotonic() + 60
+    while rows(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
+        time.sleep(0.02)
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=60)
+    assert child.returncode == 130
+    assert "Traceback" not in err
+    kept = rows(tmp_path / "s.sqlite")
+    assert 2 <= kept < 80
+    assert not (tmp_path / "s.csv").exists()
+    done = engine.sweep(study_from_dict(tomllib_of(STUDY)), tmp_path / "s.sqlite", workers=0)
+    assert (done.found, done.found + done.finished) == (kept, 80)
+
+
+def tomllib_of(text: str) -> dict[str, object]:
+    import tomllib
+
+    return tomllib.loads(text)
