@@ -104,6 +104,7 @@ def test_block_exchanges_alone_would_cycle() -> None:
 CYCLIC = np.array([[1.0, 2.0, 0.0], [0.0, 1.0, 2.0], [2.0, 0.0, 1.0]])
 HARD = [
     (CYCLIC, -np.ones(3), np.array([True, False, False])),
+    (CYCLIC, -np.ones(3), np.array([True, True, False])),
     (np.kron(np.eye(4), CYCLIC), -np.ones(12), np.tile([True, False, False], 4)),
     *(
         (random_p_matrix(n, seed, skew), -np.ones(n), np.zeros(n, dtype=bool))
