@@ -87,7 +87,9 @@ def test_perimeter_of_hand_counted_sets():
     factor = (math.pi - 1 + math.log(2)) / 24
     one = np.zeros((4, 4), dtype=bool)
     one[1, 1] = True
-    assert perimeter_corrected_area(one, 0.5) == pytest.approx(0.25 * (1 - 4 * factor), rel=1e-15)
+    assert perimeter_corrected_area(contact=one, spacing=0.5) == pytest.approx(
+        0.25 * (1 - 4 * factor), rel=1e-15
+    )
     one[1, 2] = True
     assert perimeter_corrected_area(one, 0.5) == pytest.approx(0.25 * (2 - 6 * factor), rel=1e-15)
     assert perimeter_corrected_area(np.ones((4, 4), dtype=bool), 0.5) == pytest.approx(4 - 16 * factor * 0.25)

@@ -198,3 +198,13 @@ def test_shear_couples_by_the_difference_and_tilts_by_the_sum() -> None:
     tilts = np.array([shear, -shear]) * (c_lower + c_upper) / 2
     for found, expected in zip(parts.values(), (both, couples, tilts), strict=True):
         np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
+
+
+def test_a_problem_and_its_terms_cannot_be_changed_and_a_problem_is_itself_only() -> None:
+    problem = posed()
+    for fixed in (problem, problem.terms):
+        for name in vars(fixed):
+            with pytest.raises(AttributeError, match="cannot assign"):
+                setattr(fixed, name, 0)
+    assert problem != posed()
+    assert {problem: 1}[problem] == 1

@@ -16,7 +16,7 @@ Y = X.T
 
 
 def test_central_differences_are_exact_on_quadratics_inside() -> None:
-    slopes = Slopes.of_surface(3 * X**2 + X * Y - 2 * Y, H, 0.0)
+    slopes = Slopes.of_surface(heights=3 * X**2 + X * Y - 2 * Y, spacing=H, direction=0.0)
     inside = (slice(1, -1), slice(1, -1))
     np.testing.assert_allclose(slopes.tan_x[inside], (6 * X + Y)[inside], atol=1e-13)
     np.testing.assert_allclose(slopes.tan_y[inside], (X - 2)[inside], atol=1e-13)
@@ -91,3 +91,11 @@ def test_slopes_of_a_window_are_zero_elsewhere() -> None:
     assert whole.tan_x.sum() == 4
     assert np.all(whole.tan_y[1:3, :2] == 2)
     assert np.all(whole.cos_x[0] == 1)
+
+
+def test_slopes_cannot_be_changed() -> None:
+    """What follows from them is computed once."""
+    slopes = Slopes(np.ones(3), np.zeros(3))
+    for name in ("tan_x", "tan_y"):
+        with pytest.raises(AttributeError, match="cannot assign"):
+            setattr(slopes, name, np.zeros(3))
