@@ -319,7 +319,7 @@ def test_one_fold_is_nearly_the_full_sum() -> None:
     folded = 1 / (2 * np.pi * 3.0 * SpectralPreconditioner((n, n), spacing, 3.0, Counter())._symbol)
     q_x = (2 * np.pi * np.fft.fftfreq(n, spacing)[:, None]).astype(np.float64)
     q_y = (2 * np.pi * np.fft.rfftfreq(n, spacing)[None, :]).astype(np.float64)
-    error = np.abs(folded / _over_q(q_x, q_y, spacing, folds=20) - 1)
+    error = np.abs(folded / _over_q(q_x=q_x, q_y=q_y, spacing=spacing, folds=20) - 1)
     assert error.max() <= 0.085
     assert error.mean() <= 0.03
 
