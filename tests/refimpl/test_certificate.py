@@ -13,6 +13,7 @@ from refimpl.contact import certificate as module
 from refimpl.contact.certificate import Certificate, State, certify
 from refimpl.forces import Forces, resultants
 from refimpl.operators.dense import DenseInfluence
+from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.problem import Problem, Terms, pose
 from refimpl.slopes import Slopes
 
@@ -165,10 +166,62 @@ def test_sums_look_no_further_than_tractions_reach(
         if pressed:
             pressure[pressed] = size
         if sheared:
-            traction[sheared] = size
-        state = judged(pressure, traction)
-        assert state.certificate.unlawful == (pressed is not None) + (sheared is not None)
+            traction[sheared] = -size
+        found = judged(pressure, traction).certificate
+        assert found.unlawful == (pressed is not None) + (sheared is not None)
+        assert found.negative_pressure == 0
     assert seen == [shape, shape]
+
+
+@pytest.mark.parametrize("slope_correction", [False, True])
+def test_displacements_are_of_the_tractions_that_enter_and_not_applied_twice(slope_correction: bool) -> None:
+    posed = replace(problem(), terms=replace(TERMS, slope_correction=slope_correction))
+    counter = Counter()
+    operator = FFTInfluence(posed.grid, posed.direction, counter=counter)
+    steep = Slopes(SOLVED.slopes.tan_x + 0.1, SOLVED.slopes.tan_y)
+    state = certify(posed, operator, SOLVED.pressure, SOLVED.traction, steep)
+    dense = DenseInfluence(posed.grid, posed.direction)
+    expected = posed.displacements(dense, SOLVED.pressure, SOLVED.traction, steep)
+    for found, exact in zip((state.displacement_lower, state.displacement_upper), expected, strict=True):
+        np.testing.assert_allclose(found, exact, rtol=0, atol=1e-13 * np.abs(exact).max())
+    assert counter.tally["normal"] == (2 if slope_correction else 1)
+
+
+def test_an_element_that_pulls_is_no_contact() -> None:
+    """There is no tau on it, and its slopes do not count."""
+    pressure, traction = SOLVED.pressure.copy(), SOLVED.traction.copy()
+    i, j = np.argwhere(~SOLVED.contact)[0]
+    pressure[i, j] = -1e-3 * SOLVED.max_pressure
+    traction[i, j] = SCENE.friction.beta * pressure[i, j]
+    state = judged(pressure, traction)
+    bent = state.slopes.tan_x.copy()
+    bent[i, j] += 1.0
+    certificate = judged(pressure, traction, Slopes(bent, state.slopes.tan_y)).certificate
+    assert certificate.unlawful == 0
+    assert certificate.slope < 1e-12
+
+
+@pytest.mark.parametrize("scale", [1e-9, -1e-9])
+def test_the_approach_is_the_mean_separation_of_any_pressure_and_the_lowest_of_none(scale: float) -> None:
+    """However small in pascals; a resultant that pulls has no mean."""
+    pressure = scale * SOLVED.pressure
+    pressure.flat[0] = 1e-3 * np.abs(pressure).max()
+    state = judged(pressure, 0 * pressure)
+    v = state.separation
+    expected = (pressure * v).sum() / pressure.sum() if scale > 0 else v.min()
+    assert state.approach == pytest.approx(expected, rel=1e-12, abs=1e-30)
+    assert v.max() > expected
+    at = judged(pressure, 0 * pressure, approach=1e-7)
+    balance = abs(expected - 1e-7) / 1e-7 if scale > 0 else 0.0
+    assert at.certificate.balance == pytest.approx(balance, rel=1e-9)
+
+
+def test_surfaces_apart_leave_no_residual() -> None:
+    zero = np.zeros((M, M))
+    undeformed = Slopes.of_surface(problem().mean_surface, SCENE.side / M, SCENE.sliding_direction)
+    state = judged(zero, zero, undeformed, -1e-7)
+    assert set(vars(state.certificate).values()) == {0}
+    assert state.approach == -1e-7
 
 
 def test_no_pressure_carries_no_load() -> None:
