@@ -296,6 +296,17 @@ def test_the_mean_has_half_of_the_smallest_frequency(shape: tuple[int, int]) -> 
     np.testing.assert_allclose(precondition(np.ones(shape)), q / (2 * np.pi * 3.0), rtol=1e-14)
 
 
+@pytest.mark.parametrize(("k", "m"), [(1, 0), (0, 2), (3, -1), (-2, 5)])
+def test_band_limited_it_inverts_the_half_space_on_waves(k: int, m: int) -> None:
+    """A wave's pressure is ``q / (2 pi compliance)`` of its displacement."""
+    shape, spacing = (8, 12), 0.5
+    precondition = SpectralPreconditioner(shape, spacing, 3.0, Counter(), band_limited=True)
+    q = 2 * np.pi * np.array([k, m]) / (np.array(shape) * spacing)
+    x, y = (spacing * np.arange(n) for n in shape)
+    wave = np.cos(q[0] * x[:, None] + q[1] * y + 0.3)
+    np.testing.assert_allclose(precondition(wave), np.hypot(*q) / (6 * np.pi) * wave, atol=1e-14)
+
+
 def test_a_trial_is_a_little_shorter_than_the_last_length() -> None:
     """At first than what the preconditioned spectrum, between 1 and 2, suggests."""
     asked: list[np.ndarray] = []
