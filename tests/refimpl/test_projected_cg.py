@@ -181,7 +181,9 @@ def springs(
 ) -> ProjectedCG:
     """A row of elements that do not feel each other, ``a f = f / stiffness``, at the approach 0 or loaded."""
     cg = ProjectedCG(lambda f: f / stiffness, lambda r: r.copy(), np.array([pressure]))
-    cg.freeze(np.array([b]), np.ones((1, len(b))), target=target, approach=0.0 if target is None else None)
+    cg.freeze(
+        b=np.array([b]), K=np.ones((1, len(b))), target=target, approach=0.0 if target is None else None
+    )
     return cg
 
 
@@ -214,6 +216,61 @@ def test_an_exact_step_is_cut_at_zero_pressure_and_what_is_cut_leaves() -> None:
     assert max(cg.residuals()) == 0
 
 
+def test_a_trial_is_cut_at_zero_pressure_and_what_is_cut_leaves() -> None:
+    cg = springs(1.0, [1.0, 1.0], [3.0, -3.0])  # residuals -4 and 2
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[0.0, 1.0 + 2 * 0.8 * 0.7]], rtol=1e-15)
+    assert cg.contact.tolist() == [[False, True]]
+
+
+def test_a_trial_that_leaves_nothing_is_given_up_for_the_exact_step() -> None:
+    cg = springs(0.1, [1.0, 2.0], [-5.0, -5.0])  # residuals -5 and -15, of which a tenth would do
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[0.5, 0.5]], rtol=1e-14)
+
+
+def test_contact_is_pressure_or_penetration() -> None:
+    assert springs(1.0, [1.0, 0.0, -1.0], [0.0, 0.0, 0.0]).contact.tolist() == [[True, False, False]]
+    cg = springs(1.0, [1.0, 0.0, 0.0], [-1.0, 0.0, -1e-9])  # the second just touches
+    cg.iterate()
+    assert cg.contact.tolist() == [[True, False, True]]
+
+
+def test_a_step_that_changes_nothing_tells_no_length() -> None:
+    cg = springs(1.0, [1.0], [-1.0])
+    cg.iterate()
+    assert cg.pressure.tolist() == [[1.0]]
+    assert not cg._trusted
+
+
+def test_surfaces_apart_leave_no_residual() -> None:
+    assert springs(1.0, [0.0, 0.0], [1.0, 2.0]).residuals() == (0.0, 0.0)
+
+
+def test_a_direction_forgets_the_past_where_the_quotient_is_negative() -> None:
+    """Polak and Ribiere's is then restarted."""
+    cg = springs(1.0, [1.0, 1.0], [0.0, 0.0])
+    cg._direction, cg._residual, cg._product = np.array([[3.0, 7.0]]), np.array([[2.0, 0.0]]), 1.0
+    step = np.array([[1.0, 0.0]])
+    assert cg._conjugate(step, step).tolist() == step.tolist()
+
+
+def test_an_exact_step_that_cuts_nothing_applies_once() -> None:
+    cg = springs(1.0, [1.0, 0.0], [-3.0, 5.0])
+    cg._trusted = False
+    applied: list[np.ndarray] = []
+    apply = cg._apply
+
+    def recording(f: np.ndarray) -> np.ndarray:
+        applied.append(f)
+        return apply(f)
+
+    cg._apply = recording
+    cg.iterate()
+    assert len(applied) == 1
+    assert cg.pressure.tolist() == [[3.0, 0.0]]
+
+
 def test_a_contact_that_is_not_at_its_approach_is_off_by_that() -> None:
     """Whatever its pressure in pascals; the mean separation counts, on either side of the approach."""
     for pressure in (0.25, 1e6):
@@ -238,8 +295,9 @@ def test_a_trial_that_leads_uphill_is_not_taken() -> None:
 def test_lengths_are_trusted_as_far_as_the_spectrum_goes(ratio: float, trusted: bool) -> None:
     """Preconditioned, it lies between 0.9 and 2.2 (above): lengths up to 2.44 times the last are its own."""
     stiffness = 0.8 * 0.7 * ratio  # which is the exact length, and the trial's is 0.8 * 0.7
-    cg = springs(stiffness, [1e3, 1e3], 2 * [-1e3 / stiffness - 1.0])
+    cg = springs(stiffness, [1e3, 1e3, 0.0], [*2 * [-1e3 / stiffness - 1.0], 1.0])
     cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[1e3 + stiffness, 1e3 + stiffness, 0.0]], rtol=1e-12)
     assert cg._length == pytest.approx(stiffness, rel=1e-9)
     assert cg._trusted is trusted
 
@@ -286,6 +344,7 @@ def test_relative_gap() -> None:
     assert relative_gap(1.0, 2.0) == 0.5
     assert relative_gap(1.0, 0.0) == np.inf
     assert relative_gap(1.0, -1.0) == np.inf
+    assert relative_gap(-1.0, 2.0) == -0.5
 
 
 @pytest.mark.parametrize("shape", [(4, 12), (12, 4), (12, 12)])
