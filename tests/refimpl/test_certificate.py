@@ -216,6 +216,15 @@ def test_the_approach_is_the_mean_separation_of_any_pressure_and_the_lowest_of_n
     assert at.certificate.balance == pytest.approx(balance, rel=1e-9)
 
 
+def test_at_first_touch_penetration_is_in_metres() -> None:
+    """There is no approach to relate it to; shear alone, which no law allows, moves the surfaces together."""
+    zero, traction = np.zeros((M, M)), np.zeros((M, M))
+    traction[5, 5] = 1e8
+    state = judged(zero, traction, approach=0.0)
+    assert state.separation.min() < 0
+    assert state.certificate.penetration == -state.separation.min()
+
+
 def test_surfaces_apart_leave_no_residual() -> None:
     zero = np.zeros((M, M))
     undeformed = Slopes.of_surface(problem().mean_surface, SCENE.side / M, SCENE.sliding_direction)
@@ -249,3 +258,4 @@ def test_neither_a_state_nor_its_certificate_can_be_changed() -> None:
         for name in vars(judgement):
             with pytest.raises(AttributeError, match="cannot assign"):
                 setattr(judgement, name, 0)
+    assert state in {state}  # as itself, not by its arrays

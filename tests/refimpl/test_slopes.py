@@ -71,6 +71,9 @@ def test_distance_looks_only_where_asked() -> None:
     assert one.distance(two, np.array([True, False, True])) == 0.2
     assert one.distance(two, np.array([False, False, False])) == 0
     assert one.distance(one, np.array([True, True, True])) == 0
+    everywhere, flat = np.array([True, True, True]), Slopes.flat((3,))
+    assert flat.distance(two, everywhere) == two.distance(flat, everywhere) == 9
+    assert flat.distance(flat, everywhere) == 0
 
 
 def test_a_flat_holds_no_array_and_stays_flat_on_the_whole_grid() -> None:
