@@ -143,7 +143,7 @@ class _LevelSolver:
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
         # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
         sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
-        self._relaxation = 1 / (1 + sigma**2)
+        self._relaxation = self._best_relaxation = 1 / (1 + sigma**2)
         self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
     def refined(self, fine: Problem) -> _LevelSolver:
@@ -210,6 +210,7 @@ class _LevelSolver:
     def settle(self, tolerance: float, support: Mask | None = None) -> bool:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
         self._tolerance, self._budget = tolerance, self.cg_iterations + _CG_LIMIT
+        self._relaxation = self._best_relaxation  # anew for each of tau's supports
         self.residual = best = self._update(support)
         stalled, changed = 0, False
         for _ in range(_UPDATES):

@@ -95,7 +95,7 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
         balance = abs(mean_v - approach) / approach if total > 0 else 0.0
     energy = 0.5 * inner(f, normal[box.slices]) * dA
     duality = inner(f, v[box.slices] - lowest) * dA
-    peak = max(float(f.max()), np.finfo(float).tiny)
+    peak = max(float(f.max()), float(np.finfo(float).tiny))
     return State(
         pressure=pressure,
         traction=traction,

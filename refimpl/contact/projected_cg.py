@@ -166,9 +166,7 @@ class ProjectedCG:
             self._trusted = True
         negative = self.pressure < 0
         if negative.any():
-            if negative[self.contact].all():  # the step overshot everything: keep the largest element
-                negative.flat[int(np.argmax(self.pressure))] = False
-            self.pressure[negative] = 0.0
+            self.pressure[negative] = 0.0  # at an approach all may go, and come back as they penetrate
             self.contact = self.contact & ~negative
             if self._target is not None:
                 self._scale_to_target(displace=False)

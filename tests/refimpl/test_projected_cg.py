@@ -413,3 +413,15 @@ def test_a_preconditioners_cost_is_of_the_next_fast_length() -> None:
     counter = Counter()
     SpectralPreconditioner((11, 7), 0.5, 3.0, counter)(np.ones((11, 7)))
     assert counter.point_logs == pytest.approx(96 * np.log2(96), rel=1e-14)  # 12 and 8
+
+
+def test_a_step_that_overshoots_every_element_leaves_no_tension() -> None:
+    """At an approach nothing keeps the sum: springs that do not reach the other body all leave."""
+    cg = ProjectedCG(lambda f: f.copy(), lambda r: r.copy(), np.array([[1.0, 2.0]]))
+    cg.freeze(np.array([[5.0, 4.0]]), np.ones((1, 2)), target=None, approach=0.0)
+    assert max(cg.residuals()) > 0.1
+    cg._trusted = False
+    cg.iterate()
+    assert not cg.pressure.any()
+    assert not cg.contact.any()
+    assert cg.residuals() == (0.0, 0.0)
