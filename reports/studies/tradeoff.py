@@ -19,6 +19,11 @@ def build(document: Document) -> Exhibit:
     tables: list[Table] = []
     figures: list[tuple[Figure, Data]] = []
     notes: list[str] = []
+    notes.append(
+        "A way is a method, its tolerance and what it leaves out: flat (no slopes), uncoupled (shear moves "
+        "nothing), one grid (no nesting), single (the solver's convolutions in single precision; the "
+        "certificate is of double precision and does not pass a tolerance that single cannot reach)."
+    )
     for study in document["studies"]:
         doubt = ", ".join(f"{NAMES[q]} {value:.1e}" for q, value in study["reference"]["doubt"].items())
         dense = study["dense up to"]
