@@ -238,3 +238,9 @@ def test_periodic_applications_count_their_points():
         getattr(operator, kind)(np.zeros((8, 8)))
     assert counter.tally == {"normal": 1, "shear": 2}
     assert counter.point_logs == 3 * 64 * 6
+
+
+def test_a_window_that_fills_its_transform_stays_within_the_grid() -> None:
+    """Eleven elements are padded to 24 points, which hold twelve; the twelfth lies on the inner side."""
+    assert Window(13, 24, 0, 11).filling(24) == Window(12, 24, 0, 12)
+    assert Window(6, 17, 6, 17).filling(24).shape == (12, 12)
