@@ -1,9 +1,9 @@
 """Runs in a random order, with a log that shows whether any test flips.
 
-``pytest --order-seed=3`` shuffles the files and the tests within each, and seeds every hypothesis search with
-3, derandomised or not; ``--order-log=FILE`` adds the run to a JSON log (with its equals sign: pytest takes a file
-that exists, and stands alone, for tests, and then misses these options). pytest-randomly shuffles as well, but in
-every run where it is installed, and it leaves derandomised searches as they are.
+``pytest --order-seed=3`` shuffles the files and the tests within each, and seeds every hypothesis search
+with 3, derandomised or not; ``--order-log=FILE`` adds the run to a JSON log. (With its equals sign: a file
+that exists and stands alone is taken for tests, and then these options are unknown.) pytest-randomly
+shuffles as well, but in every run where it is installed, and it leaves derandomised searches as they are.
 """
 
 from __future__ import annotations
