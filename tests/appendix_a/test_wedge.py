@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import astuple
 
 import mpmath as mp
 import numpy as np
@@ -248,3 +249,29 @@ def test_map_is_fast(gamma: float) -> None:
     start = time.process_time()
     assert all(np.isfinite(part).all() for part in stresses(r, theta, gamma))
     assert time.process_time() - start < 2
+
+
+def test_reference_stops_after_eight_negligible_terms_in_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A small term amid large ones is no end: the count begins anew at each large one."""
+    asked = []
+
+    def kernels(*_: object) -> list[mp.mpc]:
+        asked.append(len(asked) + 1)
+        return [mp.mpc(0, 0 if asked[-1] in (2, 3) or asked[-1] > 6 else 1)] * 3
+
+    monkeypatch.setattr(reference, "kernels", kernels)
+    reference._sum((mp.mpf(1), mp.mpf(0), mp.mpf("0.3")), mp.mpf(0), mp.mpf("0.1"), mp.mpf("1e-20"))
+    assert len(asked) == 6 + reference.QUIET_TERMS
+
+
+@pytest.mark.parametrize("r", [1e-3, 0.5, 1.0, 30.0])
+@pytest.mark.parametrize("gamma", [0.05, 0.7])
+def test_printed_panels_follow_the_shortest_scale(
+    r: float, gamma: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen with a rule of two points: halved panels err a sixteenth, so their change bounds what is left."""
+    exact = printed.stresses(r, 0.1, gamma)
+    monkeypatch.setattr(printed, "GAUSS", np.polynomial.legendre.leggauss(2))
+    found = printed.stresses(r, 0.1, gamma)
+    left = np.subtract(astuple(found)[:3], astuple(exact)[:3])
+    assert np.abs(left).max() <= 0.05 * found.error  # 0.035 at most; a third fewer panels: 0.29

@@ -440,3 +440,10 @@ def test_a_solver_that_is_dropped_is_gone_at_once() -> None:
         assert gone() is None
     finally:
         gc.enable()
+
+
+def test_what_just_touches_outside_a_window_is_no_penetration() -> None:
+    problem = posed(BALL, 16)
+    state = _certified(problem, level(problem).solve(1e-8), Counter())
+    touching = replace(state, separation=np.full((16, 16), state.approach))
+    assert not _penetrating_outside(touching, Window(7, 9, 7, 9), 1e-8).any()

@@ -370,3 +370,15 @@ def test_a_loop_that_meets_its_limit_says_so(limit: str, value: int, monkeypatch
     monkeypatch.setattr(module, limit, value)
     one = scheme(friction=rf.Friction(tau=1e6, beta=0.1))
     assert one.settle_tau(None).status is Status.ITERATION_LIMIT
+
+
+def test_displacements_are_applied_anew_only_where_elements_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A step without exclusion adds what it moved: one application for it, and one for the start."""
+    one = scheme()
+    applied: list[Array] = []
+    flexibility = one._apply
+    monkeypatch.setattr(one, "_apply", lambda p: (applied.append(p), flexibility(p))[1])
+    inside = np.zeros((8, 8), dtype=bool)
+    inside[2:6, 2:6] = True
+    one._iterate(flexibility(1e6 * inside), inside, periodic=False)
+    assert len(applied) == 1 + one.trace.correction_steps
