@@ -447,3 +447,22 @@ def test_what_just_touches_outside_a_window_is_no_penetration() -> None:
     state = _certified(problem, level(problem).solve(1e-8), Counter())
     touching = replace(state, separation=np.full((16, 16), state.approach))
     assert not _penetrating_outside(touching, Window(7, 9, 7, 9), 1e-8).any()
+
+
+def test_facet_tractions_are_the_dense_solvers() -> None:
+    """With the slope correction what presses is not the pressure, and its displacement is applied anew."""
+    scene = replace(BALL, load=60.0)
+    dense, fft = (
+        rf.solve(scene, 12, method=m, oblique=True, slope_correction=True, tolerance=1e-10)
+        for m in ("dense", "fft")
+    )
+    assert fft.status is dense.status is rf.Status.CONVERGED
+    assert dense.slope_error.max_slope > 0.015
+    np.testing.assert_allclose(fft.pressure, dense.pressure, atol=1e-8 * dense.max_pressure, rtol=0)
+
+
+def test_without_facet_tractions_an_update_applies_no_pressure() -> None:
+    solver = level(posed(coupled(0.3), 16))
+    before = solver.counter.tally["normal"]
+    solver._update(None)
+    assert solver.counter.tally["normal"] == before

@@ -315,6 +315,14 @@ def test_passes_are_as_many_as_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
         assert not one.settled
 
 
+def test_a_contact_that_never_settles_is_given_up_after_sixty_passes() -> None:
+    one = scheme(4)
+    one.tolerance = 0.0
+    one.contact(4e-6, None)
+    assert one.trace.passes == 60
+    assert not one.settled
+
+
 def test_nothing_is_left_where_there_is_no_contact() -> None:
     outcome, _, trace = run("hertz", 16, approach=-1e-9)
     assert trace.periodicity_before == trace.periodicity_after == 0
