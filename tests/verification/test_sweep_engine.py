@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.errors import InputError
+from tests.verification.children import rows
 from verification.cli import main
 from verification.sweep import engine
 from verification.sweep.export import to_csv
@@ -187,7 +188,7 @@ def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> Non
     command = [sys.executable, "-c", "from verification.cli import main; raise SystemExit(main())", *tail]
     killed = subprocess.Popen(command, cwd=tmp_path, env=ONE_THREAD, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 60
-    while finished(tmp_path / "s.sqlite") < 3 and time.monotonic() < deadline:
+    while rows(tmp_path / "s.sqlite") < 3 and time.monotonic() < deadline:
         time.sleep(0.02)
     workers = children(killed.pid)
     killed.send_signal(signal.SIGKILL)
@@ -196,7 +197,7 @@ def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> Non
     while any(map(running, workers)) and time.monotonic() < deadline:
         time.sleep(0.02)
     assert not any(map(running, workers))
-    kept = finished(tmp_path / "s.sqlite")
+    kept = rows(tmp_path / "s.sqlite")
     assert 3 <= kept < 40
     again = subprocess.run([*command, "--json", "s.json"], cwd=tmp_path, env=ONE_THREAD, capture_output=True)
     assert again.returncode == 0
@@ -210,19 +211,6 @@ def study_from_toml(folder: Path) -> Study:
     from verification.sweep.study import read_study
 
     return read_study(folder / "study.toml")
-
-
-def finished(store: Path) -> int:
-    """Finished runs in a store that another process may be writing; 0 before its table exists."""
-    if not store.exists():
-        return 0
-    connection = sqlite3.connect(store)
-    try:
-        return int(connection.execute("select count(*) from runs").fetchone()[0])
-    except sqlite3.OperationalError:
-        return 0
-    finally:
-        connection.close()
 
 
 def killed(_: object) -> None:
