@@ -1,0 +1,267 @@
+"""The paper's scheme from within: steps, exclusion, bracket, starts and limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl import paper as module
+from refimpl.friction import Mask
+from refimpl.grid import Array, Grid
+from refimpl.operators.fft import Counter
+from refimpl.outcome import Status
+from refimpl.paper import Trace, _Scheme
+from refimpl.plan import make_plan
+from refimpl.problem import pose
+
+A, B = np.eye(8, dtype=bool), np.ones((8, 8), dtype=bool)
+
+
+def scheme(M: int = 8, friction: rf.Friction | None = None) -> _Scheme:
+    scene = rf.read_scene("hertz")
+    scene = scene if friction is None else replace(scene, friction=friction)
+    plan = make_plan(scene, M, "paper", oblique=False, slope_correction=False)
+    return _Scheme(pose(scene, Grid(scene.side, M), plan.switches, None), 1e-9, Counter(), None)
+
+
+@pytest.mark.parametrize(("last", "status"), [(A, Status.CONVERGED), (B, Status.CYCLED)])
+def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
+    last: Mask, status: Status, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Contact goes from A to B and back, which withholds all but A from tau."""
+    one = scheme(friction=rf.Friction(tau=0.5, beta=0.1))
+    contacts = iter((A, B, A, last))
+
+    def balance(approach: float | None, support: Mask | None) -> float:
+        one.pressure = np.where(next(contacts), 0.5, 0.0)
+        return 1e-6
+
+    monkeypatch.setattr(one, "balance", balance)
+    outcome = one.settle_tau(None)
+    assert outcome.status is status
+    assert np.array_equal(outcome.withheld, ~A)
+    assert len(outcome.visited) == 2
+    assert outcome.iterations["tau supports"] == 4
+
+
+def test_the_correction_solves_on_the_contact_alone() -> None:
+    """From pressures that reach beyond it, and as well for pressures below one pascal."""
+    one = scheme()
+    inside = np.zeros((8, 8), dtype=bool)
+    inside[2:6, 3:6] = True
+    expected = np.random.default_rng(5).uniform(0.5, 0.9, (8, 8)) * inside
+    one.pressure = np.ones((8, 8))
+    left = one._iterate(one._apply(expected), inside, periodic=False)
+    assert np.array_equal(left, inside)
+    # steps end at 1e-10 of the pressure; 100 of them for what steepest descent still had to go
+    assert np.abs(one.pressure - expected).max() <= 1e-8 * expected.max()
+
+
+class Press:
+    """Stands for iteration one: a normal force as a function of the approach, and what was asked."""
+
+    def __init__(self, force: Callable[[float], float]) -> None:
+        self.force, self.asked = force, list[float]()
+
+    def __call__(self, approach: float, support: Mask | None) -> float:
+        self.asked.append(approach)
+        return self.force(approach)
+
+
+def asked(monkeypatch: pytest.MonkeyPatch, start: float, force: Callable[[float], float]) -> list[float]:
+    """The approaches that iteration two tries; the force is in units of the load."""
+    one = scheme()
+    load = one.problem.load
+    assert load is not None
+    press = Press(lambda approach: load * force(approach))
+    monkeypatch.setattr(one, "contact", press)
+    assert one.balance(start, None) == press.asked[-1]
+    assert one.settled
+    return press.asked
+
+
+def test_the_second_approach_is_hertzs(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert asked(monkeypatch, 2e-6, lambda d: (d / 3e-6) ** 1.5) == pytest.approx([2e-6, 3e-6], rel=1e-9)
+
+
+@pytest.mark.parametrize(("start", "force"), [(2e-6, 0.25), (10e-6, 2.25)])
+def test_the_third_approach_is_a_secants(start: float, force: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From below and from above."""
+    found = asked(monkeypatch, start, lambda d: (d - 1e-6) / 4e-6)
+    assert found == pytest.approx([start, start * force ** (-2 / 3), 5e-6], rel=1e-9)
+
+
+def test_without_contact_the_approach_grows_fourfold(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = asked(monkeypatch, 1e-6, lambda d: max(0.0, d / 15e-6 - 1 / 15))
+    assert found[:3] == pytest.approx([1e-6, 4e-6, 16e-6], rel=1e-9)
+
+
+def test_a_force_that_falls_at_first_is_met_by_twice_the_approach(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The secant would go back, to what is known to be too little."""
+    forces = {1.0: 0.5, 0.5 ** (-2 / 3): 0.4}  # in units of 1e-6 m and of the load
+    found = asked(
+        monkeypatch, 1e-6, lambda d: next((f for x, f in forces.items() if math.isclose(d, x * 1e-6)), 1.0)
+    )
+    assert found == pytest.approx([1e-6, 1.5874e-6, 2 * 1.5874e-6], rel=1e-4)
+
+
+@pytest.mark.parametrize("nothing_known", [None, 0.0])
+def test_the_first_approach_is_a_small_part_of_the_gap(
+    nothing_known: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So that few elements touch; between flats, which have no gap, it is of an element's size."""
+    one = scheme()
+    load = one.problem.load
+    assert load is not None
+    press = Press(lambda approach: load)
+    monkeypatch.setattr(one, "contact", press)
+    one.balance(nothing_known, None)
+    assert 0.01 <= press.asked[0] / one.problem.gap.max() <= 0.2
+    one.problem = replace(one.problem, gap=0 * one.problem.gap)
+    one.balance(nothing_known, None)
+    assert press.asked[1] == one.problem.grid.spacing
+
+
+def test_without_a_support_tau_is_where_contact_is() -> None:
+    one = scheme(friction=rf.Friction(tau=1e6, beta=0.0))
+    one.pressure[2:5, 3] = 1e7, 1e-3, 0.0
+    _, tau_on = one._bring_up_to_date(None)
+    assert np.argwhere(tau_on).tolist() == [[2, 3], [3, 3]]
+    given = np.eye(8, dtype=bool)
+    assert np.array_equal(one._bring_up_to_date(given)[1], given)
+
+
+@pytest.mark.parametrize(
+    "forces",
+    [
+        {1.0: 0.0, 4.0: 3.0, 2.0: -1.0, 3.0: 0.0, 3.5: 1.0},  # the secant from 2 and 3 meets the load at 4
+        {1.0: 0.0, 4.0: 3.0, 2.0: 2.0, 1.5: 1.5, 1.25: 1.0},  # the one from 2 and 1.5 meets it at 1
+    ],
+)
+def test_an_end_of_the_bracket_is_not_tried_again(
+    forces: dict[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the force was there is known: the bracket is halved. Small integers, so that nothing rounds."""
+    assert asked(monkeypatch, 1.0, forces.__getitem__) == list(forces)
+
+
+def test_iteration_one_starts_within_the_interference_and_the_contact_so_far(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    one = scheme(16)
+    begun: list[Mask] = []
+    iterate = one._iterate
+
+    def recorded(u: Array, inside: Mask, *, periodic: bool) -> Mask:
+        if periodic:
+            begun.append(inside.copy())
+        return iterate(u, inside, periodic=periodic)
+
+    monkeypatch.setattr(one, "_iterate", recorded)
+    one.contact(4e-6, None)
+    found = one.pressure > 0
+    one.contact(6e-6, None)
+    assert np.array_equal(begun[0], one.problem.gap < 4e-6)
+    assert 0 < found.sum() < begun[0].sum()
+    assert np.array_equal(begun[1], found)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_an_element_that_just_touches_is_excluded(periodic: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Contact is pressure above zero; here elements do not feel each other."""
+    one = scheme()
+    for name in ("_apply", "_apply_periodic", "_invert"):
+        monkeypatch.setattr(one, name, np.copy)
+    u = np.zeros((8, 8))
+    u[2:4, 2:4] = 1.0
+    touching = np.ones((8, 8), dtype=bool)
+    assert np.array_equal(one._iterate(u, touching, periodic=periodic), u > 0)
+    assert np.array_equal(one.pressure, u)
+    # the first step is exact; the second finds nothing to do, and is none
+    assert (one.trace.periodic_steps, one.trace.correction_steps) == (periodic, not periodic)
+
+
+def test_passes_are_as_many_as_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    for passes in (1, 2):
+        monkeypatch.setattr(module, "_PASSES", passes)
+        one = scheme(16)
+        one.tolerance = 0.0
+        one.contact(4e-6, None)
+        assert one.trace.passes == passes
+        assert not one.settled
+
+
+def test_a_contact_that_never_settles_is_given_up_after_sixty_passes() -> None:
+    one = scheme(4)
+    one.tolerance = 0.0
+    one.contact(4e-6, None)
+    assert one.trace.passes == 60
+    assert not one.settled
+
+
+def test_a_trace_is_itself_only() -> None:
+    """It holds an array, which has no single truth to compare by."""
+    one, other = Trace(8), Trace(8)
+    assert {one, other, one} == {other, one}
+    assert one != other
+
+
+def test_approaches_stay_within_their_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A late and steep force: secants and growth would leave the bracket, so that it is halved."""
+
+    def force(approach: float) -> float:
+        return max(0.0, 1000 * (approach - 3.0))
+
+    low, high, halved = 0.0, math.inf, 0
+    found = asked(monkeypatch, 1.0, force)
+    for approach in found:
+        assert low < approach < high
+        halved += approach == 0.5 * (low + high)
+        low, high = (approach, high) if force(approach) < 1 else (low, approach)
+    assert halved >= 2
+    assert found[-1] == pytest.approx(3.001, rel=1e-9)
+
+
+def test_the_unit_of_pressure_changes_no_bit() -> None:
+    """Powers of two scale without rounding, so every decision must be the same."""
+
+    def scene(unit: float) -> rf.Scene:
+        return rf.Scene(
+            upper=rf.Body(rf.Material(200e9 * unit, 0.3), rf.Sphere(0.14)),
+            lower=rf.Body(rf.Material(2.5e9 * unit, 0.3), rf.GaussianRoughness(0.2e-6, 200e-6, seed=3)),
+            friction=rf.Friction(15e6 * unit, 0.08),
+            load=20.0 * unit,
+            side=1.61e-3,
+        )
+
+    one, other = (rf.solve(scene(unit), 16, method="paper") for unit in (1.0, 2.0**-40))
+    assert one.status is other.status
+    assert one.cost.iterations == other.cost.iterations
+    assert np.array_equal(other.pressure, 2.0**-40 * one.pressure)
+
+
+@pytest.mark.parametrize(
+    ("limit", "value"), [("_STEPS", 1), ("_PASSES", 1), ("_APPROACHES", 1), ("_SUPPORTS", 1)]
+)
+def test_a_loop_that_meets_its_limit_says_so(limit: str, value: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the certificate makes of the state that it left."""
+    monkeypatch.setattr(module, limit, value)
+    one = scheme(friction=rf.Friction(tau=1e6, beta=0.1))
+    assert one.settle_tau(None).status is Status.ITERATION_LIMIT
+
+
+def test_displacements_are_applied_anew_only_where_elements_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A step without exclusion adds what it moved: one application for it, and one for the start."""
+    one = scheme()
+    applied: list[Array] = []
+    flexibility = one._apply
+    monkeypatch.setattr(one, "_apply", lambda p: (applied.append(p), flexibility(p))[1])
+    inside = np.zeros((8, 8), dtype=bool)
+    inside[2:6, 2:6] = True
+    one._iterate(flexibility(1e6 * inside), inside, periodic=False)
+    assert len(applied) == 1 + one.trace.correction_steps
