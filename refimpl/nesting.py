@@ -3,44 +3,78 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from refimpl.contact.projected_cg import FIRST_LENGTH, Apply
 from refimpl.friction import Mask
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array, Grid, inner
 from refimpl.problem import Problem
 
+_BALANCING_STEPS = 20
 _COARSEST = 32  # elements per side where nesting starts
+_COARSEST_OF_TWO = 16  # the same of grids that would have no coarser one
 
 
-def levels(problem: Problem) -> list[Problem]:
-    """The problem on halved grids, coarsest first; each coarse height is the mean of four."""
+class Start(NamedTuple):
+    """One grid's answer: pressure (Pa) and the pair's displacement ``v - h`` (m), both ``(M, M)``.
+
+    ``approach`` (m) is None where heights were sampled anew: grids differ in where they see first touch.
+    """
+
+    pressure: Array
+    displacement: Array
+    approach: float | None
+
+    @property
+    def M(self) -> int:
+        """Elements per side."""
+        return len(self.pressure)
+
+
+def levels(problem: Problem, above: int = 0) -> list[Problem]:
+    """The problem on halved grids finer than ``above``, coarsest first."""
     nested = [problem]
-    while nested[0].grid.M % 2 == 0 and nested[0].grid.M // 2 >= _COARSEST:
+    lowest = _COARSEST_OF_TWO
+    while _half(nested[0]) >= max(lowest, above + 1):
         nested.insert(0, coarsened(nested[0]))
+        lowest = _COARSEST
     return nested
 
 
+def _half(problem: Problem) -> int:
+    return (problem.grid.M + 1) // 2
+
+
 def coarsened(fine: Problem) -> Problem:
-    """The problem on half as many elements per side."""
-    grid = Grid(fine.grid.side, fine.grid.M // 2)
-    return replace(fine, grid=grid, gap=_halved(fine.gap), mean_surface=_halved(fine.mean_surface))
+    """The problem on half as many elements per side, rounded up: means of four where that number is even."""
+    M = _half(fine)
+    return replace(
+        fine,
+        grid=Grid(fine.grid.side, M),
+        gap=resampled(fine.gap, M),
+        mean_surface=resampled(fine.mean_surface, M),
+    )
 
 
-def prolonged(coarse: Array) -> Array:
-    """Bilinear interpolation from element centres to those of the twice finer grid.
+def resampled(values: Array, M: int) -> Array:
+    """Bilinear interpolation from element centres to those of M per side, level beyond the outermost.
 
-    >>> prolonged(np.ones((2, 2))).shape
-    (4, 4)
+    >>> resampled(np.array([[0.0, 8.0], [0.0, 8.0]]), 4)[0]
+    array([0., 2., 6., 8.])
     """
-    for _ in range(2):
-        padded = np.pad(coarse, ((1, 1), (0, 0)), mode="edge")
-        fine = np.empty((2 * len(coarse), coarse.shape[1]))
-        fine[::2] = 0.75 * coarse + 0.25 * padded[:-2]
-        fine[1::2] = 0.75 * coarse + 0.25 * padded[2:]
-        coarse = fine.T
-    return coarse
+    n = len(values)
+    if n == M:
+        return values
+    place = np.clip((np.arange(M) + 0.5) * (n / M) - 0.5, 0, n - 1)
+    left = np.minimum(place.astype(np.intp), n - 2)
+    share = place - left
+    rows = (1 - share)[:, None] * values[left]
+    rows += share[:, None] * values[left + 1]
+    found: Array = (1 - share) * rows.take(left, axis=1)
+    found += share * rows.take(left + 1, axis=1)
+    return found
 
 
 def foundation_pressure(problem: Problem) -> Array:
@@ -55,15 +89,35 @@ def foundation_pressure(problem: Problem) -> Array:
     return pressure
 
 
-def touching(pressure: Array, v: Array, approach: float, problem: Problem) -> Mask:
-    """Elements in contact after a damped Jacobi step from a prolonged pressure; no operator is applied.
+def touching(pressure: Array, v: Array, approach: float | None, problem: Problem) -> tuple[Mask, float]:
+    """Elements in contact after a damped Jacobi step from a prolonged pressure; the approach if not known.
 
     ``v`` is the prolonged displacement plus the grid's gap; what it misses of the approach is of the grid's
-    highest frequency ``q = pi / spacing``, where ``a`` is ``2 compliance spacing``.
+    highest frequency ``q = pi / spacing``, where ``a`` is ``2 compliance spacing``. No operator is applied.
     """
-    stiffness = 1 / (2 * problem.pair.normal_compliance * problem.grid.spacing)
-    found: Mask = pressure + 0.5 * stiffness * (approach - v) > 0
-    return found
+    stiffness = 0.5 / (2 * problem.pair.normal_compliance * problem.grid.spacing)
+    freed = pressure - stiffness * v
+    if approach is None:
+        mean = inner(pressure, v) / float(pressure.sum())
+        approach = _balancing(freed, stiffness, float(pressure.sum()), mean)
+    found: Mask = freed + stiffness * approach > 0
+    return found, approach
+
+
+def _balancing(freed: Array, stiffness: float, total: float, approach: float) -> float:
+    """The approach at which ``max(freed + stiffness approach, 0)`` adds up to the total, to a thousandth.
+
+    Newton's steps on a convex function: after the first they come from above, so that contact only shrinks.
+    """
+    for _ in range(_BALANCING_STEPS):
+        pressing = freed[freed > -stiffness * approach]
+        excess = float(pressing.sum()) + pressing.size * stiffness * approach - total
+        approach -= excess / (stiffness * pressing.size)
+        if abs(excess) <= 1e-3 * total:
+            break
+        if excess > 0:
+            freed = pressing
+    return approach
 
 
 def sharpened(pressure: Array, misfit: Array, contact: Mask, precondition: Apply, *, loaded: bool) -> Array:
@@ -79,7 +133,3 @@ def sharpened(pressure: Array, misfit: Array, contact: Mask, precondition: Apply
 
 def _level(values: Array, contact: Mask, loaded: bool) -> Array:
     return values - values.sum() / np.count_nonzero(contact) * contact if loaded else values
-
-
-def _halved(values: Array) -> Array:
-    return 0.25 * (values[::2, ::2] + values[1::2, ::2] + values[::2, 1::2] + values[1::2, 1::2])

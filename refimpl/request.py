@@ -10,6 +10,7 @@ from refimpl.paper import PAPER_TOLERANCE
 from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
 from refimpl.refine import Quantity, check_accuracy, deserved_tolerance
 from refimpl.scene import Scene
+from refimpl.solution import Solution
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,6 +31,7 @@ class Request:
     coupled: bool | None = None
     tilted: bool | None = None
     tolerance: float | None = None
+    start: Solution | None = None
 
     def __post_init__(self) -> None:
         if self.approach is not None:
@@ -42,6 +44,18 @@ class Request:
         if (self.grid is None) == (self.accuracy is None):
             allowed = "a number of elements per side, or an accuracy, and not both"
             raise InputError("grid", self.grid, allowed)
+        if self.start is not None:
+            self._check_start(self.start)
+
+    def _check_start(self, start: Solution) -> None:
+        if self.method != "fft" or self.grid is None:
+            raise InputError("start", start.status.value, "none but for method fft on a grid")
+        if start.grid.side != self.scene.side or self.grid < start.grid.M:
+            found = f"{start.grid.M} x {start.grid.M} elements on {start.grid.side} m"
+            allowed = f"a solution on at most {self.grid} x {self.grid} elements on {self.scene.side} m"
+            raise InputError("start", found, allowed)
+        if not start.converged:
+            raise InputError("start", start.status.value, "a solution that has converged")
 
     @property
     def judged(self) -> Quantity:

@@ -93,6 +93,11 @@ class Solution:
         """Slope angle along the direction 90 degrees anticlockwise of sliding (rad)."""
         return np.arctan(self.slopes.tan_y)
 
+    @property
+    def converged(self) -> bool:
+        """Whether the loops ended well and the certificate holds; a settled cycle of tau is certified too."""
+        return self.status in (Status.CONVERGED, Status.CYCLED)
+
     @cached_property
     def bounds(self) -> Bounds:
         """Proven bounds at the state's slopes and support of tau; computed when first asked for."""

@@ -17,6 +17,7 @@ from refimpl.fft_solver import solve_fft
 from refimpl.forces import perimeter_corrected_area
 from refimpl.grid import Grid
 from refimpl.grid_result import GridResult
+from refimpl.nesting import Start
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.window import Window
@@ -49,6 +50,7 @@ def solve(
     coupled: bool | None = None,
     tilted: bool | None = None,
     tolerance: float | None = None,
+    start: Solution | None = None,
     progress: Progress | None = None,
 ) -> Solution:
     """Solve a scene on ``grid x grid`` elements, or to a relative ``accuracy``; exactly one of them.
@@ -68,6 +70,8 @@ def solve(
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, what that deserves), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
+    start : a converged solution of the same side on a grid that is not finer, of this scene or one like it,
+        that "fft" shall start from: levels no finer than it are passed over; the answer is the same
     progress : is called with a line of text at every step of the work
 
     Raises `InputError` for input that is out of range, before anything large is allocated.
@@ -84,11 +88,12 @@ def solve(
         coupled=coupled,
         tilted=tilted,
         tolerance=tolerance,
+        start=start,
     )
     if accuracy is not None:
         planned = _Planned(scene, request.plan(), approach, request.residual, progress)
         return refine(planned.solve_at, accuracy, request.judged)
-    solution = _solve_planned(scene, request.plan(), approach, request.residual, progress)
+    solution = _solve_planned(scene, request.plan(), approach, request.residual, progress, start)
     return replace(solution, uncertainty=uncertainty([GridResult.of(solution)]))
 
 
@@ -100,10 +105,12 @@ class _Planned:
     ) -> None:
         self.scene, self.plan = scene, plan
         self.asked = approach, tolerance, progress
+        self._last: Solution | None = None
 
     def solve_at(self, M: int) -> Solution:
-        """The solution on a grid, solved again if the terms left out together exceed their budget."""
-        solution = _solve_planned(self.scene, self.plan.on(self.scene, M), *self.asked)
+        """The solution on a grid, no coarser than the last; again if terms left out exceed their budget."""
+        solution = _solve_planned(self.scene, self.plan.on(self.scene, M), *self.asked, self._last)
+        self._last = solution if solution.converged else None
         plan = self.plan
         changes = effects_left_out(
             plan.left_out, solution.problem, solution.pressure, plan.outlook, plan.decided_on
@@ -129,7 +136,12 @@ class _Watched(Counter):
 
 
 def _solve_planned(
-    scene: Scene, plan: Plan, approach: float | None, tolerance: float, progress: Progress | None
+    scene: Scene,
+    plan: Plan,
+    approach: float | None,
+    tolerance: float,
+    progress: Progress | None,
+    start: Solution | None,
 ) -> Solution:
     """Pose, solve, certify and gather on one grid."""
     started = time.perf_counter()
@@ -137,7 +149,7 @@ def _solve_planned(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SurfaceWarning)
         problem = pose(scene, Grid(scene.side, plan.M), plan.switches, approach)
-    outcome, state = _solve_posed(problem, plan, tolerance, counter)
+    outcome, state = _solve_posed(problem, plan, tolerance, counter, _answer(start))
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, outcome.iterations)
     solution = _solution(problem, plan, outcome, state, tolerance, cost)
     return replace(solution, warnings=_remarks(scene, problem.grid, caught) + cautions(solution, scene))
@@ -150,7 +162,9 @@ def _remarks(scene: Scene, grid: Grid, caught: Sequence[warnings.WarningMessage]
     return tuple(line for line in dict.fromkeys(str(w.message) for w in caught) if line not in told)
 
 
-def _solve_posed(problem: Problem, plan: Plan, tolerance: float, counter: Counter) -> tuple[Outcome, State]:
+def _solve_posed(
+    problem: Problem, plan: Plan, tolerance: float, counter: Counter, start: Start | None
+) -> tuple[Outcome, State]:
     if problem.approach is not None and problem.approach <= 0:
         return _apart(problem)
     if plan.method == "dense":
@@ -159,7 +173,16 @@ def _solve_posed(problem: Problem, plan: Plan, tolerance: float, counter: Counte
     if plan.method == "paper":
         outcome, state, _ = solve_paper(problem, tolerance, counter)
         return outcome, state
-    return solve_fft(problem, tolerance, counter)
+    return solve_fft(problem, tolerance, counter, start)
+
+
+def _answer(solution: Solution | None) -> Start | None:
+    """What a solution has to say to a grid that is not coarser."""
+    if solution is None:
+        return None
+    problem = solution.problem
+    approach = solution.approach + (float(problem.gap.mean()) if problem.periodic else 0.0)
+    return Start(solution.pressure, solution.clearance + approach - problem.gap, None)
 
 
 def _apart(problem: Problem) -> tuple[Outcome, State]:

@@ -18,7 +18,7 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl import dense_solver, fft_solver, forces, problem, slopes
+from refimpl import dense_solver, fft_solver, forces, level_solver, problem, slopes
 from refimpl.contact import certificate
 from refimpl.grid import Array
 from refimpl.kernels import normal_integral, tangential_integral
@@ -62,7 +62,7 @@ def _tables_of(kind: str, factor: float) -> Patch:
 
 def _wherever_imported(name: str, wrong: Any) -> tuple[Patch, ...]:
     solve = importlib.import_module("refimpl.solve")  # the package's `solve` is the function
-    users = (dense_solver, fft_solver, certificate, problem, solve)
+    users = (dense_solver, fft_solver, level_solver, certificate, problem, solve)
     return tuple((user, name, wrong) for user in users if hasattr(user, name))
 
 
@@ -217,7 +217,7 @@ FAULTS = {
     ),
     "stuck": Fault(
         "three CG steps and a certificate that is always clean",
-        ((fft_solver, "_CG_LIMIT", 3), *_wherever_imported("certify", _certified_blindly)),
+        ((level_solver, "_CG_LIMIT", 3), *_wherever_imported("certify", _certified_blindly)),
         "complementarity",
     ),
 }

@@ -7,7 +7,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
-from refimpl.nesting import coarsened, foundation_pressure, levels, prolonged, sharpened, touching
+from refimpl.nesting import coarsened, foundation_pressure, levels, resampled, sharpened, touching
 from refimpl.problem import Problem, Terms, pose
 
 SIDE = 2.0**-9
@@ -30,21 +30,32 @@ def problem(M: int, *, approach: float | None = None, heights: np.ndarray | None
 @pytest.mark.parametrize(
     ("M", "expected"),
     [
-        (32, [32]),
-        (62, [62]),
-        (63, [63]),
+        (30, [30]),
+        (31, [16, 31]),
+        (32, [16, 32]),
+        (62, [31, 62]),
+        (63, [32, 63]),
         (64, [32, 64]),
-        (65, [65]),
-        (66, [33, 66]),
+        (65, [33, 65]),
         (96, [48, 96]),
+        (126, [32, 63, 126]),
+        (127, [32, 64, 127]),
         (128, [32, 64, 128]),
     ],
 )
-def test_levels_halve_even_grids_down_to_32(M: int, expected: list[int]) -> None:
+def test_levels_halve_down_to_32_and_small_grids_once(M: int, expected: list[int]) -> None:
     nested = levels(problem(M))
     assert [p.grid.M for p in nested] == expected
     assert all(p.gap.shape == p.mean_surface.shape == (p.grid.M, p.grid.M) for p in nested)
     assert all(p.grid.side == SIDE for p in nested)
+
+
+@pytest.mark.parametrize(
+    ("M", "above", "expected"),
+    [(128, 31, [32, 64, 128]), (128, 32, [64, 128]), (192, 64, [96, 192]), (64, 64, [64]), (32, 16, [32])],
+)
+def test_levels_no_finer_than_a_known_answer_are_passed_over(M: int, above: int, expected: list[int]) -> None:
+    assert [p.grid.M for p in levels(problem(M), above)] == expected
 
 
 def test_a_coarse_height_is_the_mean_of_four() -> None:
@@ -57,13 +68,13 @@ def test_a_coarse_height_is_the_mean_of_four() -> None:
             assert coarse.mean_surface[i, j] == pytest.approx(fine.mean_surface[four].mean(), rel=1e-14)
 
 
-def test_carrying_is_exact_for_a_plane_inside_and_level_beyond_the_border() -> None:
-    x, y = np.meshgrid(np.arange(4) + 0.5, np.arange(4) + 0.5, indexing="ij")  # coarse centres
-    carried = prolonged(3 * x - 5 * y)
-    fine = np.clip(
-        (np.arange(8) + 0.5) / 2, 0.5, 3.5
-    )  # fine centres, no further than the outermost coarse ones
-    np.testing.assert_array_equal(carried, 3 * fine[:, None] - 5 * fine[None, :])
+@pytest.mark.parametrize(("n", "M"), [(4, 8), (4, 6), (4, 7), (5, 16), (2, 3), (7, 4), (9, 9)])
+def test_carrying_is_exact_for_a_plane_inside_and_level_beyond_the_border(n: int, M: int) -> None:
+    centres = np.arange(n) + 0.5
+    carried = resampled(3 * centres[:, None] - 5 * centres[None, :], M)
+    there = np.clip((np.arange(M) + 0.5) * n / M, 0.5, n - 0.5)  # no further than the outermost centres
+    np.testing.assert_allclose(carried, 3 * there[:, None] - 5 * there[None, :], rtol=0, atol=1e-14 * 5 * n)
+    assert carried.flags.c_contiguous
 
 
 def test_the_starting_pressure_carries_the_load_where_surfaces_overlap() -> None:
@@ -103,8 +114,24 @@ def test_touching_is_a_damped_jacobi_step() -> None:
     v[1, 2] = limit * (1 + 1e-9)
     expected = np.ones((4, 4), dtype=bool)
     expected[1, 2] = False
-    np.testing.assert_array_equal(touching(pressure, v, approach, posed), expected)
-    assert not touching(np.zeros((4, 4)), np.full((4, 4), approach), approach, posed).any()
+    found, used = touching(pressure, v, approach, posed)
+    np.testing.assert_array_equal(found, expected)
+    assert used == approach
+    assert not touching(np.zeros((4, 4)), np.full((4, 4), approach), approach, posed)[0].any()
+
+
+@pytest.mark.parametrize("shift", [-3e-6, 0.0, 2e-5])
+def test_an_approach_that_is_not_known_keeps_the_load(shift: float) -> None:
+    """Wherever heights are counted from: the step's pressures add up to those it started from."""
+    posed = problem(16)
+    stiffness = 0.5 / (2 * posed.pair.normal_compliance * SIDE / 16)
+    rng = np.random.default_rng(5)
+    pressure = np.maximum(rng.normal(size=(16, 16)), 0) * 1e7
+    v = shift + np.where(pressure > 0, 0.0, 2e-6) + rng.normal(size=(16, 16)) * 1e-7
+    contact, approach = touching(pressure, v, None, posed)
+    stepped = np.maximum(pressure + stiffness * (approach - v), 0)
+    np.testing.assert_array_equal(contact, stepped > 0)
+    assert stepped.sum() == pytest.approx(pressure.sum(), rel=1e-3)
 
 
 @pytest.mark.parametrize("loaded", [True, False])

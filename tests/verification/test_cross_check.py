@@ -43,8 +43,9 @@ NESTED = ("rough", "direction-0.7", "metal-polymer", "strong-tau", "slope-correc
 
 @pytest.mark.parametrize("name", NESTED)
 def test_nested_grids_and_windows_agree_too(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Production nests grids from 128 elements on; here already from 10, so that windows come in."""
+    """Production nests grids of more than 30 elements; here already of 10, so that windows come in."""
     monkeypatch.setattr(nesting, "_COARSEST", 5)
+    monkeypatch.setattr(nesting, "_COARSEST_OF_TWO", 5)
     trial = TRIALS[name]
     M = trial.M - trial.M % 2
     scene_trial = Trial(trial.name, trial.stresses, trial.scene, M, trial.options)

@@ -14,7 +14,7 @@ from unittest import mock
 
 import numpy as np
 
-from refimpl import fft_solver
+from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.kernels import normal_table
 from refimpl.operators import tables
@@ -184,7 +184,7 @@ _IN_SINGLE_PRECISION = (
     (PeriodicInfluence, "_filter", _single(PeriodicInfluence._filter)),
 )
 _POINT_FORCES = (tables, "_TABLES", {**tables._TABLES, "normal": _coarse_coefficients})
-_THREE_STEPS = (fft_solver, "_CG_LIMIT", 3)
+_THREE_STEPS = (level_solver, "_CG_LIMIT", 3)
 
 BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.SIGN_OF_C: lambda: Wrong(asked(other_sign)),

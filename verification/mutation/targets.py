@@ -65,8 +65,10 @@ TARGETS = (
            ("tests/refimpl/test_paper_scheme.py", "tests/refimpl/test_paper.py")),
     Target("contact", "refimpl/contact/preconditioner.py", _tests("projected_cg")),
     Target("contact", "refimpl/contact/projected_cg.py", _tests("projected_cg", "solve")),
-    Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "solve")),
+    Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "start", "solve")),
     Target("equilibrium", "refimpl/fft_solver.py",
-           _tests("fft_solver", "solve", "solve_full_contact", "tau_cycle")),
+           _tests("fft_solver", "start", "solve", "solve_full_contact", "tau_cycle")),
+    Target("equilibrium", "refimpl/level_solver.py",
+           _tests("level_solver", "fft_solver", "solve", "solve_full_contact", "tau_cycle")),
 )  # fmt: skip
 """What the mutation score speaks of."""

@@ -14,9 +14,10 @@ import numpy as np
 import scipy.fft as sfft
 
 import refimpl as rf
-from refimpl import nesting
+from refimpl import fft_solver
 from refimpl.grid import Array
 from refimpl.operators.window import Window, padded_length
+from refimpl.problem import Problem
 from verification.tradeoff.settings import Setting
 from verification.tradeoff.single import single_precision
 from verification.variational.energy import Energy, frictionless
@@ -61,12 +62,16 @@ def _solved(scene: rf.Scene, setting: Setting) -> tuple[dict[str, float], str, A
     """Numbers, status, pressure, and the sum of n log n over all applications."""
     if setting.method == "qp":
         return _minimised(scene, setting)
-    coarsest = nullcontext() if setting.nested else mock.patch.object(nesting, "_COARSEST", setting.M)
+    grids = nullcontext() if setting.nested else mock.patch.object(fft_solver, "levels", _only_the_finest)
     precision = single_precision() if setting.single else nullcontext()
-    with coarsest, precision:
+    with grids, precision:
         solution = _solution(scene, setting)
     numbers = {name: float(getattr(solution, name)) for name in QUANTITIES}
     return numbers, solution.status.value, solution.pressure, solution.cost.point_logs
+
+
+def _only_the_finest(problem: Problem, above: int) -> list[Problem]:
+    return [problem]
 
 
 def _solution(scene: rf.Scene, setting: Setting) -> rf.Solution:

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.fft as sfft
 from numpy.typing import NDArray
 
-from refimpl import fft_solver
+from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.operators.fft import Complex, FFTInfluence
 from refimpl.operators.transforms import threads
@@ -49,5 +49,5 @@ class SingleInfluence(FFTInfluence):
 @contextmanager
 def single_precision() -> Iterator[None]:
     """Solve with `SingleInfluence`; certificates, periodic scenes and what links grids stay as they are."""
-    with mock.patch.object(fft_solver, "FFTInfluence", SingleInfluence):
+    with mock.patch.object(level_solver, "FFTInfluence", SingleInfluence):
         yield

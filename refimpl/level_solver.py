@@ -1,0 +1,262 @@
+"""One grid of the production solver: projected CG on the contact's window, with the rest lagged.
+
+Only ``a f`` is inverted. Shear displacement, slopes, the load's weights and tau's support are held
+while CG reduces the residual tenfold and are then brought up to date; their own feedback is weak
+(it scales with ``beta`` times a Dundurs parameter and with the slopes), so few updates suffice.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.contact.preconditioner import SpectralPreconditioner
+from refimpl.contact.projected_cg import ProjectedCG
+from refimpl.friction import Mask, TauSupport, local_friction
+from refimpl.grid import Array, inner
+from refimpl.nesting import Start, resampled, sharpened, touching
+from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
+from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.operators.window import Window
+from refimpl.outcome import Outcome, Status, Visited
+from refimpl.problem import Problem, visit
+from refimpl.slopes import Slopes
+
+_REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
+MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
+_CG_LIMIT = 1000
+_CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
+_STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
+_UPDATES = 600  # of what is held, in one settling: 36 sigma^2 reach 1e-8, and sigma above 4 is given up
+_STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
+_LEAST_RELAXATION = 1 / 16  # below this, updates that do not contract are given up
+_SUPPORT_ITERATIONS = 200
+
+
+def preconditioner(problem: Problem, window: Window, counter: Counter) -> SpectralPreconditioner:
+    return SpectralPreconditioner(
+        window.shape,
+        problem.grid.spacing,
+        problem.pair.normal_compliance,
+        counter,
+        band_limited=problem.periodic,
+    )
+
+
+class LevelSolver:
+    """One grid level: CG on a window, with slopes, shear and tau's support brought up to date."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        counter: Counter,
+        window: Window,
+        precondition: SpectralPreconditioner,
+        pressure: Array,
+    ) -> None:
+        self.whole = problem
+        self.counter = counter
+        self.cg_iterations = 0
+        grid, direction = problem.grid, problem.direction
+        self.window = window
+        self.problem = problem.windowed(window)
+        if problem.periodic:
+            operator: FFTInfluence | PeriodicInfluence = PeriodicInfluence(grid, direction, counter=counter)
+        else:
+            operator = FFTInfluence(grid, direction, source=window, counter=counter)
+        self.operator = operator
+        compliance = self.problem.pair.normal_compliance
+        self.cg = ProjectedCG(
+            lambda pressure: compliance * operator.normal(pressure),
+            precondition,
+            pressure,
+        )
+        self.slopes = Slopes.flat(window.shape)
+        self.traction = np.zeros(window.shape)
+        self._held: tuple[Array, Array] | None = None
+        self._ran_off = False
+        pair = self.problem.pair
+        # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
+        # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
+        sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
+        self._relaxation = self._best_relaxation = 1 / (1 + sigma**2)
+        self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
+
+    @classmethod
+    def begun(cls, problem: Problem, start: Start, counter: Counter) -> LevelSolver:
+        """The solver of a grid, from another one's answer: its pressure, and the window of likely contact."""
+        M = problem.grid.M
+        v = resampled(start.displacement, M) + problem.gap
+        pressure = resampled(start.pressure, M)
+        known = start.approach if problem.approach is None else problem.approach
+        contact, approach = touching(pressure, v, known, problem)
+        window = Window.full(M)
+        if not problem.periodic:
+            window = Window.around(contact, MARGIN).filling(M)
+        precondition = preconditioner(problem, window, counter)
+        pressure = sharpened(
+            pressure[window.slices],
+            approach - v[window.slices],
+            contact[window.slices],
+            precondition,
+            loaded=problem.load is not None,
+        )
+        return cls(problem, counter, window, precondition, pressure)
+
+    def answer(self) -> Start:
+        """What this grid has to say to a finer one."""
+        separation = self.cg.separation
+        displacement = self.full(separation - self.problem.gap)
+        if not self.whole.periodic:
+            outside = self.problem.pair.normal_compliance * self._onto_whole_grid().normal(
+                self.full(self.cg.pressure)
+            )
+            outside[self.window.slices] = displacement[self.window.slices]
+            displacement = outside
+        return Start(self.full(self.cg.pressure), displacement, self.cg.approach(separation))
+
+    def _onto_whole_grid(self) -> WholeGridInfluence:
+        grid = self.whole.grid
+        return WholeGridInfluence(
+            grid,
+            self.whole.direction,
+            source=self.window,
+            target=Window.full(grid.M),
+            counter=self.counter,
+        )
+
+    def solve(self, tolerance: float) -> Outcome:
+        """The settled state; tau's support follows the rule of `refimpl.friction`."""
+        if self.problem.friction.tau == 0:
+            self.settle(tolerance)
+            return self._outcome(self._ended(), TauSupport((1, 1)), [])
+        # Where contact leads tau by itself may be another lawful state: only the rule is path-free.
+        rule = TauSupport(self.window.shape)
+        states: list[Visited] = []
+        in_cycles: list[Visited] = []
+        for _ in range(_SUPPORT_ITERATIONS):
+            self.settle(tolerance, rule.current)
+            states.append(visit(self.problem, self.cg.pressure, self.traction, self.slopes))
+            rule.next(self.cg.pressure > 0)
+            in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
+            if rule.settled or self._ran_off:
+                break
+        lawful = not np.any(rule.withheld & (self.cg.pressure > 0))
+        status = self._ended()
+        if status is Status.CONVERGED and not lawful:
+            status = Status.CYCLED
+        return self._outcome(
+            status if rule.settled or self._ran_off else Status.ITERATION_LIMIT, rule, in_cycles
+        )
+
+    def settle(self, tolerance: float, support: Mask | None = None) -> bool:
+        """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
+        self._tolerance, self._budget = tolerance, self.cg_iterations + _CG_LIMIT
+        self._relaxation = self._best_relaxation  # anew for each of tau's supports
+        self.residual = best = self._update(support)
+        stalled, changed = 0, False
+        for _ in range(_UPDATES):
+            if self.residual <= tolerance or self.cg_iterations >= self._budget or self._ran_off:
+                break
+            before = self.support
+            self._reduce(max(_REDUCTION * self.residual, self._share * tolerance))
+            self.residual = self._update(support) if self._lags else max(self.cg.residuals())
+            changed = changed or not np.array_equal(before, self.support)
+            if self.residual < 0.5 * best:
+                best, stalled, changed = self.residual, 0, False
+            else:
+                stalled += 1
+            if stalled >= self._patience:
+                cycling = self.problem.friction.tau > 0 and changed
+                if cycling or not self._lags or self._relaxation < _LEAST_RELAXATION:
+                    break
+                self._relaxation, stalled = 0.5 * self._relaxation, 0
+        return self.residual <= tolerance
+
+    def _reduce(self, goal: float) -> None:
+        """CG steps until the frozen problem's residual meets the goal or no longer falls."""
+        best, since = np.inf, 0
+        while since < _CG_PATIENCE and self.cg_iterations < self._budget:
+            residual = max(self.cg.residuals())
+            if residual <= goal:
+                return
+            best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
+            self.cg.iterate()
+            self.cg_iterations += 1
+
+    @property
+    def _share(self) -> float:
+        """Of the tolerance, for the frozen problem: the rest is for what is held, or for rounding alone."""
+        return 0.3 if self._lags else 0.9
+
+    @property
+    def _lags(self) -> bool:
+        """Whether anything is held during CG that depends on the pressure."""
+        terms = self.problem.terms
+        sheared = terms.coupled and not self.problem.friction.is_zero
+        return terms.oblique or terms.slope_correction or sheared
+
+    def _update(self, support: Mask | None) -> float:
+        """Bring slopes, shear and load weights up to date; the residual of the whole problem."""
+        problem, pressure = self.problem, self.cg.pressure
+        self.support = pressure > 0 if support is None else support
+        self.traction = local_friction(problem.friction, pressure, self.support)
+        normal = None if problem.terms.slope_correction else self.cg.normal_displacement
+        lower, upper = problem.displacements(
+            self.operator, pressure, self.traction, self.slopes, normal_displacement=normal
+        )
+        slopes = problem.slopes(lower, upper)
+        change = slopes.distance(self.slopes, pressure > 0)
+        self._ran_off = not slopes.obliqueness.min() > _STEEPEST
+        if not self._ran_off:
+            self.slopes = slopes
+        target, balance = self._target(self.slopes.obliqueness)
+        shear, K = lower + upper - self.cg.normal_displacement, self.slopes.obliqueness
+        self._hold(shear, K, target)
+        residual = math.inf if self._ran_off else max(*self.cg.residuals(), balance, change)
+        if self._held is not None and self._relaxation < 1 and residual > self._tolerance:
+            shear = self._held[0] + self._relaxation * (shear - self._held[0])
+            K = self._held[1] + self._relaxation * (K - self._held[1])
+            self._hold(shear, K, self._target(K)[0])
+        self._held = shear, K
+        return residual
+
+    def _hold(self, shear: Array, K: Array, target: float | None) -> None:
+        self.cg.freeze(K * self.problem.gap + shear, K, target=target, approach=self.problem.approach)
+
+    def _target(self, K: Array) -> tuple[float | None, float]:
+        """What ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| / P."""
+        problem, pressure = self.problem, self.cg.pressure
+        if problem.load is None:
+            return None, 0.0
+        weights, offset = problem.load_weights(self.slopes, self.support)
+        dA = problem.grid.element_area
+        found = inner(weights, pressure)
+        target = (problem.load + offset) / dA + inner(K, pressure) - found
+        balance = abs(found * dA - offset - problem.load) / problem.load
+        # shear on slopes that alone exceeds the load leaves no balance: keep some contact and fail by it
+        return max(target, 1e-3 * problem.load / dA), balance
+
+    def _ended(self) -> Status:
+        if self.residual <= self._tolerance:
+            return Status.CONVERGED
+        return Status.ITERATION_LIMIT if self.cg_iterations >= self._budget else Status.STAGNATED
+
+    def _outcome(self, status: Status, rule: TauSupport, in_cycles: list[Visited]) -> Outcome:
+        withheld = rule.withheld if in_cycles else np.zeros(self.window.shape, dtype=bool)
+        return Outcome(
+            pressure=self.full(self.cg.pressure),
+            traction=self.full(local_friction(self.problem.friction, self.cg.pressure, self.support)),
+            slopes=self.slopes.spread(self.window, self.whole.grid.M),
+            status=status,
+            withheld=self.full(withheld),
+            visited=tuple(in_cycles),
+            iterations={f"CG at {self.whole.grid.M}": self.cg_iterations},
+        )
+
+    def full(self, values: NDArray[Any]) -> NDArray[Any]:
+        """A window array on the whole grid."""
+        return self.window.spread(values, self.whole.grid.M)
