@@ -14,10 +14,10 @@ from refimpl.solution import REPORTED
 from reports.drawing import svg
 from reports.studies import exhibit
 from verification.coverage.document import grids_of, reference_check, solves
-from verification.coverage.judge import NUMBERS, moved, summary, verdicts
+from verification.coverage.judge import moved, summary, verdicts
 from verification.coverage.scenes import CLASSES, SIDE, random_scene
 from verification.coverage.shapes import measured_like
-from verification.coverage.store import Rung, climb, ladders, rungs
+from verification.coverage.store import NUMBERS, Rung, climb, ladders, rungs
 
 GRIDS = (32, 64, 96, 128, 192, 256, 512)
 
@@ -31,7 +31,8 @@ def rung(M: int, *, size: float = 0.85, wrong: float = 0.0, seed: int = 3) -> Ru
     numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
     numbers["friction_coefficient"] = 0.1 + 1e5 * area
     result = GridResult(M, h, numbers, edge, 1.0, 1e-3, 1e5, {name: {"iteration": 0.0} for name in REPORTED})
-    return Rung(seed, result, "converged", 1e-8, float(M**2), 0.1)
+    carried = 0.75 * M**2 if GRIDS[0] < M else None
+    return Rung(seed, result, "converged", 1e-8, float(M**2), 0.1, carried)
 
 
 def test_a_lawful_ladder_is_covered_at_little_cost() -> None:
@@ -44,7 +45,8 @@ def test_a_lawful_ladder_is_covered_at_little_cost() -> None:
     area = found[1]
     assert area.cheapest is not None
     assert area.cheapest <= area.grids[-1]
-    assert area.cost == sum(M**2 for M in area.grids) / area.cheapest**2
+    first, *later = area.grids
+    assert area.cost == (first**2 + sum(0.75 * M**2 for M in later)) / area.cheapest**2
     assert summary(found)["covered"] == 1.0
 
 
@@ -98,7 +100,13 @@ def test_the_store_resumes_after_a_kill(tmp_path: Path) -> None:
     assert [found.result.M for found in rungs(store)] == [32]
     climb(store, [0], [32, 48])
     assert [found.result.M for found in ladders(store)[0]] == [32, 48]
-    assert solves(ladders(store).values())["not_converged"] == 0
+    found = solves(ladders(store).values())
+    assert found["not_converged"] == 0
+    assert found["worst_apart"] <= 1e-6
+    first, second = ladders(store)[0]
+    assert first.carried is None
+    assert second.carried is not None
+    assert second.carried < second.point_logs
 
 
 def test_the_reference_is_checked_on_one_more_grid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

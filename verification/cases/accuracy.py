@@ -8,8 +8,8 @@ from pathlib import Path
 
 import refimpl as rf
 from verification.case import Measured
-from verification.coverage.judge import NUMBERS, verdicts
-from verification.coverage.store import climb, ladders
+from verification.coverage.judge import verdicts
+from verification.coverage.store import NUMBERS, climb, ladders
 from verification.exact.hertz import UNCERTAINTY, Sphere
 from verification.registry import case
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from verification.coverage.judge import NUMBERS, Verdict, moved, summary, verdicts
+from verification.coverage.judge import Verdict, moved, summary, verdicts
 from verification.coverage.scenes import CLASSES
-from verification.coverage.store import TOLERANCE, Rung, climb, ladders
+from verification.coverage.store import NUMBERS, TOLERANCE, Rung, climb, ladders
 from verification.provenance import provenance
 
 GRIDS = (32, 64, 96, 128, 192, 256, 320, 384, 512)
@@ -60,12 +60,13 @@ def reference_check(seeds: Sequence[int], store: Path) -> dict[str, object]:
 
 
 def solves(stored: Iterable[Sequence[Rung]]) -> dict[str, float]:
-    """How many, how long (s), and the worst residual among them."""
+    """How many, how long (s), the worst residual, and how far a start can lead from the same answer."""
     rungs = [rung for ladder in stored for rung in ladder]
     return {
         "count": len(rungs),
         "seconds": sum(rung.seconds for rung in rungs),
         "worst_residual": max(rung.worst for rung in rungs),
+        "worst_apart": max((rung.apart for rung in rungs if rung.apart is not None), default=0.0),
         "not_converged": sum(rung.status not in ("converged", "cycled") for rung in rungs),
     }
 

@@ -6,20 +6,27 @@ import json
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import refimpl as rf
 from refimpl.grid_result import GridResult
+from refimpl.refine import OPENING
 from verification.coverage.scenes import random_scene
 from verification.files import Progress
 
+NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 TOLERANCE = 1e-6
 """Certificate of every solve: what ``accuracy=0.001`` deserves, and tighter than 0.01 does."""
 
 
 @dataclass(frozen=True)
 class Rung:
-    """One scene on one grid: its numbers, its status, its worst residual and what it cost."""
+    """One scene on one grid: its numbers, its status, its worst residual and what it cost.
+
+    ``carried`` is the cost where the grid starts from the opening's answer, as in a climb; ``apart`` how far
+    its `NUMBERS` then lie from those found afresh, over their values.
+    """
 
     seed: int
     result: GridResult
@@ -27,6 +34,8 @@ class Rung:
     worst: float
     point_logs: float
     seconds: float
+    carried: float | None = None
+    apart: float | None = None
 
 
 def climb(path: Path, seeds: Iterable[int], grids: Iterable[int]) -> None:
@@ -69,11 +78,34 @@ def ladders(path: Path) -> dict[int, list[Rung]]:
 def _solved(seed: int, M: int) -> Rung:
     started = time.process_time()
     solution = rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE)
+    seconds = time.process_time() - started
+    begun = _begun(seed, M)
     return Rung(
         seed=seed,
         result=GridResult.of(solution),
         status=solution.status.value,
         worst=solution.certificate.worst,
         point_logs=solution.cost.point_logs,
-        seconds=time.process_time() - started,
+        seconds=seconds,
+        carried=begun.cost.point_logs if begun else None,
+        apart=_apart(begun, solution) if begun else None,
     )
+
+
+def _begun(seed: int, M: int) -> rf.Solution | None:
+    """The solution that starts from the opening's, if there is a coarser one that has converged."""
+    coarser = [grid for grid in OPENING if grid < M]
+    start = _opened(seed, coarser[-1]) if coarser else None
+    if start is None or not start.converged:
+        return None
+    return rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE, start=start)
+
+
+@lru_cache(maxsize=len(OPENING))
+def _opened(seed: int, M: int) -> rf.Solution:
+    return _begun(seed, M) or rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE)
+
+
+def _apart(one: rf.Solution, other: rf.Solution) -> float:
+    pairs = [(float(getattr(one, name)), float(getattr(other, name))) for name in NUMBERS]
+    return max(abs(a - b) / abs(b) for a, b in pairs if b)
