@@ -1,6 +1,7 @@
 """The codes that take part: each peer's adapter, and this project's solver without and with coupling.
 
-A plus in a name stands for more than the recommended set-up: coupling for ours, options for a peer.
+A plus in a name stands for more than the recommended set-up: coupling for ours, options for a peer. Ours is
+timed from a scene to a solution with its error bars, and once more alone, from a gap to a pressure, as peers.
 """
 
 from __future__ import annotations
@@ -12,13 +13,18 @@ from functools import partial
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array
+from refimpl.fft_solver import solve_fft
+from refimpl.grid import Array, Grid
+from refimpl.operators.fft import Counter
+from refimpl.problem import pose
+from refimpl.request import Request
 from verification.adapters import aspher, contactmechanics, tamaas
 from verification.adapters.peer import Peer
-from verification.benchmarks.problems import FRICTION, problem, scene
+from verification.benchmarks.problems import FRICTION, SIDE, problem, scene
 from verification.provenance import DISTRIBUTION, versions
 
 OWN = "refimpl"
+ALONE = f"{OWN}-solver"
 SHEARED, SLOPED = f"{OWN}+friction", f"{OWN}+friction+slopes"
 PEERS = {
     "tamaas": tamaas.solve,
@@ -80,11 +86,26 @@ def _own(friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: flo
     return press
 
 
+def _alone(kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
+    frictionless = Request(scene=scene(kind, M, rf.Friction()), grid=M, oblique=False)
+    posed = pose(frictionless.scene, Grid(SIDE, M), frictionless.plan().switches, None)
+
+    def press() -> Pressed:
+        counter = Counter()
+        outcome, _ = solve_fft(posed, tolerance, counter)
+        work = {f"{name} products": float(n) for name, n in counter.tally.items()}
+        converged = outcome.status is rf.Status.CONVERGED
+        return Pressed(outcome.pressure, converged, work | {"n log2 n": counter.point_logs})
+
+    return press
+
+
 def codes() -> dict[str, Code]:
     """All codes by name; the version is None where a peer is not installed."""
     own = f"{OWN} {versions()[DISTRIBUTION]}"
     settings = {OWN: (rf.Friction(), False), SHEARED: (FRICTION, False), SLOPED: (FRICTION, True)}
     found = {name: Code(name, own, partial(_own, *setting)) for name, setting in settings.items()}
+    found[ALONE] = Code(ALONE, own, _alone)
     for name, peer in PEERS.items():
         found[name] = Code(name, peer.version if peer.installed else None, partial(_peer, peer))
     return found

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from verification.benchmarks.codes import OWN
-from verification.benchmarks.rounds import TARGET, Turns, error
+from verification.benchmarks.codes import ALONE, OWN
+from verification.benchmarks.rounds import TARGET, Found, Turns, error
 
 JUDGED = ("gap", "balance", "penetration", "tension", "area", "peak", "converged", "operations")
 
@@ -47,6 +47,9 @@ def row(turns: Turns) -> dict[str, object]:
         ),
         "meets the target": all(error(found) <= TARGET for found in turns.rounds),
     }
+    again = [found["seconds again"] for found in turns.rounds if found["seconds again"] is not None]
+    if again:
+        numbers["seconds again"] = spread(again)
     logs = last["operations"].get("n log2 n")
     if logs is not None:
         points = math.prod(last["padded box"])
@@ -55,31 +58,43 @@ def row(turns: Turns) -> dict[str, object]:
 
 
 def ratios(turns: Sequence[Turns]) -> dict[str, object]:
-    """Seconds of every code over ours on one problem, round by round; and the least of the peers': by the
-    recommended set-ups, and by any.
+    """Seconds of every code over ours on one problem, round by round; and the least of the peers'.
 
-    Processor seconds beside: they hear less of what else the machine does.
+    The least by the recommended set-ups, by any, over the solver alone, and over it in a process that has
+    solved the same before. Processor seconds beside: they hear less of what else the machine does.
     """
     by_code = {one.code: one.rounds for one in turns if one.rounds}
     own = by_code.pop(OWN, None)
     if own is None:
         return {}
-    found: dict[str, object] = {}
-    medians: dict[str, float] = {}
-    for code, rounds in by_code.items():
-        pairs = list(zip(rounds, own, strict=False))
-        found[code] = {
-            clock: spread(theirs[clock] / ours[clock] for theirs, ours in pairs)
-            for clock in ("seconds", "processor seconds")
-        }
-        if not code.startswith(OWN):
-            medians[code] = spread(theirs["seconds"] / ours["seconds"] for theirs, ours in pairs)["median"]
-    recommended = {code: ratio for code, ratio in medians.items() if "+" not in code}
-    for name, of in (("fastest peer", recommended), ("fastest set-up of a peer", medians)):
-        if of:
-            fastest = min(of, key=lambda code: of[code])
-            found[name] = {"code": fastest, "seconds over ours": of[fastest]}
+    found: dict[str, object] = {
+        code: {clock: _over(rounds, own, clock) for clock in ("seconds", "processor seconds")}
+        for code, rounds in by_code.items()
+    }
+    peers = {code: rounds for code, rounds in by_code.items() if not code.startswith(OWN)}
+    recommended = {code: rounds for code, rounds in peers.items() if "+" not in code}
+    found |= _fastest("fastest peer", recommended, own, "seconds")
+    found |= _fastest("fastest set-up of a peer", peers, own, "seconds")
+    alone = by_code.get(ALONE, [])
+    found |= _fastest("fastest peer, solver alone", recommended, alone, "seconds")
+    found |= _fastest("fastest peer, solver alone, again", recommended, alone, "seconds again")
     return found
+
+
+def _over(theirs: Sequence[Found], ours: Sequence[Found], clock: str) -> dict[str, float]:
+    return spread(one[clock] / other[clock] for one, other in zip(theirs, ours, strict=False))
+
+
+def _fastest(
+    name: str, peers: Mapping[str, Sequence[Found]], ours: Sequence[Found], clock: str
+) -> dict[str, object]:
+    """The peer of the least median ratio, if any was timed by that clock."""
+    timed = {code: rounds for code, rounds in peers.items() if all(one[clock] is not None for one in rounds)}
+    if not timed or not ours or any(one[clock] is None for one in ours):
+        return {}
+    medians = {code: _over(rounds, ours, clock)["median"] for code, rounds in timed.items()}
+    fastest = min(medians, key=lambda code: medians[code])
+    return {name: {"code": fastest, "seconds over ours": medians[fastest]}}
 
 
 def lines(rows: Sequence[Any], ratios: Sequence[Any]) -> list[list[str]]:
