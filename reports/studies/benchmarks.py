@@ -54,7 +54,8 @@ def _newest(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
 def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
     head = (
         "grid", "code", "seconds", "seconds again", "over ours", "processor time over ours",
-        "recomputed gap", "area (mm²)", "peak (MPa)", "peak memory (MB)", "convolutions in all", "times one convolution", "commit",
+        "recomputed gap", "area (mm²)", "peak (MPa)", "peak memory (MB)", "convolutions in all",
+        "times one convolution", "commit",
     )  # fmt: skip
     rows: list[Sequence[Cell]] = []
     for (of, M), entries in newest.items():
