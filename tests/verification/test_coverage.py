@@ -142,7 +142,7 @@ def test_the_report_shows_the_study() -> None:
     }
     document = {
         "seeds": [3, 3],
-        "solves": {"count": 7, "seconds": 1.0, "worst_residual": 1e-8},
+        "solves": {"count": 7, "seconds": 1.0, "worst_residual": 1e-8, "worst_apart": 1e-9},
         "reference_check": {"grid": 1024, "seeds": [3], "worst_over_bound": 0.5},
         "accuracies": [judged],
     }

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from verification.coverage.judge import Verdict, moved, summary, verdicts
 from verification.coverage.scenes import CLASSES
-from verification.coverage.store import NUMBERS, TOLERANCE, Rung, climb, ladders
+from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb, ladders
 from verification.provenance import provenance
 
-GRIDS = (32, 64, 96, 128, 192, 256, 320, 384, 512)
+GRIDS = (32, 64, 96, 128, 192, 256, 320, 384, FINEST)
 """What may be asked for; the ladder of `refimpl.refine` has some more between them."""
 CHECK, CHECK_SEEDS = 2048, range(8, 14)
 """References are checked on one more grid for one scene of each class that is not periodic."""
