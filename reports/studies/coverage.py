@@ -31,8 +31,8 @@ def build(document: Document) -> Exhibit:
         "for. A bar holds when the value's distance from the reference is within it; the reference shares "
         "the edge's mean share with the estimator, so the next column moves it by its whole bound, against "
         "the bar. Where the accuracy was "
-        "not reached on these grids, the end is reported as such, with the bar that was. Each grid of a climb "
-        "starts from the answer before, which changes its cost and no number by more than "
+        "not reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
+        "climb starts from the answer before, which changes its cost and no number by more than "
         f"{solves['worst_apart']:.0e} of it; the cheapest grid is solved afresh."
     )
     return Exhibit(

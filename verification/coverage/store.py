@@ -94,7 +94,7 @@ def _solved(seed: int, M: int) -> Rung:
 
 
 def _begun(seed: int, M: int) -> rf.Solution | None:
-    """The solution that starts from the opening's, where a climb may come by and the opening has converged."""
+    """The solution that starts from the opening's, if a climb may come by and the opening has converged."""
     coarser = [grid for grid in OPENING if grid < M <= FINEST]
     start = _opened(seed, coarser[-1]) if coarser else None
     if start is None or not start.converged:
@@ -110,4 +110,4 @@ def _opened(seed: int, M: int) -> rf.Solution:
 def _apart(one: rf.Solution, other: rf.Solution) -> float:
     """The largest relative difference of the numbers; without friction mu is rounding and left out."""
     names = NUMBERS[1:] if one.friction.is_zero else NUMBERS
-    return max(abs(getattr(one, name) / getattr(other, name) - 1) for name in names)
+    return max(abs(float(getattr(one, name)) / float(getattr(other, name)) - 1) for name in names)
