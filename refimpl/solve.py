@@ -70,8 +70,9 @@ def solve(
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, what that deserves), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
-    start : a converged solution of the same side on a grid that is not finer, of this scene or one like it,
-        that "fft" shall start from: levels no finer than it are passed over; the answer is the same
+    start : a converged solution on a grid of the same side that is not finer, for "fft" to start from: nested
+        grids no finer are passed over, and the answer is the same. Best this scene's own on a coarser grid;
+        after another load the nested grids get there sooner
     progress : is called with a line of text at every step of the work
 
     Raises `InputError` for input that is out of range, before anything large is allocated.
