@@ -123,7 +123,7 @@ def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
     """
     start = _NEAR_COUNT
     while start < max(n, m):
-        height = min(1 + start // 8, max(1, _SLAB // min(start, n, m)))
+        height = min(1 + start // 2, max(1, _SLAB // min(start, n, m)))
         stop = min(start + height, max(n, m))
         if stop > known:
             yield start, stop
