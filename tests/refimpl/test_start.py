@@ -6,9 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 import refimpl as rf
 from tests.refimpl.levels import BALL
+from verification.properties import Sample, samples
+from verification.properties.states import same_pressure
 
 ROUGH = replace(
     BALL,
@@ -47,6 +51,19 @@ def test_the_answer_is_the_same_with_fewer_transforms(scene: rf.Scene, grid: int
     np.testing.assert_allclose(begun.pressure, afresh.pressure, rtol=0, atol=1e-6 * afresh.max_pressure)
     # of a rule of tau's supports only the first gets on faster; measured: 0.56 to 0.97
     assert begun.cost.point_logs < afresh.cost.point_logs
+
+
+@given(samples(), st.sampled_from([0.3, 1.0, 2.5]))
+@settings(max_examples=40, deadline=None)
+def test_whatever_a_solve_starts_from(sample: Sample, share: float) -> None:
+    """The samples of the invariants, from their own answer and from that to another load."""
+    other = replace(sample.scene, load=share * sample.scene.load)
+    start = rf.solve(other, sample.M, tolerance=1e-12)
+    assume(start.converged)
+    begun, afresh = (rf.solve(sample.scene, sample.M, tolerance=1e-12, start=s) for s in (start, None))
+    assert begun.status is afresh.status
+    same_pressure(begun, afresh, sample)
+    assert np.array_equal(begun.withheld, afresh.withheld)
 
 
 def test_no_grid_up_to_the_starts_is_solved_again() -> None:
