@@ -35,11 +35,11 @@ def solve_fft(
         outcome, window = solver.solve(tolerance), solver.window
         del solver  # what it holds is no longer needed when the whole grid's arrays come
         state = _certified(problem, outcome, counter)
-        outside = _penetrating_outside(state, window, tolerance)
-        if not outside.any():
+        beyond = _beyond(problem, state, window, tolerance)
+        if not beyond.any():
             outcome.iterations.update(iterations)
             return outcome, state
-        solver = _widened(problem, outcome, outside, counter)
+        solver = _widened(problem, outcome, beyond, counter)
 
 
 def _unprepared(problem: Problem, counter: Counter) -> LevelSolver:
@@ -65,17 +65,22 @@ def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
     return certify(problem, operator, outcome.pressure, outcome.traction, outcome.slopes)
 
 
-def _penetrating_outside(state: State, window: Window, tolerance: float) -> Mask:
-    """Elements that penetrate by more than the tolerance outside a window or on its edge."""
-    outside = state.separation < state.approach * (1 - tolerance)
-    outside[window.interior(len(outside)).slices] = False
-    return outside
+def _beyond(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
+    """Elements outside a window or on its edge for which it is too small.
+
+    They penetrate by more than the tolerance; or slopes count, which were one-sided there, and they touch.
+    """
+    beyond = state.separation < state.approach * (1 - tolerance)
+    if problem.terms.oblique:
+        beyond |= state.pressure > 0
+    beyond[window.interior(len(beyond)).slices] = False
+    return beyond
 
 
-def _widened(problem: Problem, outcome: Outcome, outside: Mask, counter: Counter) -> LevelSolver:
-    """A solver that starts from a pressure found, on a window that also holds the penetrating elements."""
+def _widened(problem: Problem, outcome: Outcome, beyond: Mask, counter: Counter) -> LevelSolver:
+    """A solver that starts from a pressure found, on a window that holds what was beyond the last as well."""
     pressure = outcome.pressure
-    window = Window.around((pressure > 0) | outside, MARGIN).filling(len(outside))
+    window = Window.around((pressure > 0) | beyond, MARGIN).filling(len(beyond))
     precondition = preconditioner(problem, window, counter)
     solver = LevelSolver(problem, counter, window, precondition, pressure[window.slices])
     solver.cg_iterations = sum(outcome.iterations.values())

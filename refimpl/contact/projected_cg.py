@@ -22,6 +22,7 @@ Apply = Callable[[Array], Array]
 
 FIRST_LENGTH = 0.7  # of a step: the preconditioned spectrum lies between 1 and 2 (see the tests)
 _SHORTER = 0.8  # trial over last best length: a trial too long would leave cut elements halfway
+_NOTHING = 1e-12  # of a pressure: what a step that makes it vanish may leave
 _TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its length before it cuts
 
 
@@ -143,12 +144,17 @@ class ProjectedCG:
             share = min(share, 1.0)
         elif share > 1 and (self.pressure + share * change).min() < 0:
             share = self._room(change)
-        self.pressure = trial if share == 1 else np.maximum(self.pressure + share * change, 0.0)
+        self.pressure = trial if share == 1 else self._reached(self.pressure + share * change)
         self.normal_displacement = self.normal_displacement + share * moved
         self.contact &= ~((self.pressure == 0) & (negative | (change < 0)))
         self._length *= _SHORTER * best
         self._trusted = _TRUSTED[0] < best < _TRUSTED[1]
         return True
+
+    def _reached(self, pressure: Array) -> Array:
+        """A step's pressure, with nothing where it leaves as much as rounding does of what vanishes."""
+        pressure[pressure < _NOTHING * self.pressure] = 0.0
+        return pressure
 
     def _room(self, change: Array) -> float:
         """The multiple of ``change`` at which the first pressure reaches zero."""

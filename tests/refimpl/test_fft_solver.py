@@ -10,7 +10,7 @@ import pytest
 import refimpl as rf
 from refimpl import level_solver
 from refimpl.contact.certificate import certify
-from refimpl.fft_solver import _certified, _penetrating_outside, _widened, solve_fft
+from refimpl.fft_solver import _beyond, _certified, _widened, solve_fft
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
@@ -60,7 +60,7 @@ def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
     for _ in range(20):
         outcome = solver.solve(tolerance)
         state = _certified(problem, outcome, Counter())
-        outside = _penetrating_outside(state, solver.window, tolerance)
+        outside = _beyond(problem, state, solver.window, tolerance)
         if not outside.any():
             break
         assert not outside[solver.window.interior(M).slices].any()
@@ -97,7 +97,7 @@ def test_what_just_touches_outside_a_window_is_no_penetration() -> None:
     problem = posed(BALL, 16)
     state = _certified(problem, level(problem).solve(1e-8), Counter())
     touching = replace(state, separation=np.full((16, 16), state.approach))
-    assert not _penetrating_outside(touching, Window(7, 9, 7, 9), 1e-8).any()
+    assert not _beyond(problem, touching, Window(7, 9, 7, 9), 1e-8).any()
 
 
 def test_facet_tractions_are_the_dense_solvers() -> None:
@@ -110,3 +110,19 @@ def test_facet_tractions_are_the_dense_solvers() -> None:
     assert fft.status is dense.status is rf.Status.CONVERGED
     assert dense.slope_error.max_slope > 0.015
     np.testing.assert_allclose(fft.pressure, dense.pressure, atol=1e-8 * dense.max_pressure, rtol=0)
+
+
+def test_contact_on_a_windows_edge_has_outgrown_it_where_slopes_count() -> None:
+    """One-sided on the edge, they are central on the whole grid."""
+    problem = posed(replace(BALL, load=20.0), 16, oblique=True)
+    state = _certified(problem, level(problem).solve(1e-8), Counter())
+    contact = state.pressure > 0
+    tight = Window.around(contact, margin=0)
+    assert 0 < tight.i0 < tight.i1 < 16
+    on_edge = contact.copy()
+    on_edge[tight.interior(16).slices] = False
+    assert on_edge.any()
+    assert np.array_equal(_beyond(problem, state, tight, 1e-8), on_edge)
+    assert not _beyond(problem, state, Window.around(contact, margin=1), 1e-8).any()
+    flat = posed(replace(BALL, load=20.0), 16)
+    assert not _beyond(flat, state, tight, 1e-8).any()
