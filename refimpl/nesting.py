@@ -9,10 +9,9 @@ import numpy as np
 
 from refimpl.contact.projected_cg import FIRST_LENGTH, Apply
 from refimpl.friction import Mask
-from refimpl.grid import Array, Grid, inner
+from refimpl.grid import Array, Grid
 from refimpl.problem import Problem
 
-_BALANCING_STEPS = 20
 _COARSEST = 32  # elements per side where nesting starts
 _COARSEST_OF_TWO = 16  # the same of grids that would have no coarser one
 
@@ -33,7 +32,7 @@ class Start(NamedTuple):
         return len(self.pressure)
 
 
-def levels(problem: Problem, above: int = 0) -> list[Problem]:
+def levels(problem: Problem, above: int) -> list[Problem]:
     """The problem on halved grids finer than ``above``, coarsest first."""
     nested = [problem]
     lowest = _COARSEST_OF_TWO
@@ -98,25 +97,27 @@ def touching(pressure: Array, v: Array, approach: float | None, problem: Problem
     stiffness = 0.5 / (2 * problem.pair.normal_compliance * problem.grid.spacing)
     freed = pressure - stiffness * v
     if approach is None:
-        mean = inner(pressure, v) / float(pressure.sum())
-        approach = _balancing(freed, stiffness, float(pressure.sum()), mean)
+        approach = _balancing(pressure, freed, stiffness)
     found: Mask = freed + stiffness * approach > 0
     return found, approach
 
 
-def _balancing(freed: Array, stiffness: float, total: float, approach: float) -> float:
-    """The approach at which ``max(freed + stiffness approach, 0)`` adds up to the total, to a thousandth.
+def _balancing(pressure: Array, freed: Array, stiffness: float) -> float:
+    """The approach at which ``max(freed + stiffness approach, 0)`` adds up to what the pressure does.
 
-    Newton's steps on a convex function: after the first they come from above, so that contact only shrinks.
+    Newton's steps on a convex function whose slope is the number of elements that press: after the first they
+    come from above, so that this number falls until it stays, which is the solution.
     """
-    for _ in range(_BALANCING_STEPS):
+    total, fewest = float(pressure.sum()), freed.size + 1
+
+    def balance(pressing: Array) -> float:
+        return (total - float(pressing.sum())) / (stiffness * pressing.size)
+
+    pressing = freed[freed > -stiffness * balance(freed[pressure > 0])]
+    while pressing.size < fewest:
+        fewest = pressing.size
+        approach = balance(pressing)
         pressing = freed[freed > -stiffness * approach]
-        excess = float(pressing.sum()) + pressing.size * stiffness * approach - total
-        approach -= excess / (stiffness * pressing.size)
-        if abs(excess) <= 1e-3 * total:
-            break
-        if excess > 0:
-            freed = pressing
     return approach
 
 
