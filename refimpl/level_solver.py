@@ -27,6 +27,7 @@ from refimpl.slopes import Slopes
 
 _REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
 MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
+_KEPT = 0.99  # of the tolerance: the certificate, recomputed, rounds otherwise, by 1e-15 against 1e-12
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 _STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
@@ -154,12 +155,12 @@ class LevelSolver:
 
     def settle(self, tolerance: float, support: Mask | None = None) -> bool:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
-        self._tolerance, self._budget = tolerance, self.cg_iterations + _CG_LIMIT
+        self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
         self._relaxation = self._best_relaxation  # anew for each of tau's supports
         self.residual = best = self._update(support)
         stalled, changed = 0, False
         for _ in range(_UPDATES):
-            if self.residual <= tolerance or self.cg_iterations >= self._budget or self._ran_off:
+            if self.residual <= self._tolerance or self.cg_iterations >= self._budget or self._ran_off:
                 break
             before = self.support
             self._reduce(max(_REDUCTION * self.residual, self._share * tolerance))
@@ -174,7 +175,7 @@ class LevelSolver:
                 if cycling or not self._lags or self._relaxation < _LEAST_RELAXATION:
                     break
                 self._relaxation, stalled = 0.5 * self._relaxation, 0
-        return self.residual <= tolerance
+        return self.residual <= self._tolerance
 
     def _reduce(self, goal: float) -> None:
         """CG steps until the frozen problem's residual meets the goal or no longer falls."""

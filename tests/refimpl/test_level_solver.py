@@ -118,6 +118,17 @@ def test_updates_that_stall_from_the_first_are_relaxed_as_well(monkeypatch: pyte
     assert updates.solver._relaxation == 0.25 * began
 
 
+@pytest.mark.parametrize(("share", "met"), [(0.985, True), (0.995, False)])
+def test_the_certificate_may_round_otherwise(
+    share: float, met: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A residual counts as met a hundredth below the tolerance: 1e-12 leaves rounding a thousandth."""
+    solver = level(posed(BALL, 4))
+    monkeypatch.setattr(solver, "_update", lambda support: share * 1e-12)
+    solver.support = ONE
+    assert solver.settle(1e-12) is met
+
+
 @pytest.mark.parametrize("sigma", [0.0, 0.3])
 def test_updates_that_never_contract_are_given_up(sigma: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """At a sixteenth, which halvings of one meet, they are still tried."""
