@@ -97,26 +97,21 @@ def touching(pressure: Array, v: Array, approach: float | None, problem: Problem
     stiffness = 0.5 / (2 * problem.pair.normal_compliance * problem.grid.spacing)
     freed = pressure - stiffness * v
     if approach is None:
-        approach = _balancing(pressure, freed, stiffness)
+        approach = _balancing(freed, stiffness, float(pressure.sum()))
     found: Mask = freed + stiffness * approach > 0
     return found, approach
 
 
-def _balancing(pressure: Array, freed: Array, stiffness: float) -> float:
-    """The approach at which ``max(freed + stiffness approach, 0)`` adds up to what the pressure does.
+def _balancing(freed: Array, stiffness: float, total: float) -> float:
+    """The approach at which ``max(freed + stiffness approach, 0)`` adds up to the total.
 
-    Newton's steps on a convex function whose slope is the number of elements that press: after the first they
-    come from above, so that this number falls until it stays, which is the solution.
+    Newton's steps, from all elements on: the function is convex with the number of those that press for a
+    slope, so steps come from above and this number falls until it stays, which is the solution.
     """
-    total, fewest = float(pressure.sum()), freed.size + 1
-
-    def balance(pressing: Array) -> float:
-        return (total - float(pressing.sum())) / (stiffness * pressing.size)
-
-    pressing = freed[freed > -stiffness * balance(freed[pressure > 0])]
+    pressing, fewest = freed, freed.size + 1
     while pressing.size < fewest:
         fewest = pressing.size
-        approach = balance(pressing)
+        approach = (total - float(pressing.sum())) / (stiffness * fewest)
         pressing = freed[freed > -stiffness * approach]
     return approach
 
