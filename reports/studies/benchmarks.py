@@ -147,7 +147,7 @@ def _figure(kinds: Sequence[str]) -> Figure:
         ("kinds", "seconds"),
         _draw,
         "Seconds over the grid, at a recomputed gap of 1e-8.",
-        (4.4 * len(kinds), 4.2),
+        (4.4 * len(kinds), 4.8),
     )
 
 
@@ -168,4 +168,5 @@ def _draw(canvas: Canvas, data: Data) -> None:
         axes.set_xticks(sorted(grids), [str(M) for M in sorted(grids)])
         axes.minorticks_off()
     panels[0].set_ylabel("seconds")
-    panels[0].legend(fontsize=8)
+    lines, labels = panels[0].get_legend_handles_labels()
+    canvas.legend(lines, labels, loc="outside lower center", ncols=4, fontsize=8)

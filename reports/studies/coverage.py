@@ -33,7 +33,7 @@ def build(document: Document) -> Exhibit:
         "the bar. Where the accuracy was "
         "not reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
         "climb starts from the answer before, which changes its cost and no number by more than "
-        f"{solves['worst_apart']:.0e} of it; the cheapest grid is solved afresh."
+        f"{solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
     )
     return Exhibit(
         "Accuracy asked for, and kept",
