@@ -126,6 +126,17 @@ def test_contact_on_a_windows_edge_has_outgrown_it_where_slopes_count() -> None:
     on_edge[tight.interior(16).slices] = False
     assert on_edge.any()
     assert np.array_equal(_beyond(problem, state, tight, 1e-8), on_edge)
+    faint = replace(state, pressure=1e-12 * state.pressure)  # no pascal is too little
+    assert np.array_equal(_beyond(problem, faint, tight, 1e-8), on_edge)
     assert not _beyond(problem, state, Window.around(contact, margin=1), 1e-8).any()
     flat = posed(replace(BALL, load=20.0), 16)
     assert not _beyond(flat, state, tight, 1e-8).any()
+
+
+def test_without_friction_the_certificate_transforms_no_more_than_the_contact_needs() -> None:
+    problem = posed(replace(BALL, friction=rf.Friction()), 32)
+    outcome = level(problem).solve(1e-6)
+    found, everything = Counter(), Counter()
+    _certified(problem, outcome, found)
+    _certified(problem, replace(outcome, pressure=np.ones((32, 32))), everything)
+    assert found.point_logs < 0.6 * everything.point_logs
