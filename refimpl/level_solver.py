@@ -38,6 +38,7 @@ _SUPPORT_ITERATIONS = 200
 
 
 def preconditioner(problem: Problem, window: Window, counter: Counter) -> SpectralPreconditioner:
+    """The preconditioner of a problem's window."""
     return SpectralPreconditioner(
         window.shape,
         problem.grid.spacing,

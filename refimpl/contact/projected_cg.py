@@ -152,7 +152,7 @@ class ProjectedCG:
         return True
 
     def _reached(self, pressure: Array) -> Array:
-        """A step's pressure, with nothing where it leaves as much as rounding does of what vanishes."""
+        """A step's pressure; what it makes vanish is zero, whatever trace rounding leaves."""
         pressure[pressure < _NOTHING * self.pressure] = 0.0
         return pressure
 

@@ -84,6 +84,8 @@ def test_a_wider_window_holds_the_contact_and_what_penetrates_beside_it() -> Non
     wider = _widened(solver.whole, outcome, outside, Counter())
     held = (outcome.pressure > 0) | outside
     assert wider.window == Window.around(held, level_solver.MARGIN).filling(M)
+    faint = replace(outcome, pressure=1e-12 * outcome.pressure)  # no pascal is too little
+    assert _widened(solver.whole, faint, outside, Counter()).window == wider.window
     assert wider.window.shape < (M, M)
     assert np.array_equal(wider.full(wider.cg.pressure), outcome.pressure)
 
