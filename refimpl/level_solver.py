@@ -110,15 +110,14 @@ class LevelSolver:
 
     def answer(self) -> Start:
         """What this grid has to say to a finer one."""
-        separation = self.cg.separation
-        displacement = self.full(separation - self.problem.gap)
+        displacement = self.full(self.cg.separation - self.problem.gap)
         if not self.whole.periodic:
             outside = self.problem.pair.normal_compliance * self._onto_whole_grid().normal(
                 self.full(self.cg.pressure)
             )
             outside[self.window.slices] = displacement[self.window.slices]
             displacement = outside
-        return Start(self.full(self.cg.pressure), displacement, self.cg.approach(separation))
+        return Start(self.full(self.cg.pressure), displacement, self.cg.approach)
 
     def _onto_whole_grid(self) -> WholeGridInfluence:
         grid = self.whole.grid

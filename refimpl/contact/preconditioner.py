@@ -9,7 +9,7 @@ import scipy.fft as sfft
 
 from refimpl.grid import Array
 from refimpl.operators.fft import Counter
-from refimpl.operators.transforms import threads
+from refimpl.operators.fourier import fourier, threads
 
 
 class SpectralPreconditioner:
@@ -31,7 +31,7 @@ class SpectralPreconditioner:
         band_limited: bool = False,
     ) -> None:
         self._shape = shape
-        self._padded = tuple(sfft.next_fast_len(n, real=True) for n in shape)
+        self._padded = _fast(shape[0]), _fast(shape[1])
         self._counter = counter
         q_x = 2 * np.pi * sfft.fftfreq(self._padded[0], spacing)[:, None]
         q_y = 2 * np.pi * sfft.rfftfreq(self._padded[1], spacing)[None, :]
@@ -44,11 +44,14 @@ class SpectralPreconditioner:
         points = math.prod(self._padded)
         self._counter.add("preconditioner", points)
         workers = threads(points)
-        spectrum = sfft.rfft2(residual, s=self._padded, workers=workers)
+        spectrum = fourier.plane(residual, self._padded, workers)
         spectrum *= self._symbol
         n, m = self._shape
-        result: Array = sfft.irfft2(spectrum, s=self._padded, overwrite_x=True, workers=workers)[:n, :m]
-        return result
+        return fourier.plane_back(spectrum, self._padded, workers)[:n, :m]
+
+
+def _fast(n: int) -> int:
+    return int(sfft.next_fast_len(n, real=True))
 
 
 def _over_q(q_x: Array, q_y: Array, spacing: float, *, folds: int) -> Array:

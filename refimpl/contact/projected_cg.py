@@ -12,6 +12,7 @@ Polak-Ribiere quotient, which forgets the past by itself when S changes.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,6 +34,13 @@ def relative_gap(duality: float, energy: float) -> float:
     return duality / energy if energy > 0 else np.inf
 
 
+class _Seen(NamedTuple):
+    """Separation ``v`` of the present pressure (m), and its pressure-weighted mean."""
+
+    v: Array
+    mean: float
+
+
 class ProjectedCG:
     """Iterates ``pressure`` towards the contact of the frozen problem.
 
@@ -46,66 +54,80 @@ class ProjectedCG:
         self.normal_displacement = apply(pressure)
         self.contact: Mask = pressure > 0
         self._direction: Array | None = None
-        self._v: Array | None = None
+        self._seen: _Seen | None = None
         self._residual, self._product = pressure, 0.0
         self._length, self._trusted = FIRST_LENGTH, True
 
     def freeze(self, b: Array, K: Array, *, target: float | None, approach: float | None) -> None:
         """Hold ``b = K h + shear displacement`` (m), the weights ``K`` and the target or approach."""
         self._b, self._K, self._target, self._approach = b, K, target, approach
-        self._direction = self._v = None
+        self._unweighted = not any(K.strides) and K.flat[0] == 1  # one number, broadcast
+        self._direction = self._seen = None
+        self._exchanged = True
         if target is not None:
             self._scale_to_target()
 
     @property
     def separation(self) -> Array:
         """``v = (a f + b) / K`` (m): the approach where there is contact, more elsewhere."""
-        if self._v is None:
-            self._v = self._found_separation()
-        return self._v
+        return self._look().v
 
-    def _found_separation(self) -> Array:
-        return (self.normal_displacement + self._b) / self._K
-
-    def approach(self, separation: Array) -> float:
+    @property
+    def approach(self) -> float:
         """The prescribed approach, or the pressure-weighted mean of ``v`` (m)."""
-        if self._approach is not None:
-            return self._approach
-        return inner(self.pressure, separation) / float(self.pressure.sum())
+        return self._look().mean if self._approach is None else self._approach
+
+    def _look(self) -> _Seen:
+        if self._seen is None:
+            v = self.normal_displacement + self._b
+            if not self._unweighted:
+                v /= self._K
+            total = float(self.pressure.sum())
+            apart = self._approach or 0.0  # a step overshot: what does not press is not off
+            self._seen = _Seen(v, inner(self.pressure, v) / total if total > 0 else apart)
+        return self._seen
 
     def residuals(self) -> tuple[float, float]:
         """Complementarity gap over elastic energy, and penetration over approach, of the frozen problem."""
-        v = self.separation
-        approach, lowest = self.approach(v), float(v.min())
+        (v, mean), approach = self._look(), self.approach
+        lowest = float(v.min())
         energy = 0.5 * inner(self.pressure, self.normal_displacement)
         gap = inner(self.pressure, v - lowest)
-        off = 0.0
-        if self._approach is not None:
-            total = float(self.pressure.sum())  # zero where a step overshot
-            off = abs(inner(self.pressure, v) / total - approach) if total > 0 else 0.0
         scale = abs(approach) or 1.0
-        return relative_gap(gap, energy), max(off, approach - lowest) / scale
+        return relative_gap(gap, energy), max(abs(mean - approach), approach - lowest) / scale
 
     def iterate(self) -> None:
         """One step of projected CG on the contact set, then the exchange of elements."""
-        residual = -(self.normal_displacement + self._b)
-        if self._approach is not None:
-            residual += self._K * self._approach
-        residual *= self.contact
-        self._weights = self._K * self.contact
-        self._weights_squared = inner(self._weights, self._weights)
-        residual = self._projected(residual)
+        if self._exchanged:
+            self._weigh()
+        residual = self._frozen_residual()
         direction = self._conjugate(residual, self._projected(self._preconditioned(residual)))
+        self._exchanged = False
         if not (self._trusted and self._step_to_trial(residual, direction)):
             self._step_then_cut(residual, direction)
-        self._v = v = self._found_separation()
-        self.contact |= v < self.approach(v)
+        self._seen = None
+        self._enter(self.separation < self.approach)
+
+    def _weigh(self) -> None:
+        """The load's weights on the contact set, their squares and the sum of these."""
+        self._weights = self._K * self.contact
+        self._squares = self._weights if self._unweighted else self._weights**2
+        self._norm = float(self._squares.sum())
+
+    def _frozen_residual(self) -> Array:
+        """``K (approach - v)`` on the contact set: at the approach that leaves nothing along the weights."""
+        v, approach = self.separation, self._approach
+        if approach is None:
+            approach = inner(self._squares, v) / self._norm
+        residual = approach - v
+        residual *= self._weights
+        return residual
 
     def _projected(self, values: Array) -> Array:
         """``values`` on the contact set without what they have along the load's weights."""
         if self._target is None:
             return values
-        values -= (inner(self._weights, values) / self._weights_squared) * self._weights
+        values -= (inner(self._weights, values) / self._norm) * self._weights
         return values
 
     def _preconditioned(self, residual: Array) -> Array:
@@ -118,43 +140,73 @@ class ProjectedCG:
         direction = step
         if self._direction is not None and self._product > 0:
             quotient = (product - inner(self._residual, step)) / self._product
-            direction = step + max(0.0, quotient) * (self._direction * self.contact)
-            direction = self._projected(direction)
+            if quotient > 0:
+                direction = self._carried_over(quotient)
+                direction += step
         self._direction, self._residual, self._product = direction, residual, product
+        return direction
+
+    def _carried_over(self, quotient: float) -> Array:
+        """That much of the last direction, on the present contact set."""
+        assert self._direction is not None
+        direction = quotient * self._direction
+        if self._exchanged:
+            direction *= self.contact
+            direction = self._projected(direction)
         return direction
 
     def _step_to_trial(self, residual: Array, direction: Array) -> bool:
         """To the best point between here and the trial, cut and scaled; False if the cut leaves nothing."""
-        trial = self.pressure + (_SHORTER * self._length) * direction
-        negative = trial < 0
-        cut = bool(negative.any())
-        if cut:
-            trial[negative] = 0.0
+        change = (_SHORTER * self._length) * direction
+        trial = self.pressure + change
+        falling: Mask | None = None
+        if trial.min() < 0:
+            falling = trial < 0
+            np.maximum(trial, 0.0, out=trial)
             total = inner(self._K, trial)
             if total <= 0:
                 return False
             if self._target is not None:
                 trial *= self._target / total
-        change = trial - self.pressure
+            np.subtract(trial, self.pressure, out=change)
         moved = self._apply(change)
         curvature = inner(change, moved)
         best = inner(residual, change) / curvature if curvature > 0 else 0.0
-        share = max(best, 0.0)
-        if cut:
-            share = min(share, 1.0)
-        elif share > 1 and (self.pressure + share * change).min() < 0:
-            share = self._room(change)
-        self.pressure = trial if share == 1 else self._reached(self.pressure + share * change)
-        self.normal_displacement = self.normal_displacement + share * moved
-        self.contact &= ~((self.pressure == 0) & (negative | (change < 0)))
+        self._take(max(best, 0.0), change, moved, falling)
         self._length *= _SHORTER * best
         self._trusted = _TRUSTED[0] < best < _TRUSTED[1]
         return True
 
-    def _reached(self, pressure: Array) -> Array:
-        """A step's pressure; what it makes vanish is zero, whatever trace rounding leaves."""
-        pressure[pressure < _NOTHING * self.pressure] = 0.0
-        return pressure
+    def _take(self, share: float, change: Array, moved: Array, falling: Mask | None) -> None:
+        """That share of a change, as far as no pressure falls below zero; what falls to zero leaves.
+
+        ``falling`` is what a cut held at zero: the change itself is as far as it goes.
+        """
+        if falling is not None:
+            share = min(share, 1.0)
+        pressure = self.pressure + share * change
+        if share > 1 and pressure.min() < 0:
+            share = self._room(change)
+            pressure = self.pressure + share * change
+            falling = change < 0
+        if falling is not None:
+            pressure[pressure < _NOTHING * self.pressure] = 0.0  # whatever trace rounding leaves
+            self._leave((pressure == 0) & (falling | (change < 0)))
+        self.pressure = pressure
+        moved *= share
+        self.normal_displacement += moved
+
+    def _enter(self, penetrating: Mask) -> None:
+        entering = penetrating > self.contact
+        if entering.any():
+            self.contact |= entering
+            self._exchanged = True
+
+    def _leave(self, lifted: Mask) -> None:
+        lifted &= self.contact
+        if lifted.any():
+            self.contact ^= lifted
+            self._exchanged = True
 
     def _room(self, change: Array) -> float:
         """The multiple of ``change`` at which the first pressure reaches zero."""
@@ -173,7 +225,7 @@ class ProjectedCG:
         negative = self.pressure < 0
         if negative.any():
             self.pressure[negative] = 0.0  # at an approach all may go, and come back as they penetrate
-            self.contact = self.contact & ~negative
+            self._leave(negative)
             if self._target is not None:
                 self._scale_to_target(displace=False)
             self.normal_displacement = self._apply(self.pressure)

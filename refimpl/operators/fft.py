@@ -1,6 +1,6 @@
 """Exact aperiodic convolution on a window by zero-padded real FFTs.
 
-Transforms: ``scipy.fft``, unnormalised forward and ``1/n`` backward. Rows that are known to be zero
+Transforms are those of `refimpl.operators.fourier`. Rows that are known to be zero
 are not transformed, and rows of the result that nobody asked for are not transformed back.
 """
 
@@ -11,15 +11,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import scipy.fft as sfft
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
+from refimpl.operators.fourier import Complex, fourier, threads
 from refimpl.operators.tables import signed_table, unit_table
-from refimpl.operators.transforms import threads
 from refimpl.operators.window import Window, padded_length
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass
@@ -92,17 +89,14 @@ class FFTInfluence:
     def _normal_hat(self) -> Array | Complex:
         """The kernel's transform: of a quarter of it, and real, where the circles are even."""
         rows, columns = self._offsets
-        points, spacing = math.prod(self._padded), self.grid.spacing
+        points = math.prod(self._padded)
         if not (_is_even(rows) and _is_even(columns)):
             self.counter.add("normal kernel", points // 2)
-            transform: Complex = sfft.rfft2(
-                signed_table("normal", rows, columns) * spacing, workers=threads(points)
-            )
-            return transform
+            return self._transformed(signed_table("normal", rows, columns))
         self.counter.add("normal kernel", points // 8)
         half, across = len(rows) // 2, len(columns) // 2
         quarter = unit_table("normal", max(half, across) + 1)[: half + 1, : across + 1]
-        hat: Array = sfft.dctn(quarter * spacing, type=1, overwrite_x=True, workers=threads(points))
+        hat = fourier.even_plane(quarter * self.grid.spacing, threads(points))
         return np.concatenate([hat, hat[half - 1 : 0 : -1]])
 
     @cached_property
@@ -118,20 +112,22 @@ class FFTInfluence:
         along_x = signed_table("tangential", rows, columns)
         along_y = signed_table("tangential", columns, rows).T
         self.counter.add("shear kernel", math.prod(self._padded) // 2)
-        hat: Complex = sfft.rfft2((math.cos(angle) * along_x + math.sin(angle) * along_y) * self.grid.spacing)
-        return hat
+        return self._transformed(math.cos(angle) * along_x + math.sin(angle) * along_y)
+
+    def _transformed(self, unit_kernel: Array) -> Complex:
+        return fourier.plane(unit_kernel * self.grid.spacing, self._padded, threads(math.prod(self._padded)))
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
-        N, K = self._padded
+        (N, K), (place, across) = self._padded, self._from
         workers = threads(N * K)
-        self._rows[:, self._from[1]] = source
-        spectrum = np.zeros((N, K // 2 + 1), dtype=np.complex128)
-        spectrum[self._from[0]] = sfft.rfft(self._rows, axis=1, workers=workers)
-        spectrum = sfft.fft(spectrum, axis=0, overwrite_x=True, workers=workers)
+        self._rows[:, across] = source
+        spectrum = np.empty((N, K // 2 + 1), dtype=np.complex128)
+        spectrum[: place.start] = spectrum[place.stop :] = 0
+        fourier.rows(self._rows, spectrum[place], workers)
+        spectrum = fourier.columns(spectrum, workers, forward=True)
         spectrum *= hat
-        rows = sfft.ifft(spectrum, axis=0, overwrite_x=True, workers=workers)[self._to[0]]
-        result: Array = sfft.irfft(rows, n=K, axis=1, workers=workers)[:, self._to[1]]
-        return result
+        spectrum = fourier.columns(spectrum, workers, forward=False)
+        return fourier.rows_back(spectrum[self._to[0]], K, workers)[:, self._to[1]]
 
     @cached_property
     def _rows(self) -> Array:

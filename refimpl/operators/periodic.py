@@ -14,8 +14,8 @@ import numpy as np
 import scipy.fft as sfft
 
 from refimpl.grid import Array, Grid
-from refimpl.operators.fft import Complex, Counter
-from refimpl.operators.transforms import threads
+from refimpl.operators.fft import Counter
+from refimpl.operators.fourier import Complex, fourier, threads
 from refimpl.operators.window import Window
 
 
@@ -68,6 +68,5 @@ class PeriodicInfluence:
 
     def _filter(self, source: Array, symbol: Array | Complex) -> Array:
         workers = threads(source.size)
-        spectrum = sfft.rfft2(source, workers=workers) * symbol
-        result: Array = sfft.irfft2(spectrum, s=source.shape, overwrite_x=True, workers=workers)
-        return result
+        spectrum = fourier.plane(source, source.shape, workers)
+        return fourier.plane_back(spectrum * symbol, source.shape, workers)

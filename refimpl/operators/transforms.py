@@ -1,4 +1,4 @@
-"""How transforms are carried out, which changes no bit of them: threads by size, memory kept between them."""
+"""How transforms are carried out, which changes no bit of them: threads allowed, memory kept between them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,8 @@ import os
 
 import numpy as np
 
-_WORTHWHILE = 300_000  # points from which a second thread pays for its start: some 260,000 on two cores
 _PER_ELEMENT = 256  # bytes: eight padded spectra
 _KEPT = 31 << 20  # bytes; glibc hands out again what is no larger than a block freed before, 32 MB at most
-
-
-def threads(points: int) -> int:
-    """Threads for a transform of that many points: one where it is over before a second has started."""
-    return allowed_threads() if points >= _WORTHWHILE else 1
 
 
 def allowed_threads() -> int:

@@ -184,7 +184,7 @@ def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() ->
     assert solver.settle(1e-6)
     beside = np.ones((32, 32), dtype=bool)
     beside[solver.window.slices] = False
-    assert np.any(beside & (coarse.gap < 0.9 * solver.cg.approach(solver.cg.separation)))
+    assert np.any(beside & (coarse.gap < 0.9 * solver.cg.approach))
     expected, found = (
         LevelSolver.begun(fine, whole.answer(), whole.counter),
         LevelSolver.begun(fine, solver.answer(), solver.counter),

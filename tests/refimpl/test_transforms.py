@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.operators import transforms
+from refimpl.operators import fourier, transforms
 
 
 def test_threads_are_the_cores_of_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -34,13 +34,13 @@ def test_a_number_of_threads_that_is_none_counts_for_nothing(
 
 def test_small_transforms_have_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "3")
-    assert transforms.threads(256 * 256) == 1
-    assert transforms.threads(1024 * 1024) == 3
+    assert fourier.threads(256 * 256) == 1
+    assert fourier.threads(1024 * 1024) == 3
 
 
 @pytest.mark.parametrize("scene", ["table1-rough", "rough-planes"])
 def test_threads_change_no_bit(monkeypatch: pytest.MonkeyPatch, scene: str) -> None:
-    monkeypatch.setattr(transforms, "_WORTHWHILE", 1)
+    monkeypatch.setattr(fourier.fourier, "worthwhile", 1)
     found = []
     for said in ("1", "2", "3"):
         monkeypatch.setenv("OMP_NUM_THREADS", said)

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from refimpl import level_solver
 from refimpl.grid import Array
-from refimpl.operators.fft import Complex, FFTInfluence
-from refimpl.operators.transforms import threads
+from refimpl.operators.fft import FFTInfluence
+from refimpl.operators.fourier import Complex, threads
 
 
 class SingleInfluence(FFTInfluence):

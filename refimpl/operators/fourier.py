@@ -1,0 +1,152 @@
+"""Transforms of real fields: by ducc0 where it is installed (the extra ``fast``), by SciPy otherwise.
+
+Forward unnormalised, backward ``1/n``; real fields have half a spectrum along their last axis. ducc0 goes on
+from the library that SciPy uses: it writes where it is told to, and to rounding both find the same.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, Protocol
+
+import numpy as np
+import scipy.fft as sfft
+from numpy.typing import NDArray
+
+from refimpl.grid import Array
+from refimpl.operators.transforms import allowed_threads
+
+Complex = NDArray[np.complex128]
+
+
+class Library(Protocol):
+    """What operators need of a library of transforms; ``workers`` are threads.
+
+    A second thread pays for its start from ``worthwhile`` points on, as measured on two cores.
+    """
+
+    worthwhile: int
+
+    def rows(self, values: Array, spectrum: Complex, workers: int) -> None:
+        """Forward along each row of real ``values``, into ``spectrum``."""
+
+    def columns(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
+        """Along each column, best in place."""
+
+    def rows_back(self, spectrum: Complex, length: int, workers: int) -> Array:
+        """Real rows of that length, backward."""
+
+    def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
+        """Forward along both axes of real ``values``, padded with zeros to the shape."""
+
+    def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
+        """Real values of the shape, backward along both axes; the spectrum may be overwritten."""
+
+    def even_plane(self, quarter: Array, workers: int) -> Array:
+        """The real transform of an even field from a quarter of it, both ends included; a quarter as well."""
+
+
+class SciPy:
+    """`Library` by scipy.fft."""
+
+    worthwhile = 300_000
+
+    def rows(self, values: Array, spectrum: Complex, workers: int) -> None:
+        """See `Library`."""
+        spectrum[...] = sfft.rfft(values, axis=1, workers=workers)
+
+    def columns(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
+        """See `Library`."""
+        transform = sfft.fft if forward else sfft.ifft
+        found: Complex = transform(spectrum, axis=0, overwrite_x=True, workers=workers)
+        return found
+
+    def rows_back(self, spectrum: Complex, length: int, workers: int) -> Array:
+        """See `Library`."""
+        found: Array = sfft.irfft(spectrum, n=length, axis=1, workers=workers)
+        return found
+
+    def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
+        """See `Library`."""
+        found: Complex = sfft.rfft2(values, s=shape, workers=workers)
+        return found
+
+    def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
+        """See `Library`."""
+        found: Array = sfft.irfft2(spectrum, s=shape, overwrite_x=True, workers=workers)
+        return found
+
+    def even_plane(self, quarter: Array, workers: int) -> Array:
+        """See `Library`."""
+        found: Array = sfft.dctn(quarter, type=1, workers=workers)
+        return found
+
+
+class Ducc:
+    """`Library` by ducc0. Raises ImportError where it is not installed."""
+
+    worthwhile = 100_000
+
+    def __init__(self) -> None:
+        self._fft: Any = import_module("ducc0").fft
+
+    def rows(self, values: Array, spectrum: Complex, workers: int) -> None:
+        """See `Library`."""
+        self._fft.r2c(values, axes=(1,), out=spectrum, nthreads=workers)
+
+    def columns(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
+        """See `Library`."""
+        inorm = 0 if forward else 2
+        self._fft.c2c(spectrum, axes=(0,), forward=forward, inorm=inorm, out=spectrum, nthreads=workers)
+        return spectrum
+
+    def rows_back(self, spectrum: Complex, length: int, workers: int) -> Array:
+        """See `Library`."""
+        found: Array = self._fft.c2r(
+            spectrum, axes=(1,), lastsize=length, forward=False, inorm=2, nthreads=workers
+        )
+        return found
+
+    def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
+        """See `Library`."""
+        if values.shape != shape:
+            n, m = values.shape
+            padded = np.zeros(shape)
+            padded[:n, :m] = values
+            values = padded
+        found: Complex = self._fft.r2c(values, axes=(0, 1), nthreads=workers)
+        return found
+
+    def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
+        """See `Library`."""
+        found: Array = self._fft.c2r(
+            spectrum,
+            axes=(0, 1),
+            lastsize=shape[1],
+            forward=False,
+            inorm=2,
+            nthreads=workers,
+            allow_overwriting_input=True,
+        )
+        return found
+
+    def even_plane(self, quarter: Array, workers: int) -> Array:
+        """See `Library`."""
+        found: Array = self._fft.dct(quarter, type=1, axes=(0, 1), nthreads=workers)
+        return found
+
+
+def best_installed() -> Library:
+    """ducc0 if there is one."""
+    try:
+        return Ducc()
+    except ImportError:
+        return SciPy()
+
+
+fourier = best_installed()
+
+
+def threads(points: int) -> int:
+    """Threads for a transform of that many points: one where it is over before a second has started."""
+    return allowed_threads() if points >= fourier.worthwhile else 1
