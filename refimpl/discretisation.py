@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -147,6 +148,7 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
     return float(optimize.brentq(beyond, 0.0, widest, rtol=1e-4)) if beyond(widest) < 0 else widest
 
 
+@cache
 def _edge_sizes() -> tuple[Array, Array]:
     """Nodes and weights of the prior of ``c`` (Gauss-Hermite)."""
     nodes, weights = np.polynomial.hermite_e.hermegauss(9)

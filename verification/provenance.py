@@ -12,7 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 DISTRIBUTION = "rough-friction"
-PACKAGES = ("numpy", "scipy", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography",
+PACKAGES = ("numpy", "scipy", "ducc0", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography",
             "matplotlib", "hypothesis", "pytest")  # fmt: skip
 
 

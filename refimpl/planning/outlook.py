@@ -30,6 +30,7 @@ Indices = NDArray[np.intp]
 
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
+_SAMPLED = 32  # elements a side, at least, from which the contact to expect is guessed before it is counted
 _LEAST = 1e-12  # mean pressure over E*, of a contact at an approach that hardly loads it
 _ROUNDING = 1e-9  # of a surface's range: heights that differ by less are mirror images of each other
 
@@ -72,45 +73,74 @@ def expected(problem: Problem) -> Outlook:
     modulus = problem.pair.reduced_modulus
     stiffness = _STIFFNESS * modulus * dA
     if problem.load is not None:
-        order, carried = _touched(problem, stiffness, problem.load)
-        elements = min(int(np.searchsorted(carried, problem.load)) + 1, gap.size)
+        contact = _touched(problem, stiffness, problem.load)
+        elements = int(np.count_nonzero(contact))
         mean_pressure = problem.load / (elements * dA)
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
-        order, carried = _lowest(problem, stiffness, elements)
-        mean_pressure = float(carried[elements - 1]) / (elements * dA)
+        contact = _lowest(gap, elements)
+        squares = float(_gradient_squared(problem, np.flatnonzero(contact)).sum())
+        mean_pressure = stiffness * math.sqrt(squares * elements) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
-    contact = np.zeros(gap.size, dtype=bool)
-    contact[order[:elements]] = True
     # a sphere's gap at the contact's edge is half the approach
-    approach = problem.approach or 2 * float(gap.ravel()[order[elements - 1]])
+    approach = problem.approach or 2 * float(gap[contact].max())
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
-    mask = contact.reshape(gap.shape)
-    del order, carried, near  # large arrays, before the next ones
+    del near  # a large array, before the next ones
     seen = _Seen(approach, *_symmetries(problem), window)
-    return _described(problem, mask, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
+    return _described(problem, contact, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
 
 
-def _touched(problem: Problem, stiffness: float, load: float) -> tuple[Indices, Array]:
-    """The lowest elements in order, with what they carry: as many as the load needs, or all."""
-    size = problem.gap.size
-    count = min(size, max(64, size // 64))
-    while True:
-        order, carried = _lowest(problem, stiffness, count)
-        if carried[-1] >= load or count == size:
-            return order, carried
-        count = min(size, 4 * count)
-
-
-def _lowest(problem: Problem, stiffness: float, count: int) -> tuple[Indices, Array]:
-    """The ``count`` elements of the least gap, in order, and what the first 1, 2, ... of them carry."""
+def _touched(problem: Problem, stiffness: float, load: float) -> Mask:
+    """The fewest of the lowest elements that carry the load, or all: only those near the last are sorted."""
     heights = problem.gap.ravel()
-    chosen = np.sort(np.argpartition(heights, count - 1)[:count])  # ties in the grid's order
-    order = chosen[np.argsort(heights[chosen], kind="stable")]
-    squares = np.cumsum(_gradient_squared(problem, order))
-    return order, stiffness * np.sqrt(squares * np.arange(1, count + 1))
+    lowest, highest = _bracket(problem, stiffness, load)
+    while True:
+        touched = heights <= lowest
+        order = np.flatnonzero((heights > lowest) & (heights <= highest))
+        order = order[np.argsort(heights[order], kind="stable")]  # ties in the grid's order
+        surely = np.flatnonzero(touched)
+        squares = _gradient_squared(problem, surely).sum() + np.cumsum(_gradient_squared(problem, order))
+        carried = stiffness * np.sqrt(squares * np.arange(surely.size + 1, surely.size + order.size + 1))
+        last = int(np.searchsorted(carried, load))
+        if last == 0 and surely.size:
+            lowest = -np.inf
+        elif last == order.size and highest < np.inf:
+            highest = np.inf
+        else:
+            touched[order[: last + 1]] = True
+            found: Mask = touched.reshape(problem.gap.shape)
+            return found
+
+
+def _bracket(problem: Problem, stiffness: float, load: float) -> tuple[float, float]:
+    """Heights between which the last element lies that the load needs, by a sample of 32 to 63 a side."""
+    n, m = problem.gap.shape
+    stride = max(1, min(n, m) // _SAMPLED)
+    sample = (m * np.arange(0, n, stride)[:, None] + np.arange(0, m, stride)).ravel()
+    if sample.size == problem.gap.size:
+        return -np.inf, np.inf
+    heights = problem.gap.ravel()[sample]
+    order = np.argsort(heights)
+    squares = np.cumsum(_gradient_squared(problem, sample[order]))
+    carried = stiffness * stride**2 * np.sqrt(squares * np.arange(1, sample.size + 1))
+    found = int(np.searchsorted(carried, load))
+    spread = found // 8 + 8
+    lowest = heights[order[found - spread]] if found >= spread else -np.inf
+    highest = heights[order[found + spread]] if found + spread < sample.size else np.inf
+    return float(lowest), float(highest)
+
+
+def _lowest(gap: Array, count: int) -> Mask:
+    """The ``count`` elements of the least gap; of equal ones the first in the grid's order."""
+    heights = gap.ravel()
+    last = np.partition(heights, count - 1)[count - 1]
+    chosen = heights < last
+    level = np.flatnonzero(heights == last)
+    chosen[level[: count - np.count_nonzero(chosen)]] = True
+    found: Mask = chosen.reshape(gap.shape)
+    return found
 
 
 def _gradient_squared(problem: Problem, where: Indices) -> Array:
@@ -156,8 +186,9 @@ def _described(
     lower, upper = near.heights
     weights = loads / loads.sum()
     share = problem.pair.upper.normal_compliance / problem.pair.normal_compliance
-    along, across = _on(where, near, share * lower + (1 - share) * upper)
-    tangents = [_on(where, near, z)[0] for z in (lower, upper)]
+    slopes = [_on(where, near, z) for z in (lower, upper)]
+    along, across = (share * below + (1 - share) * above for below, above in zip(*slopes, strict=True))
+    tangents = [tan for tan, _ in slopes]
     elements = loads.size
     border = int(np.count_nonzero(contact)) - int(np.count_nonzero(contact[1:-1, 1:-1]))
     return Outlook(
@@ -197,7 +228,10 @@ def _spots(contact: Mask) -> float:
 
 
 def _alike(z: Array, image: Array) -> bool:
-    return float(np.abs(z - image).max()) <= _ROUNDING * float(np.ptp(z))
+    """Whether a surface is its image, which pairs the first half of its rows with the second."""
+    half = (len(z) + 1) // 2
+    apart = float(np.abs(z[:half] - image[:half]).max())
+    return apart == 0 or apart <= _ROUNDING * float(np.ptp(z))
 
 
 def _mirrored(problem: Problem, lower: Array, upper: Array) -> bool:
@@ -206,4 +240,5 @@ def _mirrored(problem: Problem, lower: Array, upper: Array) -> bool:
     if abs(quarter - round(quarter)) > _ROUNDING:
         return False
     axis = 1 if round(quarter) % 2 == 0 else 0
-    return all(_alike(z, np.flip(z, axis)) for z in (lower, upper))
+    across = (lower, upper) if axis == 0 else (lower.T, upper.T)
+    return all(_alike(z, z[::-1]) for z in across)

@@ -54,6 +54,8 @@ TARGETS = (
       for name in ("cerruti", "far_field", "love", "points", "tables")),
     *(Target("operators", f"refimpl/operators/{name}.py", OPERATORS)
       for name in ("dense", "periodic", "tables", "fft", "window")),
+    Target("operators", "refimpl/operators/fourier.py",
+           ("tests/refimpl/test_fourier.py", "tests/refimpl/test_operators.py")),
     Target("contact", "refimpl/contact/active_set.py", _tests("active_set", "dense_solver")),
     Target("contact", "refimpl/contact/certificate.py", _tests("certificate", "solve")),
     Target("friction", "refimpl/friction.py", _tests("friction", "tau_cycle")),

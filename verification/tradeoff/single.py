@@ -8,13 +8,12 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-import scipy.fft as sfft
 from numpy.typing import NDArray
 
 from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.fourier import Complex, threads
+from refimpl.operators.fourier import Complex, fourier, threads
 
 
 class SingleInfluence(FFTInfluence):
@@ -25,14 +24,14 @@ class SingleInfluence(FFTInfluence):
         workers = threads(N * K)
         unit = float(np.abs(source).max()) or 1.0
         largest, single = self._rounded(hat)
-        rows = np.zeros((self.source.shape[0], K), dtype=np.float32)
+        rows: NDArray[Any] = np.zeros((self.source.shape[0], K), dtype=np.float32)
         rows[:, self._from[1]] = source / unit
-        spectrum = np.zeros((N, K // 2 + 1), dtype=np.complex64)
-        spectrum[self._from[0]] = sfft.rfft(rows, axis=1, workers=workers)
-        spectrum = sfft.fft(spectrum, axis=0, overwrite_x=True, workers=workers)
+        spectrum: NDArray[Any] = np.zeros((N, K // 2 + 1), dtype=np.complex64)
+        fourier.rows(rows, spectrum[self._from[0]], workers)
+        spectrum = fourier.columns(spectrum, workers, forward=True)
         spectrum *= single
-        back = sfft.ifft(spectrum, axis=0, overwrite_x=True, workers=workers)[self._to[0]]
-        result = sfft.irfft(back, n=K, axis=1, workers=workers)[:, self._to[1]]
+        spectrum = fourier.columns(spectrum, workers, forward=False)
+        result = fourier.rows_back(spectrum[self._to[0]], K, workers)[:, self._to[1]]
         scaled: Array = unit * largest * result.astype(np.float64)
         return scaled
 

@@ -1,0 +1,105 @@
+"""The libraries of transforms: what each has to find, and that the solvers do not depend on which it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.contact import preconditioner
+from refimpl.operators import fft, fourier, periodic
+from refimpl.operators.fourier import Ducc, Library, SciPy
+
+RANDOM = np.random.default_rng(5)
+SHAPES = [(1, 1), (1, 6), (7, 5), (12, 8), (45, 64)]
+
+
+def ducc() -> Library:
+    pytest.importorskip("ducc0", reason="ducc0 is an optional extra")
+    return Ducc()
+
+
+@pytest.fixture(params=[SciPy, ducc])
+def library(request: pytest.FixtureRequest) -> Library:
+    return request.param()
+
+
+def by_sums(values: np.ndarray, axis: int) -> np.ndarray:
+    """The definition: ``sum_j values_j exp(-2 pi i j k / n)`` along an axis."""
+    n = values.shape[axis]
+    turns = np.outer(np.arange(n), np.arange(n)) % n / n
+    return np.moveaxis(np.tensordot(values, np.exp(-2j * np.pi * turns), axes=(axis, 0)), -1, axis)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("workers", [1, 2])
+def test_planes_there_and_back(library: Library, shape: tuple[int, int], workers: int) -> None:
+    values = RANDOM.normal(size=shape)
+    spectrum = library.plane(values, shape, workers)
+    expected = by_sums(by_sums(values, 1), 0)[:, : shape[1] // 2 + 1]
+    np.testing.assert_allclose(spectrum, expected, atol=1e-14 * values.size)
+    np.testing.assert_allclose(library.plane_back(spectrum, shape, workers), values, atol=1e-14)
+
+
+def test_planes_are_padded_with_zeros(library: Library) -> None:
+    values, padded = RANDOM.normal(size=(5, 7)), np.zeros((8, 9))
+    padded[:5, :7] = values
+    found = library.plane(values, (8, 9), 1)
+    np.testing.assert_allclose(found, library.plane(padded, (8, 9), 1), atol=1e-13)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_rows_and_columns_there_and_back(library: Library, shape: tuple[int, int]) -> None:
+    """Into the middle of a larger spectrum, whose other rows stay as they are."""
+    values, (n, m) = RANDOM.normal(size=shape), shape
+    spectrum = np.full((n + 3, m // 2 + 1), 7.0 + 0.0j)
+    library.rows(values, spectrum[2 : n + 2], 1)
+    assert np.all(spectrum[[0, 1, -1]] == 7)
+    half = by_sums(values, 1)[:, : m // 2 + 1]
+    np.testing.assert_allclose(spectrum[2:-1], half, atol=1e-13 * m)
+    columns = library.columns(spectrum[2:-1].copy(), 1, forward=True)
+    np.testing.assert_allclose(columns, by_sums(half, 0), atol=1e-13 * m * n)
+    back = library.columns(columns, 1, forward=False)
+    np.testing.assert_allclose(back, half, atol=1e-13 * m)
+    np.testing.assert_allclose(library.rows_back(back, m, 1), values, atol=1e-13)
+
+
+@pytest.mark.parametrize("shape", [(2, 2), (2, 5), (6, 4)])
+def test_an_even_plane_by_its_quarter(library: Library, shape: tuple[int, int]) -> None:
+    quarter = RANDOM.normal(size=shape)
+    i, j = (np.abs(np.r_[0:n, 2 - n : 0]) for n in shape)
+    whole = by_sums(by_sums(quarter[np.ix_(i, j)], 1), 0)
+    assert np.abs(whole.imag).max() < 1e-13
+    found = library.even_plane(quarter, 1)
+    np.testing.assert_allclose(found, whole.real[: shape[0], : shape[1]], atol=1e-13)
+
+
+@pytest.mark.parametrize("name", ["table1-rough", "rough-planes"])
+def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To rounding: measured 1e-14 of the largest pressure."""
+    found = []
+    for library in (SciPy(), ducc()):
+        for module in (fourier, fft, periodic, preconditioner):
+            monkeypatch.setattr(module, "fourier", library)
+        found.append(rf.solve(rf.read_scene(name), 48, tolerance=1e-10))
+    one, other = found
+    assert one.converged
+    assert other.converged
+    assert np.array_equal(one.contact, other.contact)
+    np.testing.assert_allclose(one.pressure, other.pressure, rtol=0, atol=1e-12 * one.max_pressure)
+
+
+def test_without_ducc0_it_is_scipys(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str) -> None:
+        raise ImportError(name)
+
+    assert isinstance(fourier.best_installed(), SciPy | Ducc)
+    monkeypatch.setattr(fourier, "import_module", missing)
+    assert isinstance(fourier.best_installed(), SciPy)
+
+
+def test_a_second_thread_starts_where_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
+    monkeypatch.setattr(fourier.fourier, "worthwhile", 1000)
+    assert fourier.threads(999) == 1
+    assert fourier.threads(1000) == 3

@@ -1,0 +1,104 @@
+"""The contact to expect: the fewest of the lowest elements that carry the load, whatever is sampled first."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.plan import EVERYTHING
+from refimpl.planning.outlook import _bracket, _lowest, _mirrored, _touched, expected
+from refimpl.problem import Problem, pose
+
+pytestmark = pytest.mark.filterwarnings("ignore::refimpl.surfaces.SurfaceWarning")
+
+STEEL = rf.Material(200e9, 0.3)
+BALL = rf.Scene(
+    upper=rf.Body(STEEL, rf.Sphere(0.1)),
+    lower=rf.Body(STEEL, rf.GaussianRoughness(3e-7, 1e-4, seed=3)),
+    friction=rf.Friction(),
+    load=20.0,
+    side=1e-3,
+)
+STIFFNESS = 3.0  # of an element, N
+
+
+def posed(M: int, gap: np.ndarray | None = None) -> Problem:
+    problem = pose(BALL, rf.Grid(BALL.side, M), EVERYTHING, None)
+    return problem if gap is None else replace(problem, gap=gap)
+
+
+def carried_in_order(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
+    """All elements from the lowest on, and what the first 1, 2, ... of them carry, with numpy's gradient."""
+    order = np.argsort(problem.gap.ravel(), kind="stable")
+    along, across = np.gradient(problem.gap, problem.grid.spacing)
+    squares = np.cumsum((along**2 + across**2).ravel()[order])
+    return order, STIFFNESS * np.sqrt(squares * np.arange(1, order.size + 1))
+
+
+def spikes_that_no_sample_sees(M: int) -> np.ndarray:
+    """Lowest on odd rows and columns, which a stride of two passes over."""
+    gap = np.random.default_rng(1).uniform(1e-6, 2e-6, (M, M))
+    gap[1::2, 1::2] -= 1e-6
+    return gap
+
+
+def pits_where_it_samples(M: int) -> np.ndarray:
+    gap = np.random.default_rng(2).uniform(1e-6, 2e-6, (M, M))
+    gap[::2, ::2] -= 1e-6
+    return gap
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-3, 0.1, 0.5, 0.999, 1.5])
+@pytest.mark.parametrize("M", [3, 31, 64, 70, 130])
+def test_the_fewest_elements_that_carry_the_load(M: int, share: float) -> None:
+    for gap in (None, spikes_that_no_sample_sees(M), pits_where_it_samples(M)):
+        problem = posed(M, gap)
+        order, carried = carried_in_order(problem)
+        load = share * carried[-1]
+        count = min(int(np.searchsorted(carried, load)) + 1, order.size)
+        found = _touched(problem, STIFFNESS, load)
+        assert np.count_nonzero(found) == count
+        assert found.ravel()[order[:count]].all()
+
+
+def test_a_sample_brackets_what_it_stands_for() -> None:
+    """On a surface like the sampled one the last element lies between, and few others do."""
+    problem = posed(256)
+    order, carried = carried_in_order(problem)
+    load = 0.1 * carried[-1]
+    low, high = _bracket(problem, STIFFNESS, load)
+    last = problem.gap.ravel()[order[np.searchsorted(carried, load)]]
+    assert low < last < high
+    assert np.count_nonzero((problem.gap > low) & (problem.gap <= high)) < 0.1 * problem.gap.size
+
+
+def test_of_equal_elements_the_first_count() -> None:
+    gap = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, 2.0], [1.0, 1.0, 1.0]])
+    assert _lowest(gap, 4).tolist() == [[True, True, True], [False, True, False], [False, False, False]]
+    level = _touched(posed(3, np.zeros((3, 3))), STIFFNESS, 1.0)
+    assert level.all()  # without any slope nothing carries
+
+
+def test_at_an_approach_half_of_what_interferes_touches() -> None:
+    problem = replace(posed(64), load=None, approach=4e-7)
+    outlook = expected(problem)
+    count = np.count_nonzero(problem.gap < 4e-7) // 2
+    assert outlook.elements == count > 10
+    _, carried = carried_in_order(problem)
+    scale = 4 * math.sqrt(2) / (3 * math.pi) * problem.pair.reduced_modulus / STIFFNESS
+    assert outlook.mean_pressure == pytest.approx(scale * carried[count - 1] / count, rel=1e-12)
+
+
+@pytest.mark.parametrize(("direction", "axis"), [(0.0, 1), (math.pi / 2, 0), (math.pi, 1)])
+def test_mirror_images_across_the_sliding_line(direction: float, axis: int) -> None:
+    problem = replace(posed(8), direction=direction)
+    rough = np.random.default_rng(3).normal(size=(8, 8))
+    for mirrored in (0, 1):
+        surface = rough + np.flip(rough, mirrored)
+        assert _mirrored(problem, surface, surface) is (mirrored == axis)
+    assert not _mirrored(problem, surface, rough)
+    assert not _mirrored(replace(problem, direction=0.3), surface, surface)
