@@ -205,25 +205,36 @@ class LevelSolver:
         problem, pressure = self.problem, self.cg.pressure
         self.support = pressure > 0 if support is None else support
         self.traction = local_friction(problem.friction, pressure, self.support)
-        normal = None if problem.terms.slope_correction else self.cg.normal_displacement
-        lower, upper = problem.displacements(
-            self.operator, pressure, self.traction, self.slopes, normal_displacement=normal
-        )
-        slopes = problem.slopes(lower, upper)
+        shear, slopes = self._displaced()
         change = slopes.distance(self.slopes, pressure > 0)
         self._ran_off = not slopes.obliqueness.min() > _STEEPEST
         if not self._ran_off:
             self.slopes = slopes
         target, balance = self._target(self.slopes.obliqueness)
-        shear, K = lower + upper - self.cg.normal_displacement, self.slopes.obliqueness
+        K = self.slopes.obliqueness
         self._hold(shear, K, target)
         residual = math.inf if self._ran_off else max(*self.cg.residuals(), balance, change)
         if self._held is not None and self._relaxation < 1 and residual > self._tolerance:
             shear = self._held[0] + self._relaxation * (shear - self._held[0])
-            K = self._held[1] + self._relaxation * (K - self._held[1])
+            if problem.terms.oblique:
+                K = self._held[1] + self._relaxation * (K - self._held[1])
             self._hold(shear, K, self._target(K)[0])
         self._held = shear, K
         return residual
+
+    def _displaced(self) -> tuple[Array, Slopes]:
+        """What shear adds to the displacement of the pressure, and the slopes that both leave."""
+        problem, pressure, displacement = self.problem, self.cg.pressure, self.cg.normal_displacement
+        if not problem.terms.oblique:
+            return problem.coupling(self.operator, self.traction), self.slopes
+        lower, upper = problem.displacements(
+            self.operator,
+            pressure,
+            self.traction,
+            self.slopes,
+            normal_displacement=None if problem.terms.slope_correction else displacement,
+        )
+        return lower + upper - displacement, problem.slopes(lower, upper)
 
     def _hold(self, shear: Array, K: Array, target: float | None) -> None:
         self.cg.freeze(K * self.problem.gap + shear, K, target=target, approach=self.problem.approach)

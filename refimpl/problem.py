@@ -112,6 +112,12 @@ class Problem:
             upper = upper + into_upper * shear
         return lower, upper
 
+    def coupling(self, operator: Influence, traction: Array) -> Array:
+        """What shear alone adds to ``u_lower + u_upper``, the coupling of Eq. (7); without it zero (m)."""
+        if not self.terms.coupled or not np.any(traction):
+            return np.broadcast_to(0.0, traction.shape)
+        return self.pair.shear_compliance * operator.shear(traction)
+
     def _shear_compliances(self) -> tuple[float, float]:
         """Factors of ``I[s/rho^2]`` for each body: their sum couples, half their difference tilts (1/Pa)."""
         into_lower, into_upper = self.pair.lower.shear_compliance, -self.pair.upper.shear_compliance
@@ -136,6 +142,8 @@ class Problem:
         With ``r = tau chi + beta f``: weights ``(cos theta_x - beta sin theta_x) cos theta_y`` and
         offset ``tau sum(chi sin theta_x cos theta_y) dA``.
         """
+        if slopes.is_flat:
+            return slopes.obliqueness, 0.0
         tau, beta = self.friction.tau, self.friction.beta
         weights = (slopes.cos_x - beta * slopes.sin_x) * slopes.cos_y
         offset = tau * float(np.sum(support * slopes.sin_x * slopes.cos_y)) * self.grid.element_area

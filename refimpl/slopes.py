@@ -31,7 +31,8 @@ class Slopes:
         return cls(zero, zero)
 
     @property
-    def _is_flat(self) -> bool:
+    def is_flat(self) -> bool:
+        """Whether these are the zero slopes of `flat`."""
         return not any(self.tan_x.strides)
 
     @classmethod
@@ -51,7 +52,7 @@ class Slopes:
 
     def distance(self, other: Slopes, where: NDArray[np.bool_]) -> float:
         """Largest difference of the tangents on the marked elements."""
-        if (self._is_flat and other._is_flat) or not where.any():
+        if (self.is_flat and other.is_flat) or not where.any():
             return 0.0
         pairs = ((self.tan_x, other.tan_x), (self.tan_y, other.tan_y))
         return max(float(np.abs(a - b)[where].max()) for a, b in pairs)
@@ -59,39 +60,39 @@ class Slopes:
     @cached_property
     def cos_x(self) -> Array:
         """``cos(theta_x)``."""
-        if self._is_flat:
+        if self.is_flat:
             return np.broadcast_to(1.0, self.tan_x.shape)
         return 1 / np.sqrt(1 + self.tan_x**2)
 
     @cached_property
     def cos_y(self) -> Array:
         """``cos(theta_y)``."""
-        if self._is_flat:
+        if self.is_flat:
             return np.broadcast_to(1.0, self.tan_y.shape)
         return 1 / np.sqrt(1 + self.tan_y**2)
 
     @cached_property
     def sin_x(self) -> Array:
         """``sin(theta_x)``."""
-        if self._is_flat:
+        if self.is_flat:
             return self.tan_x
         return self.tan_x * self.cos_x
 
     @cached_property
     def sin_y(self) -> Array:
         """``sin(theta_y)``."""
-        if self._is_flat:
+        if self.is_flat:
             return self.tan_y
         return self.tan_y * self.cos_y
 
     @cached_property
     def obliqueness(self) -> Array:
         """``cos(theta_x) cos(theta_y)``, the factor of Eq. (6)."""
-        return self.cos_x if self._is_flat else self.cos_x * self.cos_y
+        return self.cos_x if self.is_flat else self.cos_x * self.cos_y
 
     def per_obliqueness(self, values: Array) -> Array:
         """``values / obliqueness``, in place where that is 1 everywhere."""
-        return values if self._is_flat else values / self.obliqueness
+        return values if self.is_flat else values / self.obliqueness
 
     def windowed(self, window: Window) -> Slopes:
         """The slopes on a window of their grid."""
@@ -99,7 +100,7 @@ class Slopes:
 
     def spread(self, window: Window, M: int) -> Slopes:
         """The slopes of a window on its whole ``M x M`` grid, zero elsewhere."""
-        if self._is_flat:
+        if self.is_flat:
             return Slopes.flat((M, M))
         return Slopes(window.spread(self.tan_x, M), window.spread(self.tan_y, M))
 
