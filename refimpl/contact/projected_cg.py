@@ -61,7 +61,7 @@ class ProjectedCG:
     def freeze(self, b: Array, K: Array, *, target: float | None, approach: float | None) -> None:
         """Hold ``b = K h + shear displacement`` (m), the weights ``K`` and the target or approach."""
         self._b, self._K, self._target, self._approach = b, K, target, approach
-        self._unweighted = not any(K.strides) and K.flat[0] == 1  # one number, broadcast
+        self._unweighted = not any(K.strides) and bool(K.flat[0] == 1)  # one 1, broadcast
         self._direction = self._seen = None
         self._exchanged = True
         if target is not None:
@@ -159,9 +159,9 @@ class ProjectedCG:
         """To the best point between here and the trial, cut and scaled; False if the cut leaves nothing."""
         change = (_SHORTER * self._length) * direction
         trial = self.pressure + change
-        falling: Mask | None = None
+        cut: Mask | None = None
         if trial.min() < 0:
-            falling = trial < 0
+            cut = trial < 0
             np.maximum(trial, 0.0, out=trial)
             total = inner(self._K, trial)
             if total <= 0:
@@ -172,26 +172,22 @@ class ProjectedCG:
         moved = self._apply(change)
         curvature = inner(change, moved)
         best = inner(residual, change) / curvature if curvature > 0 else 0.0
-        self._take(max(best, 0.0), change, moved, falling)
+        self._take(max(best, 0.0), change, moved, cut)
         self._length *= _SHORTER * best
         self._trusted = _TRUSTED[0] < best < _TRUSTED[1]
         return True
 
-    def _take(self, share: float, change: Array, moved: Array, falling: Mask | None) -> None:
-        """That share of a change, as far as no pressure falls below zero; what falls to zero leaves.
-
-        ``falling`` is what a cut held at zero: the change itself is as far as it goes.
-        """
-        if falling is not None:
-            share = min(share, 1.0)
+    def _take(self, share: float, change: Array, moved: Array, cut: Mask | None) -> None:
+        """That share of a change, but no pressure below zero; what is cut or falls to zero leaves."""
         pressure = self.pressure + share * change
-        if share > 1 and pressure.min() < 0:
+        beyond = share > 1 and bool(pressure.min() < 0)
+        if beyond:
             share = self._room(change)
             pressure = self.pressure + share * change
-            falling = change < 0
-        if falling is not None:
+        if beyond or cut is not None:
             pressure[pressure < _NOTHING * self.pressure] = 0.0  # whatever trace rounding leaves
-            self._leave((pressure == 0) & (falling | (change < 0)))
+            falling = change < 0
+            self._leave((pressure == 0) & (falling if cut is None else falling | cut))
         self.pressure = pressure
         moved *= share
         self.normal_displacement += moved
@@ -203,9 +199,8 @@ class ProjectedCG:
             self._exchanged = True
 
     def _leave(self, lifted: Mask) -> None:
-        lifted &= self.contact
         if lifted.any():
-            self.contact ^= lifted
+            self.contact &= ~lifted
             self._exchanged = True
 
     def _room(self, change: Array) -> float:

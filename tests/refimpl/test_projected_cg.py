@@ -64,6 +64,37 @@ def test_prescribed_load(target: float) -> None:
     np.testing.assert_allclose(found, exact, atol=1e-9 * exact.max(), rtol=0)
 
 
+@pytest.mark.parametrize("uniform", [1.0, 0.9, 1.1])
+def test_one_weight_for_all_may_be_broadcast(uniform: float) -> None:
+    found = []
+    for K in (np.broadcast_to(uniform, (M, M)), np.full((M, M), uniform)):
+        cg = start()
+        cg.freeze(BOWL, K, target=1e7, approach=None)
+        found.append((run(cg), cg.approach, cg._unweighted))
+    (one, approach, spared), (other, same, counted) = found
+    np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * other.max())
+    assert approach == pytest.approx(same, rel=1e-12)
+    assert spared is (uniform == 1)
+    assert not counted
+
+
+def test_a_weight_that_is_one_somewhere_is_not_one_for_all() -> None:
+    K = WEIGHTS.copy()
+    K[0, 0] = 1.0
+    cg = start()
+    cg.freeze(K * BOWL, K, target=1e7, approach=None)
+    run(cg)
+    assert not cg._unweighted
+    np.testing.assert_allclose(cg.separation, cg.normal_displacement / K + BOWL, rtol=1e-14)
+
+
+def test_a_single_element_may_be_all_there_is() -> None:
+    cg = ProjectedCG(lambda f: f / 2, lambda r: r.copy(), np.array([[1.0]]))
+    cg.freeze(np.array([[0.5]]), np.broadcast_to(1.0, (1, 1)), target=3.0, approach=None)
+    assert cg._unweighted
+    assert cg.approach == 2.0
+
+
 def test_any_start_leads_to_one_state() -> None:
     states = []
     for first in (np.ones((M, M)), np.eye(M), np.full((M, M), 1e9)):
@@ -187,15 +218,32 @@ def springs(
     return cg
 
 
-def test_a_step_beyond_the_trial_ends_where_the_first_pressure_vanishes() -> None:
+@pytest.mark.parametrize("unit", [1.0, 1e-6])
+def test_a_step_beyond_the_trial_ends_where_the_first_pressure_vanishes(unit: float) -> None:
     """That element leaves the contact, and the rest keeps what the shorter step gave it."""
-    cg = springs(4.0, [1.0, 1.0, 1.0], [0.25, -1.25, -0.25])  # residuals -1/2, 1 and 0
+    cg = springs(4.0, [unit, unit, unit], [0.25 * unit, -1.25 * unit, -0.25 * unit])  # residuals -1/2, 1, 0
     cg.iterate()
-    np.testing.assert_allclose(cg.pressure, [[0.0, 3.0, 1.0]], rtol=1e-15)
-    np.testing.assert_allclose(cg.normal_displacement, [[0.0, 0.75, 0.25]], rtol=1e-15)
+    np.testing.assert_allclose(cg.pressure / unit, [[0.0, 3.0, 1.0]], rtol=1e-15)
+    np.testing.assert_allclose(cg.normal_displacement / unit, [[0.0, 0.75, 0.25]], rtol=1e-15)
     assert cg.contact.tolist() == [[False, True, True]]
     cg.iterate()
-    np.testing.assert_allclose(cg.pressure, [[0.0, 5.0, 1.0]], rtol=1e-14)
+    np.testing.assert_allclose(cg.pressure / unit, [[0.0, 5.0, 1.0]], rtol=1e-14)
+
+
+def test_what_is_cut_without_a_pressure_stops_nobody_else() -> None:
+    """The second element has none to lose and leaves; the first goes on to the best point of the line."""
+    cg = springs(4.0, [1.0, 0.0], [-1.25, 0.5])
+    cg.contact[:] = True
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[5.0, 0.0]], rtol=1e-15)
+    assert cg.contact.tolist() == [[True, False]]
+
+
+def test_a_cut_goes_no_further_than_to_zero() -> None:
+    cg = springs(4.0, [1.0, 1.0], [3.25, -3.25])  # residuals -3.5, 3: best is 9 times the cut trial
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[0.0, 1 + 3 * 0.8 * 0.7]], rtol=1e-15)
+    assert cg.contact.tolist() == [[False, True]]
 
 
 def test_of_a_pressure_that_vanishes_nothing_is_left() -> None:
