@@ -295,10 +295,11 @@ def test_surfaces_apart_leave_no_residual() -> None:
     assert springs(1.0, [0.0, 0.0], [1.0, 2.0]).residuals() == (0.0, 0.0)
 
 
-def test_a_direction_forgets_the_past_where_the_quotient_is_negative() -> None:
+@pytest.mark.parametrize("last", [1.5, 2.0])
+def test_a_direction_forgets_the_past_where_the_quotient_is_negative(last: float) -> None:
     """Polak and Ribiere's is then restarted."""
     cg = springs(1.0, [1.0, 1.0], [0.0, 0.0])
-    cg._direction, cg._residual, cg._product = np.array([[3.0, 7.0]]), np.array([[2.0, 0.0]]), 1.0
+    cg._direction, cg._residual, cg._product = np.array([[3.0, 7.0]]), np.array([[last, 0.0]]), 1.0
     step = np.array([[1.0, 0.0]])
     assert cg._conjugate(step, step).tolist() == step.tolist()
 
