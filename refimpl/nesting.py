@@ -14,6 +14,7 @@ from refimpl.problem import Problem
 
 _COARSEST = 32  # elements per side where nesting starts
 _COARSEST_OF_TWO = 16  # the same of grids that would have no coarser one
+_QUARTERED = 128  # elements per side up to which a grid of half as many costs more than it spares
 
 
 class Start(NamedTuple):
@@ -33,22 +34,26 @@ class Start(NamedTuple):
 
 
 def levels(problem: Problem, above: int) -> list[Problem]:
-    """The problem on halved grids finer than ``above``, coarsest first."""
+    """The problem on halved or quartered grids finer than ``above``, coarsest first."""
     nested = [problem]
     lowest = _COARSEST_OF_TWO
-    while _half(nested[0]) >= max(lowest, above + 1):
-        nested.insert(0, coarsened(nested[0]))
+    while (M := _coarser(nested[0].grid.M)) >= max(lowest, above + 1):
+        coarse = coarsened(nested[0])
+        nested.insert(0, coarse if coarse.grid.M == M else coarsened(coarse))
         lowest = _COARSEST
     return nested
 
 
-def _half(problem: Problem) -> int:
-    return (problem.grid.M + 1) // 2
+def _coarser(M: int) -> int:
+    """Half as many elements per side, rounded up; of a small grid a quarter if those are enough."""
+    half = (M + 1) // 2
+    quarter = (half + 1) // 2
+    return quarter if M <= _QUARTERED and quarter >= _COARSEST else half
 
 
 def coarsened(fine: Problem) -> Problem:
     """The problem on half as many elements per side, rounded up: means of four where that number is even."""
-    M = _half(fine)
+    M = (fine.grid.M + 1) // 2
     return replace(
         fine,
         grid=Grid(fine.grid.side, M),

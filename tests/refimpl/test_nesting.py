@@ -39,12 +39,14 @@ def problem(M: int, *, approach: float | None = None, heights: np.ndarray | None
         (65, [33, 65]),
         (96, [48, 96]),
         (124, [62, 124]),
-        (126, [32, 63, 126]),
-        (127, [32, 64, 127]),
-        (128, [32, 64, 128]),
+        (125, [32, 125]),
+        (127, [32, 127]),
+        (128, [32, 128]),
+        (129, [33, 65, 129]),
+        (256, [32, 128, 256]),
     ],
 )
-def test_levels_halve_down_to_32_and_small_grids_once(M: int, expected: list[int]) -> None:
+def test_levels_halve_then_quarter_and_small_grids_halve_once(M: int, expected: list[int]) -> None:
     nested = levels(problem(M), 0)
     assert [p.grid.M for p in nested] == expected
     assert all(p.gap.shape == p.mean_surface.shape == (p.grid.M, p.grid.M) for p in nested)
@@ -53,10 +55,16 @@ def test_levels_halve_down_to_32_and_small_grids_once(M: int, expected: list[int
 
 @pytest.mark.parametrize(
     ("M", "above", "expected"),
-    [(128, 31, [32, 64, 128]), (128, 32, [64, 128]), (192, 64, [96, 192]), (64, 64, [64]), (32, 16, [32])],
+    [(128, 31, [32, 128]), (128, 32, [128]), (192, 64, [96, 192]), (64, 64, [64]), (32, 16, [32])],
 )
 def test_levels_no_finer_than_a_known_answer_are_passed_over(M: int, above: int, expected: list[int]) -> None:
     assert [p.grid.M for p in levels(problem(M), above)] == expected
+
+
+def test_a_quartered_grid_has_means_of_sixteen() -> None:
+    fine = problem(128)
+    coarse = levels(fine, 0)[0]
+    assert coarse.gap[3, 5] == pytest.approx(fine.gap[12:16, 20:24].mean(), rel=1e-14)
 
 
 def test_a_coarse_height_is_the_mean_of_four() -> None:
