@@ -105,7 +105,9 @@ def across(
     """Quadrature of ``inner`` over the element's extent about the offsets ``outer``; shapes broadcast."""
     half = edge_outer / 2
     nodes, weights = rule(order)
-    total: Array = weights[0] * inner(outer + half * nodes[0], other, edge_other)
-    for node, weight in zip(nodes[1:], weights[1:], strict=True):
-        total += weight * inner(outer + half * node, other, edge_other)
+    axes = np.broadcast(outer, other).ndim
+    values = inner(outer + half * nodes.reshape(-1, *axes * [1]), other, edge_other)  # a call for all nodes
+    total: Array = weights[0] * values[0]
+    for weight, value in zip(weights[1:], values[1:], strict=True):
+        total += weight * value
     return half * total

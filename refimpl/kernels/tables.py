@@ -22,7 +22,7 @@ from refimpl.kernels.points import scale
 Array = NDArray[np.float64]
 
 _NEAR_COUNT = int(np.ceil(NEAR / 2))  # offsets served by the closed form: 2i < NEAR
-_SLAB = 16384  # elements: 128 kB per temporary
+_SLAB = 16384  # evaluations: 128 kB per temporary
 
 
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
@@ -123,7 +123,8 @@ def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
     """
     start = _NEAR_COUNT
     while start < max(n, m):
-        height = min(1 + start // 2, max(1, _SLAB // min(start, n, m)))
+        evaluations = order_for(2.0 * start) * min(start, n, m)  # of a row
+        height = min(1 + start // 2, max(1, _SLAB // evaluations))
         stop = min(start + height, max(n, m))
         if stop > known:
             yield start, stop
