@@ -4,7 +4,7 @@ Minimise ``1/2 f.(a f) + f.b`` over ``f >= 0``, either with ``K.f = target`` (th
 ``b`` holding ``-K approach``. On the set S of elements in contact each step is one of CG, residual and
 step both projected onto ``K.d = 0`` (which keeps the preconditioner symmetric there). The trial point of a
 step is cut at zero pressure and scaled to the load *before* the displacement is applied, and the best point
-between the present and the trial is taken: one application a step, whether elements leave or not. Elements
+from the present through the trial is taken: one application a step, whether elements leave or not. Elements
 that penetrate enter S afterwards (Polonsky and Keer 1999, Wear 231, 206). Conjugacy is measured by the
 Polak-Ribiere quotient, which forgets the past by itself when S changes.
 """
@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from refimpl.contact.support import Support
 from refimpl.friction import Mask
 from refimpl.grid import Array, inner
 
@@ -53,6 +54,7 @@ class ProjectedCG:
         self.pressure = pressure
         self.normal_displacement = apply(pressure)
         self.contact: Mask = pressure > 0
+        self._support = Support(self.contact)
         self._direction: Array | None = None
         self._seen: _Seen | None = None
         self._residual, self._product = pressure, 0.0
@@ -82,24 +84,26 @@ class ProjectedCG:
             v = self.normal_displacement + self._b
             if not self._unweighted:
                 v /= self._K
-            total = float(self.pressure.sum())
+            pressure = self._pressing()
+            total = float(pressure.sum())
             apart = self._approach or 0.0  # a step overshot: what does not press is not off
-            self._seen = _Seen(v, inner(self.pressure, v) / total if total > 0 else apart)
+            self._seen = _Seen(v, inner(pressure, self._support.seen(v)) / total if total > 0 else apart)
         return self._seen
 
     def residuals(self) -> tuple[float, float]:
         """Complementarity gap over elastic energy, and penetration over approach, of the frozen problem."""
         (v, mean), approach = self._look(), self.approach
         lowest = float(v.min())
-        energy = 0.5 * inner(self.pressure, self.normal_displacement)
-        gap = inner(self.pressure, v - lowest)
+        pressure = self._pressing()
+        energy = 0.5 * inner(pressure, self._support.seen(self.normal_displacement))
+        gap = inner(pressure, self._support.seen(v) - lowest)
         scale = abs(approach) or 1.0
         return relative_gap(gap, energy), max(abs(mean - approach), approach - lowest) / scale
 
     def iterate(self) -> None:
         """One step of projected CG on the contact set, then the exchange of elements."""
         if self._exchanged:
-            self._weigh()
+            self._exchange()
         residual = self._frozen_residual()
         direction = self._conjugate(residual, self._projected(self._preconditioned(residual)))
         self._exchanged = False
@@ -108,15 +112,22 @@ class ProjectedCG:
         self._seen = None
         self._enter(self.separation < self.approach)
 
-    def _weigh(self) -> None:
-        """The load's weights on the contact set, their squares and the sum of these."""
-        self._weights = self._K * self.contact
+    def _pressing(self) -> Array:
+        return self._support.seen(self.pressure)
+
+    def _exchange(self) -> None:
+        """Go on with the present contact set: the last step on it, the load's weights and their squares."""
+        last, self._support = self._support, Support(self.contact.copy())
+        if self._direction is not None:
+            self._direction = self._support.of(last.onto(self._direction))
+            self._residual = self._support.of(last.onto(self._residual))
+        self._weights = self._support.of(self._K)
         self._squares = self._weights if self._unweighted else self._weights**2
         self._norm = float(self._squares.sum())
 
     def _frozen_residual(self) -> Array:
         """``K (approach - v)`` on the contact set: at the approach that leaves nothing along the weights."""
-        v, approach = self.separation, self._approach
+        v, approach = self._support.seen(self.separation), self._approach
         if approach is None:
             approach = inner(self._squares, v) / self._norm
         residual = approach - v
@@ -131,9 +142,7 @@ class ProjectedCG:
         return values
 
     def _preconditioned(self, residual: Array) -> Array:
-        step = self._precondition(residual)
-        step *= self.contact
-        return step
+        return self._support.of(self._precondition(self._support.onto(residual)))
 
     def _conjugate(self, residual: Array, step: Array) -> Array:
         product = inner(residual, step)
@@ -150,27 +159,24 @@ class ProjectedCG:
         """That much of the last direction, on the present contact set."""
         assert self._direction is not None
         direction = quotient * self._direction
-        if self._exchanged:
-            direction *= self.contact
-            direction = self._projected(direction)
-        return direction
+        return self._projected(direction) if self._exchanged else direction
 
     def _step_to_trial(self, residual: Array, direction: Array) -> bool:
         """To the best point between here and the trial, cut and scaled; False if the cut leaves nothing."""
-        change = (_SHORTER * self._length) * direction
-        trial = self.pressure + change
+        pressure, change = self._pressing(), (_SHORTER * self._length) * direction
+        trial = pressure + change
         cut: Mask | None = None
         if trial.min() < 0:
             cut = trial < 0
             np.maximum(trial, 0.0, out=trial)
-            total = inner(self._K, trial)
+            total = inner(self._support.seen(self._K), trial)
             if total <= 0:
                 return False
             if self._target is not None:
                 trial *= self._target / total
-            np.subtract(trial, self.pressure, out=change)
-        moved = self._apply(change)
-        curvature = inner(change, moved)
+            np.subtract(trial, pressure, out=change)
+        moved = self._apply(self._support.onto(change))
+        curvature = inner(change, self._support.seen(moved))
         best = inner(residual, change) / curvature if curvature > 0 else 0.0
         self._take(max(best, 0.0), change, moved, cut)
         self._length *= _SHORTER * best
@@ -179,16 +185,17 @@ class ProjectedCG:
 
     def _take(self, share: float, change: Array, moved: Array, cut: Mask | None) -> None:
         """That share of a change, but no pressure below zero; what is cut or falls to zero leaves."""
-        pressure = self.pressure + share * change
+        before = self._pressing()
+        pressure = before + share * change
         beyond = share > 1 and bool(pressure.min() < 0)
         if beyond:
-            share = self._room(change)
-            pressure = self.pressure + share * change
+            share = _room(before, change)
+            pressure = before + share * change
         if beyond or cut is not None:
-            pressure[pressure < _NOTHING * self.pressure] = 0.0  # whatever trace rounding leaves
+            pressure[pressure < _NOTHING * before] = 0.0  # whatever trace rounding leaves
             falling = change < 0
-            self._leave((pressure == 0) & (falling if cut is None else falling | cut))
-        self.pressure = pressure
+            self._leave(self._support.where((pressure == 0) & (falling if cut is None else falling | cut)))
+        self.pressure = self._support.onto(pressure)
         moved *= share
         self.normal_displacement += moved
 
@@ -203,18 +210,14 @@ class ProjectedCG:
             self.contact &= ~lifted
             self._exchanged = True
 
-    def _room(self, change: Array) -> float:
-        """The multiple of ``change`` at which the first pressure reaches zero."""
-        falling = change < 0
-        return float(np.min(self.pressure[falling] / -change[falling]))
-
     def _step_then_cut(self, residual: Array, direction: Array) -> None:
         """The exact step along the direction, then the cut: two applications, and no guess."""
-        moved = self._apply(direction)
-        curvature = inner(direction, moved)
+        step = self._support.onto(direction)
+        moved = self._apply(step)
+        curvature = inner(step, moved)
         if curvature > 0:  # zero when the constraint alone fixes the set's pressure
             self._length = inner(residual, direction) / curvature
-            self.pressure = self.pressure + self._length * direction
+            self.pressure = self.pressure + self._length * step
             self.normal_displacement = self.normal_displacement + self._length * moved
             self._trusted = True
         negative = self.pressure < 0
@@ -231,3 +234,9 @@ class ProjectedCG:
         self.pressure = self.pressure * factor
         if displace:
             self.normal_displacement = self.normal_displacement * factor
+
+
+def _room(pressure: Array, change: Array) -> float:
+    """The multiple of a change at which the first pressure reaches zero."""
+    falling = change < 0
+    return float(np.min(pressure[falling] / -change[falling]))

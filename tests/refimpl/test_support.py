@@ -1,0 +1,62 @@
+"""Fields on a contact set: lists where it is small, windows where it is not, and one answer by either."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.contact import support
+from refimpl.contact.support import Support
+
+RANDOM = np.random.default_rng(8)
+FIELD = RANDOM.normal(size=(5, 8))
+
+
+def contact(count: int) -> np.ndarray:
+    mask = np.zeros(40, dtype=bool)
+    mask[RANDOM.permutation(40)[:count]] = True
+    return mask.reshape(5, 8)
+
+
+@pytest.mark.parametrize("count", [0, 1, 14, 15, 40])
+def test_of_a_field_the_elements_alone_are_kept(count: int) -> None:
+    mask = contact(count)
+    on = Support(mask)
+    expected = np.where(mask, FIELD, 0.0)
+    assert np.array_equal(on.onto(on.of(FIELD)), expected)
+    assert np.array_equal(on.onto(on.seen(expected)), expected)
+    marked = on.of(FIELD) > 0.3
+    assert np.array_equal(on.where(marked), expected > 0.3)
+
+
+@pytest.mark.parametrize(("count", "shape"), [(14, (1, 14)), (15, (5, 8))])
+def test_lists_up_to_a_share_of_the_window(count: int, shape: tuple[int, int]) -> None:
+    on = Support(contact(count))
+    assert on.of(FIELD).shape == on.seen(FIELD).shape == shape
+
+
+def test_what_is_kept_is_no_view() -> None:
+    for count in (3, 40):
+        kept = Support(contact(count)).of(FIELD)
+        kept[:] = 9.0
+        assert not np.any(FIELD == 9)
+
+
+def test_windows_of_views_that_are_not_contiguous() -> None:
+    mask = contact(6)
+    assert np.array_equal(Support(mask.T).of(FIELD.T)[0], FIELD.T[mask.T])
+
+
+@pytest.mark.parametrize("name", ["table1-rough", "rough-planes"])
+def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To rounding: measured 5e-15 of the largest pressure."""
+    found = []
+    for few in (0.0, 1.0):
+        monkeypatch.setattr(support, "_FEW", few)
+        found.append(rf.solve(rf.read_scene(name), 48, tolerance=1e-10))
+    one, other = found
+    assert one.converged
+    assert other.converged
+    assert np.array_equal(one.contact, other.contact)
+    np.testing.assert_allclose(one.pressure, other.pressure, rtol=0, atol=1e-12 * one.max_pressure)
