@@ -71,7 +71,7 @@ def coefficient_error(
     if position is not None:
         require_number("position", position, "a share of the wavelength, 0 to 1", at_least=0, at_most=1)
     positions = np.array(table["position"] if position is None else [position])
-    return _error(slope, wavelength, positions, lower, upper)
+    return float(_errors(np.array([slope]), wavelength, positions, lower, upper)[0])
 
 
 def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, upper: Material) -> SlopeError:
@@ -82,39 +82,52 @@ def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, up
         return SlopeError(0.0, 0.0, 0.0, 0.0)
     rms = math.atan(math.sqrt(float(np.average(squared, weights=weights))))
     steepest = math.atan(math.sqrt(float(squared.max())))
-    top = math.radians(_table()["slope_deg"][-1])
+    table = _table()
+    top = math.radians(table["slope_deg"][-1])
+    slopes = np.array([rms, steepest])
+    found = _errors(
+        np.minimum(slopes, top), table["wavelength"][-1], np.array(table["position"]), lower, upper
+    )
     at_rms, at_max = (
-        coefficient_error(slope, lower, upper) if slope <= top else None for slope in (rms, steepest)
+        float(error) if slope <= top else None for slope, error in zip(slopes, found, strict=True)
     )
     return SlopeError(rms, steepest, at_rms, at_max)
 
 
-def _error(
-    slope: float, wavelength: float, positions: Array, lower: Material, upper: Material | None
-) -> float:
+def _errors(
+    slopes: Array, wavelength: float, positions: Array, lower: Material, upper: Material | None
+) -> Array:
     """Worst of both neighbours anywhere: ``|flat - rough| / |flat|``, bodies weighted by ``1 / E``."""
-    rough = _departure(slope, wavelength, positions, lower.nu) / lower.E
-    flat = _flat(lower.nu) / lower.E
+    bodies = [(lower, positions)]
     if upper is not None:  # a crest of one body is a valley of the other
-        rough = rough + _departure(slope, wavelength, (positions + 0.5) % 1.0, upper.nu) / upper.E
-        flat += _flat(upper.nu) / upper.E
-    return float(np.abs(rough).max() / abs(flat))
+        bodies.append((upper, (positions + 0.5) % 1.0))
+    rests = _rests(np.tan(slopes), wavelength, np.concatenate([at for _, at in bodies]))
+    rough = np.zeros((len(slopes), len(positions), 2))
+    for (body, at), rest in zip(bodies, np.split(rests, len(bodies), axis=1), strict=True):
+        rough += _departure(np.tan(slopes), wavelength, at, body.nu, rest) / body.E
+    flat = sum(_flat(body.nu) / body.E for body, _ in bodies)
+    worst: Array = np.abs(rough).max(axis=(1, 2)) / abs(flat)
+    return worst
 
 
-def _departure(slope: float, wavelength: float, positions: Array, nu: float) -> Array:
-    """Rough minus flat displacement of both neighbours, ``(positions, 2)``, in units of ``p a / E``."""
-    tangent = math.tan(slope)
-    amplitude = tangent * wavelength / (2 * math.pi)
-    at = positions[:, None]
-    ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + at)
-    climb = amplitude * (np.cos(2 * math.pi * at) - np.cos(ends))
+def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
+    """The table's parts at all slopes and positions, ``(slopes, positions, 4)``."""
     first = math.tan(math.radians(_table()["slope_deg"][0]))
-    points = np.empty((len(positions), 3))
-    points[:] = max(tangent, first), math.log(wavelength), 0.0
-    points[:, 2] = np.minimum(positions, 1 - positions)
-    parts = _rest()(points)
-    rest = tangent**2 * (1 + nu) * ((3 - 4 * nu) * parts[:, :2] + parts[:, 2:])
-    rest = np.where(at > 0.5, rest[:, ::-1], rest)  # mirrored: the neighbours change places
+    points = np.empty((len(tangents), len(positions), 3))
+    points[..., 0] = np.maximum(tangents, first)[:, None]
+    points[..., 1] = math.log(wavelength)
+    points[..., 2] = np.minimum(positions, 1 - positions)
+    parts: Array = _rest()(points)
+    return parts
+
+
+def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, parts: Array) -> Array:
+    """Rough minus flat displacement of both neighbours in units of ``p a / E``, ``(slopes, positions, 2)``."""
+    tangent, at = tangents[:, None, None], positions[:, None]
+    ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + at)
+    climb = tangent * wavelength / (2 * math.pi) * (np.cos(2 * math.pi * at) - np.cos(ends))
+    rest = tangent**2 * (1 + nu) * ((3 - 4 * nu) * parts[..., :2] + parts[..., 2:])
+    rest = np.where(at > 0.5, rest[..., ::-1], rest)  # mirrored: the neighbours change places
     departure: Array = rest - (1 + nu) * (1 - 2 * nu) * climb
     return departure
 

@@ -117,7 +117,7 @@ class ProjectedCG:
 
     def _exchange(self) -> None:
         """Go on with the present contact set: the last step on it, the load's weights and their squares."""
-        last, self._support = self._support, Support(self.contact.copy())
+        last, self._support = self._support, Support(self.contact)
         if self._direction is not None:
             self._direction = self._support.of(last.onto(self._direction))
             self._residual = self._support.of(last.onto(self._residual))

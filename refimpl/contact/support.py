@@ -24,7 +24,7 @@ class Support:
     """
 
     def __init__(self, contact: Mask) -> None:
-        self._contact = contact
+        self._contact = contact.copy()
         self._index: NDArray[np.intp] | None = None
         if np.count_nonzero(contact) <= _FEW * contact.size:
             self._index = np.flatnonzero(contact)[None, :]
