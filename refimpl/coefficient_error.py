@@ -122,7 +122,7 @@ def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
 
 
 def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, parts: Array) -> Array:
-    """Rough minus flat displacement of both neighbours in units of ``p a / E``, ``(slopes, positions, 2)``."""
+    """Rough minus flat displacement of both neighbours (``p a / E``), ``(slopes, positions, 2)``."""
     tangent, at = tangents[:, None, None], positions[:, None]
     ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + at)
     climb = tangent * wavelength / (2 * math.pi) * (np.cos(2 * math.pi * at) - np.cos(ends))
