@@ -43,7 +43,7 @@ class Library(Protocol):
         """Real values of the shape, backward along both axes; the spectrum may be overwritten."""
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
-        """The real transform of an even field from a quarter of it, both ends included; a quarter as well."""
+        """An even field's transform, by quarters with both ends; the one given may be overwritten."""
 
 
 class SciPy:
@@ -78,7 +78,7 @@ class SciPy:
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
         """See `Library`."""
-        found: Array = sfft.dctn(quarter, type=1, workers=workers)
+        found: Array = sfft.dctn(quarter, type=1, overwrite_x=True, workers=workers)
         return found
 
 
@@ -132,8 +132,8 @@ class Ducc:
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
         """See `Library`."""
-        found: Array = self._fft.dct(quarter, type=1, axes=(0, 1), nthreads=workers)
-        return found
+        self._fft.dct(quarter, type=1, axes=(0, 1), out=quarter, nthreads=workers)
+        return quarter
 
 
 def best_installed() -> Library:
