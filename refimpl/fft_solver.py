@@ -25,12 +25,13 @@ def solve_fft(
     answer on a grid that is not finer: levels no finer than it need not be solved again.
     """
     iterations: dict[str, int] = {}
-    coarsest, *finer = levels(problem, above=start.M if start else 0)
+    nested = levels(problem, above=start.M if start else 0)
+    coarsest = nested.pop(0)
     solver = LevelSolver.begun(coarsest, start, counter) if start else _unprepared(coarsest, counter)
-    for fine in finer:
+    while nested:
         solver.settle(_COARSE_TOLERANCE)
         iterations[f"CG at {solver.whole.grid.M}"] = solver.cg_iterations
-        solver = LevelSolver.begun(fine, solver.answer(), counter)
+        solver = LevelSolver.begun(nested.pop(0), solver.answer(), counter)
     while True:
         outcome, window = solver.solve(tolerance), solver.window
         del solver  # what it holds is no longer needed when the whole grid's arrays come

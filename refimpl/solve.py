@@ -153,6 +153,7 @@ def _solve_planned(
     outcome, state = _solve_posed(problem, plan, tolerance, counter, _answer(start))
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, outcome.iterations)
     solution = _solution(problem, plan, outcome, state, tolerance, cost)
+    del outcome, state  # the displacements are in the surfaces now
     return replace(solution, warnings=_remarks(scene, problem.grid, caught) + cautions(solution, scene))
 
 
@@ -208,9 +209,10 @@ def _solution(
     """Gather the state's numbers; the status yields to the certificate."""
     grid, contact = problem.grid, state.pressure > 0
     load = problem.load if problem.load is not None else state.forces.normal
-    lower, upper = problem.heights
-    surface_lower = lower - state.displacement_lower
-    surface_upper = upper + state.displacement_upper - state.approach
+    surface_lower, surface_upper = problem.heights
+    surface_lower -= state.displacement_lower
+    surface_upper += state.displacement_upper
+    surface_upper -= state.approach
     found = Visited(
         friction_coefficient=state.forces.friction / load if load else math.nan,
         contact_area=float(np.count_nonzero(contact)) * grid.element_area,

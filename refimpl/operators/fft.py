@@ -57,8 +57,7 @@ class FFTInfluence:
         self.source = source or Window.full(grid.M)
         self.target = target or self.source
         self.counter = counter if counter is not None else Counter()
-        rows, columns = (n + m - 1 for n, m in zip(self.source.shape, self.target.shape, strict=True))
-        self._padded = padded_length(rows), padded_length(columns)
+        self._padded = _padded(self.source, self.target)
         shifts = self.target.i0 - self.source.i0, self.target.j0 - self.source.j0
         placed = map(_places, self._padded, shifts, self.source.shape, self.target.shape)
         self._from, self._to = zip(*placed, strict=True)
@@ -143,6 +142,19 @@ class WholeGridInfluence(FFTInfluence):
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
         return super()._convolve(source[self.source.slices], hat)
+
+
+def _padded(source: Window, target: Window) -> tuple[int, int]:
+    """Fast lengths that hold every offset once, or also its opposite if that takes few points more.
+
+    A kernel's transform then costs an eighth of an application instead of a half, which is worth a third.
+    """
+    lengths = [n + m - 1 for n, m in zip(source.shape, target.shape, strict=True)]
+    rows = max(target.i1 - source.i0, source.i1 - target.i0) - 1
+    columns = max(target.j1 - source.j0, source.j1 - target.j0) - 1
+    least = padded_length(lengths[0]), padded_length(lengths[1])
+    even = padded_length(max(lengths[0], 2 * rows)), padded_length(max(lengths[1], 2 * columns))
+    return even if 3 * math.prod(even) <= 4 * math.prod(least) else least
 
 
 def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:

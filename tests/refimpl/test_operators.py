@@ -217,6 +217,34 @@ def test_kernels_count_by_their_symmetry():
     assert counted(6, Window(0, 3, 0, 3), Window.full(6)) == 64 * 6 + 32 * 5
 
 
+@pytest.mark.parametrize(
+    ("M", "source", "points", "kernel"),
+    [
+        # -8 to 8 on 18, and -3 to 8: 12 hold them, 16 hold 8 as well, a third more points, which is worth it
+        (9, Window(0, 9, 0, 4), 18 * 16, 8),
+        (9, Window(0, 9, 5, 9), 18 * 16, 8),
+        (9, Window(0, 4, 0, 9), 18 * 16, 8),
+        # -9 to 9 on 20, and -2 to 9: 12 hold them, 18 would be a half more
+        (10, Window(0, 10, 0, 3), 20 * 12, 2),
+        (10, Window(7, 10, 0, 10), 20 * 12, 2),
+    ],
+)
+def test_a_little_more_padding_for_an_even_kernel(M, source, points, kernel):
+    counter = Counter()
+    operator = FFTInfluence(Grid(1.0, M), 0.3, source=source, target=Window.full(M), counter=counter)
+    field = np.random.default_rng(5).random(source.shape)
+    found = operator.normal(field), operator.shear(field)
+    assert counter.point_logs == pytest.approx(
+        2 * points * math.log2(points)
+        + points // kernel * math.log2(points // kernel)
+        + points // 2 * math.log2(points // 2),
+        rel=1e-15,
+    )
+    dense, whole = DenseInfluence(Grid(1.0, M), 0.3), source.spread(field, M)
+    for one, other in zip(found, (dense.normal(whole), dense.shear(whole)), strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-14 * np.abs(other).max())
+
+
 @pytest.mark.parametrize("operator", [FFTInfluence, PeriodicInfluence])
 def test_threads_are_by_the_points_of_a_transform(operator, monkeypatch):
     """An application's own, and its kernel's."""
