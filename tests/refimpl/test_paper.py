@@ -88,6 +88,7 @@ def test_odd_grid_has_no_coarser_one() -> None:
     assert run("hertz", 33)[2].coarser == ()
 
 
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_residual_correction_removes_the_periodicity_error() -> None:
     outcome, _, trace = run("table1-rough", 32, 1e-9)
     assert trace.periodicity_before > 1e-3 > 1e-9 > trace.periodicity_after

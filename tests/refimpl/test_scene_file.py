@@ -73,6 +73,7 @@ def test_a_name_gives_way_to_a_file_of_that_name(tmp_path: Path, monkeypatch: py
     assert rf.read_scene("hertz").load == 1.0
 
 
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_measured_surfaces_are_relative_to_the_file(tmp_path: Path) -> None:
     random = np.random.default_rng(0)
     np.save(tmp_path / "surface.npy", random.normal(0, 0.5, (64, 64)))

@@ -48,6 +48,7 @@ def turns(code: str, *seconds: float) -> Turns:
     return Turns(code, "smooth", 64, 1e-8, [found(s) for s in seconds])
 
 
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 @pytest.mark.parametrize("kind", ["smooth", "rough"])
 def test_judge_agrees_with_the_dense_referee(kind: str) -> None:
     posed = problem(kind, 24, 1e-4)

@@ -76,6 +76,7 @@ def test_frictionless_scenes_have_no_friction_to_judge() -> None:
     assert [verdict.number for verdict in found] == list(NUMBERS[1:])
 
 
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_scenes_repeat_and_know_no_grid() -> None:
     for seed, kind in enumerate(CLASSES):
         drawn, again = random_scene(seed), random_scene(seed)

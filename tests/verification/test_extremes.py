@@ -66,6 +66,7 @@ def test_the_oracle_on_one_element_is_the_closed_form() -> None:
     assert float(exact.approach) == pytest.approx(expected, rel=1e-15)
 
 
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_the_oracle_satisfies_the_contact_conditions_wherever_it_starts() -> None:
     oracle = Oracle(BALL, 4)
     support = np.ones((4, 4), dtype=bool)
