@@ -52,3 +52,22 @@ class Grid:
     def centres(self) -> Array:
         """Element centres along one axis, shape ``(M,)`` (m)."""
         return (np.arange(self.M, dtype=np.float64) + 0.5) * self.spacing
+
+
+def resampled(values: Array, M: int) -> Array:
+    """Bilinear interpolation from element centres to those of M per side, level beyond the outermost.
+
+    >>> resampled(np.array([[0.0, 8.0], [0.0, 8.0]]), 4)[0]
+    array([0., 2., 6., 8.])
+    """
+    n = len(values)
+    if n == M:
+        return values
+    place = np.clip((np.arange(M) + 0.5) * (n / M) - 0.5, 0, n - 1)
+    left = np.minimum(place.astype(np.intp), n - 2)
+    share = place - left
+    rows = (1 - share)[:, None] * values[left]
+    rows += share[:, None] * values[left + 1]
+    found: Array = (1 - share) * rows.take(left, axis=1)
+    found += share * rows.take(left + 1, axis=1)
+    return found

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.friction import Mask, TauSupport, local_friction
-from refimpl.grid import Array, inner
-from refimpl.nesting import Start, resampled, sharpened, touching
+from refimpl.grid import Array, inner, resampled
+from refimpl.nesting import Start, sharpened, touching
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.operators.window import Window

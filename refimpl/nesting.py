@@ -9,7 +9,7 @@ import numpy as np
 
 from refimpl.contact.projected_cg import FIRST_LENGTH, Apply
 from refimpl.friction import Mask
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array, Grid, resampled
 from refimpl.problem import Problem
 
 _COARSEST = 32  # elements per side where nesting starts
@@ -60,25 +60,6 @@ def coarsened(fine: Problem) -> Problem:
         gap=resampled(fine.gap, M),
         mean_surface=resampled(fine.mean_surface, M),
     )
-
-
-def resampled(values: Array, M: int) -> Array:
-    """Bilinear interpolation from element centres to those of M per side, level beyond the outermost.
-
-    >>> resampled(np.array([[0.0, 8.0], [0.0, 8.0]]), 4)[0]
-    array([0., 2., 6., 8.])
-    """
-    n = len(values)
-    if n == M:
-        return values
-    place = np.clip((np.arange(M) + 0.5) * (n / M) - 0.5, 0, n - 1)
-    left = np.minimum(place.astype(np.intp), n - 2)
-    share = place - left
-    rows = (1 - share)[:, None] * values[left]
-    rows += share[:, None] * values[left + 1]
-    found: Array = (1 - share) * rows.take(left, axis=1)
-    found += share * rows.take(left + 1, axis=1)
-    return found
 
 
 def foundation_pressure(problem: Problem) -> Array:

@@ -1,5 +1,9 @@
 """The contact to expect, from the heights alone; and the same description of a contact that was found.
 
+A glance at 64 x 64 heights is enough for what is expected: on 120 random scenes of 256 x 256 elements the
+estimates that follow from it are 0.99 to 1 times those from all heights in the median, 0.83 to 1.02 times in
+nine of ten.
+
 Elements touch in the order of their gap until they carry the load. A patch whose gap has the rms
 gradient g carries the mean pressure ``0.6 E* g``: of Hertz's paraboloid this is exact
 (``4 sqrt(2) / (3 pi) = 0.600``), of light contact on Gaussian roughness Persson's theory has 0.63
@@ -13,7 +17,8 @@ compliance (the rigid body's own shape, if one is rigid).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,16 +26,14 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from refimpl.friction import Mask
-from refimpl.grid import Array
+from refimpl.grid import Array, Grid, resampled
 from refimpl.operators.window import Window
 from refimpl.problem import Problem
 from refimpl.slopes import Slopes
 
-Indices = NDArray[np.intp]
-
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
-_SAMPLED = 32  # elements a side, at least, from which the contact to expect is guessed before it is counted
+_GLANCE = 64  # elements a side from which the contact to expect is told
 _LEAST = 1e-12  # mean pressure over E*, of a contact at an approach that hardly loads it
 _ROUNDING = 1e-9  # of a surface's range: heights that differ by less are mirror images of each other
 
@@ -69,93 +72,64 @@ class Outlook:
 
 def expected(problem: Problem) -> Outlook:
     """The contact to expect of a problem under its load, or at its approach."""
-    gap, dA = problem.gap, problem.grid.element_area
+    glance = _glance(problem)
+    gap, dA = glance.gap, glance.grid.element_area
     modulus = problem.pair.reduced_modulus
     stiffness = _STIFFNESS * modulus * dA
     if problem.load is not None:
-        contact = _touched(problem, stiffness, problem.load)
+        contact = _touched(glance, stiffness, problem.load)
         elements = int(np.count_nonzero(contact))
         mean_pressure = problem.load / (elements * dA)
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
         contact = _lowest(gap, elements)
-        squares = float(_gradient_squared(problem, np.flatnonzero(contact)).sum())
+        squares = float(_gradient_squared(glance)[contact].sum())
         mean_pressure = stiffness * math.sqrt(squares * elements) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
     # a sphere's gap at the contact's edge is half the approach
     approach = problem.approach or 2 * float(gap[contact].max())
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
-    del near  # a large array, before the next ones
-    seen = _Seen(approach, *_symmetries(problem), window)
-    return _described(problem, contact, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
+    seen = _Seen(approach, *_symmetries(glance, problem), window)
+    outlook = _described(glance, contact, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
+    finer = problem.grid.M / glance.grid.M
+    rows, columns = (math.ceil(finer * n) for n in window)
+    return replace(outlook, elements=round(finer**2 * elements), window=(rows, columns))
+
+
+def _glance(problem: Problem) -> Problem:
+    """The problem's heights at fewer points, if there are more than it takes."""
+    M = min(problem.grid.M, _GLANCE)
+    gap, mean_surface = resampled(problem.gap, M), resampled(problem.mean_surface, M)
+    return replace(problem, grid=Grid(problem.grid.side, M), gap=gap, mean_surface=mean_surface)
 
 
 def _touched(problem: Problem, stiffness: float, load: float) -> Mask:
-    """The fewest of the lowest elements that carry the load, or all: only those near the last are sorted."""
-    heights = problem.gap.ravel()
-    lowest, highest = _bracket(problem, stiffness, load)
-    while True:
-        touched = heights <= lowest
-        order = np.flatnonzero((heights > lowest) & (heights <= highest))
-        order = order[np.argsort(heights[order], kind="stable")]  # ties in the grid's order
-        surely = np.flatnonzero(touched)
-        squares = _gradient_squared(problem, surely).sum() + np.cumsum(_gradient_squared(problem, order))
-        carried = stiffness * np.sqrt(squares * np.arange(surely.size + 1, surely.size + order.size + 1))
-        last = int(np.searchsorted(carried, load))
-        if last == 0 and surely.size:
-            lowest = -np.inf
-        elif last == order.size and highest < np.inf:
-            highest = np.inf
-        else:
-            touched[order[: last + 1]] = True
-            found: Mask = touched.reshape(problem.gap.shape)
-            return found
-
-
-def _bracket(problem: Problem, stiffness: float, load: float) -> tuple[float, float]:
-    """Heights between which the last element lies that the load needs, by a sample of 32 to 63 a side."""
-    n, m = problem.gap.shape
-    stride = max(1, min(n, m) // _SAMPLED)
-    sample = (m * np.arange(0, n, stride)[:, None] + np.arange(0, m, stride)).ravel()
-    if sample.size == problem.gap.size:
-        return -np.inf, np.inf
-    heights = problem.gap.ravel()[sample]
-    order = np.argsort(heights)
-    squares = np.cumsum(_gradient_squared(problem, sample[order]))
-    carried = stiffness * stride**2 * np.sqrt(squares * np.arange(1, sample.size + 1))
-    found = int(np.searchsorted(carried, load))
-    spread = found // 8 + 8
-    lowest = heights[order[found - spread]] if found >= spread else -np.inf
-    highest = heights[order[found + spread]] if found + spread < sample.size else np.inf
-    return float(lowest), float(highest)
+    """The fewest of the lowest elements that carry the load, or all."""
+    order = _rising(problem.gap)
+    squares = np.cumsum(_gradient_squared(problem).ravel()[order])
+    carried = stiffness * np.sqrt(squares * np.arange(1, order.size + 1))
+    return _lowest(problem.gap, 1 + int(np.searchsorted(carried, load)))
 
 
 def _lowest(gap: Array, count: int) -> Mask:
-    """The ``count`` elements of the least gap; of equal ones the first in the grid's order."""
-    heights = gap.ravel()
-    last = np.partition(heights, count - 1)[count - 1]
-    chosen = heights < last
-    level = np.flatnonzero(heights == last)
-    chosen[level[: count - np.count_nonzero(chosen)]] = True
-    found: Mask = chosen.reshape(gap.shape)
-    return found
+    """The ``count`` elements of the least gap, or all."""
+    chosen = np.zeros(gap.shape, dtype=bool)
+    chosen.ravel()[_rising(gap)[:count]] = True
+    return chosen
 
 
-def _gradient_squared(problem: Problem, where: Indices) -> Array:
-    """Squared gradient of the gap on some elements, by the differences of `Slopes.of_surface`."""
-    gap, total = problem.gap, np.zeros(len(where))
-    at = np.unravel_index(where, gap.shape)
-    for axis, (k, n) in enumerate(zip(at, gap.shape, strict=True)):
-        if problem.periodic:
-            before, after, steps = (k - 1) % n, (k + 1) % n, np.full(len(where), 2)
-        else:
-            before, after = np.maximum(k - 1, 0), np.minimum(k + 1, n - 1)
-            steps = np.maximum(after - before, 1)
-        high, low = ((*at[:axis], side, *at[axis + 1 :]) for side in (after, before))
-        total += ((gap[high] - gap[low]) / (steps * problem.grid.spacing)) ** 2
-    return total
+def _rising(gap: Array) -> NDArray[np.intp]:
+    """Elements from the lowest on, equal ones in the grid's order."""
+    return np.argsort(gap, axis=None, kind="stable")
+
+
+def _gradient_squared(problem: Problem) -> Array:
+    """Squared gradient of the gap."""
+    slopes = _slopes(problem, problem.gap)
+    squared: Array = slopes.tan_x**2 + slopes.tan_y**2
+    return squared
 
 
 def found(problem: Problem, pressure: Array, before: Outlook) -> Outlook:
@@ -210,10 +184,13 @@ def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
     return slopes.tan_x[where], slopes.tan_y[where]
 
 
-def _symmetries(problem: Problem) -> tuple[bool, bool]:
-    lower, upper = problem.heights
-    turned = all(_alike(z, z[::-1, ::-1]) for z in (lower, upper))
-    return turned, _mirrored(problem, lower, upper)
+def _symmetries(glance: Problem, problem: Problem) -> tuple[bool, bool]:
+    """Whether both surfaces are their own images after half a turn, and across the sliding line.
+
+    So they are if gap and mean surface are; a glance tells what is not before all heights are asked.
+    """
+    seen = [z for p in (glance, problem) for z in (p.gap, p.mean_surface)]
+    return all(_alike(z, z[::-1, ::-1]) for z in seen), _mirrored(problem.direction, seen)
 
 
 def _slopes(problem: Problem, heights: Array) -> Slopes:
@@ -234,11 +211,11 @@ def _alike(z: Array, image: Array) -> bool:
     return apart == 0 or apart <= _ROUNDING * float(np.ptp(z))
 
 
-def _mirrored(problem: Problem, lower: Array, upper: Array) -> bool:
-    """Whether both surfaces are mirror images of themselves across the sliding line, a grid axis."""
-    quarter = problem.direction / (math.pi / 2)
+def _mirrored(direction: float, surfaces: Sequence[Array]) -> bool:
+    """Whether surfaces are mirror images of themselves across the sliding line, a grid axis."""
+    quarter = direction / (math.pi / 2)
     if abs(quarter - round(quarter)) > _ROUNDING:
         return False
-    axis = 1 if round(quarter) % 2 == 0 else 0
-    across = (lower, upper) if axis == 0 else (lower.T, upper.T)
-    return all(_alike(z, z[::-1]) for z in across)
+    if round(quarter) % 2 == 0:
+        surfaces = [z.T for z in surfaces]
+    return all(_alike(z, z[::-1]) for z in surfaces)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Grid
-from refimpl.nesting import coarsened, foundation_pressure, levels, resampled, sharpened, touching
+from refimpl.grid import Grid, resampled
+from refimpl.nesting import coarsened, foundation_pressure, levels, sharpened, touching
 from refimpl.problem import Problem, Terms, pose
 
 SIDE = 2.0**-9
