@@ -76,7 +76,7 @@ class LevelSolver:
             precondition,
             pressure,
         )
-        self.slopes = Slopes.flat(window.shape)
+        self.slopes = self._entered = Slopes.flat(window.shape)
         self.traction = np.zeros(window.shape)
         self._held: tuple[Array, Array] | None = None
         self._ran_off = False
@@ -206,7 +206,9 @@ class LevelSolver:
         self.support = pressure > 0 if support is None else support
         self.traction = local_friction(problem.friction, pressure, self.support)
         shear, slopes = self._displaced()
-        change = slopes.distance(self.slopes, pressure > 0)
+        self._entered, change = slopes, 0.0
+        if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
+            self._entered, change = self.slopes, slopes.distance(self.slopes, pressure > 0)
         self._ran_off = not slopes.obliqueness.min() > _STEEPEST
         if not self._ran_off:
             self.slopes = slopes
@@ -262,7 +264,7 @@ class LevelSolver:
         return Outcome(
             pressure=self.full(self.cg.pressure),
             traction=self.full(local_friction(self.problem.friction, self.cg.pressure, self.support)),
-            slopes=self.slopes.spread(self.window, self.whole.grid.M),
+            slopes=self._entered.spread(self.window, self.whole.grid.M),
             status=status,
             withheld=self.full(withheld),
             visited=tuple(in_cycles),
