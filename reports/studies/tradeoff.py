@@ -14,6 +14,13 @@ from reports.exhibit import Document, Exhibit, Table
 NAMES = {"friction_coefficient": "mu", "contact_area": "A", "max_pressure": "f_max"}
 
 
+def _dense_reach(dense: Data) -> str:
+    """Where the dense reference stops being affordable, if three of its grids say so."""
+    if dense["M"] is None:
+        return "On how large a grid the dense reference is affordable takes three of its grids to say."
+    return f"The dense reference takes {dense['seconds']:.0f} s at about {dense['M']} elements a side."
+
+
 def build(document: Document) -> Exhibit:
     """Of every scene studied: diagrams over time and over convolutions, prices, growth."""
     tables: list[Table] = []
@@ -26,11 +33,9 @@ def build(document: Document) -> Exhibit:
     )
     for study in document["studies"]:
         doubt = ", ".join(f"{NAMES[q]} {value:.1e}" for q, value in study["reference"]["doubt"].items())
-        dense = study["dense up to"]
         notes.append(
             f"{study['scene']}: reference on {study['reference']['M']} elements a side (its own doubt: "
-            f"{doubt}). The dense reference takes {dense['seconds']:.0f} s at about "
-            f"{dense['M'] or 'n/a'} elements a side."
+            f"{doubt}). {_dense_reach(study['dense up to'])}"
         )
         tables.append(
             Table(

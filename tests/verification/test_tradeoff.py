@@ -69,6 +69,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert all(run["status"] for run in found["runs"])
     shown = build({"studies": [found]})
     assert len(shown.figures) == 3
+    for M, said in ((None, "takes three of its grids"), (123, "takes 60 s at about 123 elements")):
+        told = build({"studies": [found | {"dense up to": {"seconds": 60.0, "M": M}}]})
+        assert any(said in note for note in told.paragraphs)
 
 
 @pytest.mark.parametrize("bad", [["--reference", "16"], ["--grids", "8,x"], ["--repeats", "0"]])
