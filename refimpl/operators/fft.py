@@ -168,8 +168,7 @@ def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
 
 
 def _is_even(circle: NDArray[np.int_]) -> bool:
-    even = len(circle) % 2 == 0 and circle[0] == 0
-    return bool(even and np.array_equal(np.abs(circle[1:]), np.abs(circle[:0:-1])))
+    return bool(circle[0] == 0 and np.array_equal(np.abs(circle[1:]), np.abs(circle[:0:-1])))
 
 
 def _places(n: int, shift: int, source: int, target: int) -> tuple[slice, slice]:
