@@ -183,6 +183,14 @@ def test_counter_counts():
     assert counter.point_logs == 3 * 64 * 6 + 8 * 3 + 2 * 32 * 5
 
 
+def test_a_transform_of_a_point_or_two_counts_as_one_logarithm():
+    counter = Counter()
+    counter.add("normal", 1)
+    assert counter.point_logs == 1
+    counter.add("normal", 2)
+    assert counter.point_logs == 3
+
+
 def test_window():
     marked = np.zeros((6, 6), dtype=bool)
     assert Window.around(marked, margin=1) == Window.full(6)
@@ -231,6 +239,8 @@ def test_kernels_count_by_their_symmetry():
         # the same with -7 to 3, from a target that does not begin at 0
         (9, Window(5, 9, 0, 9), Window(1, 9, 0, 9), 18 * 16, 8),
         (9, Window(0, 9, 5, 9), Window(0, 9, 1, 9), 18 * 16, 8),
+        # -9 to 9 on 20, and -6 to 9: 16 hold them, 18 hold 9 as well, an eighth more
+        (10, Window(0, 10, 0, 7), Window.full(10), 20 * 18, 8),
         # -9 to 9 on 20, and -2 to 9: 12 hold them, 18 would be a half more
         (10, Window(0, 10, 0, 3), Window.full(10), 20 * 12, 2),
         (10, Window(7, 10, 0, 10), Window.full(10), 20 * 12, 2),
