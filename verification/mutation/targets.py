@@ -68,6 +68,7 @@ TARGETS = (
     Target("contact", "refimpl/contact/preconditioner.py", _tests("projected_cg")),
     Target("contact", "refimpl/contact/projected_cg.py", _tests("projected_cg", "solve")),
     Target("contact", "refimpl/contact/support.py", _tests("support", "projected_cg")),
+    Target("equilibrium", "refimpl/grid.py", _tests("nesting", "input", "projected_cg", "solve")),
     Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "start", "solve")),
     Target("equilibrium", "refimpl/fft_solver.py",
            _tests("fft_solver", "start", "solve", "solve_full_contact", "tau_cycle")),
