@@ -142,3 +142,11 @@ def test_without_friction_the_certificate_transforms_no_more_than_the_contact_ne
     _certified(problem, outcome, found)
     _certified(problem, replace(outcome, pressure=np.ones((32, 32))), everything)
     assert found.point_logs < 0.6 * everything.point_logs
+
+
+def test_grids_are_climbed_from_coarse_to_fine() -> None:
+    """Three of them: quartered, then halved; the last is the one asked for."""
+    found = rf.solve(replace(BALL, friction=rf.Friction()), 256, oblique=False, tolerance=1e-3)
+    assert set(found.cost.iterations) == {"CG at 32", "CG at 128", "CG at 256"}
+    assert found.pressure.shape == (256, 256)
+    assert found.converged

@@ -213,3 +213,9 @@ def test_the_command_line_refuses_with_status_2_and_one_line(tmp_path: Path) -> 
     assert ended.stdout == ""
     assert len(ended.stderr.strip().splitlines()) == 1
     assert "load" in ended.stderr
+
+
+@pytest.mark.parametrize("side", [0.0, -0.5, math.inf, math.nan])
+def test_a_grid_has_a_positive_side(side: float) -> None:
+    with pytest.raises(rf.InputError, match="side"):
+        rf.Grid(side, 4)
