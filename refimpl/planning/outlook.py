@@ -1,8 +1,7 @@
 """The contact to expect, from the heights alone; and the same description of a contact that was found.
 
-A glance at 64 x 64 heights is enough for what is expected: on 120 random scenes of 256 x 256 elements the
-estimates that follow from it are 0.99 to 1 times those from all heights in the median, 0.83 to 1.02 times in
-nine of ten.
+A glance at 64 x 64 heights is enough for what is expected: on random scenes the estimates that follow from
+it scatter far less about those from all heights than these about the effects (`tests/refimpl/test_outlook.py`).
 
 Elements touch in the order of their gap until they carry the load. A patch whose gap has the rms
 gradient g carries the mean pressure ``0.6 E* g``: of Hertz's paraboloid this is exact
