@@ -1,7 +1,7 @@
 """The contact to expect, from the heights alone; and the same description of a contact that was found.
 
 A glance at 64 x 64 heights is enough for what is expected: on random scenes the estimates that follow from
-it scatter far less about those from all heights than these about the effects (`tests/refimpl/test_outlook.py`).
+it scatter far less about those from all heights than these about the effects (a test, `test_outlook.py`).
 
 Elements touch in the order of their gap until they carry the load. A patch whose gap has the rms
 gradient g carries the mean pressure ``0.6 E* g``: of Hertz's paraboloid this is exact

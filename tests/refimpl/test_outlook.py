@@ -63,7 +63,7 @@ def estimates(problem: Problem, outlook: Outlook) -> np.ndarray:
 
 
 def test_a_glance_tells_what_all_heights_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On 48 random scenes of 160 x 160 elements: estimates change by a few per cent, counts are the grid's own.
+    """On 48 random scenes of 160 x 160 elements: estimates change by a few per cent, counts are the grid's.
 
     Estimates are to bound effects that they exceed 2.2 times in the median (`planning/estimates-tight`).
     """
@@ -86,8 +86,8 @@ def test_a_glance_tells_what_all_heights_do(monkeypatch: pytest.MonkeyPatch) -> 
     assert 1 / 1.5 < low < high < 1.5
     assert 0.8 < few < most < 1.25
     assert middle == pytest.approx(1, abs=0.03)
-    # found: 0.99 to 1.24, the middle one 1.006; windows differ by an element of the glance on either side, 1/32,
-    # and by what is smoothed away, 0.075 in all
+    # found: 0.99 to 1.24, the middle one 1.006; windows differ by an element of the glance on either side,
+    # 1/32, and by what is smoothed away, 0.075 in all
     assert np.median(contact) == pytest.approx(1, abs=0.05)
     assert 0.75 < min(contact) < max(contact) < 4 / 3
     assert np.abs(windows).max() < 0.1
