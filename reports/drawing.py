@@ -28,6 +28,7 @@ STYLE: dict[Any, Any] = {
     "svg.hashsalt": "rough-friction", "svg.fonttype": "path",
 }  # fmt: skip
 SCHEMES = "<style>svg{color:#1c1c1e}@media screen and (prefers-color-scheme:dark){svg{color:#ececf0}}</style>"
+_INSIDE = 6  # series up to which a legend finds room among them
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,10 @@ def lines(
             axes.fill_between(
                 data[x], middle - width, middle + width, color=COLOURS[0], alpha=0.2, label=band[1]
             )
-        axes.legend()
+        if len(series) > _INSIDE:
+            canvas.legend(loc="outside right upper")
+        else:
+            axes.legend()
 
     return draw
 
