@@ -121,7 +121,7 @@ class ProjectedCG:
         if self._direction is not None:
             self._direction = self._support.of(last.onto(self._direction))
             self._residual = self._support.of(last.onto(self._residual))
-        self._weights = self._support.of(self._K)
+        self._weights = self._support.ones() if self._unweighted else self._support.of(self._K)
         self._squares = self._weights if self._unweighted else self._weights**2
         self._norm = float(self._squares.sum())
 
@@ -169,7 +169,7 @@ class ProjectedCG:
         if trial.min() < 0:
             cut = trial < 0
             np.maximum(trial, 0.0, out=trial)
-            total = inner(self._support.seen(self._K), trial)
+            total = inner(self._weights, trial)
             if total <= 0:
                 return False
             if self._target is not None:

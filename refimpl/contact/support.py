@@ -29,13 +29,17 @@ class Support:
         if np.count_nonzero(contact) <= _FEW * contact.size:
             self._index = np.flatnonzero(contact)[None, :]
 
+    def ones(self) -> Array:
+        """One on each element."""
+        return self._contact.astype(np.float64) if self._index is None else np.ones(self._index.shape)
+
     def of(self, field: Array) -> Array:
         """A field's values on the elements, for keeps."""
-        return field * self._contact if self._index is None else field.ravel()[self._index]
+        return field * self._contact if self._index is None else field.take(self._index)
 
     def seen(self, field: Array) -> Array:
         """The same, to be read only, of a field that is zero elsewhere or will meet one that is."""
-        return field if self._index is None else field.ravel()[self._index]
+        return field if self._index is None else field.take(self._index)
 
     def onto(self, values: Array) -> Array:
         """The window of values on the elements, zero elsewhere."""
