@@ -1,8 +1,8 @@
 """One grid of the production solver: projected CG on the contact's window, with the rest lagged.
 
-Only ``a f`` is inverted. Shear displacement, slopes, the load's weights and tau's support are held
-while CG reduces the residual tenfold and are then brought up to date; their own feedback is weak
-(it scales with ``beta`` times a Dundurs parameter and with the slopes), so few updates suffice.
+CG inverts ``a f``, and weak coupling with it (`refimpl.flexibility`). The rest of the shear displacement,
+slopes, the load's weights and tau's support are held while CG reduces the residual as far as they let it,
+and are then brought up to date; their own feedback is weak, so few updates suffice.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
+from refimpl.flexibility import Flexibility
 from refimpl.friction import Mask, TauSupport, local_friction
 from refimpl.grid import Array, inner, resampled
 from refimpl.nesting import Start, sharpened, touching
@@ -25,7 +26,8 @@ from refimpl.outcome import Outcome, Status, Visited
 from refimpl.problem import Problem, visit
 from refimpl.slopes import Slopes
 
-_REDUCTION = 0.1  # CG lowers the residual by this factor between updates of what is held
+_REDUCTION = 0.1  # of the residual is as much as CG leaves between updates of what is held
+_LEAST_FEEDBACK = 1e-3  # and this, where the last update brought hardly anything back
 MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 _KEPT = 0.99  # of the tolerance: the certificate, recomputed, rounds otherwise, by 1e-15 against 1e-12
 _CG_LIMIT = 1000
@@ -70,20 +72,15 @@ class LevelSolver:
         else:
             operator = FFTInfluence(grid, direction, source=window, counter=counter)
         self.operator = operator
-        compliance = self.problem.pair.normal_compliance
-        self.cg = ProjectedCG(
-            lambda pressure: compliance * operator.normal(pressure),
-            precondition,
-            pressure,
-        )
+        self.flexibility = Flexibility(self.problem, operator)
+        self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
         self.slopes = self._entered = Slopes.flat(window.shape)
-        self.traction = np.zeros(window.shape)
         self._held: tuple[Array, Array] | None = None
         self._ran_off = False
-        pair = self.problem.pair
+        self._feedback = _REDUCTION
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
         # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
-        sigma = self.problem.friction.beta * abs(pair.shear_compliance) / pair.normal_compliance
+        sigma = 0.0 if self.flexibility.coupled else self.flexibility.sigma
         self._relaxation = self._best_relaxation = 1 / (1 + sigma**2)
         self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
@@ -140,7 +137,7 @@ class LevelSolver:
         in_cycles: list[Visited] = []
         for _ in range(_SUPPORT_ITERATIONS):
             self.settle(tolerance, rule.current)
-            states.append(visit(self.problem, self.cg.pressure, self.traction, self.slopes))
+            states.append(visit(self.problem, self.cg.pressure, self._pulled(), self.slopes))
             rule.next(self.cg.pressure > 0)
             in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
             if rule.settled or self._ran_off:
@@ -156,15 +153,17 @@ class LevelSolver:
     def settle(self, tolerance: float, support: Mask | None = None) -> bool:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
         self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
+        self._lags = self.lags(support)
         self._relaxation = self._best_relaxation  # anew for each of tau's supports
         self.residual = best = self._update(support)
         stalled, changed = 0, False
         for _ in range(_UPDATES):
             if self.residual <= self._tolerance or self.cg_iterations >= self._budget or self._ran_off:
                 break
-            before = self.support
-            self._reduce(max(_REDUCTION * self.residual, self._share * tolerance))
-            self.residual = self._update(support) if self._lags else max(self.cg.residuals())
+            before, last = self.support, self.residual
+            frozen = self._reduce(max(self._feedback * last, self._share * tolerance))
+            self.residual = self._update(support) if self._lags else frozen
+            self._feedback = min(max(_LEAST_FEEDBACK, (self.residual - frozen) / last), _REDUCTION)
             changed = changed or not np.array_equal(before, self.support)
             if self.residual < 0.5 * best:
                 best, stalled, changed = self.residual, 0, False
@@ -177,35 +176,36 @@ class LevelSolver:
                 self._relaxation, stalled = 0.5 * self._relaxation, 0
         return self.residual <= self._tolerance
 
-    def _reduce(self, goal: float) -> None:
-        """CG steps until the frozen problem's residual meets the goal or no longer falls."""
-        best, since = np.inf, 0
-        while since < _CG_PATIENCE and self.cg_iterations < self._budget:
-            residual = max(self.cg.residuals())
-            if residual <= goal:
-                return
-            best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
+    def _reduce(self, goal: float) -> float:
+        """CG steps until the frozen problem's residual, returned, meets the goal or no longer falls."""
+        residual = best = max(self.cg.residuals())
+        since = 0
+        while residual > goal and since < _CG_PATIENCE and self.cg_iterations < self._budget:
             self.cg.iterate()
             self.cg_iterations += 1
+            residual = max(self.cg.residuals())
+            best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
+        return residual
 
     @property
     def _share(self) -> float:
         """Of the tolerance, for the frozen problem: the rest is for what is held, or for rounding alone."""
         return 0.3 if self._lags else 0.9
 
-    @property
-    def _lags(self) -> bool:
-        """Whether anything is held during CG that depends on the pressure."""
-        terms = self.problem.terms
-        sheared = terms.coupled and not self.problem.friction.is_zero
-        return terms.oblique or terms.slope_correction or sheared
+    def lags(self, support: Mask | None) -> bool:
+        """Whether anything that CG holds depends on the pressure, with tau on a support or on contact."""
+        terms, friction = self.problem.terms, self.problem.friction
+        led_by_contact = friction.tau > 0 and support is None
+        sheared = led_by_contact or (friction.beta > 0 and not self.flexibility.coupled)
+        return terms.oblique or terms.slope_correction or (terms.coupled and sheared)
 
     def _update(self, support: Mask | None) -> float:
         """Bring slopes, shear and load weights up to date; the residual of the whole problem."""
         problem, pressure = self.problem, self.cg.pressure
         self.support = pressure > 0 if support is None else support
-        self.traction = local_friction(problem.friction, pressure, self.support)
-        shear, slopes = self._displaced()
+        shear, slopes = self.flexibility.displaced(
+            pressure, self._pulled(), self.support, self.slopes, self.cg.normal_displacement
+        )
         self._entered, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
             self._entered, change = self.slopes, slopes.distance(self.slopes, pressure > 0)
@@ -224,19 +224,9 @@ class LevelSolver:
         self._held = shear, K
         return residual
 
-    def _displaced(self) -> tuple[Array, Slopes]:
-        """What shear adds to the displacement of the pressure, and the slopes that both leave."""
-        problem, pressure, displacement = self.problem, self.cg.pressure, self.cg.normal_displacement
-        if not problem.terms.oblique:
-            return problem.coupling(self.operator, self.traction), self.slopes
-        lower, upper = problem.displacements(
-            self.operator,
-            pressure,
-            self.traction,
-            self.slopes,
-            normal_displacement=None if problem.terms.slope_correction else displacement,
-        )
-        return lower + upper - displacement, problem.slopes(lower, upper)
+    def _pulled(self) -> Array:
+        """The traction of the present pressure, with tau on its support."""
+        return local_friction(self.problem.friction, self.cg.pressure, self.support)
 
     def _hold(self, shear: Array, K: Array, target: float | None) -> None:
         self.cg.freeze(K * self.problem.gap + shear, K, target=target, approach=self.problem.approach)
@@ -263,7 +253,7 @@ class LevelSolver:
         withheld = rule.withheld if in_cycles else np.zeros(self.window.shape, dtype=bool)
         return Outcome(
             pressure=self.full(self.cg.pressure),
-            traction=self.full(local_friction(self.problem.friction, self.cg.pressure, self.support)),
+            traction=self.full(self._pulled()),
             slopes=self._entered.spread(self.window, self.whole.grid.M),
             status=status,
             withheld=self.full(withheld),

@@ -101,12 +101,18 @@ class Problem:
             normal = operator.normal(down)
         else:
             normal = normal_displacement / self.pair.normal_compliance
+        if not (self.terms.shear_moves() and (across is not None or np.any(along))):
+            return self.parted(normal, None)
+        shear = operator.shear(along)
+        if across is not None:
+            shear = shear + operator.shear_across(across)
+        return self.parted(normal, shear)
+
+    def parted(self, normal: Array, shear: Array | None) -> tuple[Array, Array]:
+        """``(u_lower, u_upper)`` of the tractions' normal and shear products (Pa m), if there is any (m)."""
         lower = self.pair.lower.normal_compliance * normal
         upper = self.pair.upper.normal_compliance * normal
-        if self.terms.shear_moves() and (across is not None or np.any(along)):
-            shear = operator.shear(along)
-            if across is not None:
-                shear = shear + operator.shear_across(across)
+        if shear is not None:
             into_lower, into_upper = self._shear_compliances()
             lower = lower + into_lower * shear
             upper = upper + into_upper * shear

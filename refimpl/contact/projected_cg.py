@@ -6,7 +6,8 @@ step both projected onto ``K.d = 0`` (which keeps the preconditioner symmetric t
 step is cut at zero pressure and scaled to the load *before* the displacement is applied, and the best point
 from the present through the trial is taken: one application a step, whether elements leave or not. Elements
 that penetrate enter S afterwards (Polonsky and Keer 1999, Wear 231, 206). Conjugacy is measured by the
-Polak-Ribiere quotient, which forgets the past by itself when S changes.
+Polak-Ribiere quotient, which forgets the past by itself when S changes. ``a`` may have a weak skew part
+(`refimpl.flexibility`): the residual holds it, and no curvature sees it.
 """
 
 from __future__ import annotations

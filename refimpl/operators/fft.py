@@ -7,6 +7,7 @@ are not transformed, and rows of the result that nobody asked for are not transf
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -76,6 +77,16 @@ class FFTInfluence:
         """``I[t/rho^2]`` applied to a traction across the sliding direction."""
         self.counter.add("shear", math.prod(self._padded))
         return self._convolve(traction, self._across_hat)
+
+    def coupled(self, ratio: float) -> Callable[[Array], Array]:
+        """The product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both kernels in one."""
+        hat = self._normal_hat + ratio * self._shear_hat
+
+        def product(pressure: Array) -> Array:
+            self.counter.add("normal and shear", math.prod(self._padded))
+            return self._convolve(pressure, hat)
+
+        return product
 
     @cached_property
     def _offsets(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:

@@ -8,6 +8,7 @@ planes. Fields are the band-limited interpolants of the element values, as in pe
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -42,6 +43,16 @@ class PeriodicInfluence:
         """``I[t/rho^2]`` applied to a traction across the sliding direction."""
         self.counter.add("shear", self.grid.M**2)
         return self._filter(traction, self._tangential_symbol(self.direction + math.pi / 2))
+
+    def coupled(self, ratio: float) -> Callable[[Array], Array]:
+        """The product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both symbols in one."""
+        symbol = self._normal_symbol + ratio * self._tangential_symbol(self.direction)
+
+        def product(pressure: Array) -> Array:
+            self.counter.add("normal and shear", self.grid.M**2)
+            return self._filter(pressure, symbol)
+
+        return product
 
     @cached_property
     def _wavevectors(self) -> tuple[Array, Array, Array]:

@@ -82,7 +82,7 @@ def expected(problem: Problem) -> Outlook:
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
-        contact = _lowest(gap, elements)
+        contact = _first(_rising(gap), elements, gap)
         squares = float(_gradient_squared(glance)[contact].sum())
         mean_pressure = stiffness * math.sqrt(squares * elements) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
@@ -109,13 +109,13 @@ def _touched(problem: Problem, stiffness: float, load: float) -> Mask:
     order = _rising(problem.gap)
     squares = np.cumsum(_gradient_squared(problem).ravel()[order])
     carried = stiffness * np.sqrt(squares * np.arange(1, order.size + 1))
-    return _lowest(problem.gap, 1 + int(np.searchsorted(carried, load)))
+    return _first(order, 1 + int(np.searchsorted(carried, load)), problem.gap)
 
 
-def _lowest(gap: Array, count: int) -> Mask:
-    """The ``count`` elements of the least gap, or all."""
+def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
+    """The first ``count`` elements of an order, or all."""
     chosen = np.zeros(gap.shape, dtype=bool)
-    chosen.ravel()[_rising(gap)[:count]] = True
+    chosen.ravel()[order[:count]] = True
     return chosen
 
 

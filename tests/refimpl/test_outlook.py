@@ -12,7 +12,7 @@ import refimpl as rf
 from refimpl.plan import EVERYTHING
 from refimpl.planning import effects
 from refimpl.planning.effects import Scales
-from refimpl.planning.outlook import Outlook, _lowest, _mirrored, _touched, expected
+from refimpl.planning.outlook import Outlook, _first, _mirrored, _rising, _touched, expected
 from refimpl.problem import Problem, pose
 from verification.coverage.scenes import random_scene
 
@@ -112,7 +112,11 @@ def test_what_a_glance_takes_for_symmetric_is_asked_of_all_heights() -> None:
 
 def test_of_equal_elements_the_first_count() -> None:
     gap = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, 2.0], [1.0, 1.0, 1.0]])
-    assert _lowest(gap, 4).tolist() == [[True, True, True], [False, True, False], [False, False, False]]
+    assert _first(_rising(gap), 4, gap).tolist() == [
+        [True, True, True],
+        [False, True, False],
+        [False, False, False],
+    ]
     level = _touched(posed(3, np.zeros((3, 3))), STIFFNESS, 1.0)
     assert level.all()  # without any slope nothing carries
 

@@ -111,8 +111,8 @@ def test_a_wrong_number_with_a_good_status_is_wrong(
 
 
 def test_a_flipped_coupling_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    shear = FFTInfluence.shear
-    monkeypatch.setattr(FFTInfluence, "shear", lambda self, traction: -shear(self, traction))
+    transformed = FFTInfluence._tangential_hat
+    monkeypatch.setattr(FFTInfluence, "_tangential_hat", lambda self, angle: -transformed(self, angle))
     assert judge.by_oracle(BALL, 4, oblique=False).verdict is Verdict.WRONG
 
 

@@ -71,6 +71,7 @@ TARGETS = (
     Target("contact", "refimpl/contact/support.py", _tests("support", "projected_cg", "projected_cg_steps")),
     Target("equilibrium", "refimpl/grid.py", _tests("nesting", "input", "projected_cg", "solve")),
     Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "start", "solve")),
+    Target("equilibrium", "refimpl/flexibility.py", _tests("flexibility", "level_updates")),
     Target("equilibrium", "refimpl/fft_solver.py",
            _tests("fft_solver", "start", "solve", "solve_full_contact", "tau_cycle")),
     Target("equilibrium", "refimpl/level_solver.py",

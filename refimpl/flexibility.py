@@ -1,0 +1,79 @@
+"""What tractions do to the gap of a window: the part that CG inverts, and the part that is held meanwhile.
+
+CG inverts ``a f``, and where it is weak the coupling ``beta c f`` with it. Cerruti's kernel is odd, so ``c``
+is skew: it adds nothing to a curvature ``d.(a d)``, and both kernels are one to the transforms. What is left
+of shear then is tau's, which is constant on a given support. Where the coupling is strong, CG's directions
+lose each other; then all of shear is held, and brought up to date by relaxed updates. So it is with facet
+tractions, whose shear is no multiple of the pressure.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refimpl.friction import Mask
+from refimpl.grid import Array
+from refimpl.operators.fft import FFTInfluence
+from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.problem import Problem
+from refimpl.slopes import Slopes
+
+_WEAK = 0.3  # sigma up to which CG takes the coupling in; on random scenes it pays to 0.5, and fails at 0.7
+
+
+class Flexibility:
+    """The displacements of a problem on a window, by its operator.
+
+    ``sigma`` is the spectral radius of ``beta c f`` against ``a f``, at most; ``coupled`` says whether
+    `apply` holds both.
+    """
+
+    def __init__(self, problem: Problem, operator: FFTInfluence | PeriodicInfluence) -> None:
+        pair, beta = problem.pair, problem.friction.beta
+        self._problem, self._operator = problem, operator
+        self._ratio = pair.shear_compliance * beta / pair.normal_compliance
+        self.sigma = abs(self._ratio)
+        self.coupled = (
+            problem.terms.coupled and 0 < self.sigma <= _WEAK and not problem.terms.slope_correction
+        )
+        self._product = operator.coupled(self._ratio) if self.coupled else operator.normal
+        self._led: tuple[Mask, Array] | None = None
+
+    def apply(self, pressure: Array) -> Array:
+        """``a f``, or ``a f + beta c f`` (m)."""
+        displacement: Array = self._problem.pair.normal_compliance * self._product(pressure)
+        return displacement
+
+    def displaced(
+        self, pressure: Array, traction: Array, support: Mask, slopes: Slopes, displacement: Array
+    ) -> tuple[Array, Slopes]:
+        """What shear adds to ``displacement = apply(pressure)`` (m), and the slopes that all leave.
+
+        ``traction`` is that of the pressure with tau on ``support``; ``slopes`` are the last ones.
+        """
+        problem, operator = self._problem, self._operator
+        if not problem.terms.oblique:
+            held = self._pulled_by_tau(support) if self.coupled else traction
+            return problem.coupling(operator, held), slopes
+        if self.coupled:
+            by_pressure = operator.shear(pressure)
+            normal = displacement / problem.pair.normal_compliance - self._ratio * by_pressure
+            by_traction = problem.friction.beta * by_pressure + self._by_tau(support)
+            lower, upper = problem.parted(normal, by_traction)
+        else:
+            known = None if problem.terms.slope_correction else displacement
+            lower, upper = problem.displacements(
+                operator, pressure, traction, slopes, normal_displacement=known
+            )
+        return lower + upper - displacement, problem.slopes(lower, upper)
+
+    def _by_tau(self, support: Mask) -> Array | float:
+        """The shear product of tau alone, applied once for a support."""
+        if self._problem.friction.tau == 0:
+            return 0.0
+        if self._led is None or not np.array_equal(self._led[0], support):
+            self._led = support, self._operator.shear(self._pulled_by_tau(support))
+        return self._led[1]
+
+    def _pulled_by_tau(self, support: Mask) -> Array:
+        return np.where(support, self._problem.friction.tau, 0.0)
