@@ -33,13 +33,15 @@ def solve_fft(
         iterations[f"CG at {solver.whole.grid.M}"] = solver.cg_iterations
         solver = LevelSolver.begun(nested.pop(0), solver.answer(), counter)
     while True:
-        outcome, window = solver.solve(tolerance), solver.window
+        outcome, window, cramped = solver.solve(tolerance), solver.window, solver.cramped
         del solver  # what it holds is no longer needed when the whole grid's arrays come
-        state = _certified(problem, outcome, counter)
-        beyond = _beyond(problem, state, window, tolerance)
-        if not beyond.any():
-            outcome.iterations.update(iterations)
-            return outcome, state
+        beyond = window.mask(problem.grid.M)
+        if not cramped:
+            state = _certified(problem, outcome, counter)
+            beyond = _beyond(problem, state, window, tolerance)
+            if not beyond.any():
+                outcome.iterations.update(iterations)
+                return outcome, state
         solver = _widened(problem, outcome, beyond, counter)
 
 

@@ -76,6 +76,7 @@ class LevelSolver:
         self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
         self.slopes = self._entered = Slopes.flat(window.shape)
         self._held: tuple[Array, Array] | None = None
+        self.cramped = False
         self._ran_off = False
         self._feedback = _REDUCTION
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
@@ -127,7 +128,10 @@ class LevelSolver:
         )
 
     def solve(self, tolerance: float) -> Outcome:
-        """The settled state; tau's support follows the rule of `refimpl.friction`."""
+        """The settled state; tau's support follows the rule of `refimpl.friction`.
+
+        Where one of tau's states meets the window's edge the next are not the rule's: it ends ``cramped``.
+        """
         if self.problem.friction.tau == 0:
             self.settle(tolerance)
             return self._outcome(self._ended(), TauSupport((1, 1)), [])
@@ -137,6 +141,9 @@ class LevelSolver:
         in_cycles: list[Visited] = []
         for _ in range(_SUPPORT_ITERATIONS):
             self.settle(tolerance, rule.current)
+            self.cramped = self.window.on_edge(self.cg.pressure > 0, self.whole.grid.M)
+            if self.cramped:
+                break
             states.append(visit(self.problem, self.cg.pressure, self._pulled(), self.slopes))
             rule.next(self.cg.pressure > 0)
             in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []

@@ -56,6 +56,13 @@ class Window:
             self.i0 + (self.i0 > 0), self.i1 - (self.i1 < M), self.j0 + (self.j0 > 0), self.j1 - (self.j1 < M)
         )
 
+    def on_edge(self, where: NDArray[np.bool_], M: int) -> bool:
+        """Whether elements of the window are true on its edge, where that is not the grid's."""
+        inside = self.interior(M)
+        marked = where.copy()
+        marked[inside.i0 - self.i0 : inside.i1 - self.i0, inside.j0 - self.j0 : inside.j1 - self.j0] = False
+        return bool(marked.any())
+
     @property
     def shape(self) -> tuple[int, int]:
         """Numbers of elements along x and y."""
@@ -65,6 +72,10 @@ class Window:
     def slices(self) -> tuple[slice, slice]:
         """Index of the window in an array of the grid's shape."""
         return slice(self.i0, self.i1), slice(self.j0, self.j1)
+
+    def mask(self, M: int) -> NDArray[np.bool_]:
+        """True on the window, in an ``(M, M)`` array."""
+        return self.spread(np.ones(self.shape, dtype=bool), M)
 
     def spread(self, values: NDArray[Any], M: int) -> NDArray[Any]:
         """``(M, M)`` array with the window's values, zero elsewhere."""

@@ -203,6 +203,26 @@ def test_window():
     assert Window(2, 5, 0, 6).interior(6) == Window(3, 4, 0, 6)
     assert Window(0, 6, 2, 5).interior(6) == Window(0, 6, 3, 4)
     assert Window.full(6).interior(6) == Window.full(6)
+    assert np.array_equal(np.argwhere(Window(2, 4, 1, 3).mask(6)), [[2, 1], [2, 2], [3, 1], [3, 2]])
+
+
+@pytest.mark.parametrize(
+    ("window", "inside"),
+    [
+        (Window(2, 5, 1, 5), np.s_[1:2, 1:3]),
+        (Window(0, 3, 1, 5), np.s_[0:2, 1:3]),  # the grid's own edge is none of the window
+        (Window(3, 6, 2, 6), np.s_[1:3, 1:4]),
+        (Window.full(6), np.s_[0:6, 0:6]),
+    ],
+)
+def test_what_lies_on_a_windows_edge(window: Window, inside: tuple[slice, slice]) -> None:
+    edge = np.ones(window.shape, dtype=bool)
+    edge[inside] = False
+    for element in np.ndindex(window.shape):
+        alone = np.zeros(window.shape, dtype=bool)
+        alone[element] = True
+        assert window.on_edge(alone, 6) is bool(edge[element])
+        assert alone.sum() == 1  # what is asked about stays as it is
 
 
 def test_kernels_count_by_their_symmetry():

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+import pytest
+
 import refimpl as rf
+from refimpl.fft_solver import solve_fft
+from refimpl.operators.fft import Counter
+from refimpl.operators.window import Window
+from tests.refimpl.levels import level, posed
 
 
 def test_a_cycle_longer_than_two_is_settled() -> None:
@@ -21,3 +28,37 @@ def test_a_cycle_longer_than_two_is_settled() -> None:
     assert s.status is rf.Status.CYCLED
     assert s.certificate.worst <= s.tolerance
     assert s.uncertainty["friction_coefficient"]["tau support"] < 1e-3 * s.friction_coefficient
+
+
+FAINT = rf.Scene(
+    upper=rf.Body(rf.Material(E=18e9, nu=0.37), rf.Sphere(radius=0.165)),
+    lower=rf.Body(rf.Material(E=4.5e9, nu=0.17), rf.Flat()),
+    friction=rf.Friction(tau=1e7, beta=0.5),
+    load=0.1,
+    side=1.6e-3,
+)
+"""Tau moves the contact of so faint a load far about, from one of its states to the next."""
+
+
+@pytest.mark.parametrize("oblique", [False, True])
+def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
+    """Contact that met the edge of a window between two ends of the path took another one."""
+    problem = posed(FAINT, 80, oblique=oblique)
+    everywhere = level(problem).solve(1e-8)
+    outcome, state = solve_fft(problem, 1e-8, Counter())
+    assert everywhere.status is outcome.status is rf.Status.CYCLED
+    assert np.array_equal(outcome.withheld, everywhere.withheld)
+    assert np.abs(outcome.pressure - everywhere.pressure).max() <= 1e-6 * everywhere.pressure.max()
+    assert state.certificate.meets(1e-8)
+
+
+@pytest.mark.parametrize(("margin", "cramped"), [(0, True), (12, False)])
+def test_a_path_that_meets_the_windows_edge_ends_there(margin: int, cramped: bool) -> None:
+    problem = posed(FAINT, 40)
+    first = level(problem)
+    first.settle(1e-8, np.zeros((40, 40), dtype=bool))
+    solver = level(problem, Window.around(first.cg.pressure > 0, margin))
+    outcome = solver.solve(1e-8)
+    assert solver.window.shape < (40, 40)
+    assert solver.cramped is cramped
+    assert (outcome.status is rf.Status.CYCLED) is not cramped
