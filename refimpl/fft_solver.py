@@ -35,13 +35,16 @@ def solve_fft(
     while True:
         outcome, window, cramped = solver.solve(tolerance), solver.window, solver.cramped
         del solver  # what it holds is no longer needed when the whole grid's arrays come
-        beyond = window.mask(problem.grid.M)
-        if not cramped:
+        if cramped:
+            beyond = window.mask(problem.grid.M)
+        else:
             state = _certified(problem, outcome, counter)
             beyond = _beyond(problem, state, window, tolerance)
             if not beyond.any():
                 outcome.iterations.update(iterations)
                 return outcome, state
+            if problem.friction.tau > 0:  # states before the last may have needed all of this window
+                beyond |= window.mask(problem.grid.M)
         solver = _widened(problem, outcome, beyond, counter)
 
 

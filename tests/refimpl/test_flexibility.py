@@ -134,3 +134,23 @@ def test_coupling_that_cg_takes_in_ends_in_the_same_state_for_less(
     assert together.status is apart.status is rf.Status.CONVERGED
     assert np.abs(together.pressure - apart.pressure).max() <= 1e-6 * apart.max_pressure
     assert together.cost.point_logs <= 0.8 * apart.cost.point_logs
+
+
+@pytest.mark.parametrize(("sigma", "pays"), [(0.5, True), (0.7, False)])
+def test_coupling_pays_beyond_what_is_taken_in_and_fails_still_further(
+    sigma: float, pays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What `_WEAK` rests on, with room to spare: on four balls, work over the lagged updates' and status."""
+    ratios, ended = [], []
+    for load in (0.5, 2.0, 8.0, 32.0):
+        scene = replace(coupled(sigma), load=load)
+        apart = rf.solve(scene, 64, oblique=False)
+        with monkeypatch.context() as patched:
+            patched.setattr(flexibility, "_WEAK", 1.0)
+            together = rf.solve(scene, 64, oblique=False)
+        assert apart.status is rf.Status.CONVERGED
+        ratios.append(together.cost.point_logs / apart.cost.point_logs)
+        ended.append(together.status)
+    assert (max(ratios) < 1) is pays
+    assert (min(ratios) < 1) is pays
+    assert all((status is rf.Status.CONVERGED) is pays for status in ended)

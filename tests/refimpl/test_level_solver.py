@@ -113,6 +113,31 @@ def test_updates_that_stall_from_the_first_are_relaxed_as_well(monkeypatch: pyte
     assert updates.solver._relaxation == 0.25 * began
 
 
+@pytest.mark.parametrize(("feedback", "next_share"), [(0.5, 0.1), (0.02, 0.02), (0.0, 1e-3), (-0.01, 1e-3)])
+def test_updates_are_as_far_apart_as_they_bring_little_back(
+    feedback: float, next_share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """CG leaves a tenth at first, then what the last update brought back, a thousandth at least."""
+    solver = level(posed(coupled(0.4), 4))
+    residuals, goals = [1.0], []
+
+    def reduce(goal: float) -> float:
+        goals.append(goal / residuals[-1])
+        return goal
+
+    def update(support: Mask | None) -> float:
+        solver.support = ONE
+        if goals:
+            residuals.append((goals[-1] + feedback) * residuals[-1])
+        return residuals[-1]
+
+    monkeypatch.setattr(solver, "_reduce", reduce)
+    monkeypatch.setattr(solver, "_update", update)
+    monkeypatch.setattr(level_solver, "_UPDATES", 2)
+    solver.settle(1e-12)
+    assert goals == pytest.approx([0.1, next_share], rel=1e-12)
+
+
 @pytest.mark.parametrize(("share", "met"), [(0.985, True), (0.995, False)])
 def test_the_certificate_may_round_otherwise(
     share: float, met: bool, monkeypatch: pytest.MonkeyPatch

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl import fft_solver
+from refimpl.contact.certificate import State
 from refimpl.fft_solver import solve_fft
+from refimpl.friction import Mask
+from refimpl.level_solver import LevelSolver
 from refimpl.operators.fft import Counter
 from refimpl.operators.window import Window
-from tests.refimpl.levels import level, posed
+from refimpl.outcome import Outcome
+from refimpl.problem import Problem
+from tests.refimpl.levels import BALL, level, posed
 
 
 def test_a_cycle_longer_than_two_is_settled() -> None:
@@ -30,7 +37,8 @@ def test_a_cycle_longer_than_two_is_settled() -> None:
     assert s.uncertainty["friction_coefficient"]["tau support"] < 1e-3 * s.friction_coefficient
 
 
-FAINT = rf.Scene(
+FAINT = replace(
+    BALL,
     upper=rf.Body(rf.Material(E=18e9, nu=0.37), rf.Sphere(radius=0.165)),
     lower=rf.Body(rf.Material(E=4.5e9, nu=0.17), rf.Flat()),
     friction=rf.Friction(tau=1e7, beta=0.5),
@@ -62,3 +70,26 @@ def test_a_path_that_meets_the_windows_edge_ends_there(margin: int, cramped: boo
     assert solver.window.shape < (40, 40)
     assert solver.cramped is cramped
     assert (outcome.status is rf.Status.CYCLED) is not cramped
+
+
+def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else the last state could ask for what an earlier one lacks, and that one again, for ever."""
+    windows: list[Window] = []
+    solve = LevelSolver.solve
+
+    def recorded(solver: LevelSolver, tolerance: float) -> Outcome:
+        windows.append(solver.window)
+        return solve(solver, tolerance)
+
+    def once_too_small(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
+        asked.append(window)
+        return state.pressure > 0 if len(asked) == 1 else judge(problem, state, window, tolerance)
+
+    asked: list[Window] = []
+    judge = fft_solver._beyond
+    monkeypatch.setattr(fft_solver, "_beyond", once_too_small)
+    monkeypatch.setattr(LevelSolver, "solve", recorded)
+    solve_fft(posed(FAINT, 80), 1e-8, Counter())
+    assert len(windows) > 1 + windows.index(asked[0])
+    for before, after in pairwise(windows):
+        assert not np.any(before.mask(80) & ~after.mask(80))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import platform
 import resource
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -57,3 +59,28 @@ def test_kept_memory_is_not_touched_anew() -> None:
     for _ in range(20):
         np.ones(1 << 20).sum()  # 8 MB: 2048 pages, were they new each time
     assert resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 20 * 2048 / 2
+
+
+_INNER = """
+import numpy as np
+from refimpl.grid import inner
+random = np.random.default_rng(1)
+for n in (9_999, 10_000, 10_001, 200_000):
+    print(inner(*random.standard_normal((2, 1, n))).hex())
+"""
+
+
+def test_inner_products_are_the_same_on_any_number_of_threads() -> None:
+    """On either side of the length from which OpenBLAS takes more of them, where BLAS's own differ."""
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", _INNER],
+            env=os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for threads in ("1", "2")
+    ]
+    assert said[0] == said[1]
+    assert len(said[0].splitlines()) == 4
