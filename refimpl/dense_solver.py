@@ -53,7 +53,7 @@ def solve_dense(problem: Problem, operator: DenseInfluence) -> tuple[Outcome, St
         states.append(visit(problem, solver.pressure, traction, solver.slopes))
         if problem.friction.tau > 0:
             rule.next(solver.pressure > 0)
-            in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
+            in_cycles += states[len(states) - len(rule.cycle) :]
         if rule.settled or problem.friction.tau == 0:
             break
     lawful = not np.any(rule.withheld & (solver.pressure > 0))

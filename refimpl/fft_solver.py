@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from refimpl.contact.certificate import State, certify
 from refimpl.friction import Mask
-from refimpl.level_solver import MARGIN, LevelSolver, preconditioner
-from refimpl.nesting import Start, foundation_pressure, levels
+from refimpl.grid import resampled
+from refimpl.level_solver import LevelSolver, preconditioner
+from refimpl.nesting import Start, foundation_pressure, levels, sharpened, touching
 from refimpl.operators.base import Influence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -13,6 +14,7 @@ from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
 from refimpl.problem import Problem
 
+MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 _COARSE_TOLERANCE = 1e-3  # a coarse state is only a start: its own grid error is larger than this
 
 
@@ -27,11 +29,11 @@ def solve_fft(
     iterations: dict[str, int] = {}
     nested = levels(problem, above=start.M if start else 0)
     coarsest = nested.pop(0)
-    solver = LevelSolver.begun(coarsest, start, counter) if start else _unprepared(coarsest, counter)
+    solver = begun(coarsest, start, counter) if start else _unprepared(coarsest, counter)
     while nested:
         solver.settle(_COARSE_TOLERANCE)
         iterations[f"CG at {solver.whole.grid.M}"] = solver.cg_iterations
-        solver = LevelSolver.begun(nested.pop(0), solver.answer(), counter)
+        solver = begun(nested.pop(0), solver.answer(), counter)
     while True:
         outcome, window, cramped = solver.solve(tolerance), solver.window, solver.cramped
         del solver  # what it holds is no longer needed when the whole grid's arrays come
@@ -46,6 +48,27 @@ def solve_fft(
             if problem.friction.tau > 0:  # states before the last may have needed all of this window
                 beyond |= window.mask(problem.grid.M)
         solver = _widened(problem, outcome, beyond, counter)
+
+
+def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
+    """The solver of a grid, from another one's answer: its pressure, and the window of likely contact."""
+    M = problem.grid.M
+    v = resampled(start.displacement, M) + problem.gap
+    pressure = resampled(start.pressure, M)
+    known = start.approach if problem.approach is None else problem.approach
+    contact, approach = touching(pressure, v, known, problem)
+    window = Window.full(M)
+    if not problem.periodic:
+        window = Window.around(contact, MARGIN).filling(M)
+    precondition = preconditioner(problem, window, counter)
+    pressure = sharpened(
+        pressure[window.slices],
+        approach - v[window.slices],
+        contact[window.slices],
+        precondition,
+        loaded=problem.load is not None,
+    )
+    return LevelSolver(problem, counter, window, precondition, pressure)
 
 
 def _unprepared(problem: Problem, counter: Counter) -> LevelSolver:

@@ -42,25 +42,24 @@ class TauSupport:
         self.current: Mask = np.zeros(shape, dtype=bool)
         self.withheld: Mask = np.zeros(shape, dtype=bool)
         self.settled = False
-        self.cycle_length = 0
+        self.cycle: tuple[Mask, ...] = ()
         self._history: list[Mask] = [self.current]
 
     def next(self, contact: Mask) -> Mask:
         """The support for the next solve, given the contact set of the last.
 
-        Sets ``settled`` when it is the last one again, and ``cycle_length`` to the number of states
-        in a cycle that this contact set closes (else 0).
+        Sets ``settled`` when it is the last one again, and ``cycle`` to the supports of a cycle that
+        this contact set closes (else to none).
         """
-        self.cycle_length = 0
+        self.cycle = ()
         support = contact & ~self.withheld
         self.settled = bool(np.array_equal(support, self.current))
         if self.settled:
             return support
         for k in range(len(self._history) - 1):
             if np.array_equal(support, self._history[k]):
-                cycle = np.array(self._history[k:])
-                self.withheld = self.withheld | (cycle.any(axis=0) & ~cycle.all(axis=0))
-                self.cycle_length = len(cycle)
+                self.cycle = tuple(self._history[k:])
+                self.withheld = self.withheld | (np.any(self.cycle, axis=0) & ~np.all(self.cycle, axis=0))
                 self._history = []
                 support = contact & ~self.withheld
                 break

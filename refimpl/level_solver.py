@@ -17,18 +17,18 @@ from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.flexibility import Flexibility
 from refimpl.friction import Mask, TauSupport, local_friction
-from refimpl.grid import Array, inner, resampled
-from refimpl.nesting import Start, sharpened, touching
+from refimpl.grid import Array, inner
+from refimpl.nesting import Start
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome, Status, Visited
 from refimpl.problem import Problem, visit
 from refimpl.slopes import Slopes
+from refimpl.tau_path import followed
 
 _REDUCTION = 0.1  # of the residual is as much as CG leaves between updates of what is held
 _LEAST_FEEDBACK = 1e-3  # and this, where the last update brought hardly anything back
-MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 _KEPT = 0.99  # of the tolerance: the certificate, recomputed, rounds otherwise, by 1e-15 against 1e-12
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
@@ -36,7 +36,6 @@ _STALLED = 5  # updates in a row that do not halve the best residual: tau's supp
 _UPDATES = 600  # of what is held, in one settling: 36 sigma^2 reach 1e-8, and sigma above 4 is given up
 _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
 _LEAST_RELAXATION = 1 / 16  # below this, updates that do not contract are given up
-_SUPPORT_ITERATIONS = 200
 
 
 def preconditioner(problem: Problem, window: Window, counter: Counter) -> SpectralPreconditioner:
@@ -76,35 +75,16 @@ class LevelSolver:
         self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
         self.slopes = self._entered = Slopes.flat(window.shape)
         self._held: tuple[Array, Array] | None = None
-        self.cramped = False
-        self._ran_off = False
+        self._withheld: Mask | None = None
+        # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.nesting`
+        self._stiffness = 0.5 / (problem.pair.normal_compliance * grid.spacing)
+        self.ran_off = False
         self._feedback = _REDUCTION
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
         # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
         sigma = 0.0 if self.flexibility.coupled else self.flexibility.sigma
         self._relaxation = self._best_relaxation = 1 / (1 + sigma**2)
         self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
-
-    @classmethod
-    def begun(cls, problem: Problem, start: Start, counter: Counter) -> LevelSolver:
-        """The solver of a grid, from another one's answer: its pressure, and the window of likely contact."""
-        M = problem.grid.M
-        v = resampled(start.displacement, M) + problem.gap
-        pressure = resampled(start.pressure, M)
-        known = start.approach if problem.approach is None else problem.approach
-        contact, approach = touching(pressure, v, known, problem)
-        window = Window.full(M)
-        if not problem.periodic:
-            window = Window.around(contact, MARGIN).filling(M)
-        precondition = preconditioner(problem, window, counter)
-        pressure = sharpened(
-            pressure[window.slices],
-            approach - v[window.slices],
-            contact[window.slices],
-            precondition,
-            loaded=problem.load is not None,
-        )
-        return cls(problem, counter, window, precondition, pressure)
 
     def answer(self) -> Start:
         """What this grid has to say to a finer one."""
@@ -135,37 +115,44 @@ class LevelSolver:
         if self.problem.friction.tau == 0:
             self.settle(tolerance)
             return self._outcome(self._ended(), TauSupport((1, 1)), [])
-        # Where contact leads tau by itself may be another lawful state: only the rule is path-free.
-        rule = TauSupport(self.window.shape)
-        states: list[Visited] = []
-        in_cycles: list[Visited] = []
-        for _ in range(_SUPPORT_ITERATIONS):
-            self.settle(tolerance, rule.current)
-            self.cramped = self.window.on_edge(self.cg.pressure > 0, self.whole.grid.M)
-            if self.cramped:
-                break
-            states.append(visit(self.problem, self.cg.pressure, self._pulled(), self.slopes))
-            rule.next(self.cg.pressure > 0)
-            in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
-            if rule.settled or self._ran_off:
-                break
-        lawful = not np.any(rule.withheld & (self.cg.pressure > 0))
+        rule, in_cycles = followed(self, tolerance)
+        lawful = not np.any(rule.withheld & self.contact)
         status = self._ended()
         if status is Status.CONVERGED and not lawful:
             status = Status.CYCLED
         return self._outcome(
-            status if rule.settled or self._ran_off else Status.ITERATION_LIMIT, rule, in_cycles
+            status if rule.settled or self.ran_off else Status.ITERATION_LIMIT, rule, in_cycles
         )
 
-    def settle(self, tolerance: float, support: Mask | None = None) -> bool:
-        """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact."""
+    @property
+    def contact(self) -> Mask:
+        """Where the present pressure is positive."""
+        return self.cg.pressure > 0
+
+    @property
+    def cramped(self) -> bool:
+        """Whether the contact of one of tau's states meets the window's edge, which is not the grid's."""
+        return self.problem.friction.tau > 0 and self.window.on_edge(self.contact, self.whole.grid.M)
+
+    def visited(self) -> Visited:
+        """The present state's numbers."""
+        return visit(self.problem, self.cg.pressure, self._pulled(), self.slopes)
+
+    def settle(self, tolerance: float, support: Mask | None = None, withheld: Mask | None = None) -> bool:
+        """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact.
+
+        With what tau's rule has ``withheld``, only until it is beyond doubt that its next support is another.
+        """
+        self._withheld = withheld
         self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
         self._lags = self.lags(support)
         self._relaxation = self._best_relaxation  # anew for each of tau's supports
         self.residual = best = self._update(support)
         stalled, changed = 0, False
         for _ in range(_UPDATES):
-            if self.residual <= self._tolerance or self.cg_iterations >= self._budget or self._ran_off:
+            if self.residual <= self._tolerance or self.cg_iterations >= self._budget or self.ran_off:
+                break
+            if self._leads_on():
                 break
             before, last = self.support, self.residual
             frozen = self._reduce(max(self._feedback * last, self._share * tolerance))
@@ -188,11 +175,22 @@ class LevelSolver:
         residual = best = max(self.cg.residuals())
         since = 0
         while residual > goal and since < _CG_PATIENCE and self.cg_iterations < self._budget:
+            if self._leads_on():
+                break
             self.cg.iterate()
             self.cg_iterations += 1
             residual = max(self.cg.residuals())
             best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
         return residual
+
+    def _leads_on(self) -> bool:
+        """Whether the contact, beyond doubt, leads tau's rule to another support than the present one.
+
+        Relaxed updates hold a part of the misfit back, so that nothing is beyond doubt.
+        """
+        if self._withheld is None or self._relaxation < 1 or not self.cg.beyond_doubt(self._stiffness):
+            return False
+        return not np.array_equal(self.cg.contact & ~self._withheld, self.support)
 
     @property
     def _share(self) -> float:
@@ -216,13 +214,13 @@ class LevelSolver:
         self._entered, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
             self._entered, change = self.slopes, slopes.distance(self.slopes, pressure > 0)
-        self._ran_off = not slopes.obliqueness.min() > _STEEPEST
-        if not self._ran_off:
+        self.ran_off = not slopes.obliqueness.min() > _STEEPEST
+        if not self.ran_off:
             self.slopes = slopes
         target, balance = self._target(self.slopes.obliqueness)
         K = self.slopes.obliqueness
         self._hold(shear, K, target)
-        residual = math.inf if self._ran_off else max(*self.cg.residuals(), balance, change)
+        residual = math.inf if self.ran_off else max(*self.cg.residuals(), balance, change)
         if self._held is not None and self._relaxation < 1 and residual > self._tolerance:
             shear = self._held[0] + self._relaxation * (shear - self._held[0])
             if problem.terms.oblique:

@@ -125,7 +125,7 @@ class _Scheme:
             states.append(visit(self.problem, self.pressure, traction, self.slopes))
             if tau > 0:
                 rule.next(self.pressure > 0)
-                in_cycles += states[-rule.cycle_length :] if rule.cycle_length else []
+                in_cycles += states[len(states) - len(rule.cycle) :]
             if tau == 0 or rule.settled:
                 break
         lawful = not np.any(rule.withheld & (self.pressure > 0))

@@ -26,6 +26,7 @@ Apply = Callable[[Array], Array]
 FIRST_LENGTH = 0.7  # of a step: the preconditioned spectrum lies between 1 and 2 (see the tests)
 _SHORTER = 0.8  # trial over last best length: a trial too long would leave cut elements halfway
 _NOTHING = 1e-12  # of a pressure: what a step that makes it vanish may leave
+_DOUBT = 2.0  # times the worst misfit; 1 is enough for all of tau's states on random scenes (see the tests)
 _TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its length before it cuts
 
 
@@ -100,6 +101,17 @@ class ProjectedCG:
         gap = inner(pressure, self._support.seen(v) - lowest)
         scale = abs(approach) or 1.0
         return relative_gap(gap, energy), max(abs(mean - approach), approach - lowest) / scale
+
+    def beyond_doubt(self, stiffness: float) -> bool:
+        """Whether what the separation still lacks can bring no element into contact, and take none out.
+
+        ``stiffness`` turns a displacement of single elements into pressure (Pa/m).
+        """
+        v, approach = self._look().v, self.approach
+        doubt = _DOUBT * float((np.abs(v - approach) * self.contact).max())
+        pressing = np.count_nonzero(self.pressure > stiffness * doubt)
+        close = np.count_nonzero(v <= approach + doubt)
+        return bool(pressing == close == np.count_nonzero(self.contact))
 
     def iterate(self) -> None:
         """One step of projected CG on the contact set, then the exchange of elements."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import level_solver
+from refimpl import fft_solver
 from refimpl.contact.certificate import certify
 from refimpl.fft_solver import _beyond, _certified, _widened, solve_fft
 from refimpl.operators.fft import Counter, FFTInfluence
@@ -83,7 +83,7 @@ def test_a_wider_window_holds_the_contact_and_what_penetrates_beside_it() -> Non
     assert outside[18].any()
     wider = _widened(solver.whole, outcome, outside, Counter())
     held = (outcome.pressure > 0) | outside
-    assert wider.window == Window.around(held, level_solver.MARGIN).filling(M)
+    assert wider.window == Window.around(held, fft_solver.MARGIN).filling(M)
     faint = replace(outcome, pressure=1e-12 * outcome.pressure)  # no pascal is too little
     assert _widened(solver.whole, faint, outside, Counter()).window == wider.window
     assert wider.window.shape < (M, M)

@@ -241,3 +241,25 @@ def test_a_step_that_overshoots_every_element_leaves_no_tension() -> None:
     assert not cg.pressure.any()
     assert not cg.contact.any()
     assert cg.residuals() == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("misfit", [0.125, -0.125])
+@pytest.mark.parametrize(
+    ("clearance", "stiffness", "beyond"),
+    [(0.26, 1.0, True), (0.25, 1.0, False), (1.0, 7.9, True), (1.0, 8.0, False), (0.25, 8.0, False)],
+)
+def test_no_doubt_is_left_beyond_twice_the_misfit(
+    misfit: float, clearance: float, stiffness: float, beyond: bool
+) -> None:
+    """Of an element under a pressure of 2, and of another with that clearance."""
+    cg = ProjectedCG(lambda f: f.copy(), lambda r: r.copy(), np.array([[2.0, 0.0]]))
+    cg.freeze(np.array([[misfit - 1.0, clearance + 1.0]]), np.ones((1, 2)), target=None, approach=1.0)
+    assert cg.beyond_doubt(stiffness) is beyond
+
+
+def test_elements_about_to_touch_are_doubtful() -> None:
+    cg = ProjectedCG(lambda f: f.copy(), lambda r: r.copy(), np.array([[2.0, 0.0]]))
+    cg.freeze(np.array([[-1.0, 0.5]]), np.ones((1, 2)), target=None, approach=1.0)
+    cg._enter(cg.separation < cg.approach)
+    assert cg.contact.all()
+    assert not cg.beyond_doubt(1e-9)

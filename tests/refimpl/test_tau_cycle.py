@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -10,7 +11,9 @@ import pytest
 
 import refimpl as rf
 from refimpl import fft_solver
+from refimpl.contact import projected_cg
 from refimpl.contact.certificate import State
+from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.fft_solver import solve_fft
 from refimpl.friction import Mask
 from refimpl.level_solver import LevelSolver
@@ -93,3 +96,70 @@ def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) ->
     assert len(windows) > 1 + windows.index(asked[0])
     for before, after in pairwise(windows):
         assert not np.any(before.mask(80) & ~after.mask(80))
+
+
+def random_scene(seed: int) -> rf.Scene:
+    """A ball on a flat, rough or smooth, of any materials, tau and beta."""
+    draw = np.random.default_rng(seed)
+    rough = rf.GaussianRoughness(rms=10 ** draw.uniform(-7.5, -6.2), correlation_length=2e-4, seed=seed)
+    materials = [rf.Material(E=10 ** draw.uniform(9, 12), nu=draw.uniform(0, 0.45)) for _ in range(2)]
+    return rf.Scene(
+        upper=rf.Body(materials[0], rf.Sphere(radius=10 ** draw.uniform(-2, -0.7))),
+        lower=rf.Body(materials[1], rough if draw.random() < 0.6 else rf.Flat()),
+        friction=rf.Friction(tau=float(draw.choice([1e5, 1e6, 1e7])), beta=float(draw.choice([0, 0.1, 0.4]))),
+        load=10 ** draw.uniform(-1, 1.5),
+        side=1.6e-3,
+    )
+
+
+def test_states_on_the_way_end_where_their_contact_is_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Even half of the doubt allowed for is enough to tell what contact the full tolerance finds."""
+    monkeypatch.setattr(projected_cg, "_DOUBT", 1.0)
+    told_early = []
+    for seed in range(24):
+        solver = level(posed(random_scene(seed), 48, oblique=bool(seed % 2)))
+
+        def compared(
+            tolerance: float,
+            support: Mask,
+            withheld: Mask | None = None,
+            solver: LevelSolver = solver,
+            settle: Callable[..., bool] = solver.settle,
+        ) -> bool:
+            settle(tolerance, support, withheld)
+            told, residual = solver.cg.pressure > 0, solver.residual
+            settle(tolerance, support)
+            assert np.array_equal(told, solver.cg.pressure > 0)
+            told_early.append(residual > tolerance)
+            return True
+
+        monkeypatch.setattr(solver, "settle", compared)
+        solver.solve(1e-8)
+    assert sum(told_early) > 40
+
+
+@pytest.mark.parametrize("scene", [FAINT, random_scene(3), random_scene(5)])
+def test_the_path_is_that_of_settled_states(scene: rf.Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = posed(scene, 64)
+    quick = level(problem)
+    short = quick.solve(1e-8)
+    monkeypatch.setattr(ProjectedCG, "beyond_doubt", lambda cg, stiffness: False)
+    thorough = level(problem)
+    long = thorough.solve(1e-8)
+    assert short.status is long.status
+    assert np.array_equal(short.withheld, long.withheld)
+    assert np.array_equal(short.traction > 0, long.traction > 0)
+    assert np.abs(short.pressure - long.pressure).max() <= 1e-6 * long.pressure.max()
+    assert len(short.visited) == len(long.visited)
+    np.testing.assert_allclose(short.visited, long.visited, rtol=1e-7)
+    assert bool(long.visited) or quick.cg_iterations < 0.9 * thorough.cg_iterations
+
+
+def test_relaxed_updates_leave_doubt() -> None:
+    """They hold back a part of the misfit by which doubt is judged."""
+    solver = level(posed(replace(BALL, friction=rf.Friction(tau=1e6, beta=0.1)), 16))
+    nothing = np.zeros((16, 16), dtype=bool)
+    solver.settle(1e-8, nothing, nothing)
+    assert solver._leads_on()
+    solver._relaxation = 0.99
+    assert not solver._leads_on()

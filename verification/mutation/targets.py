@@ -72,8 +72,9 @@ TARGETS = (
     Target("equilibrium", "refimpl/grid.py", _tests("nesting", "input", "projected_cg", "solve")),
     Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "start", "solve")),
     Target("equilibrium", "refimpl/flexibility.py", _tests("flexibility", "level_updates")),
+    Target("equilibrium", "refimpl/tau_path.py", _tests("tau_path", "tau_cycle")),
     Target("equilibrium", "refimpl/fft_solver.py",
-           _tests("fft_solver", "start", "solve", "solve_full_contact", "tau_cycle")),
+           _tests("fft_solver", "level_updates", "start", "solve", "solve_full_contact", "tau_cycle")),
     Target("equilibrium", "refimpl/level_solver.py",
            _tests("level_solver", "level_updates", "fft_solver", "solve", "solve_full_contact", "tau_cycle")),
 )  # fmt: skip

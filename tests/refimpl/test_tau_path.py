@@ -1,0 +1,99 @@
+"""Tau's rule walked by a state that plays contact sets from a script."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from refimpl import tau_path
+from refimpl.friction import Mask
+from refimpl.outcome import Visited
+from refimpl.tau_path import followed
+
+
+def mask(marks: str) -> Mask:
+    """Elements in contact, by capitals.
+
+    >>> mask("Ab")
+    array([ True, False])
+    """
+    return np.array([mark.isupper() for mark in marks])
+
+
+class Played:
+    """The contact that each support leads to; ``left`` supports are left before they are settled."""
+
+    def __init__(self, contacts: dict[str, str], *, left: str = "", edge: str = "", runs: str = "") -> None:
+        self._contacts, self._left = contacts, left.split()
+        self._edge, self._runs = edge, runs
+        self._support = ""
+        self.asked: list[str] = []
+
+    @property
+    def contact(self) -> Mask:
+        return mask(self._contacts.get(self._support, "ab"))
+
+    @property
+    def cramped(self) -> bool:
+        return self._support == self._edge
+
+    @property
+    def ran_off(self) -> bool:
+        return self._support == self._runs
+
+    def settle(self, tolerance: float, support: Mask, withheld: Mask | None = None) -> bool:
+        assert tolerance == 1e-6
+        self._support = "".join(c.upper() if on else c for c, on in zip("ab", support, strict=True))
+        self.asked.append(self._support + ("" if withheld is not None else " fully"))
+        return withheld is None or self._support not in self._left
+
+    def visited(self) -> Visited:
+        return Visited(float(len(self.asked)), float(self.contact.sum()))
+
+
+def test_the_last_state_is_the_one_that_leads_to_itself() -> None:
+    state = Played({"ab": "Ab", "Ab": "AB", "AB": "AB"}, left="ab Ab")
+    rule, in_cycles = followed(state, 1e-6)
+    assert rule.settled
+    assert in_cycles == []
+    assert state.asked == ["ab", "Ab", "AB"]
+
+
+@pytest.mark.parametrize(
+    ("left", "again", "visited"),
+    [
+        ("", [], [Visited(3, 1), Visited(2, 2)]),
+        ("ab", [], [Visited(3, 1), Visited(2, 2)]),
+        ("AB", ["AB fully"], [Visited(4, 1), Visited(2, 2)]),
+        ("Ab AB", ["AB fully", "Ab fully"], [Visited(4, 1), Visited(5, 2)]),
+    ],
+)
+def test_states_of_a_cycle_are_told_as_settled(left: str, again: list[str], visited: list[Visited]) -> None:
+    """And the rule goes on without what changed in it."""
+    state = Played({"ab": "Ab", "Ab": "AB", "AB": "Ab"}, left=left)
+    rule, in_cycles = followed(state, 1e-6)
+    assert in_cycles == visited
+    assert rule.settled
+    assert np.array_equal(rule.withheld, mask("aB"))
+    assert state.asked == ["ab", "Ab", "AB", *again, "Ab"]
+
+
+def test_what_meets_the_windows_edge_is_not_asked_where_it_leads() -> None:
+    state = Played({"ab": "Ab", "Ab": "AB"}, edge="Ab")
+    rule, _ = followed(state, 1e-6)
+    assert not rule.settled
+    assert np.array_equal(rule.current, mask("Ab"))
+    assert state.asked == ["ab", "Ab"]
+
+
+def test_slopes_that_run_off_end_the_path() -> None:
+    state = Played({"ab": "Ab", "Ab": "AB"}, runs="Ab")
+    followed(state, 1e-6)
+    assert state.asked == ["ab", "Ab"]
+
+
+def test_a_path_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tau_path, "_SUPPORT_ITERATIONS", 2)
+    state = Played({"ab": "Ab", "Ab": "AB", "AB": "AB"})
+    assert not followed(state, 1e-6)[0].settled
+    assert state.asked == ["ab", "Ab"]
