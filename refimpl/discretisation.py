@@ -9,7 +9,10 @@ contact's edge (Yastrebov, Anciaux and Molinari 2017), of which only the size ``
 ``r_k`` what is left. In an area that is which elements the edge happens to catch: the count of n edge
 elements varies as sqrt(n), and n goes as 1 / h, so ``w`` falls as h^(3/2). ``q`` given c and sigma is
 normal; sigma integrates to a Student distribution, and c numerically (Gelman et al. 2013, ch. 3, 14).
-Friction takes its edge's share from the area, by ``tau / N``.
+Friction takes its edge's share from the area, by ``tau / N``. Every other number's ``w`` is told by the
+grids themselves: by how much of the contact is edge, by how sharp the peak is, by how slopes change within
+elements. These fall as powers of h where a surface is resolved; where it is not they do not, and bars stay
+wide.
 
 The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1039);
 what they promise was judged on the scenes of other seeds.
@@ -31,20 +34,19 @@ from refimpl.grid_result import GridResult
 EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.85, 0.07  # c0, s_c
 _RAN_OFF = 1e100  # of any number in SI units: squares still fit a double
-DECAY = 1.5  # order of the scatter where no other is known: the area's
+DECAY = 1.5  # order of the area's scatter
 
 
 class Prior(NamedTuple):
-    """Of a scatter: sigma on the finest grid in the number's unit, worth ``weight`` grids, and its order."""
+    """Of a scatter: sigma on the finest grid in the number's unit, and how many grids that is worth."""
 
     scatter: float
     weight: float
-    order: float = DECAY
 
 
 AREA = Prior(0.22, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
 BULK = Prior(0.01, 1.0)  # friction without tau's share; unit of this and the last: value (edge / area)^1.5
-PEAK = Prior(0.05, 3.0, order=2.0)  # unit: peak times its drop to the neighbours
+PEAK = Prior(0.05, 3.0)  # unit: peak times its drop to the neighbours
 BINORMAL = Prior(0.002, 1.0)  # unit: normal force, else as the next
 OTHER = Prior(0.1, 1.0)
 
@@ -62,35 +64,58 @@ class Estimate(NamedTuple):
 
 def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
     """Estimates of the reported numbers, from grids coarse to fine (one at least)."""
-    spacing = np.array([result.spacing for result in results])
     columns = {name: np.array([result.numbers[name] for result in results]) for name in results[0].numbers}
-    area, force = columns["contact_area"], columns["normal_force"]
-    slip = np.array([result.slip for result in results])
     fine = {name: abs(float(column[-1])) for name, column in columns.items()}
-    thinness = (min(1.0, max(results[-1].edge, 0.0) / area[-1]) if area[-1] > 0 else 1.0) ** DECAY
+    area, force = columns["contact_area"], columns["normal_force"]
+    slip, drop, uneven = (
+        np.array([getattr(result, name) for result in results]) for name in ("slip", "drop", "unevenness")
+    )
+    spacing = np.array([result.spacing for result in results])
+    thin = _thinness(results)
 
-    def smooth(values: Array, prior: Prior, unit: float) -> Estimate:
-        scaled = prior._replace(scatter=prior.scatter * unit)
-        return line(values, (spacing / spacing[-1]) ** prior.order, scaled)
+    def smooth(values: Array, prior: Prior, *sizes: Array) -> Estimate:
+        size = np.hypot.reduce([prior.scatter * sizes[0], *sizes[1:]])
+        return line(values, _weights(size, spacing), prior._replace(scatter=float(size[-1])))
 
-    def sheared(name: str, share: Array) -> Estimate:
-        """A number that contains ``share`` times the contact area."""
-        rest = smooth(columns[name] - share * area, BULK, thinness * fine[name])
+    def sheared(name: str, share: Array, unit: float) -> Estimate:
+        """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
+        rest = smooth(columns[name] - share * area, BULK, thin * fine[name], uneven * unit)
         value = rest.value + float(share[-1]) * whole.value
         return Estimate(value, math.hypot(rest.spread, float(share[-1]) * whole.spread))
 
-    whole = _area(results, area, spacing)
-    normal = smooth(force, OTHER, thinness * fine["normal_force"])
+    whole, load = _area(results, area, spacing), fine["normal_force"]
     return {
-        "friction_coefficient": sheared("friction_coefficient", slip),
-        "friction_force": sheared("friction_force", slip * force),
+        "friction_coefficient": sheared("friction_coefficient", slip, 1.0),
+        "friction_force": sheared("friction_force", slip * force, load),
         "contact_area": whole,
         "contact_area_corrected": whole,
-        "max_pressure": smooth(columns["max_pressure"], PEAK, results[-1].drop * fine["max_pressure"]),
-        "approach": smooth(columns["approach"], OTHER, thinness * fine["approach"]),
-        **({} if results[-1].loaded else {"normal_force": normal}),
-        "binormal_force": smooth(columns["binormal_force"], BINORMAL, thinness * fine["normal_force"]),
+        "max_pressure": smooth(columns["max_pressure"], PEAK, drop * columns["max_pressure"]),
+        "approach": smooth(columns["approach"], OTHER, thin * fine["approach"]),
+        **({} if results[-1].loaded else {"normal_force": smooth(force, OTHER, thin * load)}),
+        "binormal_force": smooth(columns["binormal_force"], BINORMAL, thin * load, uneven * load),
     }
+
+
+def _thinness(results: Sequence[GridResult]) -> Array:
+    """How much of each grid's contact is edge, to the order at which an area's scatter falls."""
+    shares = [
+        min(1.0, max(result.edge, 0.0) / area) if (area := result.numbers["contact_area"]) > 0 else 1.0
+        for result in results
+    ]
+    return np.array(shares) ** DECAY
+
+
+def _weights(size: Array, spacing: Array) -> Array:
+    """``w_k``: each grid's own size of the scatter over the finest's; none counts for more than a finer one.
+
+    So numbers that a surface keeps changing below the elements' size are not thought to settle. Where the
+    finest grid knows of no scatter, that of the others is the area's.
+    """
+    if not size[-1] > 0:
+        steps: Array = (spacing / spacing[-1]) ** DECAY
+        return steps
+    weights: Array = np.maximum.accumulate(size[::-1])[::-1] / size[-1]
+    return weights
 
 
 def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from refimpl.friction import Mask
-from refimpl.grid import Array
+from refimpl.grid import Array, inner
+from refimpl.operators.window import Window
+from refimpl.slopes import Slopes
 from refimpl.solution import REPORTED, Solution
 from refimpl.uncertainty import adhesive_share, edge_excess, iteration_parts, merged
 
@@ -19,9 +22,10 @@ class GridResult:
 
     ``numbers`` by the names of `Solution`; ``edge`` is the area (m^2) that whole elements are expected
     to add along the contact's edge, ``alike`` how many of its elements come in and out together by
-    symmetry, ``drop`` how sharp the peak is, ``slip`` is ``d mu / d A = tau / N`` (1/m^2), ``parts`` are
-    the uncertainties that the grid's own solution states (iteration, tau support). ``loaded`` tells a
-    prescribed load, which knows no discretisation, from a prescribed approach.
+    symmetry, ``drop`` how sharp the peak is, ``unevenness`` how far slopes within elements leave mu open,
+    ``slip`` is ``d mu / d A = tau / N`` (1/m^2), ``parts`` are the uncertainties that the grid's own
+    solution states (iteration, tau support). ``loaded`` tells a prescribed load, which knows no
+    discretisation, from a prescribed approach.
     """
 
     M: int
@@ -30,6 +34,7 @@ class GridResult:
     edge: float
     alike: float
     drop: float
+    unevenness: float
     slip: float
     parts: Mapping[str, Mapping[str, float]]
     loaded: bool = True
@@ -49,6 +54,7 @@ class GridResult:
             edge=edge_excess(solution),
             alike=alike(solution.contact),
             drop=drop_beside_peak(solution.pressure),
+            unevenness=unevenness(solution.pressure, solution.slopes),
             slip=adhesive_share(solution),
             parts=merged(iteration_parts(solution), _own(solution)),
             loaded=solution.problem.load is not None,
@@ -87,6 +93,28 @@ def drop_beside_peak(pressure: Array) -> float:
     i, j = np.unravel_index(np.argmax(pressure), pressure.shape)
     beside = padded[i : i + 3 : 2, j + 1].sum() + padded[i + 1, j : j + 3 : 2].sum()
     return float(4 - beside / pressure[i, j])
+
+
+def unevenness(pressure: Array, slopes: Slopes) -> float:
+    """Standard error of mu, or of Q/N, if each element had taken its slope from its edge instead.
+
+    That is ``sqrt(sum (f s)^2) / sum f`` with ``s^2 = (g_x^2 + g_y^2) / 4`` for a tangent that changes by g
+    from one element to the next; the mean square of both tangents is taken.
+
+    >>> ramp = Slopes(np.arange(9.0).reshape(3, 3), np.zeros((3, 3)))
+    >>> round(8 * unevenness(np.pad([[7.0]], 1), ramp) ** 2, 9)  # steps of 1 and 3
+    10.0
+    """
+    total = float(pressure.sum())
+    if slopes.is_flat or not total > 0:
+        return 0.0
+    box = Window.around(pressure > 0, margin=1)
+    near = slopes.windowed(box)
+    axes = [axis for axis in (0, 1) if box.shape[axis] > 1]
+    loads = [
+        pressure[box.slices] * np.gradient(tan, axis=k) for tan in (near.tan_x, near.tan_y) for k in axes
+    ]
+    return math.sqrt(sum(inner(load, load) for load in loads) / 8) / total
 
 
 def _own(solution: Solution) -> dict[str, dict[str, float]]:

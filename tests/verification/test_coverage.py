@@ -30,7 +30,9 @@ def rung(M: int, *, size: float = 0.85, wrong: float = 0.0, seed: int = 3) -> Ru
     area = (limit + size * edge) * (1 + (wrong if M in GRIDS[:-1] else 0.0))
     numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
     numbers["friction_coefficient"] = 0.1 + 1e5 * area
-    result = GridResult(M, h, numbers, edge, 1.0, 1e-3, 1e5, {name: {"iteration": 0.0} for name in REPORTED})
+    result = GridResult(
+        M, h, numbers, edge, 1.0, 1e-3, 0.0, 1e5, {name: {"iteration": 0.0} for name in REPORTED}
+    )
     carried = 0.75 * M**2 if GRIDS[0] < M else None
     return Rung(seed, result, "converged", 1e-8, float(M**2), 0.1, carried)
 
