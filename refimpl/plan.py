@@ -103,11 +103,13 @@ def make_plan(
     demand: float = 1e-8,
     approach: float | None = None,
     decide_on: int | None = None,
+    of_mu: bool = False,
 ) -> Plan:
     """Decide the terms from the scene alone and check that the grid fits into memory.
 
     ``True`` and ``False`` force a term in or out, ``None`` leaves it to its estimate against ``demand``,
-    the relative accuracy asked of mu and A, by the heights on ``decide_on`` elements a side (M by default).
+    the relative accuracy asked of mu and A (``of_mu``: of mu above all), by the heights on ``decide_on``
+    elements a side (M by default).
 
     Raises `InputError` for an unknown method, for a grid whose estimate exceeds the free memory, and for
     terms that exclude each other.
@@ -127,7 +129,7 @@ def make_plan(
     return Plan(
         method=method,
         M=M,
-        terms=choose(scene, outlook, forced, budget),
+        terms=choose(scene, outlook, forced, budget, of_mu=of_mu),
         memory=memory,
         demand=demand,
         budget=budget,

@@ -95,9 +95,11 @@ def next_grid(results: Sequence[GridResult], accuracy: float, quantity: str, lad
 
 
 def relative_bar(results: Sequence[GridResult], quantity: str) -> float:
-    """The sum of the finest grid's parts over its value; infinite for a value of zero."""
-    value = abs(results[-1].numbers[quantity])
-    return sum(uncertainty(results)[quantity].values()) / value if value > 0 else float("inf")
+    """The sum of the finest grid's parts over its value; infinite for a zero that is not exact."""
+    value, bar = abs(results[-1].numbers[quantity]), sum(uncertainty(results)[quantity].values())
+    if bar == 0:
+        return 0.0
+    return bar / value if value > 0 else float("inf")
 
 
 def uncertainty(results: Sequence[GridResult]) -> Uncertainty:

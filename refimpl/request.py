@@ -85,4 +85,5 @@ class Request:
             demand=self.accuracy or self.residual,
             approach=self.approach,
             decide_on=DECISION_GRID if self.grid is None else None,
+            of_mu=self.accuracy is not None and self.judged == "friction_coefficient",
         )

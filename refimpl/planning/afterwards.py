@@ -38,15 +38,16 @@ def effects_left_out(
 def uncertainty_left_out(
     changes: Mapping[str, Effect], local_friction: float, load: float, numbers: Mapping[str, float]
 ) -> dict[str, dict[str, float]]:
-    """The same as parts of the uncertainty, in each number's unit; pressures change as areas do.
+    """The same as parts of the uncertainty, in each number's unit; pressures change as areas do, Q as F.
 
     ``local_friction`` is ``r`` over ``f``, both summed; ``numbers`` holds A and f_max (m^2, Pa).
     """
     if not changes:
         return {}
-    friction = local_friction * sum(effect.friction for effect in changes.values())
+    friction = sum(local_friction * effect.friction + effect.bare for effect in changes.values())
     area = sum(effect.area for effect in changes.values())
     parts = {name: {"left out": area * abs(value)} for name, value in numbers.items()}
     parts["friction_coefficient"] = {"left out": friction}
     parts["friction_force"] = {"left out": friction * load}
+    parts["binormal_force"] = {"left out": friction * load}
     return parts

@@ -53,14 +53,19 @@ def affordable(scene: Scene, outlook: Outlook, demand: float) -> float:
     return _BUDGET * demand
 
 
-def choose(scene: Scene, outlook: Outlook, forced: Forced, budget: float) -> tuple[Term, ...]:
-    """All terms in a fixed order; those left out as small add up to no more than the budget."""
+def choose(
+    scene: Scene, outlook: Outlook, forced: Forced, budget: float, *, of_mu: bool = False
+) -> tuple[Term, ...]:
+    """All terms in a fixed order; those left out as small add up to no more than the budget.
+
+    Where the budget is ``of_mu`` and there is no friction, slopes are all of mu and never small.
+    """
     scales = Scales(outlook, scene.materials, scene.friction)
     coupling, slopes = effects.shear_coupling(scales), effects.obliqueness(scales)
     open_terms: dict[str, float] = {}
     if forced.coupled is None and coupling != NONE and not forced.slope_correction:
         open_terms["shear coupling"] = coupling.larger
-    if forced.oblique is None and not forced.slope_correction:
+    if forced.oblique is None and not forced.slope_correction and not (of_mu and slopes.bare > 0):
         open_terms["obliqueness"] = slopes.larger
     small, budget = _smallest(open_terms, budget)
     coupled = _coupling(scene, forced, coupling, small)

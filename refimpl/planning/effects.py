@@ -43,10 +43,14 @@ _FACETS = 0.7  # area under the tractions of facets
 
 @dataclass(frozen=True)
 class Effect:
-    """Size of a change: of mu, relative to local friction (0 without friction), and of A, relative."""
+    """Size of a change: of mu, relative to local friction, and of A, relative.
+
+    Without friction there is nothing to relate to, and ``bare`` is the change of mu itself.
+    """
 
     friction: float
     area: float
+    bare: float = 0.0
 
     @property
     def larger(self) -> float:
@@ -80,7 +84,7 @@ class Scales:
         bunch = 4 if self.outlook.symmetric else 1
         area = area + 2 * math.sqrt(bunch * local / self.outlook.elements)
         if self.friction.is_zero:
-            return Effect(0.0, area)
+            return Effect(0.0, area, bare=friction)
         adhesive = self.friction.tau / self.outlook.mean_pressure
         return Effect((friction + adhesive * area) / self.mu, area)
 

@@ -206,3 +206,29 @@ def test_nothing_builds_a_cerruti_kernel_that_does_not_need_one(monkeypatch: pyt
     rf.solve(TWINS, accuracy=0.1)
     with pytest.raises(AssertionError, match="tangential"):
         rf.solve(SMOOTH, 32)
+
+
+def test_slopes_left_out_of_a_frictionless_scene_leave_mu_open() -> None:
+    """All of mu, and of Q, is theirs: it was told as 0 without a bar."""
+    scene = replace(ROUGH, friction=rf.Friction())
+    s = rf.solve(scene, accuracy=0.1)
+    assert "obliqueness" in s.plan.left_out
+    full = rf.solve(scene, s.grid.M, oblique=True)
+    for name in ("friction_coefficient", "friction_force", "binormal_force"):
+        assert getattr(s, name) == 0.0
+        assert 0 < abs(getattr(full, name)) <= s.uncertainty[name]["left out"], name
+
+
+def test_who_asks_for_mu_without_friction_asks_for_slopes() -> None:
+    scene = replace(ROUGH, friction=rf.Friction())
+    s = rf.solve(scene, accuracy=0.1, quantity="friction_coefficient")
+    assert s.converged
+    assert s.plan.includes("obliqueness")
+    assert sum(s.uncertainty["friction_coefficient"].values()) <= 0.1 * abs(s.friction_coefficient)
+
+
+def test_a_mu_that_is_exactly_zero_needs_no_finer_grid() -> None:
+    s = rf.solve(rf.read_scene("hertz"), accuracy=0.01, quantity="friction_coefficient")
+    assert s.converged
+    assert s.grid.M == 64
+    assert s.friction_coefficient == 0.0

@@ -121,3 +121,21 @@ def test_what_has_no_sensitivity_is_refused() -> None:
         sensitivity(scene, rf.solve(scene, 32, approach=-1e-6))
     with pytest.raises(rf.InputError, match="load"):
         sensitivity(replace(scene, load=2 * scene.load), rf.solve(scene, 32))
+
+
+def test_a_derivative_that_two_ways_disagree_on_says_so() -> None:
+    """A surface that is stretched meets elsewhere: on few elements the sign of its answer is not known."""
+    scene = rf.Scene(
+        upper=rf.Body(STEEL, rf.Sphere(radius=0.05)),
+        lower=rf.Body(POLYMER, rf.GaussianRoughness(rms=0.8e-6, correlation_length=150e-6, seed=3)),
+        friction=rf.Friction(tau=0.35e6, beta=0.12),
+        load=5.0,
+        side=2e-3,
+    )
+    name = "lower.surface[0].correlation_length"
+    coarse, fine = (sensitivity(scene, rf.solve(scene, grid)) for grid in (64, 256))
+    for number in ("max_pressure", "binormal_force"):
+        assert coarse.scatter[number][name] > 0.2 * abs(coarse.derivatives[number][name])
+        assert coarse.scatter[number]["load"] == 0
+        steady = "lower.surface[0].rms"
+        assert fine.scatter[number][steady] < 0.3 * abs(fine.derivatives[number][steady])
