@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import numbers
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -28,6 +30,22 @@ class InputError(ValueError):
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
         return type(self), (self.field, self.value, self.allowed)  # so that it crosses process borders
+
+
+@contextmanager
+def within(place: str) -> Iterator[None]:
+    """Refusals from inside name the part of the scene that they are about.
+
+    >>> with within("lower.material"):
+    ...     require_number("E", -5, "a positive number", above=0)
+    Traceback (most recent call last):
+    ...
+    refimpl.errors.InputError: lower.material.E = -5: expected a positive number
+    """
+    try:
+        yield
+    except InputError as refused:
+        raise InputError(f"{place}.{refused.field}", refused.value, refused.allowed) from refused.__cause__
 
 
 def as_double(value: Any) -> float:

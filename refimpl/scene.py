@@ -13,6 +13,9 @@ from refimpl.grid import Array, Grid
 from refimpl.materials import Material, Pair
 from refimpl.surfaces import Surface, as_surface
 
+# What a surface is asked with, by the names that the scene has for it.
+_ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
+
 
 @dataclass(frozen=True)
 class Friction:
@@ -100,9 +103,23 @@ class Scene:
             self.sliding_offset * math.cos(self.sliding_direction),
             self.sliding_offset * math.sin(self.sliding_direction),
         )
-        lower = self.lower.surface.heights(grid, slide, periodic=self.periodic)
-        upper = self.upper.surface.heights(grid, periodic=self.periodic)
+        lower, upper = self._summed("lower", grid, slide), self._summed("upper", grid, (0.0, 0.0))
         return _centred("lower", lower, grid), _centred("upper", upper, grid)
+
+    def _summed(self, name: str, grid: Grid, offset: tuple[float, float]) -> Array:
+        """The sum of a body's parts (m); a refusal names the part, or the field of the scene that is why."""
+        body: Body = getattr(self, name)
+        z = np.zeros((grid.M, grid.M))
+        for k, part in enumerate(body.surface.parts):
+            try:
+                z += part.heights(grid, offset, periodic=self.periodic)
+            except InputError as refused:
+                field, value = f"{name}.surface[{k}].{refused.field}", refused.value
+                if refused.field in _ASKED_OF_SURFACES:
+                    field = _ASKED_OF_SURFACES[refused.field]
+                    value = getattr(self, field)
+                raise InputError(field, value, refused.allowed) from refused.__cause__
+        return z
 
 
 def _centred(name: str, heights: Array, grid: Grid) -> Array:

@@ -11,7 +11,7 @@ from typing import Any
 
 import tomli_w
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, within
 from refimpl.materials import Material
 from refimpl.parameters import check_tolerances
 from refimpl.scene import Body, Friction, Scene
@@ -122,10 +122,11 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
         parts = [parts]
     if not isinstance(parts, list) or not parts or not all(isinstance(part, Mapping) for part in parts):
         raise InputError(f"{name}.surface", parts, "one or more [[...surface]] tables")
-    surfaces = [surface_from_dict(dict(part), folder) for part in parts]
+    surfaces = [surface_from_dict(dict(part), folder, f"{name}.surface[{k}]") for k, part in enumerate(parts)]
     modulus = _required(material, "E", "Young's modulus in Pa", prefix=f"{name}.material.")
     ratio = _required(material, "nu", "Poisson's ratio", prefix=f"{name}.material.")
-    matter = Material(E=modulus, nu=ratio, hardness=material.get("hardness"))
+    with within(f"{name}.material"):
+        matter = Material(E=modulus, nu=ratio, hardness=material.get("hardness"))
     return Body(matter, sum(surfaces[1:], start=surfaces[0]))
 
 

@@ -68,7 +68,7 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "one-dimensional heights": ("heights", lambda: rf.Body(STEEL, np.zeros(16))),
     "empty heights": ("heights", lambda: rf.Body(STEEL, np.zeros((0, 0)))),
     "complex heights": ("heights", lambda: rf.Body(STEEL, np.zeros((8, 8), dtype=complex))),
-    "array too small to resample": ("heights", lambda: rf.solve(on(np.zeros((3, 3))), 8)),
+    "array too small to resample": ("lower.surface[0].heights", lambda: rf.solve(on(np.zeros((3, 3))), 8)),
     "roughness in metres": ("lower.surface", lambda: rf.solve(on(METRES_OF_ROUGHNESS), 8)),
     "zero grid": ("grid", lambda: rf.solve(SCENE, 0)),
     "negative grid": ("grid", lambda: rf.solve(SCENE, -8)),
@@ -149,21 +149,44 @@ def test_absolute_height_is_never_judged() -> None:
     np.testing.assert_allclose(lifted.pressure, plain.pressure, atol=1e-7 * plain.max_pressure, rtol=0)
 
 
+FLAT = '{ kind = "flat" },'
+
+
+def on_lower(surface: str) -> str:
+    """The scene's file with a second surface on the lower body."""
+    return TOML.replace(FLAT, f"{FLAT} {{ {surface} }},", 1)
+
+
+def rough(**changed: float) -> str:
+    keys = {"rms": 1e-7, "correlation_length": 1e-4, "seed": 1} | changed
+    return on_lower('kind = "gaussian", ' + ", ".join(f"{key} = {value}" for key, value in keys.items()))
+
+
 BAD_FILES = {
     "unknown key": ("scene.laod", TOML.replace("load =", "laod =", 1)),
     "unknown friction key": ("friction.mu", TOML.replace("tau =", "mu =", 1)),
     "unknown material key": ("upper.material.G", TOML.replace("nu =", "G =", 1)),
     "unknown body key": ("upper.colour", TOML.replace("[upper]", '[upper]\ncolour = "red"', 1)),
-    "unknown surface": ("surface.kind", TOML.replace('"sphere"', '"cube"', 1)),
+    "unknown surface": ("upper.surface[0].kind", TOML.replace('"sphere"', '"cube"', 1)),
     "no load": ("load", TOML.replace("load = 70.0\n", "", 1)),
     "no body": ("upper", TOML[: TOML.index("[upper")]),
     "load as text": ("load", TOML.replace("70.0", '"70 N"', 1)),
     "body as number": ("upper", "load = 1.0\nside = 1.0\nlower = 3\nupper = 4\n"),
     "no TOML": ("scene", "load 70"),
-    "missing measured file": (
-        None,
-        TOML.replace('kind = "sphere", radius = 0.14', 'kind = "measured", path = "nowhere.x3p"', 1),
+    "modulus below zero": ("upper.material.E", TOML.replace("E = 200000000000.0", "E = -5", 1)),
+    "nu above a half": ("upper.material.nu", TOML.replace("nu = 0.3", "nu = 0.51", 1)),
+    "hardness of zero": ("upper.material.hardness", TOML.replace("nu = 0.3", "nu = 0.3\nhardness = 0", 1)),
+    "radius of zero": ("upper.surface[0].radius", TOML.replace("radius = 0.14", "radius = 0", 1)),
+    "no radius": ("upper.surface[0].radius", TOML.replace(", radius = 0.14", "", 1)),
+    "unknown key of a surface": ("upper.surface[0].rms", TOML.replace("radius", "rms", 1)),
+    "rms of zero": ("lower.surface[1].rms", rough(rms=0)),
+    "seed below zero": ("lower.surface[1].seed", rough(seed=-1)),
+    "noise too fine for the square": ("lower.surface[1].correlation_length", rough(correlation_length=1e-9)),
+    "term of a sum": (
+        "lower.surface[1].terms[1].radius",
+        on_lower('kind = "sum", terms = [{ kind = "flat" }, { kind = "sphere", radius = 0 }]'),
     ),
+    "missing measured file": ("lower.surface[1].path", on_lower('kind = "measured", path = "nowhere.x3p"')),
 }
 
 
@@ -175,8 +198,16 @@ def test_a_bad_scene_file_is_refused(name: str, tmp_path: Path) -> None:
     path.write_text(text)
     with pytest.raises(rf.InputError) as caught:
         rf.solve(rf.read_scene(path), 8)
-    assert field in (None, caught.value.field)
+    assert caught.value.field == field
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("surface", [np.zeros((8, 8)), rf.GaussianRoughness(1e-7, 1e-4, seed=1)])
+def test_a_slide_too_far_names_the_field_of_the_scene(surface: Any) -> None:
+    scene = on(surface, sliding_offset=1e3, sliding_direction=1.0)
+    with pytest.raises(rf.InputError, match=r"sliding_offset = 1000\.0: expected") as caught:
+        rf.solve(scene, 8)
+    assert caught.value.field == "sliding_offset"
 
 
 def test_a_missing_file_is_refused(tmp_path: Path) -> None:
