@@ -33,9 +33,13 @@ _MARGIN = 0.95  # share of the accuracy that a foretold bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
 
-def check_accuracy(accuracy: float, quantity: str) -> None:
-    """Raise `InputError` unless the accuracy is relative and the quantity is one that it applies to."""
+def check_accuracy(accuracy: float) -> None:
+    """Raise `InputError` unless the accuracy is relative."""
     require_number("accuracy", accuracy, "a relative accuracy between 0 and 1", above=0, below=1)
+
+
+def check_quantity(quantity: str) -> None:
+    """Raise `InputError` unless the quantity is one that an accuracy applies to."""
     if quantity not in QUANTITIES:
         raise InputError("quantity", quantity, f"one of {', '.join(QUANTITIES)}")
 

@@ -8,7 +8,7 @@ from refimpl.errors import InputError, require_number
 from refimpl.grid import Grid
 from refimpl.paper import PAPER_TOLERANCE
 from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
-from refimpl.refine import Quantity, check_accuracy, deserved_tolerance
+from refimpl.refine import Quantity, check_accuracy, check_quantity, deserved_tolerance
 from refimpl.scene import Scene
 from refimpl.solution import Solution
 
@@ -34,12 +34,16 @@ class Request:
     start: Solution | None = None
 
     def __post_init__(self) -> None:
+        if not isinstance(self.scene, Scene):
+            raise InputError("scene", self.scene, "a Scene (read_scene reads one from a file)")
+        self._check_switches()
         if self.approach is not None:
             periodic = self.scene.periodic
             allowed = "an approach below 0 m (mean planes)" if periodic else "a finite approach in m"
             require_number("approach", self.approach, allowed, below=0 if periodic else None)
+        check_quantity(self.judged)
         if self.accuracy is not None:
-            check_accuracy(self.accuracy, self.judged)
+            check_accuracy(self.accuracy)
         require_number("tolerance", self.residual, "a number between 0 and 1", above=0, below=1)
         if (self.grid is None) == (self.accuracy is None):
             allowed = "a number of elements per side, or an accuracy, and not both"
@@ -47,10 +51,19 @@ class Request:
         if self.start is not None:
             self._check_start(self.start)
 
+    def _check_switches(self) -> None:
+        for name in ("oblique", "coupled", "tilted"):
+            if not isinstance(getattr(self, name), bool | None):
+                raise InputError(name, getattr(self, name), "True, False, or None to let the scene decide")
+        if not isinstance(self.slope_correction, bool):
+            raise InputError("slope_correction", self.slope_correction, "True or False")
+
     def _check_start(self, start: Solution) -> None:
+        if not isinstance(start, Solution):
+            raise InputError("start", start, "a Solution")
         if self.method != "fft" or self.grid is None:
             raise InputError("start", start.status.value, "none but for method fft on a grid")
-        if start.grid.side != self.scene.side or self.grid < start.grid.M:
+        if start.grid.side != self.scene.side or Grid(self.scene.side, self.grid).M < start.grid.M:
             found = f"{start.grid.M} x {start.grid.M} elements on {start.grid.side} m"
             allowed = f"a solution on at most {self.grid} x {self.grid} elements on {self.scene.side} m"
             raise InputError("start", found, allowed)
@@ -60,7 +73,9 @@ class Request:
     @property
     def judged(self) -> Quantity:
         """The quantity that the accuracy is about."""
-        return self.quantity or ("contact_area" if self.scene.friction.is_zero else "friction_coefficient")
+        if self.quantity is not None:
+            return self.quantity
+        return "contact_area" if self.scene.friction.is_zero else "friction_coefficient"
 
     @property
     def residual(self) -> float:

@@ -28,7 +28,7 @@ def read_scene(path: str | Path) -> Scene:
 
     Paths of measured surfaces are relative to the file. Raises `InputError` naming the field.
     """
-    table, folder = _read(Path(path))
+    table, folder = _read(path)
     return scene_from_dict(table, folder)
 
 
@@ -38,12 +38,15 @@ def read_tolerances(path: str | Path) -> dict[str, float]:
     >>> read_tolerances("table1-smooth")
     {}
     """
-    table, folder = _read(Path(path))
+    table, folder = _read(path)
     return _tolerances(table, scene_from_dict(table, folder))
 
 
-def _read(path: Path) -> tuple[dict[str, Any], Path]:
+def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
     """The parsed file, or shipped scene, and the folder that its paths are relative to."""
+    if not isinstance(name, str | os.PathLike):
+        raise InputError("scene", name, "the path of a TOML file, or the name of a shipped scene")
+    path = Path(name)
     if not os.path.isfile(path):  # of any name, however long
         if str(path) in shipped_scenes():
             path = Path(str(resources.files("refimpl").joinpath("data", "scenes", f"{path}.toml")))
@@ -89,6 +92,8 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
     """The scene as a plain table; raises `InputError` for surfaces that are bare arrays."""
+    if not isinstance(scene, Scene):
+        raise InputError("scene", scene, "a Scene")
     return {
         "load": scene.load,
         "side": scene.side,

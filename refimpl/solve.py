@@ -13,6 +13,7 @@ import numpy as np
 from refimpl.coefficient_error import slope_error
 from refimpl.contact.certificate import State, certify
 from refimpl.dense_solver import solve_dense
+from refimpl.errors import InputError
 from refimpl.fft_solver import solve_fft
 from refimpl.forces import perimeter_corrected_area
 from refimpl.grid import Grid
@@ -77,6 +78,8 @@ def solve(
 
     Raises `InputError` for input that is out of range, before anything large is allocated.
     """
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "a function of one line of text")
     request = Request(
         scene=scene,
         grid=grid,
