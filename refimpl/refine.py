@@ -15,6 +15,7 @@ from refimpl.discretisation import DECAY, discretisation, estimates
 from refimpl.errors import InputError, require_number
 from refimpl.grid_result import GridResult
 from refimpl.outcome import Status
+from refimpl.remark import Remark
 from refimpl.solution import Cost, Solution
 from refimpl.uncertainty import Uncertainty, merged
 
@@ -131,7 +132,7 @@ def refine(solve_at: Callable[[int], Solution], accuracy: float, quantity: Quant
     if not climbed.refusal:
         return fine
     bar = relative_bar(climbed.results, quantity)
-    reached = f"{quantity} is known to {bar:.2g}, not to {accuracy:.2g}: {climbed.refusal}"
+    reached = Remark(f"{quantity} is known to {bar:.2g}, not to {accuracy:.2g}: {climbed.refusal}")
     return replace(fine, status=Status.ITERATION_LIMIT, warnings=(*fine.warnings, reached))
 
 

@@ -18,9 +18,10 @@ from refimpl.outcome import Status
 from refimpl.plan import Plan
 from refimpl.planning.effects import Effect
 from refimpl.problem import Problem
+from refimpl.remark import Remark
 from refimpl.scene import Friction
 from refimpl.slopes import Slopes
-from refimpl.validity import plain_warning
+from refimpl.validity import Caution, plain_warning
 
 
 @dataclass(frozen=True)
@@ -44,8 +45,8 @@ class Solution:
     ``uncertainty`` maps each reported number to its parts, absolute, in the number's unit.
     ``slope_error`` quotes what Appendix A's table says of flat-surface influence coefficients at this
     contact's slopes. ``problem`` is what was solved: the scene on its grid. ``left_out`` holds, for each
-    term that the plan left out as small, its effect as the found contact has it; ``warnings`` are texts,
-    those of `refimpl.validity` with name, number and limit.
+    term that the plan left out as small, its effect as the found contact has it; ``warnings`` are texts
+    with ``limit``, ``number`` and ``allowed``: those of `refimpl.validity`, and remarks without numbers.
     """
 
     status: Status
@@ -75,7 +76,7 @@ class Solution:
     plan: Plan
     left_out: Mapping[str, Effect]
     problem: Problem
-    warnings: tuple[str, ...]
+    warnings: tuple[Caution | Remark, ...]
     cost: Cost
 
     @property

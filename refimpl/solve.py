@@ -28,6 +28,7 @@ from refimpl.plan import Method, Plan
 from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
 from refimpl.problem import Problem, pose
 from refimpl.refine import Quantity, refine, uncertainty
+from refimpl.remark import Remark
 from refimpl.request import Request
 from refimpl.scene import Scene
 from refimpl.solution import Cost, Solution
@@ -160,11 +161,11 @@ def _solve_planned(
     return replace(solution, warnings=_remarks(scene, problem.grid, caught) + cautions(solution, scene))
 
 
-def _remarks(scene: Scene, grid: Grid, caught: Sequence[warnings.WarningMessage]) -> tuple[str, ...]:
+def _remarks(scene: Scene, grid: Grid, caught: Sequence[warnings.WarningMessage]) -> tuple[Remark, ...]:
     """What surfaces had to remark; unresolved roughness is told by name (`refimpl.validity`)."""
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     told = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
-    return tuple(line for line in dict.fromkeys(str(w.message) for w in caught) if line not in told)
+    return tuple(Remark(line) for line in dict.fromkeys(str(w.message) for w in caught) if line not in told)
 
 
 def _solve_posed(

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl import plan
 from refimpl.coefficient_error import SlopeError
 from refimpl.forces import plasticity_index
 from refimpl.planning.effects import Effect
@@ -163,6 +164,28 @@ def test_warnings_are_texts_with_numbers() -> None:
         "limit": None,
         "text": "resampled",
     }
+
+
+def test_remarks_are_read_like_cautions() -> None:
+    """A surface's remark and a caution stand on one list."""
+    heights = 2e-7 * np.random.default_rng(1).normal(size=(16, 16))
+    s = rf.solve(replace(SMOOTH, lower=rf.Body(rf.Material(118e9, 0.3, hardness=1e8), heights)), 32)
+    assert {"remark", "peak pressure"} <= {str(w.limit) for w in s.warnings}
+    remark = next(w for w in s.warnings if w.limit == "remark")
+    assert "finer than the array" in remark
+    assert (remark.number, remark.allowed) == (None, None)
+    again = pickle.loads(pickle.dumps(remark))
+    assert (again, again.limit) == (remark, "remark")
+    assert plain_warning(remark) == {"name": "remark", "number": None, "limit": None, "text": str(remark)}
+
+
+def test_refinement_out_of_memory_is_a_remark(monkeypatch: pytest.MonkeyPatch) -> None:
+    room = plan.memory_of("fft", 64)
+    monkeypatch.setattr(plan, "free_memory", lambda: room)
+    s = rf.solve(SMOOTH, accuracy=1e-5)
+    assert s.status is rf.Status.ITERATION_LIMIT
+    assert [(str(w.limit), w.number) for w in s.warnings] == [("remark", None)]
+    assert "friction_coefficient is known to" in s.warnings[0]
 
 
 def test_hardness_in_a_scene_file() -> None:
