@@ -19,6 +19,7 @@ Independent sources add in squares; a model's error is no matter of chance, and 
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -27,6 +28,7 @@ from refimpl.parameters import check_tolerances
 from refimpl.scene import Scene
 from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
 from refimpl.solution import Solution
+from refimpl.surfaces import SurfaceWarning
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,9 @@ def budget(
     """
     tolerances = dict(tolerances or {})
     check_tolerances(scene, tolerances)
-    derivatives = sensitivity(scene, solution)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SurfaceWarning)  # the solution's own warnings have them
+        derivatives = sensitivity(scene, solution)
     sources = _model_form(solution, derivatives)
     numbers = {
         number: Budget(

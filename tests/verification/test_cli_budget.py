@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -29,6 +31,23 @@ def test_a_scene_with_tolerances_gets_a_budget(tmp_path: Path, capsys: pytest.Ca
     independent = math.hypot(mu["numerical"], mu["input"])
     assert mu["total"] == pytest.approx(mu["model_form"] + independent)
     assert set(stated["derivatives"]) == set(NUMBERS)
+
+
+def test_a_budget_repeats_no_warning_of_the_surfaces(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The solution has it: "correlation length" where elements exceed a quarter of one."""
+    scene, found = tmp_path / "scene.toml", tmp_path / "found.json"
+    rough = rf.GaussianRoughness(rms=1e-7, correlation_length=5e-5, seed=3)
+    smooth = rf.read_scene("table1-smooth")
+    scene.write_text(rf.scene_to_toml(replace(smooth, lower=rf.Body(smooth.lower.material, rough))))
+    with warnings.catch_warnings(record=True) as raw:
+        warnings.simplefilter("always")
+        assert main(["solve", str(scene), "--grid", "48", "--budget", "--json", str(found)]) == 0
+    assert [str(w.message) for w in raw] == []
+    assert capsys.readouterr().out.count("warning (correlation length)") == 1
+    told = json.loads(found.read_text())["warnings"]
+    assert sum("correlation length" in w["text"] for w in told) == 1
 
 
 def test_no_budget_unless_asked_for(tmp_path: Path) -> None:
