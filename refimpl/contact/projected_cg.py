@@ -114,7 +114,16 @@ class ProjectedCG:
         return bool(pressing == close == np.count_nonzero(self.contact))
 
     def iterate(self) -> None:
-        """One step of projected CG on the contact set, then the exchange of elements."""
+        """One step of projected CG on the contact set, then the exchange of elements.
+
+        At an approach the set may be empty: there is no step then, and elements that penetrate come back.
+        """
+        if self.contact.any():
+            self._step()
+        self._seen = None
+        self._enter(self.separation < self.approach)
+
+    def _step(self) -> None:
         if self._exchanged:
             self._exchange()
         residual = self._frozen_residual()
@@ -122,8 +131,6 @@ class ProjectedCG:
         self._exchanged = False
         if not (self._trusted and self._step_to_trial(residual, direction)):
             self._step_then_cut(residual, direction)
-        self._seen = None
-        self._enter(self.separation < self.approach)
 
     def _pressing(self) -> Array:
         return self._support.seen(self.pressure)

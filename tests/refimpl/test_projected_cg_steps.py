@@ -158,3 +158,17 @@ def test_residuals_are_never_negative() -> None:
     for pressure in np.random.default_rng(2).uniform(1, 2, 50):
         cg = springs(3.0, [pressure], [0.1], target=pressure)
         assert min(cg.residuals()) >= 0
+
+
+def test_without_contact_what_penetrates_comes_in() -> None:
+    """An empty set takes no step; the next one is on what came in."""
+    cg = springs(4.0, [0.0, 0.0], [1.0, 2.0])
+    for _ in range(2):
+        cg.iterate()
+        assert not cg.contact.any()
+    cg.freeze(np.array([[-1.0, 2.0]]), np.ones((1, 2)), target=None, approach=0.0)
+    cg.iterate()
+    assert cg.contact.tolist() == [[True, False]]
+    assert cg.pressure.tolist() == [[0.0, 0.0]]
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [[4.0, 0.0]], rtol=1e-15)
