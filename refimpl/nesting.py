@@ -63,10 +63,13 @@ def coarsened(fine: Problem) -> Problem:
 
 
 def foundation_pressure(problem: Problem) -> Array:
-    """A pressure to start from: springs under the interference at a guessed approach, at the load."""
+    """A pressure to start from: springs under the interference at a guessed approach, at the load.
+
+    At a prescribed approach it may be none at all: a coarse grid's means can lie above it, and touch nothing.
+    """
     depth = problem.approach if problem.approach is not None else float(np.quantile(problem.gap, 0.3))
     interference = np.maximum(depth - problem.gap, 0.0)
-    if not interference.any():
+    if problem.load is not None and not interference.any():  # in any unit: the load sets the scale
         interference = (problem.gap <= problem.gap.min()).astype(np.float64)
     pressure: Array = interference / (problem.pair.normal_compliance * problem.grid.side)
     if problem.load is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -100,17 +102,18 @@ def test_at_an_approach_it_is_a_foundation_of_the_sides_stiffness() -> None:
     np.testing.assert_allclose(foundation_pressure(posed), expected, rtol=1e-15)
 
 
-def test_without_overlap_the_lowest_element_starts() -> None:
+def test_under_a_load_without_overlap_the_lowest_elements_start() -> None:
     heights = np.zeros((4, 4))
-    heights[1, 2] = 1e-6
-    for approach in (None, 0.0):
-        pressure = foundation_pressure(problem(4, approach=approach, heights=heights))
-        if approach is None:
-            assert np.flatnonzero(pressure).tolist() == [6]
-        else:
-            expected = 1 / (problem(4).pair.normal_compliance * SIDE)
-            assert pressure[1, 2] == pytest.approx(expected, rel=1e-15)
-            assert np.count_nonzero(pressure) == 1
+    heights[1, 2] = heights[3, 0] = 1e-6
+    pressure = foundation_pressure(problem(4, heights=heights))
+    assert np.flatnonzero(pressure).tolist() == [6, 12]
+    assert pressure[1, 2] == pressure[3, 0] == pytest.approx(0.5 * 3.0 / (SIDE / 4) ** 2, rel=1e-14)
+
+
+def test_at_an_approach_that_no_element_reaches_nothing_presses() -> None:
+    """As on a coarse grid, whose means lie above first touch."""
+    posed = problem(4, approach=1e-9)
+    assert not foundation_pressure(replace(posed, gap=posed.gap + 2e-9)).any()
 
 
 def test_touching_is_a_damped_jacobi_step() -> None:

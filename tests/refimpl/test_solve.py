@@ -201,3 +201,43 @@ def test_the_unit_of_pressure_changes_no_bit(method: str, periodic: bool) -> Non
     assert one.status is other.status
     assert one.cost.applications == other.cost.applications
     assert np.array_equal(other.pressure, 2.0**-40 * one.pressure)
+
+
+def nanoscale(unit: float) -> rf.Scene:
+    """Roughness of 0.2 nm rms on a square of 1 um, by the unit: coarse means lie above first touch."""
+    rough = rf.GaussianRoughness(0.2e-9 * unit, 50e-9 * unit, seed=1)
+    return replace(
+        SMOOTH, upper=rf.Body(STEEL, rough), lower=rf.Body(COPPER, rf.Flat()), side=1e-6 * unit, load=1.0
+    )
+
+
+@pytest.mark.parametrize(("unit", "rounding"), [(2.0**-20, 0.0), (2.0**10, 0.0), (1e-6, 1e-9), (1e3, 1e-9)])
+@pytest.mark.parametrize(("M", "approach"), [(64, 1e-11), (33, 1e-13), (64, 1e-10)])
+def test_lengths_all_scaled_alike_change_no_pressure(
+    M: int, approach: float, unit: float, rounding: float
+) -> None:
+    """Also at an approach that nested grids do not reach. Powers of two scale without rounding."""
+    one, other = (rf.solve(nanoscale(u), M, approach=approach * u) for u in (1.0, unit))
+    assert one.status is other.status is rf.Status.CONVERGED
+    np.testing.assert_allclose(other.pressure, one.pressure, rtol=0, atol=rounding * one.max_pressure)
+
+
+@pytest.mark.parametrize("tau", [1e7, 6e7])
+@pytest.mark.parametrize("spike", [(0, 0), (0, 1), (1, 0), (1, 1)])
+def test_a_contact_that_opens_on_the_way_is_found_again(tau: float, spike: tuple[int, int]) -> None:
+    """With tau the one element is pushed off, without it is not: both solvers end in the state without."""
+    gap = np.full((2, 2), 0.175)
+    gap[spike] = 0.0
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(1e9, 0.3), gap),
+        lower=rf.Body(rf.Material(1e10, 0.3), rf.Flat()),
+        friction=rf.Friction(tau, 0.0),
+        load=1.0,
+        side=1.0,
+    )
+    dense, fft = (
+        rf.solve(scene, 2, method=m, approach=1.75e-7, slope_correction=True) for m in ("dense", "fft")
+    )
+    assert fft.status is dense.status
+    np.testing.assert_array_equal(fft.traction, dense.traction)
+    np.testing.assert_allclose(fft.pressure, dense.pressure, rtol=1e-6)
