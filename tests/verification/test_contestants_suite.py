@@ -177,3 +177,12 @@ def test_pressures_without_energy_cannot_be_judged() -> None:
     statuses = {r.id: r.status for r in run(nothing)}
     assert "pass" not in {s for name, s in statuses.items() if name != "contestant/no-tension"}
     assert statuses["contestant/no-tension"] == "error"
+
+
+def test_pressures_beyond_all_numbers_pass_nothing() -> None:
+    """Energies overflow: infinity over infinity is no proof that two answers agree."""
+    huge: Contestant = Limited(lambda p: np.full_like(p.gap, 1e308), own.solve.abilities)
+    with np.errstate(all="ignore"):  # as outside of these tests, where a warning is no exception
+        results = run(huge)
+    assert {r.id for r in results if r.status == "pass"} == set()
+    assert {r.status for r in results} == {"fail", "error"}

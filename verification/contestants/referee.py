@@ -78,8 +78,12 @@ def _filtered(field: Array, symbol: NDArray[np.complex128]) -> Array:
 
 
 def energy(problem: ContactProblem, pressure: Array) -> float:
-    """Elastic energy ``1/2 sum f (a f) dA`` (J)."""
-    return 0.5 * float(np.vdot(pressure, by_pressure(problem, pressure))) * problem.element_area
+    """Elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError for more than a double holds."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        stored = 0.5 * float(np.vdot(pressure, by_pressure(problem, pressure))) * problem.element_area
+    if not np.isfinite(stored):
+        raise ValueError("the pressures hold more elastic energy than a number can")
+    return stored
 
 
 def residual(problem: ContactProblem, pressure: Array) -> Residual:
@@ -90,10 +94,11 @@ def residual(problem: ContactProblem, pressure: Array) -> Residual:
     balance : ``|N - P| / P``, or zero
     tension : largest negative pressure over the largest positive one
 
-    Raises ValueError for pressures without any elastic energy: there is no scale to judge by.
+    Raises ValueError for pressures without any elastic energy, or without a finite one: there is no scale
+    to judge by.
     """
-    v = displacement(problem, pressure) + problem.gap
     stored = energy(problem, pressure)
+    v = displacement(problem, pressure) + problem.gap
     if not stored > 0 or not pressure.max() > 0:
         raise ValueError("the pressures hold no elastic energy")
     level, dA = float(v.min()), problem.element_area
@@ -114,7 +119,7 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
     It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
     tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
-    it is the load balance's affair.) Raises ValueError where ``f*`` holds no energy.
+    it is the load balance's affair.) Raises ValueError where ``f*`` holds no energy, or one of them no finite.
     """
     stored = energy(problem, exact)
     if not stored > 0:
