@@ -81,7 +81,10 @@ def test_an_approach_counts_from_the_mean_planes_only_where_it_is_periodic() -> 
         (None, "no array"),
         ([[1.0, 1.0], [1.0, 1.0]], "no array"),
         (Answer(FINE, False), "converged = False"),
+        (Answer(FINE, np.False_), "converged = .*False"),
         (Answer(FINE, 1), "converged = 1"),
+        (Answer(FINE, np.array([True])), "converged = array"),
+        (Answer(FINE, "yes"), "converged = 'yes'"),
         (Answer(None, True), "real numbers"),
         (Answer([[1.0], [1.0, 1.0]], True), "inhomogeneous"),
     ],
@@ -96,7 +99,7 @@ def _still() -> ContactProblem:
 
 
 def test_an_array_and_an_answer_are_accepted() -> None:
-    for answer in (FINE, FINE.astype(int), Answer([[1, 1], [1, 1]], True)):
+    for answer in (FINE, FINE.astype(int), Answer([[1, 1], [1, 1]], True), Answer(FINE, np.True_)):
         np.testing.assert_array_equal(ask(lambda problem, a=answer: a, _still()), FINE)  # type: ignore[misc]
 
 

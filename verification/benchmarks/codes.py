@@ -64,7 +64,7 @@ def _peer(peer: Peer, kind: str, M: int, tolerance: float) -> Callable[[], Press
 
     def press() -> Pressed:
         answer = peer(posed)
-        return Pressed(np.asarray(answer.pressure), answer.converged, answer.operations)
+        return Pressed(np.asarray(answer.pressure), bool(answer.converged), answer.operations)
 
     return press
 

@@ -133,7 +133,7 @@ class Answer:
     """Pressures ``(M, M)`` (Pa) and whether the solver says that they solve the problem."""
 
     pressure: ArrayLike
-    converged: bool
+    converged: bool | np.bool_
 
 
 @dataclass(frozen=True)
@@ -230,7 +230,7 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Array:
         raise Unsupported(f"the solver does not offer: {lacking}")
     answer = contestant(replace(problem, gap=problem.gap))
     if isinstance(answer, Answer):
-        if answer.converged is not True:
+        if not (isinstance(answer.converged, bool | np.bool_) and answer.converged):
             raise BadAnswer(f"the solver says converged = {answer.converged!r}")
         answer = np.asarray(answer.pressure)
     if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
