@@ -209,9 +209,15 @@ def test_a_program_that_answers_wrongly_fails() -> None:
 def test_a_command_is_checked() -> None:
     (missing,) = run(Command(("./not-there",), Abilities(), 1.0), ["contestant/one-element"])
     assert (missing.status, "cannot run ./not-there" in missing.note) == ("error", True)
-    for line, timeout in (("", 1.0), ("solve 'it", 1.0), ("solve", 0.0)):
-        with pytest.raises(InputError, match=r"--exec|--timeout"):
+    for line, timeout, said in (
+        ("", 1.0, "--exec = '': expected a command"),
+        ("solve 'it", 1.0, '--exec = "solve \'it": expected a command (No closing quotation)'),
+        *(("solve", wrong, f"--timeout = {wrong}: expected seconds") for wrong in (0.0, -1.0, np.inf)),
+    ):
+        with pytest.raises(InputError) as refused:
             Command.of(line, Abilities(), timeout)
+        assert str(refused.value).startswith(said)
+        assert str(refused.value).count("expected") == 1
     assert Command.of("solve 'a b' -q", Abilities(), 1.0).words == ("solve", "a b", "-q")
 
 
@@ -230,11 +236,20 @@ def solve(problem):
 number = 3
 """
 
+IMPORTS = {
+    "rival_unwritten": "def solve(problem:",
+    "rival_raising": "raise RuntimeError('no licence\\nfound')",
+    "rival_leaving": "import sys; sys.exit('bye')",
+    "rival_dying": "import os; os._exit(7)",
+}
+
 
 @pytest.fixture
 def rival(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A directory to run in, with a module of solvers that misbehave."""
     (tmp_path / "rival_solver.py").write_text(RIVAL)
+    for name, source in IMPORTS.items():
+        (tmp_path / f"{name}.py").write_text(source)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -253,7 +268,7 @@ def test_a_solver_that_exits_or_hangs_is_an_error_and_the_rest_still_runs(
 
 
 def test_the_command_line_runs_a_solver(rival: Path, capfd: Capture) -> None:
-    able = ["--able", "load,approach,aperiodic", "--only", "contestant/one-element"]
+    able = ["--able", "load,approach,aperiodic", "--timeout", "86400", "--only", "contestant/one-element"]
     assert main(["verify", "--solver", "rival_solver:solve", *able, "--json", "-"]) == 0
     document = json.loads(capfd.readouterr().out)
     assert document["contestant"]["name"] == "rival_solver:solve"
@@ -283,12 +298,25 @@ def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
         (["--solver", "rival_solver"], "package.module:function"),
         (["--solver", "rival_solver:number"], "package.module:function"),
         (["--solver", "rival_solver:absent"], "absent"),
+        (["--solver", "rival_unwritten:solve"], "'rival_unwritten:solve': expected package.module:function"),
+        (["--solver", "rival_unwritten:solve"], "SyntaxError: '(' was never closed"),
+        (["--solver", "rival_raising:solve"], "RuntimeError: no licence found"),
+        (["--solver", "rival_leaving:solve"], "SystemExit: bye"),
+        (["--solver", "rival_dying:solve"], "'rival_dying:solve': expected a solver whose import ends well"),
+        (["--solver", "rival_dying:solve"], "its process died, exit status 7"),
         (["--solver", "rival_solver:solve", "--able", "magic"], "magic"),
         (["--solver", "rival_solver:solve", "--largest", "0"], "largest"),
         (["--solver", "rival_solver:solve", "--precision", "0.1"], "precision"),
         (["--solver", "rival_solver:solve", "--only", "hertz/*"], "no case of the suite matches"),
         (["--exec", "'"], "--exec"),
-        (["--exec", "true", "--timeout", "0"], "--timeout"),
+        (["--exec", ""], "--exec = '': expected a command\n"),
+        (["--exec", "true", "--timeout", "0"], "--timeout = 0.0: expected seconds for one problem, above 0"),
+        (["--exec", "true", "--timeout", "-1"], ": --timeout = -1.0"),
+        *(
+            ([*solver, "--timeout", late], "at most 86400")
+            for solver in (["--exec", "true"], ["--solver", "rival_solver:solve"])
+            for late in ("inf", "nan", "1e9", "400000")
+        ),
         (["--exec", "true", "--solver", "rival_solver:solve"], "not allowed with"),
         (["--able", "load"], "nothing without --solver or --exec"),
     ],

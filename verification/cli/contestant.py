@@ -44,7 +44,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--precision", metavar="P", type=float, help="relative residual that it claims (default 1e-8)"
     )
-    group.add_argument("--timeout", metavar="S", type=float, help="seconds for one problem (default 60)")
+    group.add_argument(
+        "--timeout",
+        metavar="S",
+        type=float,
+        help="seconds for one problem (default 60); a --solver has 6 S + 10 for a case of up to 6",
+    )
 
 
 def chosen(options: argparse.Namespace) -> bool:
@@ -83,6 +88,7 @@ def run(options: argparse.Namespace) -> int:
         source,
         options.only,
         timeout=_timeout(options),
+        name=name,
         tick=lambda r: progress.tick(f"{r.status:<11} {r.id}"),
     )
     progress.close()

@@ -29,16 +29,25 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from verification.contestants.protocol import Abilities, Answer, BadAnswer, ContactProblem
+
+LONGEST = 86400.0
+"""Seconds that one problem may take: a day. The system's clocks for waiting end at some weeks."""
+
+
+def require_timeout(seconds: float) -> None:
+    """Raise `InputError` for a time that nobody can wait."""
+    allowed = f"seconds for one problem, above 0 and at most {LONGEST:g}"
+    require_number("--timeout", seconds, allowed, above=0, at_most=LONGEST)
 
 
 @dataclass(frozen=True)
 class Command:
     """A program with its arguments; ``timeout`` in seconds for one problem.
 
-    Raises `InputError` for an empty command or a time that is not positive.
+    Raises `InputError` for an empty command or a time out of range.
     """
 
     words: tuple[str, ...]
@@ -48,16 +57,16 @@ class Command:
     def __post_init__(self) -> None:
         if not self.words:
             raise InputError("--exec", "", "a command")
-        if not self.timeout > 0:
-            raise InputError("--timeout", self.timeout, "a positive number of seconds")
+        require_timeout(self.timeout)
 
     @classmethod
     def of(cls, line: str, abilities: Abilities, timeout: float) -> Command:
         """From a command line, split like a shell does; no shell runs it."""
         try:
-            return cls(tuple(shlex.split(line)), abilities, timeout)
+            words = tuple(shlex.split(line))
         except ValueError as unbalanced:
             raise InputError("--exec", line, f"a command ({unbalanced})") from unbalanced
+        return cls(words, abilities, timeout)
 
     def contestant(self) -> Command:
         """Itself: a source for `verification.contestants.isolated`."""

@@ -18,6 +18,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Array
 from verification.case import Result, Status
 from verification.contestants.check import Check
+from verification.contestants.command import require_timeout
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
 from verification.contestants.suite import select, suite
 
@@ -40,7 +41,7 @@ class Named:
     abilities: Abilities | None = None
 
     def contestant(self) -> Contestant:
-        """Import the object. Raises `InputError` where there is none, or where it cannot be called."""
+        """Import the object. Raises `InputError` where that fails, and where it cannot be called."""
         module, _, attribute = self.name.partition(":")
         allowed = "package.module:function, importable from here"
         if not module or not attribute:
@@ -50,8 +51,9 @@ class Named:
             found: Any = importlib.import_module(module)
             for part in attribute.split("."):
                 found = getattr(found, part)
-        except (ImportError, AttributeError) as missing:
-            raise InputError("--solver", self.name, f"{allowed} ({missing})") from missing
+        except (Exception, SystemExit) as broken:  # a module may do anything when it is imported
+            reason = f"{type(broken).__name__}: {broken}"
+            raise InputError("--solver", self.name, f"{allowed} ({reason})") from broken
         if not callable(found):
             raise InputError("--solver", self.name, allowed)
         abilities_of(found)
@@ -77,10 +79,9 @@ Source = Callable[[], Contestant]
 class Table:
     """Runs checks one by one in a child process, and starts a new one after a death or a timeout."""
 
-    def __init__(self, source: Source, timeout: float) -> None:
-        if not timeout > 0:
-            raise InputError("--timeout", timeout, "a positive number of seconds")
-        self._source, self._limit = source, MOST_PROBLEMS * timeout + GRACE
+    def __init__(self, source: Source, timeout: float, name: str) -> None:
+        require_timeout(timeout)
+        self._source, self._limit, self._name = source, MOST_PROBLEMS * timeout + GRACE, name
         self._open()
 
     def run(self, check: Check) -> Result:
@@ -114,13 +115,21 @@ class Table:
         self._process = context.Process(target=_serve, args=(theirs, self._source))
         self._process.start()
         theirs.close()
-        refusal: InputError | None = InputError("--solver", self._source, "a solver whose import ends well")
-        with suppress(EOFError):
-            if self._pipe.poll(START):
-                refusal = self._pipe.recv()
+        refusal = self._refusal()
         if refusal is not None:
             self.close()
             raise refusal
+
+    def _refusal(self) -> InputError | None:
+        """What the new process has against the solver, or what became of the process itself."""
+        try:
+            if self._pipe.poll(START):
+                refused: InputError | None = self._pipe.recv()
+                return refused
+            reason = f"no end within {START:g} s"
+        except EOFError:
+            reason = f"its process died, exit status {self._exit_status()}"
+        return InputError("--solver", self._name, f"a solver whose import ends well ({reason})")
 
     def _exit_status(self) -> int | None:
         self._process.join(1.0)
@@ -151,14 +160,22 @@ def _serve(pipe: Connection, source: Source) -> None:
 
 
 def run(
-    source: Source, globs: Iterable[str], *, timeout: float, tick: Callable[[Result], None] = lambda r: None
+    source: Source,
+    globs: Iterable[str],
+    *,
+    timeout: float,
+    name: str = "the solver",
+    tick: Callable[[Result], None] = lambda r: None,
 ) -> list[Result]:
     """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
+
+    A check is ended after `MOST_PROBLEMS` times that and `GRACE`: a function cannot be timed from outside
+    problem by problem. ``name`` is what a refusal calls the solver.
 
     Raises `InputError` for a contestant that cannot be had, LookupError for a glob that matches nothing.
     """
     chosen = select(globs)
-    table, results = Table(source, timeout), []
+    table, results = Table(source, timeout, name), []
     try:
         for check in chosen:
             results.append(table.run(check))

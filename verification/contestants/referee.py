@@ -119,7 +119,7 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
     It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
     tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
-    it is the load balance's affair.) Raises ValueError where ``f*`` holds no energy, or one of them no finite.
+    it is the load balance's affair.) Raises ValueError where ``f*`` holds no energy, or no finite one.
     """
     stored = energy(problem, exact)
     if not stored > 0:
