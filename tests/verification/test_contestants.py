@@ -338,5 +338,5 @@ def test_the_suite_and_the_self_test_can_be_listed(capfd: Capture) -> None:
     assert "contestant/trailing-shift" in capfd.readouterr().out
     assert main(["verify", "--self-test", "--list"]) == 0
     listed = capfd.readouterr().out.splitlines()
-    assert len([line for line in listed if "contestants/catches-" in line]) == 18
+    assert len([line for line in listed if "contestants/catches-" in line]) == 19
     assert own.solve.version.startswith("refimpl ")

@@ -40,6 +40,7 @@ class Fault(StrEnum):
     STATE_KEPT = "state kept from an earlier problem"
     ABSOLUTE_THRESHOLD = "absolute threshold"
     TAU_EVERYWHERE = "tau outside the contact"
+    ODD_GRIDS = "odd number of elements"
 
 
 @dataclass(frozen=True, eq=False)
