@@ -42,7 +42,7 @@ def solve_dense(problem: Problem, operator: DenseInfluence) -> tuple[Outcome, St
     """Outcome and certified state; statuses `CONVERGED`, `CYCLED`, `ITERATION_LIMIT`.
 
     The outcome's status speaks of the loops only. Raises `ArithmeticError` when the frozen problem
-    has no solution.
+    has no solution: no approach balances the load, or the matrix is no P-matrix.
     """
     solver = _DenseSolver(problem, operator)
     rule = TauSupport(problem.gap.shape)
@@ -125,7 +125,10 @@ class _DenseSolver:
         for _ in range(_APPROACH_ITERATIONS):
             right = np.stack([frozen.K, frozen.K * h + frozen.g], axis=1)
             per_approach, at_zero = restricted_solve(frozen.G, right, self.active).T
-            approach = (target + frozen.weights @ at_zero) / (frozen.weights @ per_approach)
+            stiffness = float(frozen.weights @ per_approach)
+            if stiffness == 0:  # nothing presses: shear on slopes alone bears the load, or more than that
+                break
+            approach = (target + frozen.weights @ at_zero) / stiffness
             if not low < approach < high:
                 approach = 0.5 * (low + high)
             found = complementarity(frozen.G, frozen.g - frozen.K * (approach - h), self.active)

@@ -77,7 +77,9 @@ def solve(
         after another load the nested grids get there sooner
     progress : is called with a line of text at every step of the work
 
-    Raises `InputError` for input that is out of range, before anything large is allocated.
+    Raises `InputError` for input that is out of range, before anything large is allocated; and, by "dense"
+    alone, `ArithmeticError` where a problem that it meets on its way has no solution: shear on slopes bears
+    more than the load, say, so that no approach balances it. Other methods end with a status then.
     """
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "a function of one line of text")

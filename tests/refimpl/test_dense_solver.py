@@ -224,3 +224,18 @@ def test_newton_steps_that_are_not_within_the_bracket_halve_it(
     solver._solve_load(dense_solver._Frozen(np.eye(M**2), zero, one, one, 0.0), zero)
     assert tried == pytest.approx([1.0, 5.0, 3.0, 4.0], rel=1e-9)
     assert solver.solves == 8
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.7, 2.5])
+def test_shear_on_slopes_that_bears_more_than_the_load_leaves_no_approach(direction: float) -> None:
+    """Nothing presses then, and a change of approach changes no load: said by name, not by a division."""
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(1e11, 0.45), rf.Sphere(11742.5)),
+        lower=rf.Body(rf.Material(1e11, 0.3), rf.Flat()),
+        friction=rf.Friction(tau=2.2e7, beta=0.1),
+        load=7e8,
+        side=1e3,
+        sliding_direction=direction,
+    )
+    with pytest.raises(ArithmeticError, match="no approach balances the load"):
+        rf.solve(scene, 2, method="dense")
