@@ -16,6 +16,7 @@ from refimpl.scene import Scene
 from refimpl.slopes import Slopes
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
+from refimpl.surfaces.window import ROUNDING
 
 if TYPE_CHECKING:
     from refimpl.solution import Solution
@@ -35,6 +36,7 @@ class Limit(StrEnum):
     MAX_SLOPE = "maximum slope"
     BORDER = "border"
     CORRELATION = "correlation length"
+    DATA = "points of data"
     RADIUS = "contact radius"
     TAU_SUPPORT = "tau support"
     LEFT_OUT = "left out"
@@ -77,6 +79,7 @@ def cautions(solution: Solution, scene: Scene) -> tuple[Caution, ...]:
         *_slopes(solution),
         _border(solution),
         _correlation(solution),
+        _data(solution, scene),
         _radius(solution),
         _tau_support(solution),
         *_left_out(solution),
@@ -177,13 +180,28 @@ def _correlation(solution: Solution) -> Caution | None:
     return Caution(Limit.CORRELATION, asked.elements, _CORRELATION, text)
 
 
+def _data(solution: Solution, scene: Scene) -> Caution | None:
+    """Of measured heights and arrays, which are sampled and not averaged."""
+    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
+    pitches = [pitch for part in parts if (pitch := part.pitch(scene.side)) is not None]
+    points = solution.grid.spacing / min(pitches, default=math.inf)
+    text = (
+        f"{points:.2g} points of a surface's data per element: those between the elements' centres are not "
+        "seen, and error bars do not know of them"
+    )
+    return Caution(Limit.DATA, points, 1, text) if points > 1 + ROUNDING else None
+
+
 def _radius(solution: Solution) -> Caution | None:
     """Of a mean circle; full contact has no edge to resolve."""
     if solution.contact.all():
         return None
     _, spots = ndimage.label(solution.contact, np.ones((3, 3)))
     radius = math.sqrt(np.count_nonzero(solution.contact) / (math.pi * spots))
-    text = f"spots of contact have a mean radius of {radius:.2g} elements: areas are coarse below 3"
+    text = (
+        f"spots of contact have a mean radius of {radius:.2g} elements: areas are coarse, and no bar of "
+        "peaks and approaches holds, below 3"
+    )
     return Caution(Limit.RADIUS, radius, _RADIUS, text) if radius < _RADIUS else None
 
 

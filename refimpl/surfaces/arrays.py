@@ -53,6 +53,9 @@ class ArraySurface(Surface):
             *self.cautions(grid),
         )
 
+    def pitch(self, side: float) -> float:
+        return side / float(max(self.data.shape))
+
     def cautions(self, grid: Grid) -> tuple[str, ...]:
         if min(self.data.shape) >= grid.M:
             return ()

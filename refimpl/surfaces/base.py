@@ -57,6 +57,10 @@ class Surface(ABC):
         """The part of ``describe`` that a user should be warned of."""
         return ()
 
+    def pitch(self, side: float) -> float | None:
+        """Finest distance between its points of data on a square of that side (m); None for a formula."""
+        return None
+
     @property
     def parts(self) -> tuple[Surface, ...]:
         """The surfaces that add up to this one."""

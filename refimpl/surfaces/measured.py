@@ -108,6 +108,9 @@ class MeasuredSurface(Surface):
             *self.cautions(grid),
         )
 
+    def pitch(self, side: float) -> float:
+        return min(self.reading.pixel)
+
     def cautions(self, grid: Grid) -> tuple[str, ...]:
         name, window = self._file.name, Window(self.reading, grid.side)
         said = []

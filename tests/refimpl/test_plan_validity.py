@@ -111,6 +111,14 @@ def test_elements_per_correlation_length_told_once() -> None:
     assert Limit.CORRELATION not in named(rf.solve(rough(0.3e-6), 64))
 
 
+@pytest.mark.parametrize(("M", "points"), [(32, 2.0), (64, None), (65, None)])
+@pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
+def test_points_of_data_between_elements(M: int, points: float | None) -> None:
+    heights = np.zeros((48, 64))
+    warned = named(rf.solve(replace(SMOOTH, lower=rf.Body(STEEL, heights)), M)).get(Limit.DATA)
+    assert (warned and warned.number) == points
+
+
 def test_elements_per_contact_radius() -> None:
     s = rf.solve(replace(SMOOTH, load=0.05), 64)
     warned = named(s)[Limit.RADIUS]
