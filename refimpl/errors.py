@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+LEAST, MOST = 1e-30, 1e30  # of lengths, moduli and loads in SI: their squares and products stay doubles
+
 
 class InputError(ValueError):
     """Input refused at the border: names the field, the value and what is allowed.
@@ -85,3 +87,14 @@ def require_number(
         ):
             return
     raise InputError(field, value, allowed)
+
+
+def require_size(field: str, value: object, allowed: str) -> None:
+    """Raise `InputError` unless ``value`` is a positive size in SI units that arithmetic can bear.
+
+    >>> require_size("side", 1e-200, "a positive length in m")
+    Traceback (most recent call last):
+    ...
+    refimpl.errors.InputError: side = 1e-200: expected a positive length in m, 1e-30 to 1e+30
+    """
+    require_number(field, value, f"{allowed}, {LEAST} to {MOST}", at_least=LEAST, at_most=MOST)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, require_number
+from refimpl.errors import InputError, require_size
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Grid:
     def __post_init__(self) -> None:
         if not (isinstance(self.M, int | np.integer) and not isinstance(self.M, bool) and self.M >= 1):
             raise InputError("grid", self.M, "a whole number of elements per side, at least 1")
-        require_number("side", self.side, "a positive length in m", above=0)
+        require_size("side", self.side, "a positive length in m")
 
     @property
     def spacing(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from refimpl.errors import require_number
+from refimpl.errors import require_number, require_size
 
 
 @dataclass(frozen=True)
@@ -25,10 +25,10 @@ class Material:
     hardness: float | None = None
 
     def __post_init__(self) -> None:
-        require_number("E", self.E, "a positive, finite Young's modulus in Pa", above=0)
+        require_size("E", self.E, "a positive, finite Young's modulus in Pa")
         require_number("nu", self.nu, "a Poisson's ratio in (-1, 0.5]", above=-1, at_most=0.5)
         if self.hardness is not None:
-            require_number("hardness", self.hardness, "a positive, finite hardness in Pa", above=0)
+            require_size("hardness", self.hardness, "a positive, finite hardness in Pa")
 
     @property
     def plane_strain_modulus(self) -> float:

@@ -12,6 +12,9 @@ from refimpl.refine import Quantity, check_accuracy, check_quantity, deserved_to
 from refimpl.scene import Scene
 from refimpl.solution import Solution
 
+# Of mean pressure and tau over the reduced modulus, and of approaches over the side.
+LEAST_STRAIN, MOST_STRAIN = 1e-30, 1e6
+
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
@@ -41,6 +44,7 @@ class Request:
             periodic = self.scene.periodic
             allowed = "an approach below 0 m (mean planes)" if periodic else "a finite approach in m"
             require_number("approach", self.approach, allowed, below=0 if periodic else None)
+        self._check_strains()
         check_quantity(self.judged)
         if self.accuracy is not None:
             check_accuracy(self.accuracy)
@@ -50,6 +54,22 @@ class Request:
             raise InputError("grid", self.grid, allowed)
         if self.start is not None:
             self._check_start(self.start)
+
+    def _check_strains(self) -> None:
+        """No body is elastic so far; beyond, squares of slopes would overflow."""
+        side, modulus = self.scene.side, self.scene.materials.reduced_modulus
+        most = MOST_STRAIN * modulus
+        allowed = f"at most {most:.3g} Pa, {MOST_STRAIN:g} times the reduced modulus"
+        require_number("friction.tau", self.scene.friction.tau, allowed, at_most=most)
+        if self.approach is None:
+            least, most = (strain * modulus * side**2 for strain in (LEAST_STRAIN, MOST_STRAIN))
+            share = f"{LEAST_STRAIN:g} to {MOST_STRAIN:g} reduced moduli on the square"
+            allowed = f"{least:.3g} to {most:.3g} N, {share}"
+            require_number("load", self.scene.load, allowed, at_least=least, at_most=most)
+        else:
+            most = MOST_STRAIN * side
+            allowed = f"at most {most:.3g} m either way, {MOST_STRAIN:g} times the side"
+            require_number("approach", self.approach, allowed, at_least=-most, at_most=most)
 
     def _check_switches(self) -> None:
         for name in ("oblique", "coupled", "tilted"):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError, require_number
+from refimpl.errors import MOST, InputError, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.materials import Material, Pair
 from refimpl.surfaces import Surface, as_surface
@@ -26,7 +26,8 @@ class Friction:
 
     def __post_init__(self) -> None:
         require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
-        require_number("friction.beta", self.beta, "a finite number, not negative", at_least=0)
+        allowed = "a finite number, not negative, at most 1e6"
+        require_number("friction.beta", self.beta, allowed, at_least=0, at_most=1e6)
 
     @property
     def is_zero(self) -> bool:
@@ -81,9 +82,10 @@ class Scene:
         if not isinstance(self.friction, Friction):
             raise InputError("friction", self.friction, "a Friction")
         require_number("load", self.load, "a positive normal load in N", above=0)
-        require_number("side", self.side, "a positive length in m", above=0)
+        require_size("side", self.side, "a positive length in m")
         require_number("sliding_direction", self.sliding_direction, "a finite angle in rad")
-        require_number("sliding_offset", self.sliding_offset, "a finite length in m")
+        allowed = f"a finite length in m, at most {MOST} either way"
+        require_number("sliding_offset", self.sliding_offset, allowed, at_least=-MOST, at_most=MOST)
         if not isinstance(self.periodic, bool):
             raise InputError("periodic", self.periodic, "true or false")
 

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, as_double
+from refimpl.errors import LEAST, InputError, as_double
 from refimpl.grid import Array, Grid
 
 
@@ -130,7 +130,8 @@ def finite(field: str, value: object, allowed: str) -> float:
 
 
 def positive(field: str, value: object, allowed: str) -> float:
-    """``value`` as a float if it is a finite number above zero; else InputError."""
-    if finite(field, value, allowed) <= 0:
+    """``value`` as a float if it is a finite number from ``LEAST`` up; else InputError."""
+    allowed = f"{allowed}, from {LEAST} up"
+    if finite(field, value, allowed) < LEAST:
         raise InputError(field, value, allowed)
     return float(value)  # type: ignore[arg-type]  # `finite` has seen it

@@ -23,7 +23,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.sparse import csr_array
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.base import Surface, positive
 from refimpl.surfaces.noise import white_noise
@@ -58,7 +58,8 @@ class GaussianRoughness(Surface):
     kind: ClassVar[str] = "gaussian"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "rms", positive("rms", self.rms, "a positive rms height in m"))
+        require_size("rms", self.rms, "a positive rms height in m")
+        object.__setattr__(self, "rms", float(self.rms))
         length = positive("correlation_length", self.correlation_length, "a positive length in m")
         object.__setattr__(self, "correlation_length", length)
         whole = isinstance(self.seed, int | np.integer) and not isinstance(self.seed, bool)

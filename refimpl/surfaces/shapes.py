@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import LEAST, InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.base import Surface, finite
 
@@ -38,8 +38,8 @@ class Sphere(Surface):
     kind: ClassVar[str] = "sphere"
 
     def __post_init__(self) -> None:
-        allowed = "a non-zero length in m: positive for an upper ball, negative for a lower one"
-        if finite("radius", self.radius, allowed) == 0:
+        allowed = f"a length in m, positive for an upper ball, negative for a lower one, from {LEAST} up"
+        if abs(finite("radius", self.radius, allowed)) < LEAST:
             raise InputError("radius", self.radius, allowed)
         object.__setattr__(self, "radius", float(self.radius))
 

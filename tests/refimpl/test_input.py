@@ -87,6 +87,30 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
         "oblique",
         lambda: rf.solve(SCENE, 8, oblique=False, slope_correction=True),
     ),
+    "load beyond arithmetic": ("load", lambda: rf.solve(replace(SCENE, load=1e300), 8)),
+    "load of nothing": ("load", lambda: rf.solve(replace(SCENE, load=1e-300), 8)),
+    "load of many moduli": ("load", lambda: rf.solve(replace(SCENE, load=1e15), 8)),
+    "side whose square is no number": ("side", lambda: replace(SCENE, side=1e-200)),
+    "side beyond arithmetic": ("side", lambda: replace(SCENE, side=1e200)),
+    "side of a grid beyond arithmetic": ("side", lambda: rf.Grid(1e-200, 8)),
+    "modulus of nothing": ("E", lambda: rf.Material(1e-300, 0.3)),
+    "modulus beyond arithmetic": ("E", lambda: rf.Material(1e300, 0.3)),
+    "hardness beyond arithmetic": ("hardness", lambda: rf.Material(1e9, 0.3, hardness=1e300)),
+    "tau of many moduli": (
+        "friction.tau",
+        lambda: rf.solve(replace(SCENE, friction=rf.Friction(tau=1e300)), 8),
+    ),
+    "beta beyond arithmetic": ("friction.beta", lambda: rf.Friction(beta=1e300)),
+    "slide beyond arithmetic": ("sliding_offset", lambda: replace(SCENE, sliding_offset=-1e300)),
+    "radius of nothing": ("radius", lambda: rf.Sphere(-1e-320)),
+    "rms beyond arithmetic": ("rms", lambda: rf.GaussianRoughness(1e300, 1e-4, 1)),
+    "correlation length of nothing": ("correlation_length", lambda: rf.GaussianRoughness(1e-7, 1e-300, 1)),
+    "pixel of nothing": ("pixel_size", lambda: rf.MeasuredSurface("a.npy", pixel_size=1e-300)),
+    "approach of many sides": ("approach", lambda: rf.solve(SCENE, 8, approach=1e300)),
+    "approach of many sides, periodic": (
+        "approach",
+        lambda: rf.solve(replace(SCENE, periodic=True), 8, approach=-1e300),
+    ),
     "scene as its name": ("scene", lambda: rf.solve("hertz", 16)),
     "scene as number": ("scene", lambda: rf.solve(3, 16, approach=1e-6)),
     "oblique as text": ("oblique", lambda: rf.solve(SCENE, 8, oblique="no")),
@@ -217,6 +241,26 @@ def test_a_bad_scene_file_is_refused(name: str, tmp_path: Path) -> None:
         rf.solve(rf.read_scene(path), 8)
     assert caught.value.field == field
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("size", [1e-30, 1e30])
+@pytest.mark.parametrize("modulus", [1e-30, 1e30])
+@pytest.mark.parametrize("strain", [1e-29, 1e-4, 1e2])
+@pytest.mark.parametrize("method", ["fft", "dense"])
+def test_sizes_at_the_ends_of_what_is_allowed(
+    size: float, modulus: float, strain: float, method: Any
+) -> None:
+    """No overflow, no division by zero (RuntimeWarnings are errors); the smallest forces are still found."""
+    material = rf.Material(modulus, 0.3)
+    scene = rf.Scene(
+        upper=rf.Body(material, rf.Sphere(100 * size)),
+        lower=rf.Body(material, rf.Flat()),
+        friction=rf.Friction(0.0, 0.1),
+        load=strain * modulus * size**2,
+        side=size,
+    )
+    s = rf.solve(scene, 8, method=method)
+    assert math.isfinite(s.friction_coefficient)
 
 
 @pytest.mark.parametrize("surface", [np.zeros((8, 8)), rf.GaussianRoughness(1e-7, 1e-4, seed=1)])

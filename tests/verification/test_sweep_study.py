@@ -129,7 +129,7 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("load", {"vary": {"grid": [16], "load": [-1]}}),
     ("vary.load", {"vary": {"grid": [16], "load": [float("nan")]}}),
     ("vary.lower_rms", {"scene": "table1-smooth", "vary": {"grid": [16], "lower_rms": [1e-6]}}),
-    ("rms", {"vary": {"grid": [16], "lower_rms": [-1e-6]}}),
+    ("lower.surface[0].rms", {"vary": {"grid": [16], "lower_rms": [-1e-6]}}),
     ("solve.speed", {"solve": {"speed": 1}}),
     ("vary", {"realisations": 10**6, "vary": {"grid": [16], "load": [1, 2]}}),
 ]
