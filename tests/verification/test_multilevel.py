@@ -82,6 +82,12 @@ def test_a_study_that_is_no_ensemble_is_refused(tmp_path: Path, change: dict, fi
     assert refused.value.field == field
 
 
+def test_a_scene_without_scatter_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="Gaussian"):
+        ensemble(study_from_dict(TABLE | {"scene": "hertz"}), tmp_path / "a.sqlite", 0.05)
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("target", [0.0, 1.0, -0.1])
 def test_a_target_out_of_range_is_refused(tmp_path: Path, target: float) -> None:
     with pytest.raises(InputError, match="target-error"):

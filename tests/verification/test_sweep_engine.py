@@ -62,6 +62,14 @@ def test_nothing_can_be_kept_twice(tmp_path: Path) -> None:
         store.add(run, done.rows[0], 0.0)
 
 
+def test_a_point_without_roughness_is_one_run_of_all_its_realisations(tmp_path: Path) -> None:
+    axes = {"grid": [8], "upper_rms": [0.0], "lower_rms": [0.0, 1e-6], "correlation_length": [1e-4, 2e-4]}
+    study = study_from_dict({"scene": "table1-rough", "realisations": 2, "vary": axes})
+    done = engine.sweep(study, tmp_path / "s.sqlite", workers=0)
+    assert (done.found, done.finished) == (0, 1 + 2 * 2)
+    assert [row["lower_rms"] for row in done.rows] == [0.0, 1e-6, 1e-6, 1e-6, 1e-6]
+
+
 def test_a_failed_run_is_told_not_kept_and_tried_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

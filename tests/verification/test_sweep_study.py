@@ -130,6 +130,12 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("vary.load", {"vary": {"grid": [16], "load": [float("nan")]}}),
     ("vary.lower_rms", {"scene": "table1-smooth", "vary": {"grid": [16], "lower_rms": [1e-6]}}),
     ("lower.surface[0].rms", {"vary": {"grid": [16], "lower_rms": [-1e-6]}}),
+    ("realisations", {"scene": "hertz", "realisations": 3}),
+    ("realisations", {"vary": {"grid": [16], "upper_rms": [0.0], "lower_rms": [0.0]}}),
+    (
+        "vary.correlation_length",
+        {"scene": "hertz", "realisations": 1, "vary": {"grid": [16], "correlation_length": [1e-4, 2e-4]}},
+    ),
     ("solve.speed", {"solve": {"speed": 1}}),
     ("vary", {"realisations": 10**6, "vary": {"grid": [16], "load": [1, 2]}}),
 ]

@@ -145,4 +145,8 @@ def _checked(study: Study, target: float) -> list[int]:
         raise InputError("vary.grid", grids, "two grids or more, each twice the one before")
     if not 0 < target < 1:
         raise InputError("--target-error", target, "a share between 0 and 1, or a percentage like 0.5%")
+    if not study.is_rough:
+        raise InputError(
+            "--target-error", target, "none: no surface of the scene is Gaussian, nothing scatters"
+        )
     return grids

@@ -50,8 +50,8 @@ class Progress:
 class Sweep:
     """What a sweep did: runs found in the store, finished now, and failed (key to message).
 
-    ``rows`` are those of the study in its order, all of them exactly when nothing failed; ``solve_seconds``
-    is the processor time that each took, whenever that was.
+    ``rows`` are those of the study in its order, all of them exactly when nothing failed, and one for points
+    that are the same run; ``solve_seconds`` is the processor time that each took, whenever that was.
     """
 
     found: int
@@ -82,7 +82,8 @@ def sweep(
     another sweep is using or a scheduler that cannot serve, WorkersLost when a worker process was killed.
     """
     started = time.perf_counter()
-    runs = list(study.runs())
+    # Points without roughness are the same run in every realisation, and are solved once.
+    runs = list({run.key: run for run in study.runs()}.values())
     with ExitStack() as stack:
         kept = stack.enter_context(open_store(store))
         present = kept.keys()

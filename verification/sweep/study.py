@@ -36,6 +36,7 @@ class Study:
     directions are compared on the same surfaces.
 
     ``vary`` maps names of `AXES` to their values (SI, rad); an rms of 0 leaves that body's roughness out.
+    Realisations are of Gaussian roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
     `refimpl.solve`.
     """
@@ -54,6 +55,14 @@ class Study:
         for k in range(self.realisations):
             for point in itertools.product(*values):
                 yield self._run(k, dict(zip(AXES, point, strict=True)), files)
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether realisations differ anywhere: at some point, a surface is Gaussian."""
+        return any(
+            _gaussian(self.scene[side], "rms") and any(self.vary.get(f"{side}_rms", (True,)))
+            for side in ("upper", "lower")
+        )
 
     def __len__(self) -> int:
         number = self.realisations
@@ -174,6 +183,11 @@ def _check(study: Study) -> None:
             raise InputError(f"scene.{side}.surface", f"{gaussian} Gaussian parts", "at most one in a study")
         if f"{side}_rms" in study.vary and not gaussian:
             raise InputError(f"vary.{side}_rms", study.vary[f"{side}_rms"], "a scene with such a roughness")
+    if study.realisations > 1 and not study.is_rough:
+        raise InputError("realisations", study.realisations, "1: no surface of the scene is Gaussian")
+    if "correlation_length" in study.vary and not study.is_rough:
+        lengths = study.vary["correlation_length"]
+        raise InputError("vary.correlation_length", lengths, "a scene with a Gaussian surface")
     for M in study.vary["grid"]:
         _whole("vary.grid", M, at_least=1)
     last = study.first_seed + 2 * study.realisations
