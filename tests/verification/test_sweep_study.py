@@ -137,6 +137,13 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
         {"scene": "hertz", "realisations": 1, "vary": {"grid": [16], "correlation_length": [1e-4, 2e-4]}},
     ),
     ("solve.speed", {"solve": {"speed": 1}}),
+    ("solve.method", {"solve": {"method": "x"}}),
+    ("solve.method", {"solve": {"method": ["fft"]}}),
+    ("solve.method", {"scene": "rough-planes", "realisations": 1, "solve": {"method": "paper"}}),
+    ("solve.tolerance", {"solve": {"tolerance": -1}}),
+    ("solve.oblique", {"solve": {"oblique": "yes"}}),
+    ("oblique", {"solve": {"oblique": False, "slope_correction": True}}),
+    ("solve.slope_correction", {"solve": {"slope_correction": 1}}),
     ("vary", {"realisations": 10**6, "vary": {"grid": [16], "load": [1, 2]}}),
 ]
 

@@ -14,6 +14,8 @@ from typing import Any
 
 from refimpl import read_scene
 from refimpl.errors import InputError, require_number
+from refimpl.plan import METHODS
+from refimpl.planning.choice import Forced
 from refimpl.scene_file import scene_from_dict, scene_to_dict
 from verification.sweep.run import COORDINATES, Run, code_digest, file_digest
 
@@ -155,7 +157,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
         if not isinstance(value, Mapping):
             raise InputError(key, value, f"a [{key}] table")
     _refuse_unknown("vary", vary, AXES)
-    _refuse_unknown("solve", settings, SOLVE_KEYS)
+    _check_settings(settings)
     normalise = table.get("normalise")
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
@@ -190,10 +192,25 @@ def _check(study: Study) -> None:
         raise InputError("vary.correlation_length", lengths, "a scene with a Gaussian surface")
     for M in study.vary["grid"]:
         _whole("vary.grid", M, at_least=1)
+    if study.scene["periodic"] and study.settings.get("method") == "paper":
+        raise InputError("solve.method", "paper", "dense or fft for a periodic scene")
     last = study.first_seed + 2 * study.realisations
     _whole("first_seed", study.first_seed, at_least=0, below=2**63 - 2 * study.realisations)
     for run in Study(study.scene, 1, last, study.normalise, study.vary, study.settings).runs():
         scene_from_dict(run.inputs["scene"], Path())
+
+
+def _check_settings(settings: Mapping[str, Any]) -> None:
+    """The [solve] table: what `refimpl.solve` would refuse, before there is a store or a worker."""
+    _refuse_unknown("solve", settings, SOLVE_KEYS)
+    if settings.get("method", "fft") not in METHODS:
+        raise InputError("solve.method", settings["method"], f"one of {', '.join(METHODS)}")
+    for name in ("oblique", "slope_correction"):
+        if not isinstance(settings.get(name, True), bool):
+            raise InputError(f"solve.{name}", settings[name], "true or false")
+    if "tolerance" in settings:
+        require_number("solve.tolerance", settings["tolerance"], "a number between 0 and 1", above=0, below=1)
+    Forced(oblique=settings.get("oblique"), slope_correction=settings.get("slope_correction", False)).check()
 
 
 def _values(axis: str, values: object) -> tuple[float, ...]:
