@@ -7,7 +7,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -19,11 +19,10 @@ def replacing(path: Path) -> Iterator[Path]:
     file, a device or a pipe, is written to and never replaced. Raises OSError where the directory cannot be
     written to.
     """
-    if path.exists() and not path.is_file():
+    if is_stream(path):
         yield path
         return
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
-    os.close(handle)
+    name = _temporary(path)
     try:
         yield Path(name)
         os.chmod(name, 0o644)
@@ -31,6 +30,25 @@ def replacing(path: Path) -> Iterator[Path]:
     except BaseException:
         os.unlink(name)
         raise
+
+
+def is_stream(path: Path) -> bool:
+    """Whether writing there adds to what went before, as to a device or a pipe, and replaces nothing."""
+    return path.exists() and not path.is_file()
+
+
+def try_out(path: Path) -> None:
+    """Raise OSError where `replacing` could not write in the end, by making the file that it would make."""
+    with suppress(FileNotFoundError):
+        os.stat(path)  # the temporary file's name is a short one, whatever the length of this one
+    if not is_stream(path):
+        os.unlink(_temporary(path))
+
+
+def _temporary(path: Path) -> str:
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
+    os.close(handle)
+    return name
 
 
 def write_text(text: str, path: Path) -> None:

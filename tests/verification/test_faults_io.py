@@ -26,7 +26,7 @@ from reports.generator import render
 from tests.reports.sample import case, results
 from tests.verification.children import LONG, STUDY, Ended, forked, one_line, rows, small
 from verification import files
-from verification.cli import main
+from verification.cli import main, plot
 from verification.sweep import engine
 from verification.sweep.store import open_store
 
@@ -114,9 +114,18 @@ def test_a_read_only_folder(
     def refuses(*_: object, **__: object) -> None:
         raise OSError(refusal, os.strerror(refusal), str(tmp_path))
 
-    monkeypatch.setattr(files.tempfile, "mkstemp", refuses)
+    def turns(*_: object, **__: object) -> None:  # read-only once the solve has begun
+        monkeypatch.setattr(files.tempfile, "mkstemp", refuses)
+
+    monkeypatch.setattr(plot, "check_suffix", turns)
     assert main(["solve", "hertz", "--grid", "8", "--json", str(tmp_path / "s.json")]) == 1
-    one_line(Ended(1, capsys.readouterr().err), os.strerror(refusal))
+    ended = capsys.readouterr()
+    one_line(Ended(1, ended.err), os.strerror(refusal))
+    assert "status: CONVERGED" in ended.out
+    with pytest.raises(SystemExit) as at_once:
+        main([*LONG, "--json", str(tmp_path / "s.json")])
+    assert at_once.value.code == 2
+    assert os.strerror(refusal) in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
@@ -140,11 +149,17 @@ def test_an_unwritable_report(
 def test_an_unwritable_folder_is_refused_before_any_work(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for path in (tmp_path / "none" / "s.json", tmp_path):
+    places = [tmp_path / "none" / "s.json", tmp_path, tmp_path / (300 * "a"), tmp_path / f"a.{250 * 'b'}"]
+    if Path("/proc/self").exists():
+        places.append(Path("/proc/s.json"))
+    for path in places:
         with pytest.raises(SystemExit) as refused:
             main([*LONG, "--json", str(path)])
         assert refused.value.code == 2
-        assert capsys.readouterr().err.count("\n") == 1
+        err = capsys.readouterr().err
+        assert err.count("\n") == 1
+        assert "--json" in err
+    assert list(tmp_path.iterdir()) == []
 
 
 # --- two at once, broken files ---

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from verification.files import to_json, write_text
+from verification.files import to_json, try_out, write_text
 
 if TYPE_CHECKING:
     from verification.case import Result
@@ -27,10 +27,12 @@ def output_file(text: str) -> Path:
     path = Path(text)
     if text == "-":
         return path
-    if path.is_dir():
+    if os.path.isdir(path):  # of any name, however long
         raise argparse.ArgumentTypeError(f"{text!r} is a directory, not a file")
-    if not (path.parent.is_dir() and os.access(path.parent, os.W_OK)):
-        raise argparse.ArgumentTypeError(f"cannot write to the directory of {text!r}")
+    try:
+        try_out(path)
+    except OSError as refused:
+        raise argparse.ArgumentTypeError(f"cannot write {text!r}: {refused.strerror}") from refused
     return path
 
 
