@@ -14,6 +14,7 @@ import shutil
 import signal
 import sqlite3
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -127,6 +128,18 @@ def test_a_read_only_folder(
     assert at_once.value.code == 2
     assert os.strerror(refusal) in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_closed_pipe_ends_quietly_and_costs_no_file(tmp_path: Path) -> None:
+    command = "import sys; from verification.cli import main; sys.exit(main())"
+    arguments = [sys.executable, "-c", command, "solve", "hertz", "--grid", "8", "--json"]
+    for name in ("s.json", "-"):
+        reader, writer = os.pipe()
+        os.close(reader)
+        ended = subprocess.run([*arguments, name], cwd=tmp_path, stdout=writer, stderr=subprocess.PIPE)
+        os.close(writer)
+        assert (ended.returncode, ended.stderr) == (0, b"")
+    assert json.loads((tmp_path / "s.json").read_text())["status"] == "converged"
 
 
 def test_an_unwritable_report(

@@ -47,13 +47,23 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 
 def emit(document: object, path: Path | None, table: str) -> None:
-    """Show the table, and write the document where asked; '-' prints the document in the table's place."""
+    """Write the document where asked and show the table; '-' prints the document in the table's place."""
     if path == Path("-"):
-        sys.stdout.write(to_json(document))
+        show(to_json(document).rstrip("\n"))
         return
-    print(table)
-    if path is not None:
-        write_text(to_json(document), path)
+    try:
+        if path is not None:
+            write_text(to_json(document), path)
+    finally:  # of a file that could not be written, the table is what is left
+        show(table)
+
+
+def show(text: str) -> None:
+    """Print a text; where whoever reads has closed the pipe, that and all that follows goes nowhere."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
