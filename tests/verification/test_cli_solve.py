@@ -248,6 +248,30 @@ def test_a_bad_scene_is_refused_and_nothing_is_written(
     assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
 
 
+@pytest.mark.parametrize("command", ["solve", "tradeoff"])
+@pytest.mark.parametrize("alias", ["scene.toml", "link.toml", "./scene.toml", "heights.npy"])
+def test_an_output_is_no_input(
+    command: str, alias: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    np.save("heights.npy", np.random.default_rng(1).standard_normal((8, 8)) * 1e-9)
+    surface = '[[lower.surface]]\nkind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 2e-4\n'
+    text = SCENE.replace("[friction]", f"{surface}[friction]")
+    Path("scene.toml").write_text(text)
+    Path("link.toml").symlink_to("scene.toml")
+    before = Path(alias).read_bytes()
+    assert "--json" in refused(capsys, command, "scene.toml", "--json", alias)
+    assert Path(alias).read_bytes() == before
+
+
+def test_a_picture_is_no_input(tmp_path: Path, capsys: Capture) -> None:
+    for option, name in (("--plot", "s.png"), ("--vtk", "s.vtu")):
+        path = tmp_path / name
+        path.write_text(SCENE)
+        assert option in refused(capsys, "solve", str(path), "--grid", "8", option, str(path))
+        assert path.read_text() == SCENE
+
+
 def test_maps_and_profiles_have_x_to_the_right(scene: str) -> None:
     solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
     pressure = np.zeros((8, 8))

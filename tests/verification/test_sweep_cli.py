@@ -6,8 +6,10 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import refimpl as rf
 from verification.cli import main
 from verification.cli.sweep import _Line
 from verification.sweep.engine import Progress
@@ -35,6 +37,39 @@ def test_bad_input_is_one_line_and_status_2(arguments: list[str], named: str, ca
     assert printed.out == ""
     assert printed.err.count("\n") == 1
     assert named in printed.err
+
+
+@pytest.mark.parametrize("option", ["--store", "--csv", "--parquet", "--json"])
+@pytest.mark.parametrize("name", ["study.toml", "scene.toml", "heights.npy"])
+@pytest.mark.parametrize("target", [[], ["--target-error", "5%"]])
+def test_an_output_is_no_input(
+    option: str,
+    name: str,
+    target: list[str],
+    tmp_path: Path,
+    capsys: Capture,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    np.save("heights.npy", np.random.default_rng(1).standard_normal((8, 8)) * 1e-9)
+    surface = '[[lower.surface]]\nkind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 2e-4\n'
+    text = rf.scene_to_toml(rf.read_scene("table1-rough"))
+    Path("scene.toml").write_text(text + surface)
+    Path("study.toml").write_text('scene = "scene.toml"\n[vary]\ngrid = [8, 16]\n')
+    before = Path(name).read_bytes()
+    assert main(["sweep", "study.toml", *target, option, name]) == 2
+    assert f"{option} = '{name}'" in capsys.readouterr().err
+    assert Path(name).read_bytes() == before
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_the_default_store_is_no_input(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.sqlite").write_text('scene = "hertz"\n[vary]\ngrid = [8]\n')
+    assert main(["sweep", "study.sqlite"]) == 2
+    assert "--store = 'study.sqlite'" in capsys.readouterr().err
 
 
 def test_results_and_a_failed_run(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:

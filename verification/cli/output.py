@@ -7,13 +7,14 @@ import os
 import sys
 import textwrap
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from verification.files import to_json, try_out, write_text
 
 if TYPE_CHECKING:
+    from refimpl import Scene
     from verification.case import Result
 
 WIDTH = 100
@@ -34,6 +35,24 @@ def output_file(text: str) -> Path:
     except OSError as refused:
         raise argparse.ArgumentTypeError(f"cannot write {text!r}: {refused.strerror}") from refused
     return path
+
+
+def refuse_inputs(inputs: Iterable[Path], **outputs: Path | None) -> None:
+    """Raise InputError for an output, by its option's name, that would replace a file that is read."""
+    from refimpl.errors import InputError
+
+    read = [path for path in inputs if os.path.isfile(path)]  # no shipped scene's name, however long
+    for option, output in outputs.items():
+        if output is not None and output.is_file() and any(map(output.samefile, read)):
+            raise InputError(f"--{option}", str(output), "another file than the inputs")
+
+
+def files_of(scene: Scene) -> list[Path]:
+    """The files that a scene's surfaces were measured into."""
+    from refimpl.surfaces.measured import MeasuredSurface
+
+    parts = (*scene.upper.surface.parts, *scene.lower.surface.parts)
+    return [Path(part.path) for part in parts if isinstance(part, MeasuredSurface)]
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:

@@ -5,9 +5,20 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import Parsers, StatusLine, add_json, columns, emit, output_file, wrapped
+from verification.cli.output import (
+    Parsers,
+    StatusLine,
+    add_json,
+    columns,
+    emit,
+    files_of,
+    output_file,
+    refuse_inputs,
+    wrapped,
+)
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -120,6 +131,8 @@ def run(options: argparse.Namespace) -> int:
     plot.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     scene = refimpl.read_scene(options.scene)
+    inputs = [Path(options.scene), *files_of(scene)]
+    refuse_inputs(inputs, json=options.json, plot=options.plot, vtk=options.vtk)
     request = Request(
         scene=scene,
         grid=DEFAULT_GRID if options.grid is None and options.accuracy is None else options.grid,

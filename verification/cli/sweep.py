@@ -8,11 +8,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import Parsers, add_json, columns, emit, output_file
+from verification.cli.output import Parsers, add_json, columns, emit, output_file, refuse_inputs
 
 if TYPE_CHECKING:
     from verification.multilevel.ensemble import Ensemble
     from verification.sweep.engine import Progress, Sweep
+    from verification.sweep.study import Study
 
 EPILOG = """examples:
   rough-friction sweep table3 --store table3.sqlite --workers 4 --csv table3.csv
@@ -85,12 +86,15 @@ def run(options: argparse.Namespace) -> int:
     if options.parquet is not None:
         export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")
+    study = read_study(options.study)
+    written = {name: getattr(options, name) for name in ("csv", "parquet", "json")}
+    refuse_inputs(study.files, store=store, **written)
     if options.target_error is not None:
-        return _ensemble(options, store)
+        return _ensemble(options, study, store)
     line = _Line()
     try:
         done = engine.sweep(
-            read_study(options.study),
+            study,
             store,
             workers=options.workers,
             scheduler=options.scheduler,
@@ -121,13 +125,12 @@ def _share(text: str) -> float:
         raise argparse.ArgumentTypeError(f"{text!r} is no share like 0.5% or 0.005") from alien
 
 
-def _ensemble(options: argparse.Namespace, store: Path) -> int:
+def _ensemble(options: argparse.Namespace, study: Study, store: Path) -> int:
     """Run an ensemble to its target; status 1 when a run failed or the target was not met."""
     from refimpl.errors import InputError
     from verification.multilevel.ensemble import ensemble
     from verification.provenance import provenance
     from verification.sweep import engine
-    from verification.sweep.study import read_study
 
     if options.csv is not None or options.parquet is not None:
         raise InputError(
@@ -136,7 +139,7 @@ def _ensemble(options: argparse.Namespace, store: Path) -> int:
     line = _Line()
     try:
         found = ensemble(
-            read_study(options.study),
+            study,
             store,
             options.target_error,
             workers=options.workers,

@@ -7,7 +7,7 @@ import math
 import os
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -40,7 +40,7 @@ class Study:
     ``vary`` maps names of `AXES` to their values (SI, rad); an rms of 0 leaves that body's roughness out.
     Realisations are of Gaussian roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
-    `refimpl.solve`.
+    `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
     """
 
     scene: Table
@@ -49,6 +49,7 @@ class Study:
     normalise: bool | None
     vary: Mapping[str, tuple[float, ...]]
     settings: Mapping[str, Any]
+    files: tuple[Path, ...] = ()
 
     def runs(self) -> Iterator[Run]:
         """All runs, realisations outermost, then the axes in the order of `AXES`."""
@@ -132,7 +133,8 @@ def read_study(path: str | Path) -> Study:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
         raise InputError("study", str(path), f"valid TOML ({error})") from error
-    return study_from_dict(table, path.parent)
+    study = study_from_dict(table, path.parent)
+    return replace(study, files=(path, *study.files))
 
 
 def shipped_studies() -> tuple[str, ...]:
@@ -152,6 +154,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     if not isinstance(name, str) or not name:
         raise InputError("scene", name, "a shipped scene's name or the path of a scene file")
     beside = folder / name
+    scene_file = beside if os.path.isfile(beside) else Path(name)
     vary, settings = table.get("vary", {}), table.get("solve", {})
     for key, value in (("vary", vary), ("solve", settings)):
         if not isinstance(value, Mapping):
@@ -161,13 +164,15 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     normalise = table.get("normalise")
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
+    scene = scene_to_dict(read_scene(scene_file))
     study = Study(
-        scene=scene_to_dict(read_scene(beside if os.path.isfile(beside) else name)),
+        scene=scene,
         realisations=_whole("realisations", table.get("realisations", 1), at_least=1),
         first_seed=_whole("first_seed", table.get("first_seed", 1), at_least=0),
         normalise=normalise,
         vary={axis: _values(axis, vary[axis]) for axis in vary},
         settings=dict(settings),
+        files=(scene_file, *map(Path, _measured_files(scene))),
     )
     _check(study)
     return study
