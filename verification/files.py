@@ -16,8 +16,8 @@ def replacing(path: Path) -> Iterator[Path]:
     """A temporary path beside `path`, of the same suffix, that takes its place when the block ends well.
 
     The file appears in one step; after an error the old file, if any, is still there. What is no regular
-    file, a device or a pipe, is written to and never replaced. Raises OSError where the directory cannot be
-    written to.
+    file, a device or a pipe, is written to and never replaced; nor is a link, but the file that it leads to.
+    Raises OSError where the directory cannot be written to.
     """
     if is_stream(path):
         yield path

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import math
+import os
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -48,6 +50,73 @@ def test_a_budget_repeats_no_warning_of_the_surfaces(
     assert capsys.readouterr().out.count("warning (correlation length)") == 1
     told = json.loads(found.read_text())["warnings"]
     assert sum("correlation length" in w["text"] for w in told) == 1
+
+
+def toleranced(folder: Path) -> str:
+    path = folder / "scene.toml"
+    text = rf.scene_to_toml(rf.read_scene("table1-smooth"))
+    path.write_text(text + '\n[tolerances]\n"friction.tau" = 0.1\n')
+    return str(path)
+
+
+def test_an_interrupted_budget_leaves_the_solution(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(importlib.import_module("refimpl.budget"), "budget", interrupted)
+    found = tmp_path / "found.json"
+    assert main(["solve", toleranced(tmp_path), "--grid", "16", "--json", str(found)]) == 130
+    assert "status: CONVERGED" in capsys.readouterr().out
+    assert json.loads(found.read_text())["status"] == "converged"
+
+
+def test_standard_output_holds_one_document(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["solve", toleranced(tmp_path), "--grid", "16", "--json", "-"]) == 0
+    assert "budget" in json.loads(capsys.readouterr().out)
+
+
+def test_a_pipe_is_given_one_document(tmp_path: Path) -> None:
+    pipe = tmp_path / "found"
+    os.mkfifo(pipe)
+    kept = os.open(pipe, os.O_RDWR)  # a reader that does not leave; the document fits into the pipe
+    try:
+        assert main(["solve", toleranced(tmp_path), "--grid", "16", "--json", str(pipe)]) == 0
+        assert "budget" in json.loads(os.read(kept, 2**16))
+    finally:
+        os.close(kept)
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "why"),
+    [
+        (["--approach", "3e-6"], 0, "at a prescribed approach"),
+        (["--approach", "0"], 1, "at a prescribed approach"),
+        (["--tolerance", "1e-300"], 1, "has not converged"),
+        (["--tolerance", "1e-300", "--budget"], 1, "has not converged"),
+    ],
+)
+def test_a_result_that_can_have_no_budget_says_why(
+    options: list[str], status: int, why: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = tmp_path / "found.json"
+    command = ["solve", toleranced(tmp_path), "--grid", "16", "--json", str(found)]
+    assert main([*command, *options]) == status
+    shown = capsys.readouterr()
+    assert "friction coefficient mu" in shown.out
+    (remark,) = (line for line in shown.out.splitlines() if line.startswith("no uncertainty budget: "))
+    assert why in remark
+    assert shown.err == ""
+    assert json.loads(found.read_text())["budget"] is None
+
+
+def test_a_budget_at_an_approach_is_refused(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delattr(rf, "solve")
+    assert main(["solve", "hertz", "--approach", "3e-6", "--budget"]) == 2
+    assert "--approach = 3e-06: expected none with --budget" in capsys.readouterr().err
 
 
 def test_no_budget_unless_asked_for(tmp_path: Path) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns
+from verification.cli.output import StatusLine, columns
 
 if TYPE_CHECKING:
+    from refimpl import Scene, Solution
     from refimpl.budget import Budget, Budgets
 
 # number of a budget, its name in the table
@@ -17,6 +19,25 @@ NAMES = {
     "max_pressure": "f_max",
     "binormal_force": "Q",
 }
+
+
+def hindrance(solution: Solution, approach: float | None) -> str:
+    """Why a solve can have no budget, in words; empty where it can. ``approach`` (m): as prescribed."""
+    if approach is not None:
+        return "it is about the scene's load, and this is at a prescribed approach"
+    return "" if solution.converged else "the solution has not converged"
+
+
+def made(scene: Scene, solution: Solution, tolerances: Mapping[str, float]) -> Budgets:
+    """The budgets, and a line for who waits. Raises as `refimpl.budget` does."""
+    from refimpl.budget import budget
+
+    line = StatusLine()
+    line.show("uncertainty budget: what every parameter changes")
+    try:
+        return budget(scene, solution, tolerances)
+    finally:
+        line.close()
 
 
 def document(budgets: Budgets) -> dict[str, object]:

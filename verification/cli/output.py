@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from verification.files import to_json, try_out, write_text
+from verification.files import is_stream, to_json, try_out, write_text
 
 if TYPE_CHECKING:
     from refimpl import Scene
@@ -75,6 +75,12 @@ def emit(document: object, path: Path | None, table: str) -> None:
             write_text(to_json(document), path)
     finally:  # of a file that could not be written, the table is what is left
         show(table)
+
+
+def emit_early(document: object, path: Path | None, table: str) -> None:
+    """`emit` what there is before more work; no document where it could not be replaced, '-' or a pipe."""
+    if path != Path("-"):
+        emit(document, None if path is None or is_stream(path) else path, table)
 
 
 def show(text: str) -> None:

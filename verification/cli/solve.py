@@ -14,6 +14,7 @@ from verification.cli.output import (
     add_json,
     columns,
     emit,
+    emit_early,
     files_of,
     output_file,
     refuse_inputs,
@@ -111,7 +112,7 @@ def add_parser(commands: Parsers) -> None:
     add(
         "--budget",
         action="store_true",
-        help="uncertainty budget and derivatives (done for a file with [tolerances] in any case)",
+        help="uncertainty budget and derivatives (under a load, a file with [tolerances] has it in any case)",
     )
     add("--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture")
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
@@ -122,7 +123,7 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
-    from refimpl.budget import budget
+    from refimpl.errors import InputError
     from refimpl.request import Request
     from refimpl.scene_file import read_tolerances
     from verification.cli import budget as budget_lines
@@ -151,13 +152,14 @@ def run(options: argparse.Namespace) -> int:
         found = explain.document(plan, options.scene)
         emit(found, options.json, explain.explained(plan, options.scene))
         return 0
+    if options.budget and options.approach is not None:
+        raise InputError(
+            "--approach", options.approach, "none with --budget, which is about the scene's load"
+        )
     tolerances = read_tolerances(options.scene)
     line = StatusLine()
     try:
         solution = refimpl.solve(**vars(request), progress=line.show)
-        line.close()
-        line.show("uncertainty budget: what every parameter changes")
-        budgets = budget(scene, solution, tolerances) if tolerances or options.budget else None
     finally:
         line.close()
     if options.plot is not None:
@@ -165,12 +167,17 @@ def run(options: argparse.Namespace) -> int:
     if options.vtk is not None:
         vtk.write(solution, options.vtk)
     found, text = document(solution, options.scene), table(solution, options.scene)
-    if budgets is not None:
-        found["budget"] = plain(budget_lines.document(budgets))
-        text += f"\n\n{budget_lines.table(budgets)}"
+    if tolerances or options.budget:
+        found["budget"] = None
+        if reason := budget_lines.hindrance(solution, options.approach):
+            text += f"\n\n{wrapped(reason, 'no uncertainty budget: ')}"
+        else:
+            emit_early(found, options.json, text)  # an interrupt of the budget costs no solution
+            budgets = budget_lines.made(scene, solution, tolerances)
+            found["budget"] = plain(budget_lines.document(budgets))
+            text = f"\n{budget_lines.table(budgets)}"
     emit(found, options.json, text)
-    good = refimpl.Status.CONVERGED, refimpl.Status.CYCLED  # a settled cycle is certified as well
-    return 0 if solution.status in good else 1
+    return 0 if solution.converged else 1  # a settled cycle is certified as well
 
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
