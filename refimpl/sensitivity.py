@@ -76,8 +76,14 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     solves on the solution's grid for the load and for each number of a surface. Raises `InputError`
     for a solution that is not in contact or was not found under the scene's load.
     """
+    if not isinstance(scene, Scene):
+        raise InputError("scene", scene, "a Scene")
+    if not isinstance(solution, Solution):
+        raise InputError("solution", solution, "a Solution")
     if not solution.contact.any():
         raise InputError("solution", solution.status.value, "a solution in contact")
+    if solution.problem.periodic and not solution.problem.gap.any():
+        raise InputError("solution", "two flats that repeat", "one whose approach is not zero")
     if abs(solution.normal_force / scene.load - 1) > 1e-3:
         raise InputError("solution", solution.normal_force, f"one under the scene's load of {scene.load:g} N")
     base = solution.problem

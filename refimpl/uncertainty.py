@@ -31,7 +31,7 @@ def iteration_parts(solution: Solution) -> Uncertainty:
     area = float(np.count_nonzero(marginal)) * solution.grid.element_area
     relative = ("max_pressure", "approach", "normal_force")
     parts: Uncertainty = {name: {"iteration": worst * abs(getattr(solution, name))} for name in relative}
-    parts["binormal_force"] = {"iteration": worst * solution.normal_force}
+    parts["binormal_force"] = {"iteration": worst * abs(solution.normal_force)}
     parts["contact_area"] = {"iteration": area}
     friction = worst * abs(solution.friction_force) + solution.friction.tau * area
     parts["friction_force"] = {"iteration": friction}

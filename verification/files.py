@@ -22,6 +22,7 @@ def replacing(path: Path) -> Iterator[Path]:
     if is_stream(path):
         yield path
         return
+    path = Path(os.path.realpath(path))
     name = _temporary(path)
     try:
         yield Path(name)
@@ -42,7 +43,7 @@ def try_out(path: Path) -> None:
     with suppress(FileNotFoundError):
         os.stat(path)  # the temporary file's name is a short one, whatever the length of this one
     if not is_stream(path):
-        os.unlink(_temporary(path))
+        os.unlink(_temporary(Path(os.path.realpath(path))))
 
 
 def _temporary(path: Path) -> str:

@@ -66,9 +66,9 @@ def provenance() -> dict[str, object]:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    """Output of a git command, or None when there is no git or no repository."""
+    """Output of a git command, which leaves no lock behind; None when there is no git or no repository."""
     try:
-        asked = ["git", "-C", str(root), *arguments]
+        asked = ["git", "--no-optional-locks", "-C", str(root), *arguments]
         done = subprocess.run(asked, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):
         return None

@@ -139,3 +139,17 @@ def test_a_derivative_that_two_ways_disagree_on_says_so() -> None:
         assert coarse.scatter[number]["load"] == 0
         steady = "lower.surface[0].rms"
         assert fine.scatter[number][steady] < 0.3 * abs(fine.derivatives[number][steady])
+
+
+def test_what_has_no_derivatives_is_refused() -> None:
+    flats = replace(
+        sliding(periodic=True), upper=rf.Body(STEEL, rf.Flat()), lower=rf.Body(POLYMER, rf.Flat())
+    )
+    for scene, solution, field in (
+        (flats, rf.solve(flats, 8), "solution"),
+        (flats, 3, "solution"),
+        ("hertz", rf.solve(flats, 8), "scene"),
+    ):
+        with pytest.raises(rf.InputError) as refused:
+            sensitivity(scene, solution)  # type: ignore[arg-type]  # on purpose
+        assert refused.value.field == field

@@ -287,3 +287,14 @@ def test_a_division_by_zero_is_a_bug_and_keeps_its_traceback(monkeypatch: pytest
     monkeypatch.setattr(rf, "solve", lambda *_, **__: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         main(["solve", "hertz", "--grid", "8"])
+
+
+def test_a_link_keeps_leading_to_the_file_that_is_written(tmp_path: Path) -> None:
+    """/dev/stdout is one: root replaced it by a file."""
+    target, link = tmp_path / "target.json", tmp_path / "link.json"
+    target.write_text("old")
+    link.symlink_to(target)
+    files.write_text("new", link)
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.json", "target.json"]

@@ -100,6 +100,10 @@ def _share(part: Budget, width: float | None) -> str:
 
 
 def _relative(budgets: Budgets, number: str, name: str) -> str:
-    if budgets.derivatives.found[number] == 0:
+    """With its scatter where that is a tenth of it or more."""
+    found, answers = budgets.derivatives.found[number], budgets.derivatives
+    if found == 0:
         return "-"
-    return f"{budgets.derivatives.relative(number, name):+.3f}"
+    change = answers.relative(number, name)
+    scatter = abs(answers.scatter[number][name] * answers.parameters[name] / found)
+    return f"{change:+.3f}" + (f" +-{scatter:.2g}" if scatter >= max(0.1 * abs(change), 0.001) else "")
