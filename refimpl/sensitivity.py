@@ -64,9 +64,14 @@ class Sensitivity:
     residual: float
 
     def relative(self, number: str, parameter: str) -> float:
-        """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p."""
-        derivative = self.derivatives[number][parameter]
-        return derivative * self.parameters[parameter] / self.found[number]
+        """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
+
+        Raises `InputError` for a number that is zero.
+        """
+        derivative, found = self.derivatives[number][parameter], self.found[number]
+        if found == 0:
+            raise InputError("number", number, "one that is not zero")
+        return derivative * self.parameters[parameter] / found
 
 
 def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:

@@ -153,3 +153,10 @@ def test_what_has_no_derivatives_is_refused() -> None:
         with pytest.raises(rf.InputError) as refused:
             sensitivity(scene, solution)  # type: ignore[arg-type]  # on purpose
         assert refused.value.field == field
+
+
+def test_no_per_cents_of_zero() -> None:
+    hertz = rf.read_scene("hertz")
+    found = sensitivity(hertz, rf.solve(hertz, 16))
+    with pytest.raises(rf.InputError, match="friction_coefficient"):
+        found.relative("friction_coefficient", "load")
