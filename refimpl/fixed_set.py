@@ -70,6 +70,8 @@ class FixedSet:
 
     def response(self, change: Array) -> Response:
         """Solve ``J dx = -change``, the change being a derivative of the residual."""
+        if not change.any():  # the modulus of a body that is as good as rigid
+            return Response(*self._unpacked(change), 0.0)
         size = len(change)
         jacobian = LinearOperator((size, size), matvec=self._jacobian, dtype=np.float64)
         x, _ = gmres(jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES)

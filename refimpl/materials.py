@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from refimpl.errors import require_number, require_size
+from refimpl.errors import LEAST, require_number, require_size
+
+RIGID = 1e100  # Pa; beside any other body's it is as good as infinite, and its square is a double
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,8 @@ class Material:
     hardness: float | None = None
 
     def __post_init__(self) -> None:
-        require_size("E", self.E, "a positive, finite Young's modulus in Pa")
+        allowed = f"a positive, finite Young's modulus in Pa, {LEAST} to {RIGID}"
+        require_number("E", self.E, allowed, at_least=LEAST, at_most=RIGID)
         require_number("nu", self.nu, "a Poisson's ratio in (-1, 0.5]", above=-1, at_most=0.5)
         if self.hardness is not None:
             require_size("hardness", self.hardness, "a positive, finite hardness in Pa")

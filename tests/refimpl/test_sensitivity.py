@@ -160,3 +160,14 @@ def test_no_per_cents_of_zero() -> None:
     found = sensitivity(hertz, rf.solve(hertz, 16))
     with pytest.raises(rf.InputError, match="friction_coefficient"):
         found.relative("friction_coefficient", "load")
+
+
+def test_a_rigid_body_answers_to_no_modulus() -> None:
+    """RuntimeWarnings are errors."""
+    scene = sliding(tau=1e6)
+    rigid = replace(scene, upper=rf.Body(rf.Material(2e39, 0.3), scene.upper.surface))
+    found = sensitivity(rigid, rf.solve(rigid, M))
+    for number in NUMBERS:
+        assert found.derivatives[number]["upper.material.E"] == 0.0
+        assert abs(found.derivatives[number]["lower.material.E"]) > 0
+    assert found.residual < 1e-5
