@@ -186,9 +186,14 @@ class LevelSolver:
     def _leads_on(self) -> bool:
         """Whether the contact, beyond doubt, leads tau's rule to another support than the present one.
 
-        Relaxed updates hold a part of the misfit back, so that nothing is beyond doubt.
+        Relaxed updates hold a part of the misfit back, so that nothing is beyond doubt; and where tau moves
+        nothing the next state is the same one.
         """
-        if self._withheld is None or self._relaxation < 1 or not self.cg.beyond_doubt(self._stiffness):
+        terms = self.problem.terms
+        moved = terms.coupled or terms.oblique or terms.slope_correction
+        if self._withheld is None or self._relaxation < 1 or not moved:
+            return False
+        if not self.cg.beyond_doubt(self._stiffness):
             return False
         return not np.array_equal(self.cg.contact & ~self._withheld, self.support)
 

@@ -163,3 +163,13 @@ def test_relaxed_updates_leave_doubt() -> None:
     assert solver._leads_on()
     solver._relaxation = 0.99
     assert not solver._leads_on()
+
+
+def test_tau_that_moves_nothing_costs_nothing() -> None:
+    """The state without it is the last one, scaled to the load once more; verification found it left too early."""
+    terms = {"coupled": False, "oblique": False}
+    still, rubbed = (
+        rf.solve(replace(random_scene(3), friction=rf.Friction(tau, 0.0)), 48, **terms) for tau in (0.0, 1e7)
+    )
+    assert np.abs(still.pressure - rubbed.pressure).max() <= 1e-14 * still.max_pressure
+    assert still.cost.applications == rubbed.cost.applications
