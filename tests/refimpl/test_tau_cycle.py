@@ -166,7 +166,7 @@ def test_relaxed_updates_leave_doubt() -> None:
 
 
 def test_tau_that_moves_nothing_costs_nothing() -> None:
-    """The state without it is the last one, scaled to the load once more; verification found it left too early."""
+    """The state without it is the last one, scaled to the load once more; it was left too early."""
     terms = {"coupled": False, "oblique": False}
     still, rubbed = (
         rf.solve(replace(random_scene(3), friction=rf.Friction(tau, 0.0)), 48, **terms) for tau in (0.0, 1e7)
