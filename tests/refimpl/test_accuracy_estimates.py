@@ -25,6 +25,7 @@ from refimpl.grid_result import GridResult, unevenness
 from refimpl.refine import OPENING, climb, next_grid, relative_bar, uncertainty
 from refimpl.slopes import Slopes
 from refimpl.solution import REPORTED
+from refimpl.validity import Limit
 
 SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
@@ -115,9 +116,11 @@ def test_what_slopes_leave_open_of_mu_they_leave_open_of_forces() -> None:
 
 def test_a_peak_that_grows_with_the_grid_is_not_known() -> None:
     """As long as its neighbours fall as far behind."""
-    sharp = [replace(made_up(M), drop=1.0) for M in (32, 64, 128)]
-    for result, peak in zip(sharp, (1.0, 2.4, 2.9), strict=True):
-        result.numbers["max_pressure"] = peak  # type: ignore[index]  # a dict here
+    peaks = {32: 1.0, 64: 2.4, 128: 2.9}
+    sharp = [
+        replace(result, drop=1.0, numbers={**result.numbers, "max_pressure": peaks[result.M]})
+        for result in map(made_up, peaks)
+    ]
     assert estimates(sharp)["max_pressure"].bar(2.9) > 1.5
 
 
@@ -140,8 +143,11 @@ def test_unevenness_knows_no_direction_and_nothing_where_there_is_nothing() -> N
 
 
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
-def test_bars_hold_on_heights_that_differ_from_point_to_point() -> None:
-    noise = np.random.default_rng(4).normal(scale=60e-9, size=(128, 128))
+@pytest.mark.parametrize("seed", range(4))
+def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
+    """No grid resolves these. Of 16 such surfaces bars of mu and Q held on all with 192 elements a side, on
+    15 with one element a point; those of A, f_max and the approach on none, which the warning says."""
+    noise = np.random.default_rng(seed).normal(scale=60e-9, size=(128, 128))
     scene = rf.Scene(
         upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(radius=0.01)),
         lower=rf.Body(rf.Material(E=118e9, nu=0.3), noise),
@@ -149,12 +155,18 @@ def test_bars_hold_on_heights_that_differ_from_point_to_point() -> None:
         load=0.05,
         side=50e-6,
     )
-    fine = rf.solve(scene, 1024, tolerance=1e-5)
-    for M in (128, 192, 256, 384):
+    fine = rf.solve(scene, 768, tolerance=1e-5)
+
+    def misses(found: rf.Solution) -> set[str]:
+        bars = {name: sum(found.uncertainty[name].values()) for name in REPORTED}
+        return {name for name in bars if abs(getattr(found, name) - getattr(fine, name)) > bars[name]}
+
+    for M in (192, 256):
         found = rf.solve(scene, M, tolerance=1e-5)
-        for name in ("friction_coefficient", "binormal_force"):
-            bar = sum(found.uncertainty[name].values())
-            assert abs(getattr(found, name) - getattr(fine, name)) <= bar, (name, M)
+        missed = misses(found)
+        assert not missed & {"friction_coefficient", "binormal_force"}
+        assert {"contact_area", "max_pressure", "approach"} <= missed
+        assert Limit.RADIUS in {warning.limit for warning in found.warnings}
 
 
 def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
