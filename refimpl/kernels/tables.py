@@ -2,8 +2,9 @@
 
 At integer offsets ``q_x = 2i`` and ``q_y = 2j`` whatever the aspect ratio, so the order of the rule depends
 on the index alone. A slab of rows ``i0 <= i < i1`` with the columns ``j < i1`` takes x as the outer axis
-and the order of ``2 i0``; the columns ``j0 <= j < j1`` with the rows ``i < j0`` take y. Slabs are kept so
-small that temporaries stay in cache.
+and the order of ``2 i0``; the columns ``j0 <= j < j1`` with the rows ``i < j0`` take y. Of square elements
+multipoles take over where few are enough, at a fifth of the cost. Slabs are kept so small that temporaries
+stay in cache.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.errors import InputError
+from refimpl.kernels import multipole
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.far_field import NEAR, Kernel, across, order_for
 from refimpl.kernels.love import LOVE
@@ -23,6 +25,7 @@ Array = NDArray[np.float64]
 
 _NEAR_COUNT = int(np.ceil(NEAR / 2))  # offsets served by the closed form: 2i < NEAR
 _SLAB = 16384  # evaluations: 128 kB per temporary
+_SERIES = {LOVE: multipole.LOVE, CERRUTI: multipole.CERRUTI}
 
 
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
@@ -39,10 +42,13 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: A
     dx, dy, unit = _edges(n, m, dx, dy)
     known = None if known is None else known / unit
     if dx != dy:
-        return unit * _table(LOVE, n, m, dx, dy, known)
-    if n < m:
-        return unit * _symmetric_table(LOVE, m, n, dx, known).T
-    return unit * _symmetric_table(LOVE, n, m, dx, known)
+        table = _table(LOVE, n, m, dx, dy, known)
+    elif n < m:
+        table = _symmetric_table(LOVE, m, n, dx, known).T
+    else:
+        table = _symmetric_table(LOVE, n, m, dx, known)
+    table *= unit
+    return table
 
 
 def tangential_table(
@@ -57,7 +63,9 @@ def tangential_table(
     array([0., 0.])
     """
     dx, dy, unit = _edges(n, m, dx, dy)
-    return unit * _table(CERRUTI, n, m, dx, dy, None if known is None else known / unit)
+    table = _table(CERRUTI, n, m, dx, dy, None if known is None else known / unit)
+    table *= unit
+    return table
 
 
 def _edges(n: int, m: int, dx: float, dy: float | None) -> tuple[float, float, float]:
@@ -132,10 +140,14 @@ def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
 
 
 def _across_x(kernel: Kernel, start: int, stop: int, columns: int, dx: float, dy: float) -> Array:
+    if dx == dy and start >= multipole.FAR:
+        return _SERIES[kernel].across(_offsets(start, stop, 1)[:, None], _offsets(0, columns, 1), dx, start)
     x, y = _offsets(start, stop, dx), _offsets(0, columns, dy)
     return across(kernel.over_x, x[:, None], y, dx, dy, order_for(2.0 * start))
 
 
 def _across_y(kernel: Kernel, rows: int, start: int, stop: int, dx: float, dy: float) -> Array:
+    if dx == dy and start >= multipole.FAR:
+        return _SERIES[kernel].across(_offsets(0, rows, 1)[:, None], _offsets(start, stop, 1), dx, start)
     x, y = _offsets(0, rows, dx), _offsets(start, stop, dy)
     return across(kernel.over_y, y, x[:, None], dy, dx, order_for(2.0 * start))
