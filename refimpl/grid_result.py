@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.friction import Mask
-from refimpl.grid import Array, inner
+from refimpl.grid import Array, differences, inner
 from refimpl.operators.window import Window
 from refimpl.slopes import Slopes
 from refimpl.solution import REPORTED, Solution
@@ -110,9 +110,8 @@ def unevenness(pressure: Array, slopes: Slopes) -> float:
         return 0.0
     box = Window.around(pressure > 0, margin=1)
     near = slopes.windowed(box)
-    axes = [axis for axis in (0, 1) if box.shape[axis] > 1]
     loads = [
-        pressure[box.slices] * np.gradient(tan, axis=k) for tan in (near.tan_x, near.tan_y) for k in axes
+        pressure[box.slices] * differences(tan, axis) for tan in (near.tan_x, near.tan_y) for axis in (0, 1)
     ]
     return math.sqrt(sum(inner(load, load) for load in loads) / 8) / total
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.grid import Array
+from refimpl.grid import Array, differences
 from refimpl.operators.window import Window
 
 
@@ -45,8 +45,9 @@ class Slopes:
         >>> float(Slopes.of_surface(ramp, 1.0, math.pi).tan_x[0, 0])
         -1.0
         """
-        along_i = _difference(heights, 0, periodic) / spacing
-        along_j = _difference(heights, 1, periodic) / spacing
+        along_i, along_j = (_difference(heights, axis, periodic) for axis in (0, 1))
+        along_i /= spacing
+        along_j /= spacing
         cos, sin = math.cos(direction), math.sin(direction)
         return cls(cos * along_i + sin * along_j, cos * along_j - sin * along_i)
 
@@ -107,8 +108,6 @@ class Slopes:
 
 def _difference(heights: Array, axis: int, periodic: bool) -> Array:
     """Differences per element: central, and wrapped or one-sided at the border."""
-    if heights.shape[axis] == 1:
-        return np.zeros_like(heights)
-    if periodic:
+    if periodic and heights.shape[axis] > 1:
         return 0.5 * (np.roll(heights, -1, axis) - np.roll(heights, 1, axis))
-    return np.gradient(heights, axis=axis)
+    return differences(heights, axis)

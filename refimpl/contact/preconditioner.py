@@ -33,8 +33,8 @@ class SpectralPreconditioner:
         self._shape = shape
         self._padded = _fast(shape[0]), _fast(shape[1])
         self._counter = counter
-        q_x = 2 * np.pi * sfft.fftfreq(self._padded[0], spacing)[:, None]
-        q_y = 2 * np.pi * sfft.rfftfreq(self._padded[1], spacing)[None, :]
+        q_x = 2 * np.pi * sfft.rfftfreq(self._padded[0], spacing)[:, None]
+        q_y = 2 * np.pi * sfft.fftfreq(self._padded[1], spacing)[None, :]
         self._symbol = 1 / (
             2 * np.pi * compliance * _over_q(q_x, q_y, spacing, folds=0 if band_limited else 1)
         )
@@ -58,19 +58,19 @@ def _over_q(q_x: Array, q_y: Array, spacing: float, *, folds: int) -> Array:
     """``1/q`` as sampled at element centres: elements' sincs, with ``folds`` neighbouring bands folded in.
 
     One fold is within 8.1 % of the full sum in the corner of the band and 2.5 % in the mean (a test).
-    Even in ``q_x``, so only half of its rows are summed.
+    Even in ``q_y``, so only half of its columns are summed.
     """
-    N = len(q_x)
-    along_x = _bands(q_x[: N // 2 + 1] * spacing, folds)  # so that no square overflows
-    along_y = _bands(q_y * spacing, folds)
-    total = np.zeros((N // 2 + 1, q_y.size))
+    K = q_y.size
+    along_x = _bands(q_x * spacing, folds)  # so that no square overflows
+    along_y = _bands(q_y[:, : K // 2 + 1] * spacing, folds)
+    total = np.zeros((len(q_x), K // 2 + 1))
     for squared_x, sinc_x in along_x:
         for squared_y, sinc_y in along_y:
             q = np.sqrt(squared_x + squared_y)
             if q[0, 0] == 0:
-                q[0, 0] = np.pi / max(N, 2 * (q_y.size - 1))
+                q[0, 0] = np.pi / max(K, 2 * (len(q_x) - 1))
             total += sinc_x * sinc_y / q
-    return spacing * np.concatenate([total, total[(N - 1) // 2 : 0 : -1]])
+    return spacing * np.concatenate([total, total[:, (K - 1) // 2 : 0 : -1]], axis=1)
 
 
 def _bands(q: Array, folds: int) -> list[tuple[Array, Array]]:

@@ -1,7 +1,7 @@
 """Exact aperiodic convolution on a window by zero-padded real FFTs.
 
-Transforms are those of `refimpl.operators.fourier`. Rows that are known to be zero
-are not transformed, and rows of the result that nobody asked for are not transformed back.
+Transforms are those of `refimpl.operators.fourier`. Columns that are known to be zero
+are not transformed, and columns of the result that nobody asked for are not transformed back.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class FFTInfluence:
         half, across = len(rows) // 2, len(columns) // 2
         quarter = unit_table("normal", max(half, across) + 1)[: half + 1, : across + 1]
         hat = fourier.even_plane(quarter * self.grid.spacing, threads(points))
-        return np.concatenate([hat, hat[half - 1 : 0 : -1]])
+        return np.concatenate([hat, hat[:, across - 1 : 0 : -1]], axis=1)
 
     @cached_property
     def _shear_hat(self) -> Complex:
@@ -128,21 +128,23 @@ class FFTInfluence:
         return fourier.plane(unit_kernel * self.grid.spacing, self._padded, threads(math.prod(self._padded)))
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
-        (N, K), (place, across) = self._padded, self._from
+        (N, K), (along, place) = self._padded, self._from
         workers = threads(N * K)
-        self._rows[:, across] = source
-        spectrum = np.empty((N, K // 2 + 1), dtype=np.complex128)
-        spectrum[: place.start] = spectrum[place.stop :] = 0
-        fourier.rows(self._rows, spectrum[place], workers)
-        spectrum = fourier.columns(spectrum, workers, forward=True)
+        self._columns[along] = source
+        spectrum = np.empty((N // 2 + 1, K), dtype=np.complex128)
+        spectrum[:, : place.start] = 0
+        spectrum[:, place.stop :] = 0
+        fourier.columns(self._columns, spectrum[:, place], workers)
+        spectrum = fourier.rows(spectrum, workers, forward=True)
         spectrum *= hat
-        spectrum = fourier.columns(spectrum, workers, forward=False)
-        return fourier.rows_back(spectrum[self._to[0]], K, workers)[:, self._to[1]]
+        spectrum = fourier.rows(spectrum, workers, forward=False)
+        found: Array = fourier.columns_back(spectrum[:, self._to[1]], N, workers)[self._to[0]]
+        return found
 
     @cached_property
-    def _rows(self) -> Array:
-        """The source's rows, zero but for the source."""
-        return np.zeros((self.source.shape[0], self._padded[1]))
+    def _columns(self) -> Array:
+        """The source's columns, zero but for the source."""
+        return np.zeros((self._padded[0], self.source.shape[1]))
 
 
 class WholeGridInfluence(FFTInfluence):

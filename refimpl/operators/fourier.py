@@ -1,7 +1,9 @@
 """Transforms of real fields: by ducc0 where it is installed (the extra ``fast``), by SciPy otherwise.
 
-Forward unnormalised, backward ``1/n``; real fields have half a spectrum along their last axis. ducc0 goes on
-from the library that SciPy uses: it writes where it is told to, and to rounding both find the same.
+Forward unnormalised, backward ``1/n``; real fields have half a spectrum along their first axis, so that the
+complex transforms find their numbers side by side: a tenth of an application quicker than the other way
+about. ducc0 goes on from the library that SciPy uses: it writes where it is told to, and to rounding both
+find the same.
 """
 
 from __future__ import annotations
@@ -27,14 +29,14 @@ class Library(Protocol):
 
     worthwhile: int
 
-    def rows(self, values: Array, spectrum: Complex, workers: int) -> None:
-        """Forward along each row of real ``values``, into ``spectrum``."""
+    def columns(self, values: Array, spectrum: Complex, workers: int) -> None:
+        """Forward along each column of real ``values``, into ``spectrum``."""
 
-    def columns(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
-        """Along each column, best in place."""
+    def rows(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
+        """Along each row, best in place."""
 
-    def rows_back(self, spectrum: Complex, length: int, workers: int) -> Array:
-        """Real rows of that length, backward."""
+    def columns_back(self, spectrum: Complex, length: int, workers: int) -> Array:
+        """Real columns of that length, backward."""
 
     def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
         """Forward along both axes of real ``values``, padded with zeros to the shape."""
@@ -51,29 +53,29 @@ class SciPy:
 
     worthwhile = 300_000
 
-    def rows(self, values: Array, spectrum: Complex, workers: int) -> None:
+    def columns(self, values: Array, spectrum: Complex, workers: int) -> None:
         """See `Library`."""
-        spectrum[...] = sfft.rfft(values, axis=1, workers=workers)
+        spectrum[...] = sfft.rfft(values, axis=0, workers=workers)
 
-    def columns(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
+    def rows(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
         """See `Library`."""
         transform = sfft.fft if forward else sfft.ifft
-        found: Complex = transform(spectrum, axis=0, overwrite_x=True, workers=workers)
+        found: Complex = transform(spectrum, axis=1, overwrite_x=True, workers=workers)
         return found
 
-    def rows_back(self, spectrum: Complex, length: int, workers: int) -> Array:
+    def columns_back(self, spectrum: Complex, length: int, workers: int) -> Array:
         """See `Library`."""
-        found: Array = sfft.irfft(spectrum, n=length, axis=1, workers=workers)
+        found: Array = sfft.irfft(spectrum, n=length, axis=0, workers=workers)
         return found
 
     def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
         """See `Library`."""
-        found: Complex = sfft.rfft2(values, s=shape, workers=workers)
+        found: Complex = sfft.rfft2(values, s=shape[::-1], axes=(1, 0), workers=workers)
         return found
 
     def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
         """See `Library`."""
-        found: Array = sfft.irfft2(spectrum, s=shape, overwrite_x=True, workers=workers)
+        found: Array = sfft.irfft2(spectrum, s=shape[::-1], axes=(1, 0), overwrite_x=True, workers=workers)
         return found
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
@@ -90,20 +92,20 @@ class Ducc:
     def __init__(self) -> None:
         self._fft: Any = import_module("ducc0").fft
 
-    def rows(self, values: Array, spectrum: Complex, workers: int) -> None:
+    def columns(self, values: Array, spectrum: Complex, workers: int) -> None:
         """See `Library`."""
-        self._fft.r2c(values, axes=(1,), out=spectrum, nthreads=workers)
+        self._fft.r2c(values, axes=(0,), out=spectrum, nthreads=workers)
 
-    def columns(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
+    def rows(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
         """See `Library`."""
         inorm = 0 if forward else 2
-        self._fft.c2c(spectrum, axes=(0,), forward=forward, inorm=inorm, out=spectrum, nthreads=workers)
+        self._fft.c2c(spectrum, axes=(1,), forward=forward, inorm=inorm, out=spectrum, nthreads=workers)
         return spectrum
 
-    def rows_back(self, spectrum: Complex, length: int, workers: int) -> Array:
+    def columns_back(self, spectrum: Complex, length: int, workers: int) -> Array:
         """See `Library`."""
         found: Array = self._fft.c2r(
-            spectrum, axes=(1,), lastsize=length, forward=False, inorm=2, nthreads=workers
+            spectrum, axes=(0,), lastsize=length, forward=False, inorm=2, nthreads=workers
         )
         return found
 
@@ -114,15 +116,15 @@ class Ducc:
             padded = np.zeros(shape)
             padded[:n, :m] = values
             values = padded
-        found: Complex = self._fft.r2c(values, axes=(0, 1), nthreads=workers)
+        found: Complex = self._fft.r2c(values, axes=(1, 0), nthreads=workers)
         return found
 
     def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
         """See `Library`."""
         found: Array = self._fft.c2r(
             spectrum,
-            axes=(0, 1),
-            lastsize=shape[1],
+            axes=(1, 0),
+            lastsize=shape[0],
             forward=False,
             inorm=2,
             nthreads=workers,

@@ -58,8 +58,8 @@ class PeriodicInfluence:
     def _wavevectors(self) -> tuple[Array, Array, Array]:
         """``q_x`` (column), ``q_y`` (row) and ``q^2`` with its zero replaced by infinity (1/m)."""
         M, spacing = self.grid.M, self.grid.spacing
-        q_x = 2 * np.pi * sfft.fftfreq(M, spacing)[:, None]
-        q_y = 2 * np.pi * sfft.rfftfreq(M, spacing)[None, :]
+        q_x = 2 * np.pi * sfft.rfftfreq(M, spacing)[:, None]
+        q_y = 2 * np.pi * sfft.fftfreq(M, spacing)[None, :]
         squared = q_x**2 + q_y**2
         squared[0, 0] = np.inf
         return q_x, q_y, squared

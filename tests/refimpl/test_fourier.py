@@ -36,7 +36,7 @@ def by_sums(values: np.ndarray, axis: int) -> np.ndarray:
 def test_planes_there_and_back(library: Library, shape: tuple[int, int], workers: int) -> None:
     values = RANDOM.normal(size=shape)
     spectrum = library.plane(values, shape, workers)
-    expected = by_sums(by_sums(values, 1), 0)[:, : shape[1] // 2 + 1]
+    expected = by_sums(by_sums(values, 1), 0)[: shape[0] // 2 + 1]
     np.testing.assert_allclose(spectrum, expected, atol=1e-14 * values.size)
     np.testing.assert_allclose(library.plane_back(spectrum, shape, workers), values, atol=1e-14)
 
@@ -49,19 +49,19 @@ def test_planes_are_padded_with_zeros(library: Library) -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_rows_and_columns_there_and_back(library: Library, shape: tuple[int, int]) -> None:
-    """Into the middle of a larger spectrum, whose other rows stay as they are."""
+def test_columns_and_rows_there_and_back(library: Library, shape: tuple[int, int]) -> None:
+    """Into the middle of a larger spectrum, whose other columns stay as they are."""
     values, (n, m) = RANDOM.normal(size=shape), shape
-    spectrum = np.full((n + 3, m // 2 + 1), 7.0 + 0.0j)
-    library.rows(values, spectrum[2 : n + 2], 1)
-    assert np.all(spectrum[[0, 1, -1]] == 7)
-    half = by_sums(values, 1)[:, : m // 2 + 1]
-    np.testing.assert_allclose(spectrum[2:-1], half, atol=1e-13 * m)
-    columns = library.columns(spectrum[2:-1].copy(), 1, forward=True)
-    np.testing.assert_allclose(columns, by_sums(half, 0), atol=1e-13 * m * n)
-    back = library.columns(columns, 1, forward=False)
-    np.testing.assert_allclose(back, half, atol=1e-13 * m)
-    np.testing.assert_allclose(library.rows_back(back, m, 1), values, atol=1e-13)
+    spectrum = np.full((n // 2 + 1, m + 3), 7.0 + 0.0j)
+    library.columns(values, spectrum[:, 2 : m + 2], 1)
+    assert np.all(spectrum[:, [0, 1, -1]] == 7)
+    half = by_sums(values, 0)[: n // 2 + 1]
+    np.testing.assert_allclose(spectrum[:, 2:-1], half, atol=1e-13 * n)
+    rows = library.rows(spectrum[:, 2:-1].copy(), 1, forward=True)
+    np.testing.assert_allclose(rows, by_sums(half, 1), atol=1e-13 * m * n)
+    back = library.rows(rows, 1, forward=False)
+    np.testing.assert_allclose(back, half, atol=1e-13 * n)
+    np.testing.assert_allclose(library.columns_back(back, n, 1), values, atol=1e-13)
 
 
 @pytest.mark.parametrize("shape", [(2, 2), (2, 5), (6, 4)])

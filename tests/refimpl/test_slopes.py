@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from refimpl.grid import differences
 from refimpl.operators.window import Window
 from refimpl.slopes import Slopes
 
@@ -102,3 +103,13 @@ def test_slopes_cannot_be_changed() -> None:
     for name in ("tan_x", "tan_y"):
         with pytest.raises(AttributeError, match="cannot assign"):
             setattr(slopes, name, np.zeros(3))
+
+
+@pytest.mark.parametrize("shape", [(2, 3), (3, 2), (7, 11), (40, 1)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_differences_are_numpys_to_the_last_bit(shape: tuple[int, int], turned: bool) -> None:
+    values = np.random.default_rng(3).normal(size=shape)
+    values = values.T if turned else values
+    for axis in (0, 1):
+        expected = np.gradient(values, axis=axis) if values.shape[axis] > 1 else np.zeros(values.shape)
+        np.testing.assert_array_equal(differences(values, axis), expected)

@@ -24,14 +24,14 @@ class SingleInfluence(FFTInfluence):
         workers = threads(N * K)
         unit = float(np.abs(source).max()) or 1.0
         largest, single = self._rounded(hat)
-        rows: NDArray[Any] = np.zeros((self.source.shape[0], K), dtype=np.float32)
-        rows[:, self._from[1]] = source / unit
-        spectrum: NDArray[Any] = np.zeros((N, K // 2 + 1), dtype=np.complex64)
-        fourier.rows(rows, spectrum[self._from[0]], workers)
-        spectrum = fourier.columns(spectrum, workers, forward=True)
+        columns: NDArray[Any] = np.zeros((N, self.source.shape[1]), dtype=np.float32)
+        columns[self._from[0]] = source / unit
+        spectrum: NDArray[Any] = np.zeros((N // 2 + 1, K), dtype=np.complex64)
+        fourier.columns(columns, spectrum[:, self._from[1]], workers)
+        spectrum = fourier.rows(spectrum, workers, forward=True)
         spectrum *= single
-        spectrum = fourier.columns(spectrum, workers, forward=False)
-        result = fourier.rows_back(spectrum[self._to[0]], K, workers)[:, self._to[1]]
+        spectrum = fourier.rows(spectrum, workers, forward=False)
+        result = fourier.columns_back(spectrum[:, self._to[1]], N, workers)[self._to[0]]
         scaled: Array = unit * largest * result.astype(np.float64)
         return scaled
 
