@@ -69,6 +69,8 @@ def resampled(values: Array, M: int) -> Array:
     n = len(values)
     if n == M:
         return values
+    if n == 2 * M:
+        return _halved(_halved(values).T).T
     place = np.clip((np.arange(M) + 0.5) * (n / M) - 0.5, 0, n - 1)
     left = np.minimum(place.astype(np.intp), n - 2)
     share = place - left
@@ -76,6 +78,13 @@ def resampled(values: Array, M: int) -> Array:
     rows += share[:, None] * values[left + 1]
     found: Array = (1 - share) * rows.take(left, axis=1)
     found += share * rows.take(left + 1, axis=1)
+    return found
+
+
+def _halved(values: Array) -> Array:
+    """Means of pairs of rows."""
+    found: Array = values[::2] + values[1::2]
+    found *= 0.5
     return found
 
 

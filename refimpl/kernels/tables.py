@@ -78,8 +78,8 @@ def _edges(n: int, m: int, dx: float, dy: float | None) -> tuple[float, float, f
 
 
 def _table(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> Array:
-    table = _near_block(kernel, n, m, dx, dy)
-    for start, stop in _slabs(n, m, _adopted(table, known)):
+    table, done = _begun(kernel, n, m, dx, dy, known)
+    for start, stop in _slabs(n, m, done):
         rows, columns = min(stop, n), min(stop, m)
         if start < n:
             table[start:rows, :columns] = _across_x(kernel, start, rows, columns, dx, dy)
@@ -90,8 +90,8 @@ def _table(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | 
 
 def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array | None) -> Array:
     """The same for square elements, ``n >= m``, and a kernel symmetric in x and y: half the work."""
-    table = _near_block(kernel, n, m, edge, edge)
-    for start, stop in _slabs(n, m, _adopted(table, known)):
+    table, done = _begun(kernel, n, m, edge, edge, known)
+    for start, stop in _slabs(n, m, done):
         columns = min(stop, m)
         rows = _across_x(kernel, start, stop, columns, edge, edge)
         table[start:stop, :columns] = rows
@@ -102,25 +102,23 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array |
     return table
 
 
-def _near_block(kernel: Kernel, n: int, m: int, dx: float, dy: float) -> Array:
-    """A table of NaN (so that no gap between slabs goes unseen) with its first corner in closed form."""
+def _begun(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> tuple[Array, int]:
+    """A table of NaN (so that no gap between slabs goes unseen) with its first corner, and that one's size.
+
+    The corner is what is known, or as much as the closed form serves.
+    """
     table = np.full((n, m), np.nan)
+    if known is not None and len(known) >= _NEAR_COUNT:
+        rows, columns = min(len(known), n), min(len(known), m)
+        table[:rows, :columns] = known[:rows, :columns]
+        return table, min(rows, columns)
     x, y = _offsets(0, min(n, _NEAR_COUNT), dx), _offsets(0, min(m, _NEAR_COUNT), dy)
     table[: len(x), : len(y)] = kernel.closed_form(x[:, None], y, dx, dy)
-    return table
+    return table, 0
 
 
 def _offsets(start: int, stop: int, edge: float) -> Array:
     return np.arange(start, stop, dtype=np.float64) * edge
-
-
-def _adopted(table: Array, known: Array | None) -> int:
-    """Copy the known entries into the table; how many rows and columns of it are known."""
-    if known is None:
-        return 0
-    rows, columns = min(len(known), len(table)), min(len(known), table.shape[1])
-    table[:rows, :columns] = known[:rows, :columns]
-    return int(min(len(known), *table.shape))
 
 
 def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
