@@ -12,7 +12,8 @@ normal; sigma integrates to a Student distribution, and c numerically (Gelman et
 Friction takes its edge's share from the area, by ``tau / N``. Every other number's ``w`` is told by the
 grids themselves: by how much of the contact is edge, by how sharp the peak is, by how slopes change within
 elements. These fall as powers of h where a surface is resolved; where it is not they do not, and bars stay
-wide.
+wide. Where the peak stands alone nothing bounds what finer grids find there, and where spots are single
+elements nothing but the area itself bounds the area.
 
 The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1039);
 what they promise was judged on the scenes of other seeds.
@@ -35,6 +36,7 @@ EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimet
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.85, 0.07  # c0, s_c
 _RAN_OFF = 1e100  # of any number in SI units: squares still fit a double
 DECAY = 1.5  # order of the area's scatter
+_UNKNOWN = 0.25  # of an area, at most, as sigma: times 2.4 and with its edge's share that is all of it
 
 
 class Prior(NamedTuple):
@@ -71,10 +73,12 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
         np.array([getattr(result, name) for result in results]) for name in ("slip", "drop", "unevenness")
     )
     spacing = np.array([result.spacing for result in results])
-    thin = _thinness(results)
+    thin, alone = _thinness(results), _alone(drop)
 
     def smooth(values: Array, prior: Prior, *sizes: Array) -> Estimate:
         size = np.hypot.reduce([prior.scatter * sizes[0], *sizes[1:]])
+        if not math.isfinite(size[-1]):
+            return Estimate(float(values[-1]), math.inf)
         return line(values, _weights(size, spacing), prior._replace(scatter=float(size[-1])))
 
     def sheared(name: str, share: Array, unit: float) -> Estimate:
@@ -89,20 +93,37 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
         "friction_force": sheared("friction_force", slip * force, load),
         "contact_area": whole,
         "contact_area_corrected": whole,
-        "max_pressure": smooth(columns["max_pressure"], PEAK, drop * columns["max_pressure"]),
-        "approach": smooth(columns["approach"], OTHER, thin * fine["approach"]),
-        **({} if results[-1].loaded else {"normal_force": smooth(force, OTHER, thin * load)}),
+        "max_pressure": smooth(columns["max_pressure"], PEAK, alone * drop * columns["max_pressure"]),
+        "approach": smooth(columns["approach"], OTHER, alone * thin * fine["approach"]),
+        **({} if results[-1].loaded else {"normal_force": smooth(force, OTHER, alone * thin * load)}),
         "binormal_force": smooth(columns["binormal_force"], BINORMAL, thin * load, uneven * load),
     }
 
 
 def _thinness(results: Sequence[GridResult]) -> Array:
     """How much of each grid's contact is edge, to the order at which an area's scatter falls."""
-    shares = [
-        min(1.0, max(result.edge, 0.0) / area) if (area := result.numbers["contact_area"]) > 0 else 1.0
-        for result in results
-    ]
-    return np.array(shares) ** DECAY
+    return np.array([min(1.0, _edge_share(result)) for result in results]) ** DECAY
+
+
+def _edge_share(result: GridResult) -> float:
+    area = result.numbers["contact_area"]
+    return max(result.edge, 0.0) / area if area > 0 else 1.0
+
+
+def _alone(drop: Array) -> Array:
+    """How much less than its own scatter says a grid knows of a peak: nothing once neighbours bear half.
+
+    An element beside nothing may stand for a spot of any size below its own, and for any pressure.
+    """
+    with np.errstate(divide="ignore"):
+        return 1 / np.maximum(1 - (drop / 2) ** 2, 0)
+
+
+def _single(results: Sequence[GridResult]) -> Array:
+    """The same of areas, which are not known where all spots are single elements, of four edges each."""
+    shares = np.array([_edge_share(result) for result in results]) / (4 * EDGE_SHARE)
+    with np.errstate(divide="ignore"):
+        return 1 / np.maximum(1 - shares**2, 0) ** 2
 
 
 def _weights(size: Array, spacing: Array) -> Array:
@@ -129,10 +150,14 @@ def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]
 
 
 def _area(results: Sequence[GridResult], area: Array, spacing: Array) -> Estimate:
-    """Contact area: the edge's mean share is a regressor, its scatter that of a count."""
+    """Contact area: the edge's mean share is a regressor, its scatter that of a count.
+
+    Of spots of single elements no more than what makes the bar reach down to no area.
+    """
     edge = np.array([result.edge for result in results])
     elements = np.maximum(edge / (EDGE_SHARE * spacing**2), 1.0)
-    scatter = np.sqrt(elements * np.array([result.alike for result in results])) * spacing**2
+    counted = np.sqrt(elements * np.array([result.alike for result in results])) * spacing**2
+    scatter = np.maximum(counted, np.minimum(_single(results) * counted, _UNKNOWN * area / AREA.scatter))
     return line(area, scatter / scatter[-1], AREA._replace(scatter=AREA.scatter * scatter[-1]), edge)
 
 

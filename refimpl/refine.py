@@ -7,6 +7,7 @@ of it only.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -132,7 +133,8 @@ def refine(solve_at: Callable[[int], Solution], accuracy: float, quantity: Quant
     if not climbed.refusal:
         return fine
     bar = relative_bar(climbed.results, quantity)
-    reached = Remark(f"{quantity} is known to {bar:.2g}, not to {accuracy:.2g}: {climbed.refusal}")
+    known = f"known to {bar:.2g}, not" if math.isfinite(bar) else "not bounded, let alone"
+    reached = Remark(f"{quantity} is {known} to {accuracy:.2g}: {climbed.refusal}")
     return replace(fine, status=Status.ITERATION_LIMIT, warnings=(*fine.warnings, reached))
 
 

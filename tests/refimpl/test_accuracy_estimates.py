@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -142,11 +143,38 @@ def test_unevenness_knows_no_direction_and_nothing_where_there_is_nothing() -> N
     assert unevenness(np.ones((1, 1)), Slopes(np.ones((1, 1)), np.ones((1, 1)))) == 0.0
 
 
+@pytest.mark.parametrize(("drop", "more"), [(0.1, 1.0), (1.0, 1 / 0.75), (2.0, math.inf), (4.0, math.inf)])
+def test_a_peak_that_stands_alone_is_not_bounded(drop: float, more: float) -> None:
+    found = estimates([replace(made_up(64), drop=drop)])
+    assert found["max_pressure"].spread == pytest.approx(3.1824 * 0.05 * drop * PEAK * more, rel=0.01)
+    beside = estimates([replace(made_up(64), drop=0.0)])
+    for name in ("approach", "friction_coefficient", "contact_area"):
+        factor = more if name == "approach" else 1.0
+        assert found[name].spread == pytest.approx(factor * beside[name].spread, rel=0.01)
+
+
+def test_a_grid_whose_peak_stands_alone_does_not_count_beside_finer_ones() -> None:
+    fine = [made_up(M) for M in (128, 256)]
+    coarse = replace(made_up(64), drop=3.0, numbers={**made_up(64).numbers, "max_pressure": PEAK / 20})
+    with_it, without = (estimates(results)["max_pressure"] for results in ([coarse, *fine], fine))
+    assert with_it.value == pytest.approx(without.value, rel=1e-9)
+
+
+def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
+    area = 12 * (SIDE / 64) ** 2
+    numbers = {**made_up(64).numbers, "contact_area": area}
+    single = replace(made_up(64), edge=4 * EDGE_SHARE * area, numbers=numbers)
+    assert estimates([single])["contact_area"].bar(area) == pytest.approx(area, rel=0.05)
+    many = replace(single, numbers={**numbers, "contact_area": 1e4 * area}, edge=4e4 * EDGE_SHARE * area)
+    assert estimates([many])["contact_area"].bar(1e4 * area) == pytest.approx(1e4 * area, rel=0.05)
+
+
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
 @pytest.mark.parametrize("seed", range(4))
 def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
-    """No grid resolves these. Of 16 such surfaces bars of mu and Q held on all with 192 elements a side, on
-    15 with one element a point; those of A, f_max and the approach on none, which the warning says."""
+    """No grid resolves these. Of 80 solves of 16 such surfaces, 128 to 512 elements a side, bars of A held in
+    all, f_max's in 75 and the approach's in 79, mostly for having no end; mu's and Q's missed once, at 128.
+    """
     noise = np.random.default_rng(seed).normal(scale=60e-9, size=(128, 128))
     scene = rf.Scene(
         upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(radius=0.01)),
@@ -156,17 +184,31 @@ def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
         side=50e-6,
     )
     fine = rf.solve(scene, 768, tolerance=1e-5)
-
-    def misses(found: rf.Solution) -> set[str]:
-        bars = {name: sum(found.uncertainty[name].values()) for name in REPORTED}
-        return {name for name in bars if abs(getattr(found, name) - getattr(fine, name)) > bars[name]}
-
-    for M in (192, 256):
+    for M in (128, 192, 256, 512):
         found = rf.solve(scene, M, tolerance=1e-5)
-        missed = misses(found)
-        assert not missed & {"friction_coefficient", "binormal_force"}
-        assert {"contact_area", "max_pressure", "approach"} <= missed
+        bars = {name: sum(found.uncertainty[name].values()) for name in REPORTED}
+        for name, bar in bars.items():
+            assert abs(getattr(found, name) - getattr(fine, name)) <= bar, (M, name)
+        for name in ("friction_coefficient", "binormal_force", "contact_area"):
+            assert math.isfinite(bars[name])
+        assert math.isinf(bars["max_pressure"]) == math.isinf(bars["approach"]) == (M <= 256 or seed == 0)
         assert Limit.RADIUS in {warning.limit for warning in found.warnings}
+
+
+def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_remark(monkeypatch: pytest.MonkeyPatch) -> None:
+    noise = np.random.default_rng(0).normal(scale=60e-9, size=(128, 128))
+    steel = rf.Material(E=200e9, nu=0.3)
+    scene = rf.Scene(
+        upper=rf.Body(steel, rf.Sphere(radius=0.01)),
+        lower=rf.Body(steel, noise),
+        friction=rf.Friction(),
+        load=0.05,
+        side=50e-6,
+    )
+    monkeypatch.setattr("refimpl.refine.climb", partial(climb, ladder=(64,)))
+    found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
+    assert found.status is rf.Status.ITERATION_LIMIT
+    assert "max_pressure is not bounded, let alone to 0.05" in " ".join(found.warnings)
 
 
 def draws(count: int, grids: int) -> tuple[Array, Array, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -90,6 +91,16 @@ def test_an_error_bar_is_the_sum_of_its_parts(scene: str) -> None:
     bare = dataclasses.replace(solution, uncertainty=parts)
     assert solve.error_bar(bare, "approach") == pytest.approx(3e-9)
     assert solve.error_bar(bare, "contact_area") == 0
+
+
+def test_what_nothing_bounds_says_so(scene: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
+    parts = {"max_pressure": {"discretisation": math.inf}, "approach": {"discretisation": 2e-9}}
+    monkeypatch.setattr(refimpl, "solve", lambda *_, **__: dataclasses.replace(solution, uncertainty=parts))
+    assert main(["solve", scene, "--grid", "8"]) == 0
+    assert re.search(r"f_max +\S+ +unbounded +MPa", capsys.readouterr().out)
+    assert main(["solve", scene, "--grid", "8", "--json", "-"]) == 0
+    assert json.loads(capsys.readouterr().out)["uncertainty"]["max_pressure"] == {"discretisation": None}
 
 
 def test_json_has_the_solutions_numbers(scene: str, capsys: Capture) -> None:

@@ -235,6 +235,9 @@ def _warned(warning: Mapping[str, object]) -> str:
 
 
 def _bar(value: float) -> str:
+    """Nothing for a number that is exact."""
+    if math.isinf(value):
+        return "unbounded"
     return f"+- {value:.1g}" if value else ""
 
 
