@@ -36,6 +36,8 @@ EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimet
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.85, 0.07  # c0, s_c
 _RAN_OFF = 1e100  # of any number in SI units: squares still fit a double
 DECAY = 1.5  # order of the area's scatter
+_LONE = 2.0  # drop of a peak whose neighbours bear half as much, in the mean
+_ROUNDING = 1e-6  # instead of zero
 _UNKNOWN = 0.25  # of an area, at most, as sigma: times 2.4 and with its edge's share that is all of it
 
 
@@ -73,13 +75,21 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
         np.array([getattr(result, name) for result in results]) for name in ("slip", "drop", "unevenness")
     )
     spacing = np.array([result.spacing for result in results])
-    thin, alone = _thinness(results), _alone(drop)
+    thin, lone = _thinness(results), drop >= _LONE
 
     def smooth(values: Array, prior: Prior, *sizes: Array) -> Estimate:
         size = np.hypot.reduce([prior.scatter * sizes[0], *sizes[1:]])
-        if not math.isfinite(size[-1]):
+        if math.isinf(size[-1]):
             return Estimate(float(values[-1]), math.inf)
         return line(values, _weights(size, spacing), prior._replace(scatter=float(size[-1])))
+
+    def peaked(name: str, prior: Prior, size: Array) -> Estimate:
+        """A number that hangs on the highest peak, of which a grid knows less the less its neighbours bear.
+
+        One that stands alone may be of any size below its element's, and of any pressure.
+        """
+        known = np.where(lone, 0.5, 1 - (drop / _LONE) ** 2)
+        return smooth(columns[name], prior, np.where(lone, np.inf, size / known))
 
     def sheared(name: str, share: Array, unit: float) -> Estimate:
         """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
@@ -93,9 +103,9 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
         "friction_force": sheared("friction_force", slip * force, load),
         "contact_area": whole,
         "contact_area_corrected": whole,
-        "max_pressure": smooth(columns["max_pressure"], PEAK, alone * drop * columns["max_pressure"]),
-        "approach": smooth(columns["approach"], OTHER, alone * thin * fine["approach"]),
-        **({} if results[-1].loaded else {"normal_force": smooth(force, OTHER, alone * thin * load)}),
+        "max_pressure": peaked("max_pressure", PEAK, drop * columns["max_pressure"]),
+        "approach": peaked("approach", OTHER, thin * fine["approach"]),
+        **({} if results[-1].loaded else {"normal_force": peaked("normal_force", OTHER, thin * load)}),
         "binormal_force": smooth(columns["binormal_force"], BINORMAL, thin * load, uneven * load),
     }
 
@@ -110,20 +120,11 @@ def _edge_share(result: GridResult) -> float:
     return max(result.edge, 0.0) / area if area > 0 else 1.0
 
 
-def _alone(drop: Array) -> Array:
-    """How much less than its own scatter says a grid knows of a peak: nothing once neighbours bear half.
-
-    An element beside nothing may stand for a spot of any size below its own, and for any pressure.
-    """
-    with np.errstate(divide="ignore"):
-        return 1 / np.maximum(1 - (drop / 2) ** 2, 0)
-
-
-def _single(results: Sequence[GridResult]) -> Array:
-    """The same of areas, which are not known where all spots are single elements, of four edges each."""
+def _known(results: Sequence[GridResult]) -> Array:
+    """How well grids know areas beside what a count says: not at all where all spots are single elements."""
     shares = np.array([_edge_share(result) for result in results]) / (4 * EDGE_SHARE)
-    with np.errstate(divide="ignore"):
-        return 1 / np.maximum(1 - shares**2, 0) ** 2
+    known: Array = np.maximum(1 - shares**2, _ROUNDING) ** 2
+    return known
 
 
 def _weights(size: Array, spacing: Array) -> Array:
@@ -157,7 +158,7 @@ def _area(results: Sequence[GridResult], area: Array, spacing: Array) -> Estimat
     edge = np.array([result.edge for result in results])
     elements = np.maximum(edge / (EDGE_SHARE * spacing**2), 1.0)
     counted = np.sqrt(elements * np.array([result.alike for result in results])) * spacing**2
-    scatter = np.maximum(counted, np.minimum(_single(results) * counted, _UNKNOWN * area / AREA.scatter))
+    scatter = np.maximum(counted, np.minimum(counted / _known(results), _UNKNOWN * area / AREA.scatter))
     return line(area, scatter / scatter[-1], AREA._replace(scatter=AREA.scatter * scatter[-1]), edge)
 
 

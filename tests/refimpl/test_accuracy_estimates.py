@@ -153,6 +153,15 @@ def test_a_peak_that_stands_alone_is_not_bounded(drop: float, more: float) -> No
         assert found[name].spread == pytest.approx(factor * beside[name].spread, rel=0.01)
 
 
+def test_full_contact_may_have_a_lone_peak_too() -> None:
+    full = replace(made_up(64), edge=0.0, drop=3.0)
+    for results in ([full], [full, replace(full, M=128, spacing=SIDE / 128)]):
+        found = estimates(results)
+        assert math.isinf(found["max_pressure"].spread)
+        assert math.isinf(found["approach"].spread)
+        assert math.isfinite(found["friction_coefficient"].spread)
+
+
 def test_a_grid_whose_peak_stands_alone_does_not_count_beside_finer_ones() -> None:
     fine = [made_up(M) for M in (128, 256)]
     coarse = replace(made_up(64), drop=3.0, numbers={**made_up(64).numbers, "max_pressure": PEAK / 20})
