@@ -17,7 +17,7 @@ INVARIANTS = tuple(
     for solver in ("dense", "fft")
 )  # fmt: skip
 """Invariants that recompute a state by other means, or turn it: all 25 would take three times as long."""
-KERNELS = ("tests/refimpl/test_kernels_properties.py", "tests/refimpl/test_kernels.py")
+KERNELS = tuple(f"tests/refimpl/test_{name}.py" for name in ("kernels_properties", "kernels", "multipole"))
 OPERATORS = ("tests/refimpl/test_operators.py", *INVARIANTS)
 WEDGE = ("tests/appendix_a/test_wedge.py", "tests/appendix_a/test_wedge_enclosure.py")
 STRIP = ("tests/appendix_a/test_strip.py",)
@@ -51,7 +51,7 @@ TARGETS = (
     *(Target("strip", f"appendix_a/strip/{name}.py", STRIP)
       for name in ("field", "perturbation", "profile", "superposition")),
     *(Target("kernels", f"refimpl/kernels/{name}.py", KERNELS)
-      for name in ("cerruti", "far_field", "love", "points", "tables")),
+      for name in ("cerruti", "far_field", "love", "multipole", "points", "tables")),
     *(Target("operators", f"refimpl/operators/{name}.py", OPERATORS)
       for name in ("dense", "periodic", "tables", "fft", "window")),
     Target("operators", "refimpl/operators/fourier.py",
