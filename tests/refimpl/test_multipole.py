@@ -52,3 +52,13 @@ def test_the_same_integrals(kernel, distance):
     x, y = near[:, None], x.ravel()
     turned = SERIES[kernel].across(x, y, 0.25, distance)
     np.testing.assert_allclose(turned, INTEGRAL[kernel](x / 4, y / 4, 0.25, 0.25), rtol=4e-15)
+
+
+@pytest.mark.parametrize("terms", range(1, multipole.MOST))
+@pytest.mark.parametrize("u", [1e-4, 0.02, 0.5])
+def test_the_bound_is_over_the_series_it_sums_and_not_far(terms, u):
+    following = range(terms, terms + 30)
+    love = sum(float(multipole.moment(2 * k)) * u**k for k in following)
+    cerruti = sum((4 * j + 1) * float(multipole.moment(4 * j)) * u ** (2 * j) for j in following)
+    for series, rest in ((multipole.LOVE, love), (multipole.CERRUTI, cerruti)):
+        assert rest * (1 - 1e-12) <= series.lacking(terms, u) <= 1.4 * rest
