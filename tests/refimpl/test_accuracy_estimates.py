@@ -181,8 +181,8 @@ def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
 @pytest.mark.parametrize("seed", range(4))
 def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
-    """No grid resolves these. Of 160 solves of 32 such surfaces, 128 to 512 elements a side, bars of A held in
-    all, f_max's in 153 and the approach's in 159, mostly for having no end; mu's and Q's missed twice, at 128.
+    """No grid resolves these. Of 160 solves of 32 such surfaces, 128 to 512 elements a side, A's bars held in
+    all, f_max's in 153, the approach's in 159, mostly for having no end; mu's and Q's missed twice, at 128.
     The last 16 surfaces, which nothing was chosen on, have 2 of the 8 misses of f_max and the approach.
     """
     noise = np.random.default_rng(seed).normal(scale=60e-9, size=(128, 128))
