@@ -199,8 +199,8 @@ def _radius(solution: Solution) -> Caution | None:
     _, spots = ndimage.label(solution.contact, np.ones((3, 3)))
     radius = math.sqrt(np.count_nonzero(solution.contact) / (math.pi * spots))
     text = (
-        f"spots of contact have a mean radius of {radius:.2g} elements: below 3 areas are coarse, and a "
-        "peak that stands alone is not bounded, nor is the approach then"
+        f"spots of contact have a mean radius of {radius:.2g} elements: below 3 areas are coarse, and bars "
+        "of areas, peaks and approaches may be too short where they have an end"
     )
     return Caution(Limit.RADIUS, radius, _RADIUS, text) if radius < _RADIUS else None
 

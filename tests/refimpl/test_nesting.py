@@ -163,3 +163,13 @@ def test_sharpening_by_hand(loaded: bool) -> None:
     step = 0.7 * (2 * residual + residual.sum() * corner)
     np.testing.assert_allclose(found, np.maximum((pressure + step) * contact, 0), rtol=1e-14)
     assert found[0, 1] == found[1, 1] == 0
+
+
+@pytest.mark.parametrize(("n", "M"), [(12, 6), (12, 5), (5, 12), (2, 1)])
+def test_resampling_is_interpolation_along_either_axis(n: int, M: int) -> None:
+    """Halved grids, by pairs, as all others; `np.interp` is level beyond the outermost centres too."""
+    values = np.random.default_rng(8).normal(size=(n, n))
+    old, new = ((np.arange(k) + 0.5) / k for k in (n, M))
+    across = np.array([np.interp(new, old, row) for row in values])
+    expected = np.array([np.interp(new, old, column) for column in across.T]).T
+    np.testing.assert_allclose(resampled(values, M), expected, rtol=0, atol=1e-14)
