@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from refimpl.contact.certificate import State, certify
+from refimpl.contact.extension import extended
 from refimpl.friction import Mask
 from refimpl.grid import resampled
 from refimpl.level_solver import LevelSolver, preconditioner
@@ -68,7 +69,7 @@ def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
         precondition,
         loaded=problem.load is not None,
     )
-    return LevelSolver(problem, counter, window, precondition, pressure)
+    return LevelSolver(problem, counter, window, extended(precondition, pressure > 0), pressure)
 
 
 def _unprepared(problem: Problem, counter: Counter) -> LevelSolver:
@@ -108,9 +109,9 @@ def _beyond(problem: Problem, state: State, window: Window, tolerance: float) ->
 
 def _widened(problem: Problem, outcome: Outcome, beyond: Mask, counter: Counter) -> LevelSolver:
     """A solver that starts from a pressure found, on a window that holds what was beyond the last as well."""
-    pressure = outcome.pressure
-    window = Window.around((pressure > 0) | beyond, MARGIN).filling(len(beyond))
-    precondition = preconditioner(problem, window, counter)
-    solver = LevelSolver(problem, counter, window, precondition, pressure[window.slices])
+    window = Window.around((outcome.pressure > 0) | beyond, MARGIN).filling(len(beyond))
+    pressure = outcome.pressure[window.slices]
+    precondition = extended(preconditioner(problem, window, counter), pressure > 0)
+    solver = LevelSolver(problem, counter, window, precondition, pressure)
     solver.cg_iterations = sum(outcome.iterations.values())
     return solver

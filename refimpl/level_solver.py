@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.contact.preconditioner import SpectralPreconditioner
-from refimpl.contact.projected_cg import ProjectedCG
+from refimpl.contact.projected_cg import Apply, ProjectedCG
 from refimpl.flexibility import Flexibility
 from refimpl.friction import Mask, TauSupport, local_friction
 from refimpl.grid import Array, inner
@@ -57,7 +57,7 @@ class LevelSolver:
         problem: Problem,
         counter: Counter,
         window: Window,
-        precondition: SpectralPreconditioner,
+        precondition: Apply,
         pressure: Array,
     ) -> None:
         self.whole = problem

@@ -66,6 +66,7 @@ TARGETS = (
     Target("equilibrium", "refimpl/paper.py",
            ("tests/refimpl/test_paper_scheme.py", "tests/refimpl/test_paper.py")),
     Target("contact", "refimpl/contact/preconditioner.py", _tests("preconditioner", "projected_cg")),
+    Target("contact", "refimpl/contact/extension.py", ("tests/refimpl/test_extension.py",)),
     Target("contact", "refimpl/contact/projected_cg.py",
            _tests("projected_cg", "projected_cg_steps", "solve")),
     Target("contact", "refimpl/contact/support.py", _tests("support", "projected_cg", "projected_cg_steps")),
