@@ -61,7 +61,7 @@ def energy_of(values: Array, precondition: Callable[[Array], Array]) -> float:
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.8])
 def test_beyond_the_contact_stands_the_mean_of_neighbours(share: float) -> None:
     contact = spots(share=share)
-    assert contact[0].any() and contact[:, -1].any() or share == 0.1
+    assert contact[:, 0].any() or contact[-1].any()  # the window's border is met
     values = contact * np.random.default_rng(5).normal(size=SHAPE)
     e = continued(contact, values)
     heard: list[Array] = []
