@@ -11,12 +11,12 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
+from scipy.interpolate import BSpline, RegularGridInterpolator, make_interp_spline
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
@@ -76,11 +76,10 @@ def coefficient_error(
 
 def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, upper: Material) -> SlopeError:
     """The error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
-    loaded = pressure > 0
-    squared, weights = tan_x[loaded] ** 2 + tan_y[loaded] ** 2, pressure[loaded]
+    squared = np.where(pressure > 0, tan_x**2 + tan_y**2, 0.0)
     if not squared.any():
         return SlopeError(0.0, 0.0, 0.0, 0.0)
-    rms = math.atan(math.sqrt(float(np.average(squared, weights=weights))))
+    rms = math.atan(math.sqrt(float(np.sum(squared * pressure) / np.sum(pressure))))
     steepest = math.atan(math.sqrt(float(squared.max())))
     table = _table()
     top = math.radians(table["slope_deg"][-1])
@@ -112,13 +111,21 @@ def _errors(
 
 def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
     """The table's parts at all slopes and positions, ``(slopes, positions, 4)``."""
-    first = math.tan(math.radians(_table()["slope_deg"][0]))
-    points = np.empty((len(tangents), len(positions), 3))
-    points[..., 0] = np.maximum(tangents, first)[:, None]
-    points[..., 1] = math.log(wavelength)
-    points[..., 2] = np.minimum(positions, 1 - positions)
-    parts: Array = _rest()(points)
+    along = _along_slopes(wavelength, tuple(positions))
+    parts: Array = along(np.maximum(tangents, along.t[0]))
     return parts
+
+
+@lru_cache(maxsize=16)
+def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> BSpline:
+    """The table's parts there over the tangent of the slope, linear between the table's slopes."""
+    at = np.array(positions)
+    tangents = _rest().grid[0]
+    points = np.empty((len(tangents), len(at), 3))
+    points[..., 0] = tangents[:, None]
+    points[..., 1] = math.log(wavelength)
+    points[..., 2] = np.minimum(at, 1 - at)
+    return make_interp_spline(tangents, _rest()(points), k=1)
 
 
 def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, parts: Array) -> Array:

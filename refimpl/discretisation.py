@@ -194,13 +194,16 @@ def line(values: Array, weights: Array, prior: Prior, edge: Array | None = None)
 
 def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> float:
     """What a mixture of Student's distributions exceeds, either way together, with 5 %."""
+    widest = float(np.max(np.abs(centres)) + np.max(scales) * special.stdtrit(freedom, 0.975))
+    if len(shares) == 1:
+        return widest
+
+    either_way = np.array([centres, -centres])
 
     def beyond(bound: float) -> float:
-        above = special.stdtr(freedom, (centres - bound) / scales)
-        below = special.stdtr(freedom, (-bound - centres) / scales)
-        return float(shares @ (above + below)) - 0.05
+        tails = special.stdtr(freedom, (either_way - bound) / scales)
+        return float((tails @ shares).sum()) - 0.05
 
-    widest = float(np.max(np.abs(centres)) + np.max(scales) * special.stdtrit(freedom, 0.975))
     return float(optimize.brentq(beyond, 0.0, widest, rtol=1e-4)) if beyond(widest) < 0 else widest
 
 

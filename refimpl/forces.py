@@ -57,12 +57,10 @@ def perimeter_corrected_area(contact: NDArray[np.bool_], spacing: float, *, peri
     contact and no contact (Yastrebov, Anciaux and Molinari 2017, Tribology International 114, 161).
     """
     edges = 0
-    for axis in (0, 1):
-        padding = [(0, 0), (0, 0)]
-        padding[axis] = (0, 0) if periodic else (1, 1)
-        padded = np.pad(contact, padding)
-        neighbour = np.roll(padded, -1, axis)
-        edges += int(np.count_nonzero(padded != neighbour))
+    for rows in (contact, contact.T):
+        edges += int(np.count_nonzero(rows[1:] != rows[:-1]))
+        first, last = rows[0], rows[-1]
+        edges += int(np.count_nonzero(first != last) if periodic else np.count_nonzero([first, last]))
     perimeter = edges * spacing
     raw = int(np.count_nonzero(contact)) * spacing**2
     return raw - (math.pi - 1 + math.log(2)) / 24 * perimeter * spacing

@@ -196,7 +196,8 @@ def _radius(solution: Solution) -> Caution | None:
     """Of a mean circle; full contact has no edge to resolve."""
     if solution.contact.all():
         return None
-    _, spots = ndimage.label(solution.contact, np.ones((3, 3)))
+    box = Window.around(solution.contact, margin=0)
+    _, spots = ndimage.label(solution.contact[box.slices], np.ones((3, 3)))
     radius = math.sqrt(np.count_nonzero(solution.contact) / (math.pi * spots))
     text = (
         f"spots of contact have a mean radius of {radius:.2g} elements: below 3 areas are coarse, and bars "

@@ -112,13 +112,22 @@ def test_what_a_glance_takes_for_symmetric_is_asked_of_all_heights() -> None:
 
 def test_of_equal_elements_the_first_count() -> None:
     gap = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, 2.0], [1.0, 1.0, 1.0]])
-    assert _first(_rising(gap), 4, gap).tolist() == [
-        [True, True, True],
-        [False, True, False],
-        [False, False, False],
-    ]
+    for count in (4, 9):
+        assert _first(_rising(gap, count), 4, gap).tolist() == [
+            [True, True, True],
+            [False, True, False],
+            [False, False, False],
+        ]
     level = _touched(posed(3, np.zeros((3, 3))), STIFFNESS, 1.0)
     assert level.all()  # without any slope nothing carries
+
+
+@pytest.mark.parametrize("count", [0, 1, 7, 24, 25])
+def test_the_lowest_come_as_if_all_were_sorted(count: int) -> None:
+    gap = np.random.default_rng(2).integers(0, 6, (5, 5)).astype(float)
+    order = _rising(gap, count)
+    assert order.size >= count
+    assert order.tolist() == sorted(range(25), key=lambda at: gap.ravel()[at])[: order.size]
 
 
 def test_at_an_approach_half_of_what_interferes_touches() -> None:
