@@ -76,10 +76,11 @@ def coefficient_error(
 
 def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, upper: Material) -> SlopeError:
     """The error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
-    squared = np.where(pressure > 0, tan_x**2 + tan_y**2, 0.0)
+    loaded = pressure > 0
+    squared, weights = tan_x[loaded] ** 2 + tan_y[loaded] ** 2, pressure[loaded]
     if not squared.any():
         return SlopeError(0.0, 0.0, 0.0, 0.0)
-    rms = math.atan(math.sqrt(float(np.sum(squared * pressure) / np.sum(pressure))))
+    rms = math.atan(math.sqrt(float(np.sum(squared * weights) / np.sum(weights))))
     steepest = math.atan(math.sqrt(float(squared.max())))
     table = _table()
     top = math.radians(table["slope_deg"][-1])
