@@ -3,20 +3,24 @@
 Unknown are the pressures on the set and the approach, ``x = (f, delta)``; the equations are Eq. (6) with
 equality on the set, written ``u + K (h - delta) = 0`` with ``K = cos theta_x cos theta_y``, and
 ``N = P``. Cosines, shear and load all follow from ``x``, so one residual holds the whole model; its
-Jacobian is applied by a difference quotient and inverted by GMRES (Knoll and Keyes 2004).
+Jacobian is applied by a difference quotient and inverted by GMRES (Knoll and Keyes 2004), which starts
+from the inverse of what is left without friction and slopes.
 """
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
+from refimpl.contact.extension import ExtendedPreconditioner
 from refimpl.forces import Forces, resultants
 from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array
-from refimpl.operators.fft import FFTInfluence
+from refimpl.level_solver import preconditioner
+from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.operators.window import Window
 from refimpl.problem import Problem
@@ -73,8 +77,11 @@ class FixedSet:
         if not change.any():  # the modulus of a body that is as good as rigid
             return Response(*self._unpacked(change), 0.0)
         size = len(change)
-        jacobian = LinearOperator((size, size), matvec=self._jacobian, dtype=np.float64)
-        x, _ = gmres(jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES)
+        jacobian, plain = (
+            LinearOperator((size, size), matvec=product, dtype=np.float64)
+            for product in (self._jacobian, self._plain_inverse)
+        )
+        x, _ = gmres(jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES, M=plain)
         left = float(np.linalg.norm(jacobian @ x + change) / np.linalg.norm(change))
         return Response(*self._unpacked(x), left)
 
@@ -84,6 +91,26 @@ class FixedSet:
         pressure, approach = self._unpacked(scale * x)
         moved = self.residual(self.problem, self.pressure + pressure, self.approach + approach)
         return np.asarray((moved - self._base) / scale)
+
+    def _plain_inverse(self, x: Array) -> Array:
+        """About ``x`` of ``a f - delta = misfit`` under ``sum f dA = load``: flat, and without friction."""
+        x = np.ravel(x)
+        load = self.problem.load or float(self.pressure.sum()) * self.problem.grid.element_area
+        misfit = np.zeros(self.contact.shape)
+        misfit[self.contact] = self.approach * x[:-1]
+        pressure, lifted = self._precondition(misfit)[self.contact], self._lifted
+        approach = (load * x[-1] / self.problem.grid.element_area - pressure.sum()) / lifted.sum()
+        return np.append((pressure + approach * lifted) / self.peak, approach / self.approach)
+
+    @cached_property
+    def _precondition(self) -> ExtendedPreconditioner:
+        spectral = preconditioner(self.problem, self.window, Counter())
+        return ExtendedPreconditioner(spectral, self.contact)
+
+    @cached_property
+    def _lifted(self) -> Array:
+        """Pressures on the set for an approach of one, about (Pa/m)."""
+        return self._precondition(self.contact.astype(np.float64))[self.contact]
 
     def _unpacked(self, x: Array) -> tuple[Array, float]:
         """Pressures on the window and approach of a vector in peaks and base approaches."""
