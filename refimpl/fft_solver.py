@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from refimpl.contact.certificate import State, certify
 from refimpl.contact.extension import extended
+from refimpl.contact.projected_cg import Apply
 from refimpl.friction import Mask
-from refimpl.grid import resampled
+from refimpl.grid import Array, resampled
 from refimpl.level_solver import LevelSolver, preconditioner
 from refimpl.nesting import Start, foundation_pressure, levels, sharpened, touching
 from refimpl.operators.base import Influence
@@ -52,7 +53,13 @@ def solve_fft(
 
 
 def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
-    """The solver of a grid, from another one's answer: its pressure, and the window of likely contact."""
+    """The solver of a grid, from another one's answer."""
+    window, pressure, precondition = _prepared(problem, start, counter)
+    return LevelSolver(problem, counter, window, extended(precondition, pressure > 0), pressure)
+
+
+def _prepared(problem: Problem, start: Start, counter: Counter) -> tuple[Window, Array, Apply]:
+    """The window of likely contact, the pressure to start from there, and the window's preconditioner."""
     M = problem.grid.M
     v = resampled(start.displacement, M) + problem.gap
     pressure = resampled(start.pressure, M)
@@ -69,7 +76,7 @@ def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
         precondition,
         loaded=problem.load is not None,
     )
-    return LevelSolver(problem, counter, window, extended(precondition, pressure > 0), pressure)
+    return window, pressure, precondition
 
 
 def _unprepared(problem: Problem, counter: Counter) -> LevelSolver:

@@ -128,6 +128,11 @@ class FFTInfluence:
         return fourier.plane(unit_kernel * self.grid.spacing, self._padded, threads(math.prod(self._padded)))
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
+        spectrum = self._forward(source)
+        spectrum *= hat
+        return self._backward(spectrum)
+
+    def _forward(self, source: Array) -> Complex:
         (N, K), (along, place) = self._padded, self._from
         workers = threads(N * K)
         self._columns[along] = source
@@ -135,8 +140,11 @@ class FFTInfluence:
         spectrum[:, : place.start] = 0
         spectrum[:, place.stop :] = 0
         fourier.columns(self._columns, spectrum[:, place], workers)
-        spectrum = fourier.rows(spectrum, workers, forward=True)
-        spectrum *= hat
+        return fourier.rows(spectrum, workers, forward=True)
+
+    def _backward(self, spectrum: Complex) -> Array:
+        N, K = self._padded
+        workers = threads(N * K)
         spectrum = fourier.rows(spectrum, workers, forward=False)
         found: Array = fourier.columns_back(spectrum[:, self._to[1]], N, workers)[self._to[0]]
         return found
@@ -150,11 +158,17 @@ class FFTInfluence:
 class WholeGridInfluence(FFTInfluence):
     """From a source window to the whole grid, with arguments of the grid's shape.
 
-    Tractions outside the source are taken to be zero: the caller chose the source to hold them all.
+    Tractions outside the source are taken to be zero: the caller chose the source to hold them all. It is
+    made for one product of each kind, and gives up what that took before the result needs room.
     """
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
-        return super()._convolve(source[self.source.slices], hat)
+        spectrum = self._forward(source[self.source.slices])
+        spectrum *= hat
+        del hat
+        for spent in ("_columns", "_normal_hat", "_shear_hat", "_across_hat"):
+            vars(self).pop(spent, None)
+        return self._backward(spectrum)
 
 
 def _padded(source: Window, target: Window) -> tuple[int, int]:

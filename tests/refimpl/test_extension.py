@@ -142,4 +142,6 @@ def test_it_spares_a_fifth_of_the_steps_on_a_rough_surface(monkeypatch: pytest.M
 def test_small_windows_do_without() -> None:
     mask = spectral()
     assert extended(mask, spots()) is mask
-    assert isinstance(extended(mask, np.zeros((130, 130), dtype=bool)), ExtendedPreconditioner)
+    assert extended(mask, np.zeros((93, 172), dtype=bool)) is mask  # 15,996 elements
+    assert isinstance(extended(mask, np.zeros((160, 100), dtype=bool)), ExtendedPreconditioner)
+    assert extended(mask, np.zeros((127, 126), dtype=bool)) is not mask  # 16,002
