@@ -96,7 +96,9 @@ def test_perimeter_of_hand_counted_sets():
     assert perimeter_corrected_area(np.ones((4, 4), dtype=bool), 0.5, periodic=True) == 4
     edge = np.zeros((4, 4), dtype=bool)
     edge[:, 0] = True
-    assert perimeter_corrected_area(edge, 0.5, periodic=True) == pytest.approx(1 - 8 * factor * 0.25)
+    for turned in range(4):
+        border = np.rot90(edge, turned)
+        assert perimeter_corrected_area(border, 0.5, periodic=True) == pytest.approx(1 - 8 * factor * 0.25)
     assert perimeter_corrected_area(np.zeros((4, 4), dtype=bool), 0.5) == 0
 
 
