@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from refimpl.contact.certificate import State, certify
 from refimpl.contact.extension import extended
+from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import Apply
 from refimpl.friction import Mask
 from refimpl.grid import Array, resampled
-from refimpl.level_solver import LevelSolver, preconditioner
+from refimpl.level_solver import LevelSolver, WindowInfluence, influence
 from refimpl.nesting import Start, foundation_pressure, levels, sharpened, touching
 from refimpl.operators.base import Influence
 from refimpl.operators.fft import Counter, WholeGridInfluence
@@ -53,13 +54,16 @@ def solve_fft(
 
 
 def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
-    """The solver of a grid, from another one's answer."""
-    window, pressure, precondition = _prepared(problem, start, counter)
-    return LevelSolver(problem, counter, window, extended(precondition, pressure > 0), pressure)
+    """The solver of a grid, from another one's answer: its pressure, and the window of likely contact."""
+    window, pressure, misfit, contact = _prolonged(problem, start)
+    operator, precondition = _operators(problem, window, counter)
+    loaded = problem.load is not None
+    pressure = sharpened(pressure, misfit, contact, precondition, loaded=loaded)
+    return LevelSolver(problem, operator, extended(precondition, pressure > 0), pressure)
 
 
-def _prepared(problem: Problem, start: Start, counter: Counter) -> tuple[Window, Array, Apply]:
-    """The window of likely contact, the pressure to start from there, and the window's preconditioner."""
+def _prolonged(problem: Problem, start: Start) -> tuple[Window, Array, Array, Mask]:
+    """A window; there the prolonged pressure, what its ``v`` lacks of the approach, and likely contact."""
     M = problem.grid.M
     v = resampled(start.displacement, M) + problem.gap
     pressure = resampled(start.pressure, M)
@@ -68,22 +72,20 @@ def _prepared(problem: Problem, start: Start, counter: Counter) -> tuple[Window,
     window = Window.full(M)
     if not problem.periodic:
         window = Window.around(contact, MARGIN).filling(M)
-    precondition = preconditioner(problem, window, counter)
-    pressure = sharpened(
-        pressure[window.slices],
-        approach - v[window.slices],
-        contact[window.slices],
-        precondition,
-        loaded=problem.load is not None,
-    )
-    return window, pressure, precondition
+    place = window.slices
+    return window, pressure[place].copy(), approach - v[place], contact[place].copy()
+
+
+def _operators(problem: Problem, window: Window, counter: Counter) -> tuple[WindowInfluence, Apply]:
+    """The influence of a window on itself, and the preconditioner that goes with it."""
+    operator = influence(problem, window, counter)
+    return operator, SpectralPreconditioner(operator, problem.pair.normal_compliance)
 
 
 def _unprepared(problem: Problem, counter: Counter) -> LevelSolver:
     """The solver of a grid of which nothing is known."""
-    window = Window.full(problem.grid.M)
-    precondition = preconditioner(problem, window, counter)
-    return LevelSolver(problem, counter, window, precondition, foundation_pressure(problem))
+    operator, precondition = _operators(problem, Window.full(problem.grid.M), counter)
+    return LevelSolver(problem, operator, precondition, foundation_pressure(problem))
 
 
 def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
@@ -118,7 +120,7 @@ def _widened(problem: Problem, outcome: Outcome, beyond: Mask, counter: Counter)
     """A solver that starts from a pressure found, on a window that holds what was beyond the last as well."""
     window = Window.around((outcome.pressure > 0) | beyond, MARGIN).filling(len(beyond))
     pressure = outcome.pressure[window.slices]
-    precondition = extended(preconditioner(problem, window, counter), pressure > 0)
-    solver = LevelSolver(problem, counter, window, precondition, pressure)
+    operator, precondition = _operators(problem, window, counter)
+    solver = LevelSolver(problem, operator, extended(precondition, pressure > 0), pressure)
     solver.cg_iterations = sum(outcome.iterations.values())
     return solver

@@ -16,11 +16,11 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from refimpl.contact.extension import ExtendedPreconditioner
+from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.forces import Forces, resultants
 from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array
-from refimpl.level_solver import preconditioner
-from refimpl.operators.fft import Counter, FFTInfluence
+from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.operators.window import Window
 from refimpl.problem import Problem
@@ -104,7 +104,7 @@ class FixedSet:
 
     @cached_property
     def _precondition(self) -> ExtendedPreconditioner:
-        spectral = preconditioner(self.problem, self.window, Counter())
+        spectral = SpectralPreconditioner(self.operator, self.problem.pair.normal_compliance)
         return ExtendedPreconditioner(spectral, self.contact)
 
     @cached_property

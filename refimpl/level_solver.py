@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import Apply, ProjectedCG
 from refimpl.flexibility import Flexibility
 from refimpl.friction import Mask, TauSupport, local_friction
@@ -38,15 +37,14 @@ _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyo
 _LEAST_RELAXATION = 1 / 16  # below this, updates that do not contract are given up
 
 
-def preconditioner(problem: Problem, window: Window, counter: Counter) -> SpectralPreconditioner:
-    """The preconditioner of a problem's window."""
-    return SpectralPreconditioner(
-        window.shape,
-        problem.grid.spacing,
-        problem.pair.normal_compliance,
-        counter,
-        band_limited=problem.periodic,
-    )
+WindowInfluence = FFTInfluence | PeriodicInfluence
+
+
+def influence(problem: Problem, window: Window, counter: Counter) -> WindowInfluence:
+    """The operator of a problem's window, which is the whole grid where it repeats."""
+    if problem.periodic:
+        return PeriodicInfluence(problem.grid, problem.direction, counter=counter)
+    return FFTInfluence(problem.grid, problem.direction, source=window, counter=counter)
 
 
 class LevelSolver:
@@ -55,29 +53,23 @@ class LevelSolver:
     def __init__(
         self,
         problem: Problem,
-        counter: Counter,
-        window: Window,
+        operator: WindowInfluence,
         precondition: Apply,
         pressure: Array,
     ) -> None:
         self.whole = problem
-        self.counter = counter
+        self.counter = operator.counter
         self.cg_iterations = 0
-        grid, direction = problem.grid, problem.direction
-        self.window = window
-        self.problem = problem.windowed(window)
-        if problem.periodic:
-            operator: FFTInfluence | PeriodicInfluence = PeriodicInfluence(grid, direction, counter=counter)
-        else:
-            operator = FFTInfluence(grid, direction, source=window, counter=counter)
+        self.window = operator.source
+        self.problem = problem.windowed(self.window)
         self.operator = operator
         self.flexibility = Flexibility(self.problem, operator)
         self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
-        self.slopes = self._entered = Slopes.flat(window.shape)
+        self.slopes = self._entered = Slopes.flat(self.window.shape)
         self._held: tuple[Array, Array] | None = None
         self._withheld: Mask | None = None
         # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.nesting`
-        self._stiffness = 0.5 / (problem.pair.normal_compliance * grid.spacing)
+        self._stiffness = 0.5 / (problem.pair.normal_compliance * problem.grid.spacing)
         self.ran_off = False
         self._feedback = _REDUCTION
         # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is

@@ -38,8 +38,7 @@ import numpy as np
 from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.friction import Mask
 from refimpl.grid import Array
-from refimpl.operators.base import Influence
-from refimpl.operators.fft import Counter, FFTInfluence
+from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.problem import Problem
 
@@ -63,12 +62,12 @@ class EnergyNorm:
         grid, self._K = problem.grid, K
         self.compliance = problem.pair.normal_compliance
         kind = PeriodicInfluence if problem.periodic else FFTInfluence
-        self.operator: Influence = kind(grid, problem.direction)
+        self.operator = kind(grid, problem.direction)
         self.lift = self.compliance * grid.side / K.size if problem.periodic else 0.0
         # sums of |I| over all offsets are those of 1/rho over a square of twice the side
         self._reach = self.compliance * 8 * math.asinh(1) * grid.side + self.lift * float(np.vdot(K, K))
         self.floor = self._floor(grid.spacing, problem.periodic)
-        self._precondition = SpectralPreconditioner(K.shape, grid.spacing, self.compliance, Counter())
+        self._precondition = SpectralPreconditioner(self.operator, self.compliance)
         impulse = np.zeros(K.shape)
         impulse[0, 0] = 1.0
         self.diagonal = float(self.apply(impulse)[0, 0])

@@ -88,6 +88,20 @@ class FFTInfluence:
 
         return product
 
+    @property
+    def circle(self) -> tuple[int, int]:
+        """Half the padded lengths: the least that a window needs where it may see its own image."""
+        N, K = self._padded
+        return N // 2, K // 2
+
+    @property
+    def symbol(self) -> Array:
+        """The normal kernel's transform on `circle` (m), half along the first axis, for a window onto itself.
+
+        Every second frequency of the padded circle's: real, and no less than 1.8 spacings (a test).
+        """
+        return self._normal_hat.real[::2, ::2]
+
     @cached_property
     def _offsets(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
         """Signed element offsets, target minus source, around the circle of each axis."""

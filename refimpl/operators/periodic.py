@@ -26,7 +26,7 @@ class PeriodicInfluence:
     def __init__(self, grid: Grid, direction: float, *, counter: Counter | None = None) -> None:
         self.grid = grid
         self.direction = direction
-        self.window = Window.full(grid.M)
+        self.source = Window.full(grid.M)
         self.counter = counter if counter is not None else Counter()
 
     def normal(self, pressure: Array) -> Array:
@@ -53,6 +53,16 @@ class PeriodicInfluence:
             return self._filter(pressure, symbol)
 
         return product
+
+    @property
+    def circle(self) -> tuple[int, int]:
+        """Elements a side."""
+        return self.grid.M, self.grid.M
+
+    @property
+    def symbol(self) -> Array:
+        """``2 pi / q`` (m), half along the first axis; zero for the mean."""
+        return self._normal_symbol
 
     @cached_property
     def _wavevectors(self) -> tuple[Array, Array, Array]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import refimpl as rf
-from refimpl.level_solver import LevelSolver, preconditioner
+from refimpl.contact.preconditioner import SpectralPreconditioner
+from refimpl.level_solver import LevelSolver, influence
 from refimpl.nesting import foundation_pressure
 from refimpl.operators.fft import Counter
 from refimpl.operators.window import Window
@@ -33,6 +34,9 @@ def posed(scene: rf.Scene, M: int, *, oblique: bool = False, approach: float | N
 
 
 def level(problem: Problem, window: Window | None = None) -> LevelSolver:
-    window, counter = window or Window.full(problem.grid.M), Counter()
+    window = window or Window.full(problem.grid.M)
     start = foundation_pressure(problem)[window.slices]
-    return LevelSolver(problem, counter, window, preconditioner(problem, window, counter), start)
+    operator = influence(problem, window, Counter())
+    return LevelSolver(
+        problem, operator, SpectralPreconditioner(operator, problem.pair.normal_compliance), start
+    )

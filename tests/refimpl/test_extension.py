@@ -15,7 +15,8 @@ from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.operators.dense import DenseInfluence
-from refimpl.operators.fft import Counter
+from refimpl.operators.fft import FFTInfluence
+from refimpl.operators.window import Window
 from verification.benchmarks.problems import scene
 
 SHAPE, COMPLIANCE = (18, 15), 1e-11
@@ -30,7 +31,9 @@ def spots(shape: tuple[int, int] = SHAPE, share: float = 0.3, seed: int = 4) -> 
 
 
 def spectral(shape: tuple[int, int] = SHAPE) -> SpectralPreconditioner:
-    return SpectralPreconditioner(shape, 1e-4, COMPLIANCE, Counter())
+    n, m = shape
+    window = FFTInfluence(Grid(max(shape) * 1e-4, max(shape)), 0.0, source=Window(0, n, 0, m))
+    return SpectralPreconditioner(window, COMPLIANCE)
 
 
 def continued(contact: Mask, values: Array) -> Array:

@@ -10,7 +10,7 @@ from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG, relative_gap
 from refimpl.grid import Grid
 from refimpl.operators.dense import DenseInfluence
-from refimpl.operators.fft import Counter
+from refimpl.operators.fft import FFTInfluence
 
 M, SIDE, COMPLIANCE = 10, 1e-3, 1e-11
 GRID = Grid(SIDE, M)
@@ -23,7 +23,7 @@ WEIGHTS = RANDOM.uniform(0.9, 1.0, (M, M))
 
 
 def start(pressure: np.ndarray | None = None) -> ProjectedCG:
-    spectral = SpectralPreconditioner((M, M), GRID.spacing, COMPLIANCE, Counter())
+    spectral = SpectralPreconditioner(FFTInfluence(GRID, 0.0), COMPLIANCE)
     first = np.where(np.quantile(BOWL, 0.2) >= BOWL, 1e6, 0.0) if pressure is None else pressure
     return ProjectedCG(lambda f: (A @ f.ravel()).reshape(f.shape), spectral, first)
 
