@@ -136,7 +136,7 @@ def steps(M: int, kind: str) -> int:
 
 
 def test_it_spares_a_fifth_of_the_steps_on_a_rough_surface(monkeypatch: pytest.MonkeyPatch) -> None:
-    """11 for 15 at 256 elements a side; small windows do without, and neither costs an application more."""
+    """11 for 15 at 256 elements a side."""
     after = steps(256, "rough")
     monkeypatch.setattr(fft_solver, "extended", lambda precondition, contact: precondition)
     assert after <= 0.8 * steps(256, "rough")

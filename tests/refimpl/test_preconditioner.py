@@ -66,7 +66,7 @@ def test_the_preconditioner_clusters_the_spectrum() -> None:
 
 
 def test_the_spectrum_on_a_disc_lies_between_one_and_about_two() -> None:
-    """What the first step's length rests on; a periodic window and one fold cost a few per cent below one."""
+    """What the first length rests on; a circle as short as the window costs some per cent below one."""
     n = 24
     grid = Grid(SIDE, n)
     spectral = SpectralPreconditioner(FFTInfluence(grid, 0.0), COMPLIANCE)

@@ -186,3 +186,22 @@ def test_pressures_beyond_all_numbers_pass_nothing() -> None:
         results = run(huge)
     assert {r.id for r in results if r.status == "pass"} == set()
     assert {r.status for r in results} == {"fail", "error"}
+
+
+def test_work_over_energy_is_two_to_four_times_the_share_of_an_approach() -> None:
+    """What our adapter's `WORK` rests on: in the suite's problems 2.0 to 4.0; two such parts are added."""
+    ratios = []
+
+    def noted(problem: ContactProblem) -> Answer:
+        answer = own.solve(problem)
+        approach = problem.approach_from_touch
+        if approach is not None and approach > 0:
+            load = float(np.asarray(answer.pressure).sum()) * problem.element_area
+            ratios.append(load * approach / referee.energy(problem, np.asarray(answer.pressure)))
+        return answer
+
+    noted.abilities = own.solve.abilities  # type: ignore[attr-defined]  # how a function tells them
+    run(noted)
+    assert len(ratios) > 10
+    assert min(ratios) >= 2 - 1e-6
+    assert max(ratios) <= own.WORK / 2

@@ -13,7 +13,7 @@ from verification.contestants.protocol import Abilities, Answer, ContactProblem,
 WORK = 8.0
 """How much stricter the suite is at a prescribed approach: it adds the work of what misses the approach to
 that of what penetrates, over the elastic energy. In its problems each is 2 to 4 times its share of the
-approach, which is what our certificate counts."""
+approach, which is what our certificate counts (a test)."""
 
 RIGID = 1e30
 """Modulus of a body that is to be rigid, over E*: its compliance vanishes beside the other's rounding."""
