@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from refimpl.friction import Mask
+from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -38,6 +38,7 @@ class Flexibility:
         )
         self._product = operator.coupled(self._ratio) if self.coupled else operator.normal
         self._led: tuple[Mask, Array] | None = None
+        self._pressed: tuple[int, float, Array] | None = None
 
     def apply(self, pressure: Array) -> Array:
         """``a f``, or ``a f + beta c f`` (m)."""
@@ -45,27 +46,37 @@ class Flexibility:
         return displacement
 
     def displaced(
-        self, pressure: Array, traction: Array, support: Mask, slopes: Slopes, displacement: Array
+        self, pressure: Array, step: int, support: Mask, slopes: Slopes, displacement: Array
     ) -> tuple[Array, Slopes]:
         """What shear adds to ``displacement = apply(pressure)`` (m), and the slopes that all leave.
 
-        ``traction`` is that of the pressure with tau on ``support``; ``slopes`` are the last ones.
+        The pressure is that of CG's ``step``, but for a factor; tau is on ``support``; ``slopes`` are the
+        last ones.
         """
         problem, operator = self._problem, self._operator
         if not problem.terms.oblique:
-            held = self._pulled_by_tau(support) if self.coupled else traction
+            held = self._pulled_by_tau(support) if self.coupled else self._pulled(pressure, support)
             return problem.coupling(operator, held), slopes
         if self.coupled:
-            by_pressure = operator.shear(pressure)
+            by_pressure = self._by_pressure(pressure, step)
             normal = displacement / problem.pair.normal_compliance - self._ratio * by_pressure
             by_traction = problem.friction.beta * by_pressure + self._by_tau(support)
             lower, upper = problem.parted(normal, by_traction)
         else:
             known = None if problem.terms.slope_correction else displacement
+            traction = self._pulled(pressure, support)
             lower, upper = problem.displacements(
                 operator, pressure, traction, slopes, normal_displacement=known
             )
         return lower + upper - displacement, problem.slopes(lower, upper)
+
+    def _by_pressure(self, pressure: Array, step: int) -> Array:
+        """The shear product of a pressure, applied once for a step: from then on only the scale changes."""
+        total = float(pressure.sum())
+        if self._pressed is None or self._pressed[0] != step:
+            self._pressed = step, total, self._operator.shear(pressure)
+        _, applied, product = self._pressed
+        return product if total == applied else (total / applied) * product
 
     def _by_tau(self, support: Mask) -> Array | float:
         """The shear product of tau alone, applied once for a support."""
@@ -74,6 +85,9 @@ class Flexibility:
         if self._led is None or not np.array_equal(self._led[0], support):
             self._led = support, self._operator.shear(self._pulled_by_tau(support))
         return self._led[1]
+
+    def _pulled(self, pressure: Array, support: Mask) -> Array:
+        return local_friction(self._problem.friction, pressure, support)
 
     def _pulled_by_tau(self, support: Mask) -> Array:
         return np.where(support, self._problem.friction.tau, 0.0)

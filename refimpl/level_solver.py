@@ -206,7 +206,7 @@ class LevelSolver:
         problem, pressure = self.problem, self.cg.pressure
         self.support = pressure > 0 if support is None else support
         shear, slopes = self.flexibility.displaced(
-            pressure, self._pulled(), self.support, self.slopes, self.cg.normal_displacement
+            pressure, self.cg_iterations, self.support, self.slopes, self.cg.normal_displacement
         )
         self._entered, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes

@@ -1,8 +1,8 @@
 """Tau's rule (`refimpl.friction`) walked on one grid.
 
-A state on the way need only tell its contact, so it is left as soon as that is beyond doubt. Settled to
-the tolerance are the last one, and those of cycles, of which numbers are reported. Where contact leads tau by
-itself it may end in another lawful state: only the rule does not depend on the way.
+A state on the way need only tell its contact, so it is left as soon as that is beyond doubt. Of a cycle's
+states mu is told as well: those are settled further if need be. Only the last is settled to the tolerance.
+Where contact leads tau by itself it may end in another lawful state: the rule alone depends on no way.
 """
 
 from __future__ import annotations
@@ -13,13 +13,17 @@ from refimpl.friction import Mask, TauSupport
 from refimpl.outcome import Visited
 
 _SUPPORT_ITERATIONS = 200
+_TOLD = 1e-6  # residual at which a cycle's state is told: its mu is off by no larger a share (see the tests)
 
 
 class Settling(Protocol):
     """What walks: a state that settles with tau on a support.
 
-    ``cramped`` says that its window cuts the contact off, ``ran_off`` that slopes have.
+    ``residual`` is that of the whole problem, ``cramped`` says that its window cuts the contact off,
+    ``ran_off`` that slopes have.
     """
+
+    residual: float
 
     @property
     def contact(self) -> Mask:
@@ -34,7 +38,7 @@ class Settling(Protocol):
         """See above."""
 
     def settle(self, tolerance: float, support: Mask, withheld: Mask | None = None) -> bool:
-        """Whether it met the tolerance; with ``withheld``, it may end when the next support is known."""
+        """Until it meets the tolerance, if it can; with ``withheld``, or when the next support is known."""
 
     def visited(self) -> Visited:
         """The present state's numbers."""
@@ -43,22 +47,23 @@ class Settling(Protocol):
 def followed(state: Settling, tolerance: float) -> tuple[TauSupport, list[Visited]]:
     """The rule where it ended, and the states of all cycles; ``state`` is left at the last one."""
     rule = TauSupport(state.contact.shape)
+    told = max(tolerance, _TOLD)
     way: list[Visited | None] = []
     in_cycles: list[Visited] = []
     for _ in range(_SUPPORT_ITERATIONS):
-        settled = state.settle(tolerance, rule.current, rule.withheld)
+        state.settle(tolerance, rule.current, rule.withheld)
         if state.cramped:
             break
-        way.append(state.visited() if settled else None)
+        way.append(state.visited() if state.residual <= told else None)
         rule.next(state.contact)
         for support in reversed(rule.cycle):  # the last is the present one
-            in_cycles.append(way.pop() or _again(state, tolerance, support))
+            in_cycles.append(way.pop() or _again(state, told, support))
         if rule.settled or state.ran_off:
             break
     return rule, in_cycles
 
 
 def _again(state: Settling, tolerance: float, support: Mask) -> Visited:
-    """A state that was left before it was settled."""
+    """A state that was left before it could be told."""
     state.settle(tolerance, support)
     return state.visited()

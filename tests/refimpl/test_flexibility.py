@@ -84,7 +84,7 @@ def test_what_is_applied_and_what_is_held_add_up_to_the_same(
         monkeypatch.setattr(flexibility, "_WEAK", weak)
         found, _ = flexible(problem)
         displacement = found.apply(pressure)
-        held, left = found.displaced(pressure, traction, support, slopes, displacement)
+        held, left = found.displaced(pressure, 0, support, slopes, displacement)
         assert found.coupled is (weak > 0)
         sums.append((displacement + held, left.tan_x, left.tan_y))
     dense = DenseInfluence(problem.grid, problem.direction, periodic=periodic)
@@ -98,15 +98,37 @@ def test_what_is_applied_and_what_is_held_add_up_to_the_same(
         assert np.abs(across - expected.tan_y).max() <= bound
 
 
-def test_tau_is_applied_once_for_a_support() -> None:
+def test_tau_is_applied_once_for_a_support_and_a_pressure_once_for_a_step() -> None:
+    """Between CG's steps a pressure is only brought to the load, which the product follows to rounding."""
     problem = turned(0.2, 1e6, oblique=True)
     found, counter = flexible(problem)
     slopes = Slopes.flat((M, M))
-    for supports, products in ((1, 2), (1, 3), (2, 5), (2, 6)):
+    for supports, step, factor, products in (
+        (1, 0, 1.0, 2),
+        (1, 0, 1.1, 2),
+        (2, 0, 0.7, 3),
+        (2, 1, 0.7, 4),
+        (1, 1, 1.0, 5),
+    ):
         support = pressed(supports) > 0
-        pressure = pressed(7)
-        found.displaced(pressure, pressure, support, slopes, found.apply(pressure))
+        pressure = factor * pressed(7 + step)
+        displacement = found.apply(pressure)
+        held, left = found.displaced(pressure, step, support, slopes, displacement)
         assert counter.tally["shear"] == products
+        expected, tangents = flexible(problem)[0].displaced(pressure, 0, support, slopes, displacement)
+        assert np.abs(held - expected).max() <= ROUNDING * np.abs(displacement).max()
+        bound = ROUNDING * np.abs(displacement).max() / problem.grid.spacing
+        assert np.abs(left.tan_x - tangents.tan_x).max() <= bound
+
+
+def test_no_pressure_at_all_is_sheared_by_nothing() -> None:
+    problem = turned(0.2, 1e6, oblique=True)
+    found, _ = flexible(problem)
+    nothing = np.zeros((M, M))
+    for _ in range(2):
+        held, left = found.displaced(nothing, 0, nothing > 0, Slopes.flat((M, M)), nothing)
+        assert not held.any()
+        assert np.isfinite(left.tan_x).all()
 
 
 def test_both_kernels_in_one_product_cost_one() -> None:

@@ -113,28 +113,34 @@ def random_scene(seed: int) -> rf.Scene:
 
 
 def test_states_on_the_way_end_where_their_contact_is_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Even half of the doubt allowed for is enough to tell what contact the full tolerance finds."""
+    """Even half of the doubt allowed for is enough to tell what contact the full tolerance finds.
+
+    And mu, to the residual; measured on 900 states of 400 scenes with slopes: 0.6 times that at most.
+    """
     monkeypatch.setattr(projected_cg, "_DOUBT", 1.0)
     told_early = []
     for seed in range(24):
-        solver = level(posed(random_scene(seed), 48, oblique=bool(seed % 2)))
+        solver, off = level(posed(random_scene(seed), 48, oblique=bool(seed % 2))), list[float]()
 
         def compared(
             tolerance: float,
             support: Mask,
             withheld: Mask | None = None,
             solver: LevelSolver = solver,
+            off: list[float] = off,
             settle: Callable[..., bool] = solver.settle,
         ) -> bool:
             settle(tolerance, support, withheld)
-            told, residual = solver.cg.pressure > 0, solver.residual
+            told, residual, early = solver.cg.pressure > 0, solver.residual, solver.visited()
             settle(tolerance, support)
             assert np.array_equal(told, solver.cg.pressure > 0)
             told_early.append(residual > tolerance)
+            off.append(abs(early.friction_coefficient - solver.visited().friction_coefficient) / residual)
             return True
 
         monkeypatch.setattr(solver, "settle", compared)
         solver.solve(1e-8)
+        assert max(off) <= solver.visited().friction_coefficient
     assert sum(told_early) > 40
 
 
