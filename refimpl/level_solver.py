@@ -31,7 +31,7 @@ _LEAST_FEEDBACK = 1e-3  # and this, where the last update brought hardly anythin
 _KEPT = 0.99  # of the tolerance: the certificate, recomputed, rounds otherwise, by 1e-15 against 1e-12
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
-_STALLED = 5  # updates in a row that do not halve the best residual: tau's support is cycling
+_STALLED = 5  # updates in a row that do not halve the best residual: they do not contract
 _UPDATES = 600  # of what is held, in one settling: 36 sigma^2 reach 1e-8, and sigma above 4 is given up
 _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
 _LEAST_RELAXATION = 1 / 16  # below this, updates that do not contract are given up
@@ -66,6 +66,8 @@ class LevelSolver:
         self.flexibility = Flexibility(self.problem, operator)
         self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
         self.slopes = self._entered = Slopes.flat(self.window.shape)
+        self._nowhere: Mask = np.zeros(self.window.shape, dtype=bool)
+        self.support = self._nowhere
         self._held: tuple[Array, Array] | None = None
         self._withheld: Mask | None = None
         # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.nesting`
@@ -131,33 +133,30 @@ class LevelSolver:
         return visit(self.problem, self.cg.pressure, self._pulled(), self.slopes)
 
     def settle(self, tolerance: float, support: Mask | None = None, withheld: Mask | None = None) -> bool:
-        """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or on contact.
+        """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or nowhere.
 
         With what tau's rule has ``withheld``, only until it is beyond doubt that its next support is another.
         """
-        self._withheld = withheld
+        self.support, self._withheld = self._nowhere if support is None else support, withheld
         self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
-        self._lags = self.lags(support)
         self._relaxation = self._best_relaxation  # anew for each of tau's supports
-        self.residual = best = self._update(support)
-        stalled, changed = 0, False
+        self.residual = best = self._update()
+        stalled = 0
         for _ in range(_UPDATES):
             if self.residual <= self._tolerance or self.cg_iterations >= self._budget or self.ran_off:
                 break
             if self._leads_on():
                 break
-            before, last = self.support, self.residual
+            last = self.residual
             frozen = self._reduce(max(self._feedback * last, self._share * tolerance))
-            self.residual = self._update(support) if self._lags else frozen
+            self.residual = self._update() if self._lags else frozen
             self._feedback = min(max(_LEAST_FEEDBACK, (self.residual - frozen) / last), _REDUCTION)
-            changed = changed or not np.array_equal(before, self.support)
             if self.residual < 0.5 * best:
-                best, stalled, changed = self.residual, 0, False
+                best, stalled = self.residual, 0
             else:
                 stalled += 1
             if stalled >= self._patience:
-                cycling = self.problem.friction.tau > 0 and changed
-                if cycling or not self._lags or self._relaxation < _LEAST_RELAXATION:
+                if not self._lags or self._relaxation < _LEAST_RELAXATION:
                     break
                 self._relaxation, stalled = 0.5 * self._relaxation, 0
         return self.residual <= self._tolerance
@@ -194,17 +193,15 @@ class LevelSolver:
         """Of the tolerance, for the frozen problem: the rest is for what is held, or for rounding alone."""
         return 0.3 if self._lags else 0.9
 
-    def lags(self, support: Mask | None) -> bool:
-        """Whether anything that CG holds depends on the pressure, with tau on a support or on contact."""
-        terms, friction = self.problem.terms, self.problem.friction
-        led_by_contact = friction.tau > 0 and support is None
-        sheared = led_by_contact or (friction.beta > 0 and not self.flexibility.coupled)
+    @property
+    def _lags(self) -> bool:
+        """Whether anything that CG holds depends on the pressure."""
+        terms, sheared = self.problem.terms, self.problem.friction.beta > 0 and not self.flexibility.coupled
         return terms.oblique or terms.slope_correction or (terms.coupled and sheared)
 
-    def _update(self, support: Mask | None) -> float:
+    def _update(self) -> float:
         """Bring slopes, shear and load weights up to date; the residual of the whole problem."""
         problem, pressure = self.problem, self.cg.pressure
-        self.support = pressure > 0 if support is None else support
         shear, slopes = self.flexibility.displaced(
             pressure, self.cg_iterations, self.support, self.slopes, self.cg.normal_displacement
         )

@@ -2,7 +2,7 @@
 
 A state on the way need only tell its contact, so it is left as soon as that is beyond doubt. Of a cycle's
 states mu is told as well: those are settled further if need be. Only the last is settled to the tolerance.
-Where contact leads tau by itself it may end in another lawful state: the rule alone depends on no way.
+Tau that contact leads by itself may end in another lawful state: the rule alone depends on no way.
 """
 
 from __future__ import annotations
