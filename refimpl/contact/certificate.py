@@ -23,7 +23,7 @@ class Certificate:
     gap : ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``
     penetration : ``max(0, approach - min v) / approach``
     negative_pressure : largest negative pressure over the peak
-    balance : ``|N - P| / P`` under a load; ``|mean v - approach| / approach`` at an approach
+    balance : ``|N - P| / P`` under a load; ``|sum f (v - approach)| dA`` over the energy at an approach
     slope : change of the slopes' tangents that the state's own displacements ask for
     unlawful : number of elements whose traction is not ``tau + beta f`` in contact and 0 outside (as a
         settled cycle leaves)
@@ -89,12 +89,12 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
     mean_v = inner(f, v[box.slices]) / total if total > 0 else lowest
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, dA)
+    energy = 0.5 * inner(f, normal[box.slices]) * dA
+    duality = inner(f, v[box.slices] - lowest) * dA
     if problem.load is not None:
         balance = abs(forces.normal - problem.load) / problem.load
     else:
-        balance = abs(mean_v - approach) / approach if total > 0 else 0.0
-    energy = 0.5 * inner(f, normal[box.slices]) * dA
-    duality = inner(f, v[box.slices] - lowest) * dA
+        balance = relative_gap(abs(mean_v - approach) * max(total, 0.0) * dA, energy)
     peak = max(float(f.max()), float(np.finfo(float).tiny))
     return State(
         pressure=pressure,

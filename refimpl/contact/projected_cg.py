@@ -94,14 +94,18 @@ class ProjectedCG:
         return self._seen
 
     def residuals(self) -> tuple[float, float]:
-        """Complementarity gap over elastic energy, and penetration over approach, of the frozen problem."""
+        """Complementarity gap over elastic energy, and penetration over approach, of the frozen problem.
+
+        At an approach the first is no less than the work of what the mean separation misses of it.
+        """
         (v, mean), approach = self._look(), self.approach
         lowest = float(v.min())
         pressure = self._pressing()
         energy = 0.5 * inner(pressure, self._support.seen(self.normal_displacement))
         gap = inner(pressure, self._support.seen(v) - lowest)
-        scale = abs(approach) or 1.0
-        return relative_gap(gap, energy), max(abs(mean - approach), approach - lowest) / scale
+        if self._approach is not None:
+            gap = max(gap, abs(mean - approach) * float(pressure.sum()))
+        return relative_gap(gap, energy), max(0.0, approach - lowest) / (abs(approach) or 1.0)
 
     def beyond_doubt(self, stiffness: float) -> bool:
         """Whether what the separation still lacks can bring no element into contact, and take none out.

@@ -121,6 +121,14 @@ def test_tau_is_applied_once_for_a_support_and_a_pressure_once_for_a_step() -> N
         assert np.abs(left.tan_x - tangents.tan_x).max() <= bound
 
 
+def test_without_tau_nothing_is_applied_for_it() -> None:
+    problem = turned(0.2, oblique=True)
+    found, counter = flexible(problem)
+    support, flat = pressed(1) > 0, Slopes.flat((M, M))
+    found.displaced(pressed(7), 0, support, flat, found.apply(pressed(7)))
+    assert counter.tally["shear"] == 1
+
+
 def test_no_pressure_at_all_is_sheared_by_nothing() -> None:
     problem = turned(0.2, 1e6, oblique=True)
     found, _ = flexible(problem)

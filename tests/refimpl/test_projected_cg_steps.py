@@ -122,11 +122,19 @@ def test_an_exact_step_that_cuts_nothing_applies_once() -> None:
 
 
 def test_a_contact_that_is_not_at_its_approach_is_off_by_that() -> None:
-    """Whatever its pressure in pascals; the mean separation counts, on either side of the approach."""
+    """By the work of its pressure on what misses it, over the energy, on either side of the approach."""
     for pressure in (0.25, 1e6):
         for b in (-1.25, 1.25):
-            _, off = springs(2.0, [pressure, pressure], [b - pressure / 2, b - pressure / 2]).residuals()
-            assert off == pytest.approx(1.25, rel=1e-9)
+            off, _ = springs(2.0, [pressure, pressure], [b - pressure / 2, b - pressure / 2]).residuals()
+            energy = 2 * 0.5 * pressure**2 / 2
+            assert off == pytest.approx(2 * pressure * 1.25 / energy, rel=1e-9)
+
+
+def test_what_misses_the_approach_on_both_sides_counts_by_its_mean_and_by_penetration() -> None:
+    """A gap above the lowest separation is complementarity's, as under a load."""
+    cg = springs(2.0, [1.0, 1.0], [-0.25 - 0.5, 0.25 - 0.5])
+    energy = 2 * 0.5 * 1.0 / 2
+    assert cg.residuals() == pytest.approx((0.5 / energy, 0.25), rel=1e-12)
 
 
 def test_a_trial_that_leads_uphill_is_not_taken() -> None:

@@ -10,10 +10,10 @@ import refimpl as rf
 from refimpl.plan import Method
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Unsupported
 
-WORK = 8.0
-"""How much stricter the suite is at a prescribed approach: it adds the work of what misses the approach to
-that of what penetrates, over the elastic energy. In its problems each is 2 to 4 times its share of the
-approach, which is what our certificate counts (a test)."""
+WORK = 3.0
+"""How much stricter the suite is at a prescribed approach. It adds the work of what misses the approach, our
+certificate's ``balance``, to that of what penetrates, which is the work of both, our ``gap``, less the first
+or more: three times the larger at most."""
 
 RIGID = 1e30
 """Modulus of a body that is to be rigid, over E*: its compliance vanishes beside the other's rounding."""
