@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
-
-import numpy as np
 
 _PER_ELEMENT = 256  # bytes: eight padded spectra
 _KEPT = 31 << 20  # bytes; glibc hands out again what is no larger than a block freed before, 32 MB at most
+
+_allocate = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t)(("PyMem_RawMalloc", ctypes.pythonapi))
+_free = ctypes.PYFUNCTYPE(None, ctypes.c_void_p)(("PyMem_RawFree", ctypes.pythonapi))
 
 
 def allowed_threads() -> int:
@@ -22,6 +24,7 @@ def keep_memory(elements: int) -> None:
     """Let freed arrays of a grid serve the next ones instead of going back to the system, page by page.
 
     glibc learns from a large block that is freed; untouched, it costs nothing. Elsewhere nothing happens.
-    Without this a third of a solve on 512 x 512 elements went into first touches of memory.
+    Without this a third of a solve on 512 x 512 elements went into first touches of memory. It is no array:
+    for one of 4 MB NumPy asks for huge pages, and whatever lay there next took 2 MB at its first touch.
     """
-    np.empty(min(_KEPT, _PER_ELEMENT * elements), dtype=np.uint8)
+    _free(_allocate(min(_KEPT, _PER_ELEMENT * elements)))
