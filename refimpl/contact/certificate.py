@@ -89,12 +89,12 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
     mean_v = inner(f, v[box.slices]) / total if total > 0 else lowest
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, dA)
-    energy = 0.5 * inner(f, normal[box.slices]) * dA
-    duality = inner(f, v[box.slices] - lowest) * dA
+    stored = 0.5 * inner(f, normal[box.slices])
+    duality = inner(f, v[box.slices] - lowest)
     if problem.load is not None:
         balance = abs(forces.normal - problem.load) / problem.load
     else:
-        balance = relative_gap(abs(mean_v - approach) * max(total, 0.0) * dA, energy)
+        balance = relative_gap(abs(mean_v - approach), stored / total) if total > 0 else 0.0
     peak = max(float(f.max()), float(np.finfo(float).tiny))
     return State(
         pressure=pressure,
@@ -106,7 +106,7 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
         approach=approach,
         forces=forces,
         certificate=Certificate(
-            gap=relative_gap(duality, energy),
+            gap=relative_gap(duality, stored),
             penetration=max(0.0, approach - lowest) / (abs(approach) or 1.0),
             negative_pressure=max(0.0, -float(f.min())) / peak,
             balance=balance,

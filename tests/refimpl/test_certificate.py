@@ -117,6 +117,15 @@ def test_a_wrong_load_or_approach_is_seen() -> None:
     assert missed.penetration == pytest.approx(1e-3, rel=0.01)
 
 
+def test_work_below_all_numbers_is_no_balance() -> None:
+    """At the least approach there is, products vanish: nothing is known of the mean separation."""
+    smooth = rf.read_scene("table1-smooth")
+    for approach in (5e-324, 1e-320):
+        found = rf.solve(smooth, 16, approach=approach, oblique=False, coupled=False)
+        assert found.max_pressure > 0
+        assert found.certificate.balance == np.inf
+
+
 def test_slopes_of_another_state_are_seen() -> None:
     wrong = Slopes(SOLVED.slopes.tan_x + 1e-4 * SOLVED.contact, SOLVED.slopes.tan_y)
     assert judged(slopes=wrong).certificate.slope == pytest.approx(1e-4, rel=1e-6)
