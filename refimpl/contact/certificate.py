@@ -86,15 +86,16 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
     f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
     dA, total, lowest = problem.grid.element_area, float(f.sum()), float(v.min())
     in_contact: Mask = f > 0
-    mean_v = inner(f, v[box.slices]) / total if total > 0 else lowest
+    shares = f / total if total > 0 else f  # with faint pressures themselves products would vanish
+    mean_v = inner(shares, v[box.slices]) if total > 0 else lowest
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, dA)
-    stored = 0.5 * inner(f, normal[box.slices])
-    duality = inner(f, v[box.slices] - lowest)
+    energy = 0.5 * inner(shares, normal[box.slices])
+    duality = inner(shares, v[box.slices] - lowest)
     if problem.load is not None:
         balance = abs(forces.normal - problem.load) / problem.load
     else:
-        balance = relative_gap(abs(mean_v - approach), stored / total) if total > 0 else 0.0
+        balance = relative_gap(abs(mean_v - approach), energy) if total > 0 else 0.0
     peak = max(float(f.max()), float(np.finfo(float).tiny))
     return State(
         pressure=pressure,
@@ -106,7 +107,7 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
         approach=approach,
         forces=forces,
         certificate=Certificate(
-            gap=relative_gap(duality, stored),
+            gap=relative_gap(duality, energy),
             penetration=max(0.0, approach - lowest) / (abs(approach) or 1.0),
             negative_pressure=max(0.0, -float(f.min())) / peak,
             balance=balance,

@@ -117,13 +117,17 @@ def test_a_wrong_load_or_approach_is_seen() -> None:
     assert missed.penetration == pytest.approx(1e-3, rel=0.01)
 
 
-def test_work_below_all_numbers_is_no_balance() -> None:
-    """At the least approach there is, products vanish: nothing is known of the mean separation."""
+def test_faint_pressures_are_judged_like_others_until_displacements_vanish() -> None:
+    """At the least approach there is nothing is known of the mean separation, and that is no balance."""
     smooth = rf.read_scene("table1-smooth")
-    for approach in (5e-324, 1e-320):
-        found = rf.solve(smooth, 16, approach=approach, oblique=False, coupled=False)
-        assert found.max_pressure > 0
-        assert found.certificate.balance == np.inf
+    pressed = [
+        rf.solve(smooth, 16, approach=a, oblique=False, coupled=False, method="dense") for a in (1e-9, 1e-300)
+    ]
+    assert all(s.status is rf.Status.CONVERGED for s in pressed)
+    assert pressed[1].contact_area == pressed[0].contact_area
+    lost = rf.solve(smooth, 16, approach=5e-324, oblique=False, coupled=False)
+    assert lost.max_pressure > 0
+    assert lost.certificate.balance == np.inf
 
 
 def test_slopes_of_another_state_are_seen() -> None:
