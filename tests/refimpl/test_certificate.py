@@ -125,9 +125,10 @@ def test_faint_pressures_are_judged_like_others_until_displacements_vanish() -> 
     ]
     assert all(s.status is rf.Status.CONVERGED for s in pressed)
     assert pressed[1].contact_area == pressed[0].contact_area
-    lost = rf.solve(smooth, 16, approach=5e-324, oblique=False, coupled=False)
-    assert lost.max_pressure > 0
-    assert lost.certificate.balance == np.inf
+    for grid in (3, 16):  # the mean separation of a single element is that least number, or of many none
+        lost = rf.solve(smooth, grid, approach=5e-324, oblique=False, coupled=False)
+        assert lost.max_pressure > 0
+        assert lost.certificate.balance == np.inf
 
 
 def test_slopes_of_another_state_are_seen() -> None:
