@@ -110,6 +110,14 @@ def test_updates_that_stall_from_the_first_are_relaxed_as_well(monkeypatch: pyte
     assert updates.solver._relaxation == 0.25 * began
 
 
+def test_relaxation_starts_anew_for_each_of_taus_supports(monkeypatch: pytest.MonkeyPatch) -> None:
+    solver = level(posed(coupled(0.4, 1e6), 4))
+    best, solver._relaxation = solver._relaxation, 1e-3
+    monkeypatch.setattr(solver, "_update", lambda: 0.0)
+    assert solver.settle(1e-8)
+    assert solver._relaxation == best
+
+
 @pytest.mark.parametrize(("feedback", "next_share"), [(0.5, 0.1), (0.02, 0.02), (0.0, 1e-3), (-0.01, 1e-3)])
 def test_updates_are_as_far_apart_as_they_bring_little_back(
     feedback: float, next_share: float, monkeypatch: pytest.MonkeyPatch

@@ -20,7 +20,7 @@ from refimpl.level_solver import LevelSolver
 from refimpl.operators.fft import Counter
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
-from refimpl.problem import Problem
+from refimpl.problem import Problem, Terms, pose
 from tests.refimpl.levels import BALL, level, posed
 
 
@@ -169,6 +169,17 @@ def test_relaxed_updates_leave_doubt() -> None:
     assert solver._leads_on()
     solver._relaxation = 0.99
     assert not solver._leads_on()
+
+
+@pytest.mark.parametrize(("coupled", "oblique", "leads"), [(1, 0, True), (0, 1, True), (0, 0, False)])
+def test_what_tau_moves_leads_on(coupled: int, oblique: int, leads: bool) -> None:
+    """Common slopes alone are moved as well; where nothing is, the next state is the same one."""
+    terms = Terms(coupled=bool(coupled), oblique=bool(oblique), slope_correction=False)
+    scene = replace(BALL, friction=rf.Friction(tau=1e6, beta=0.0))
+    solver = level(pose(scene, rf.Grid(scene.side, 16), terms, None))
+    nothing = np.zeros((16, 16), dtype=bool)
+    solver.settle(1e-8, nothing, nothing)
+    assert solver._leads_on() is leads
 
 
 def test_tau_that_moves_nothing_costs_nothing() -> None:
