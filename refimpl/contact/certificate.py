@@ -24,7 +24,8 @@ class Certificate:
     gap : ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``
     penetration : ``max(0, approach - min v) / approach``
     negative_pressure : largest negative pressure over the peak
-    balance : ``|N - P| / P`` under a load; ``|sum f (v - approach)| dA`` over the energy at an approach
+    balance : ``|N - P| / P`` under a load; ``|sum f (v - approach)| dA`` over the energy at an approach, of
+        which a unit in its last place is always missed
     slope : change of the slopes' tangents that the state's own displacements ask for
     unlawful : number of elements whose traction is not ``tau + beta f`` in contact and 0 outside (as a
         settled cycle leaves)
