@@ -83,7 +83,7 @@ class LevelSolver:
     def answer(self) -> Start:
         """What this grid has to say to a finer one."""
         displacement = self.full(self.cg.separation - self.problem.gap)
-        if not self.whole.periodic:
+        if self.window != Window.full(self.whole.grid.M):
             outside = self.problem.pair.normal_compliance * self._onto_whole_grid().normal(
                 self.full(self.cg.pressure)
             )

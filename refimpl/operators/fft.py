@@ -19,6 +19,10 @@ from refimpl.operators.fourier import Complex, fourier, threads
 from refimpl.operators.tables import signed_table, unit_table
 from refimpl.operators.window import Window, padded_length
 
+_COMPLEX = (
+    100_000  # points up to which NumPy multiplies a spectrum by complex numbers quicker than by real ones
+)
+
 
 @dataclass
 class Counter:
@@ -119,9 +123,12 @@ class FFTInfluence:
             return self._transformed(signed_table("normal", rows, columns))
         self.counter.add("normal kernel", points // 8)
         half, across = len(rows) // 2, len(columns) // 2
-        quarter = unit_table("normal", max(half, across) + 1)[: half + 1, : across + 1]
+        whole = _padded(self.source, Window.full(self.grid.M))  # as the certificate will ask
+        farthest = max(*self._padded, *whole) // 2
+        quarter = unit_table("normal", farthest + 1)[: half + 1, : across + 1]
         hat = fourier.even_plane(quarter * self.grid.spacing, threads(points))
-        return np.concatenate([hat, hat[:, across - 1 : 0 : -1]], axis=1)
+        hat = np.concatenate([hat, hat[:, across - 1 : 0 : -1]], axis=1)
+        return hat.astype(np.complex128) if points <= _COMPLEX else hat
 
     @cached_property
     def _shear_hat(self) -> Complex:

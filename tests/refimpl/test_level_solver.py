@@ -236,3 +236,11 @@ def test_without_tau_one_settling_is_all(friction: rf.Friction, monkeypatch: pyt
     else:
         assert all(support is not None for support in settlings)
         assert len(settlings) > 1
+
+
+def test_a_whole_grid_needs_no_product_to_answer() -> None:
+    solver = level(posed(BALL, 16))
+    solver.settle(1e-3)
+    before = dict(solver.counter.tally)
+    solver.answer()
+    assert solver.counter.tally == before

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -92,8 +93,28 @@ def test_the_starting_pressure_carries_the_load_where_surfaces_overlap() -> None
     posed = problem(16)
     pressure = foundation_pressure(posed)
     assert pressure.sum() * posed.grid.element_area == pytest.approx(3.0, rel=1e-14)
-    overlap = np.maximum(np.quantile(posed.gap, 0.3) - posed.gap, 0)
+    overlap = np.maximum(posed.gap[pressure == 0].min() - posed.gap, 0)
     np.testing.assert_allclose(pressure / pressure.max(), overlap / overlap.max(), rtol=1e-14)
+
+
+def borne(posed: Problem, depth: float) -> float:
+    """What springs bear at a depth (N), as stiff as a half-space under a load as wide as they are."""
+    dA = posed.grid.element_area
+    width = math.sqrt(np.count_nonzero(posed.gap <= depth) * dA)
+    return float(np.maximum(depth - posed.gap, 0).sum() * dA / (posed.pair.normal_compliance * width))
+
+
+@pytest.mark.parametrize("load", [0.01, 3.0, 50.0])
+def test_it_is_as_deep_as_springs_must_be_to_bear_the_load(load: float) -> None:
+    posed = replace(problem(32), load=load)
+    depth = posed.gap[foundation_pressure(posed) == 0].min()
+    assert load <= borne(posed, depth)
+    assert all(borne(posed, shallower) < load for shallower in posed.gap[posed.gap < depth])
+
+
+def test_a_load_that_no_depth_bears_presses_on_all_but_the_deepest() -> None:
+    posed = replace(problem(16), load=1e6)
+    np.testing.assert_array_equal(foundation_pressure(posed) > 0, posed.gap < posed.gap.max())
 
 
 def test_at_an_approach_it_is_a_foundation_of_the_sides_stiffness() -> None:
