@@ -24,18 +24,17 @@ _WEAK = 0.3  # sigma up to which CG takes the coupling in; on random scenes it p
 class Flexibility:
     """The displacements of a problem on a window, by its operator.
 
-    ``sigma`` is the spectral radius of ``beta c f`` against ``a f``, at most; ``coupled`` says whether
-    `apply` holds both.
+    ``sigma`` is the spectral radius of ``beta c f`` against ``a f``, at most, and zero where shear does not
+    reach the gap; ``coupled`` says whether `apply` holds both.
     """
 
     def __init__(self, problem: Problem, operator: FFTInfluence | PeriodicInfluence) -> None:
         pair, beta = problem.pair, problem.friction.beta
         self._problem, self._operator = problem, operator
         self._ratio = pair.shear_compliance * beta / pair.normal_compliance
-        self.sigma = abs(self._ratio)
-        self.coupled = (
-            problem.terms.coupled and 0 < self.sigma <= _WEAK and not problem.terms.slope_correction
-        )
+        terms = problem.terms
+        self.sigma = abs(self._ratio) if terms.coupled or terms.slope_correction else 0.0
+        self.coupled = 0 < self.sigma <= _WEAK and not terms.slope_correction
         self._product = operator.coupled(self._ratio) if self.coupled else operator.normal
         self._led: tuple[Mask, Array] | None = None
         self._pressed: tuple[int, float, Array] | None = None

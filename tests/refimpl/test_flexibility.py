@@ -61,6 +61,14 @@ def test_coupling_that_is_left_out_is_not_applied() -> None:
     assert not flexible(apart)[0].coupled
 
 
+@pytest.mark.parametrize(("slope_correction", "sigma"), [(False, 0.0), (True, 2.5)])
+def test_coupling_that_is_left_out_relaxes_nothing(slope_correction: bool, sigma: float) -> None:
+    """Facet tractions bring shear to the gap by themselves."""
+    strong = turned(2.5, oblique=True)
+    apart = replace(strong, terms=replace(strong.terms, coupled=False, slope_correction=slope_correction))
+    assert flexible(apart)[0].sigma == pytest.approx(sigma)
+
+
 def test_facet_tractions_are_no_multiple_of_the_pressure() -> None:
     tilted = turned(0.2, oblique=True)
     facets = replace(tilted, terms=replace(tilted.terms, slope_correction=True))

@@ -46,8 +46,8 @@ LIMITS = (
     ),
     Limit(
         "contact set/approach*, */4.94066e-324 m",
-        "approaches below 1e-160 m end as STAGNATED or ITERATION_LIMIT",
-        "energies are products of two such lengths and underflow",
+        "approaches below 1e-160 m end as STAGNATED or ITERATION_LIMIT, the least number by either solver",
+        "the energies of CG are products of two such lengths and underflow; the least number has no digits",
         "none needed: an approach of 1e-30 m still converges to 10 digits",
     ),
     Limit(
