@@ -49,7 +49,7 @@ def test_the_answer_is_the_same_and_costs_no_more(scene: rf.Scene, grid: int, fi
     assert begun.status is afresh.status is rf.Status.CONVERGED
     assert np.array_equal(begun.contact, afresh.contact)
     np.testing.assert_allclose(begun.pressure, afresh.pressure, rtol=0, atol=1e-6 * afresh.max_pressure)
-    # of a rule of tau's supports only the first gets on faster; measured: 0.48 to 0.68; on wavy surfaces 1.02:
+    # of a rule of tau's supports only the first gets on faster; measured: 0.48 to 0.68; on waves 1.02:
     # 32 x 32 elements take a quarter of the work of 64 x 64, where CG took 15 steps instead of 13
     assert begun.cost.point_logs < (1.05 if scene.periodic else 0.75) * afresh.cost.point_logs
 
