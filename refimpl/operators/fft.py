@@ -123,9 +123,7 @@ class FFTInfluence:
             return self._transformed(signed_table("normal", rows, columns))
         self.counter.add("normal kernel", points // 8)
         half, across = len(rows) // 2, len(columns) // 2
-        whole = _padded(self.source, Window.full(self.grid.M))  # as the certificate will ask
-        farthest = max(*self._padded, *whole) // 2
-        quarter = unit_table("normal", farthest + 1)[: half + 1, : across + 1]
+        quarter = unit_table("normal", max(half, across) + 1)[: half + 1, : across + 1]
         hat = fourier.even_plane(quarter * self.grid.spacing, threads(points))
         hat = np.concatenate([hat, hat[:, across - 1 : 0 : -1]], axis=1)
         return hat.astype(np.complex128) if points <= _COMPLEX else hat

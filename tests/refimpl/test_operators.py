@@ -11,7 +11,6 @@ import pytest
 
 from refimpl.grid import Grid
 from refimpl.kernels import normal_integral, tangential_integral
-from refimpl.operators import tables
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -310,18 +309,6 @@ def test_a_window_that_fills_its_transform_stays_within_the_grid() -> None:
     """Eleven elements are padded to 24 points, which hold twelve; the twelfth lies on the inner side."""
     assert Window(13, 24, 0, 11).filling(24) == Window(12, 24, 0, 12)
     assert Window(6, 17, 6, 17).filling(24).shape == (12, 12)
-
-
-@pytest.mark.parametrize("place", [(20, 44, 15, 45), (0, 64, 0, 64), (5, 60, 9, 64)])
-def test_a_windows_table_serves_its_certificate_as_well(place, monkeypatch) -> None:
-    """Unless it lies so far aside that the whole grid's offsets are no even circle."""
-    monkeypatch.setattr(tables, "_cache", {})
-    grid, window = Grid(1.0, 64), Window(*place)
-    FFTInfluence(grid, 0.0, source=window).normal(np.ones(window.shape))
-    known = tables._cache["normal"]
-    whole = WholeGridInfluence(grid, 0.0, source=window, target=Window.full(64))
-    whole.normal(np.ones((64, 64)))
-    assert tables._cache["normal"] is known
 
 
 def test_few_points_are_multiplied_by_complex_numbers_and_many_by_real_ones() -> None:
