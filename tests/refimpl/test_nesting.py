@@ -9,9 +9,15 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Grid, resampled
+from refimpl.contact.preconditioner import SpectralPreconditioner
+from refimpl.grid import Array, Grid, resampled
+from refimpl.level_solver import LevelSolver, influence
 from refimpl.nesting import coarsened, foundation_pressure, levels, sharpened, touching
+from refimpl.operators.fft import Counter
+from refimpl.operators.window import Window
 from refimpl.problem import Problem, Terms, pose
+from tests.refimpl.levels import BALL
+from tests.refimpl.levels import posed as level_posed
 
 SIDE = 2.0**-9
 
@@ -110,6 +116,29 @@ def test_it_is_as_deep_as_springs_must_be_to_bear_the_load(load: float) -> None:
     depth = posed.gap[foundation_pressure(posed) == 0].min()
     assert load <= borne(posed, depth)
     assert all(borne(posed, shallower) < load for shallower in posed.gap[posed.gap < depth])
+
+
+def steps_from(pressure: Array, posed: Problem) -> int:
+    operator = influence(posed, Window.full(posed.grid.M), Counter())
+    precondition = SpectralPreconditioner(operator, posed.pair.normal_compliance)
+    solver = LevelSolver(posed, operator, precondition, pressure)
+    assert solver.settle(1e-3)
+    return solver.cg_iterations
+
+
+@pytest.mark.parametrize("load", [0.01, 0.1, 1.0, 10.0])
+def test_it_spares_steps_on_rough_surfaces(load: float) -> None:
+    """Against contact on the lowest 3 elements of 10, for six surfaces together: 4 steps for 51 at the least
+    load, 19 for 58, 29 for 51, and 31 for 39 where three tenths are about right (measured)."""
+    springs = tenths = 0
+    for seed in range(6):
+        rough = rf.GaussianRoughness(rms=1e-6, correlation_length=3e-4, seed=seed)
+        scene = replace(BALL, load=load, friction=rf.Friction(), lower=rf.Body(BALL.lower.material, rough))
+        posed = level_posed(scene, 32)
+        overlap = np.maximum(np.quantile(posed.gap, 0.3) - posed.gap, 0)
+        springs += steps_from(foundation_pressure(posed), posed)
+        tenths += steps_from(overlap * (load / (overlap.sum() * posed.grid.element_area)), posed)
+    assert springs <= (0.9 if load == 10 else 0.65) * tenths
 
 
 def test_a_load_that_no_depth_bears_presses_on_all_but_the_deepest() -> None:
