@@ -19,9 +19,7 @@ from refimpl.operators.fourier import Complex, fourier, threads
 from refimpl.operators.tables import signed_table, unit_table
 from refimpl.operators.window import Window, padded_length
 
-_COMPLEX = (
-    100_000  # points up to which NumPy multiplies a spectrum by complex numbers quicker than by real ones
-)
+_COMPLEX = 100_000  # points up to which NumPy multiplies spectra by complex numbers quicker than by real ones
 
 
 @dataclass
@@ -115,7 +113,10 @@ class FFTInfluence:
 
     @cached_property
     def _normal_hat(self) -> Array | Complex:
-        """The kernel's transform: of a quarter of it, and real, where the circles are even."""
+        """The kernel's transform: of a quarter of it, and real, where the circles are even.
+
+        Few real numbers are held as complex ones, which multiply in half the time, to the same last bit.
+        """
         rows, columns = self._offsets
         points = math.prod(self._padded)
         if not (_is_even(rows) and _is_even(columns)):
