@@ -5,22 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from refimpl.refine import LADDER, OPENING
 from verification.coverage.judge import Verdict, moved, summary, verdicts
 from verification.coverage.scenes import CLASSES
 from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb, ladders
 from verification.provenance import provenance
 
-GRIDS = (32, 64, 96, 128, 192, 256, 320, 384, FINEST)
-"""What may be asked for; the ladder of `refimpl.refine` has some more between them."""
+GRIDS = (*OPENING, *(M for M in LADDER if OPENING[-1] < M <= FINEST))
+"""What may be asked for: all that `refimpl.refine` has."""
 CHECK, CHECK_SEEDS = 2048, range(8, 14)
 """References are checked on one more grid for one scene of each class that is not periodic."""
-REFERENCE, PERIODIC_GRIDS = 1024, (32, 64, 96, 128, 192, 256, 512)
+REFERENCE, PERIODIC_REFERENCE = 1024, 512
 
 
 def grids_of(seed: int) -> tuple[int, ...]:
     """A scene's grids, the last its reference: periodic scenes, ten times as dear, end at 512."""
     periodic = list(CLASSES)[seed % len(CLASSES)].startswith("periodic")
-    return PERIODIC_GRIDS if periodic else (*GRIDS, REFERENCE)
+    reference = PERIODIC_REFERENCE if periodic else REFERENCE
+    return (*(M for M in GRIDS if 2 * M <= reference), reference)
 
 
 def document(accuracies: Sequence[float], seeds: Sequence[int], store: Path) -> dict[str, object]:
