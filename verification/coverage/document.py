@@ -22,7 +22,7 @@ def grids_of(seed: int) -> tuple[int, ...]:
     """A scene's grids, the last its reference: periodic scenes, ten times as dear, end at 512."""
     periodic = list(CLASSES)[seed % len(CLASSES)].startswith("periodic")
     reference = PERIODIC_REFERENCE if periodic else REFERENCE
-    return (*(M for M in GRIDS if 2 * M <= reference), reference)
+    return (*(M for M in GRIDS if reference >= 2 * M), reference)
 
 
 def document(accuracies: Sequence[float], seeds: Sequence[int], store: Path) -> dict[str, object]:
