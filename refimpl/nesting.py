@@ -70,8 +70,8 @@ def foundation_pressure(problem: Problem) -> Array:
     load, dA = problem.load, problem.grid.element_area
     depth = problem.approach if problem.approach is not None else _bearing(problem)
     interference = np.maximum(depth - problem.gap, 0.0)
-    if load is not None and not interference.any():  # in any unit: the load sets the scale
-        interference = (problem.gap <= problem.gap.min()).astype(np.float64)
+    if load is not None and not interference.any():  # flat on flat, in any unit: the load sets the scale
+        interference = np.ones_like(problem.gap)
     pressure: Array = interference / (problem.pair.normal_compliance * problem.grid.side)
     if load is not None:
         pressure *= load / (dA * pressure.sum())

@@ -152,12 +152,17 @@ def test_at_an_approach_it_is_a_foundation_of_the_sides_stiffness() -> None:
     np.testing.assert_allclose(foundation_pressure(posed), expected, rtol=1e-15)
 
 
-def test_under_a_load_without_overlap_the_lowest_elements_start() -> None:
+def test_a_load_that_the_lowest_elements_bear_starts_on_them() -> None:
     heights = np.zeros((4, 4))
     heights[1, 2] = heights[3, 0] = 1e-6
     pressure = foundation_pressure(problem(4, heights=heights))
     assert np.flatnonzero(pressure).tolist() == [6, 12]
     assert pressure[1, 2] == pressure[3, 0] == pytest.approx(0.5 * 3.0 / (SIDE / 4) ** 2, rel=1e-14)
+
+
+def test_flats_start_with_the_mean_pressure_everywhere() -> None:
+    pressure = foundation_pressure(problem(4, heights=np.zeros((4, 4))))
+    np.testing.assert_allclose(pressure, 3.0 / SIDE**2, rtol=1e-14)
 
 
 def test_at_an_approach_that_no_element_reaches_nothing_presses() -> None:
