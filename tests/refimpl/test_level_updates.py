@@ -136,8 +136,9 @@ def test_a_finer_grid_starts_with_nearly_the_answer(approach: float | None) -> N
     assert np.linalg.norm(start - exact) <= 0.1 * np.linalg.norm(exact)
     assert np.count_nonzero((start > 0) != (exact > 0)) <= 0.08 * np.count_nonzero(exact)
     assert refined.settle(1e-8)
-    # measured: 9 and 9, instead of 12 at the approach, and of 9 from springs under a load's smooth ball
-    assert refined.cg_iterations <= 10 <= answer.cg_iterations + (approach is None)
+    assert refined.cg_iterations <= 10  # measured: 9 and 9
+    if approach is not None:  # measured: 12; under a load springs are as good a start for a smooth ball, 9
+        assert refined.cg_iterations < answer.cg_iterations
 
 
 def test_a_solver_that_is_dropped_is_gone_at_once() -> None:
