@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.friction import Mask
-from refimpl.grid import Array, differences, inner
+from refimpl.grid import Array, inner
 from refimpl.operators.window import Window
 from refimpl.slopes import Slopes
 from refimpl.solution import REPORTED, Solution
@@ -96,24 +96,36 @@ def drop_beside_peak(pressure: Array) -> float:
 
 
 def unevenness(pressure: Array, slopes: Slopes) -> float:
-    """Standard error of mu, or of Q/N, if each element had taken its slope from its edge instead.
+    """Standard error of mu, or of Q/N, if each element's slope were known to its bend only.
 
-    That is ``sqrt(sum (f s)^2) / sum f`` with ``s^2 = (g_x^2 + g_y^2) / 4`` for a tangent that changes by g
-    from one element to the next; the mean square of both tangents is taken.
+    That is ``sqrt(sum (f s)^2) / sum f`` with ``s^2 = (b_x^2 + b_y^2) / 6`` for a tangent that differs by
+    b / 2 from the mean of its neighbours' along x and y; the mean square of both tangents is taken. Where a
+    surface is resolved it falls as h^3; where slopes know nothing of their neighbours' it is 1.4 times the
+    standard error of their mean.
 
-    >>> ramp = Slopes(np.arange(9.0).reshape(3, 3), np.zeros((3, 3)))
-    >>> round(8 * unevenness(np.pad([[7.0]], 1), ramp) ** 2, 9)  # steps of 1 and 3
-    10.0
+    >>> bump = Slopes(np.pad([[1.0]], 1), np.zeros((3, 3)))
+    >>> round(12 * unevenness(np.pad([[7.0]], 1), bump) ** 2, 9)  # bends of 2 along both
+    8.0
     """
     total = float(pressure.sum())
     if slopes.is_flat or not total > 0:
         return 0.0
     box = Window.around(pressure > 0, margin=1)
     near = slopes.windowed(box)
-    loads = [
-        pressure[box.slices] * differences(tan, axis) for tan in (near.tan_x, near.tan_y) for axis in (0, 1)
-    ]
-    return math.sqrt(sum(inner(load, load) for load in loads) / 8) / total
+    loads = [pressure[box.slices] * _bend(tan, axis) for tan in (near.tan_x, near.tan_y) for axis in (0, 1)]
+    return math.sqrt(sum(inner(load, load) for load in loads) / 12) / total
+
+
+def _bend(values: Array, axis: int) -> Array:
+    """Second differences, at the border those beside it; zero where there are no three elements."""
+    if values.shape[axis] < 3:
+        return np.zeros_like(values)
+    found = np.empty_like(values)
+    z, bend = (values, found) if axis == 0 else (values.T, found.T)
+    np.add(z[2:], z[:-2], out=bend[1:-1])
+    bend[1:-1] -= 2 * z[1:-1]
+    bend[0], bend[-1] = bend[1], bend[-2]
+    return found
 
 
 def _own(solution: Solution) -> dict[str, dict[str, float]]:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from refimpl.discretisation import DECAY, discretisation, estimates
+from refimpl.discretisation import DECAY, Estimate, discretisation, estimates
 from refimpl.errors import InputError, require_number
 from refimpl.grid_result import GridResult
 from refimpl.outcome import Status
@@ -94,7 +94,8 @@ def next_grid(results: Sequence[GridResult], accuracy: float, quantity: str, lad
     own = sum(fine.parts.get(quantity, {}).values())
     for M in reach:
         finer = fine.M / M
-        bar = abs(found - estimate.value) * finer + estimate.spread * finer**DECAY + own * finer
+        foretold = Estimate(found + (estimate.value - found) * finer, estimate.spread * finer**DECAY)
+        bar = foretold.bar(found) + own * finer
         if bar <= _MARGIN * accuracy * abs(found):
             return M
     return reach[-1]

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import refimpl as rf
 from refimpl import discretisation
@@ -16,6 +17,7 @@ from refimpl.discretisation import (
     EDGE_SHARE,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
+    Estimate,
     Prior,
     _weights,
     estimates,
@@ -28,6 +30,7 @@ from refimpl.slopes import Slopes
 from refimpl.solution import REPORTED
 from refimpl.validity import Limit
 
+HERTZ_GRIDS = (80, 96, 112, 128, 160, 192, 224, 256, 320, 384, 448, 512)
 SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
 
@@ -72,13 +75,27 @@ def test_numbers_that_follow_the_model_are_extrapolated() -> None:
     assert abs(peak.value - PEAK) < peak.spread < 0.02 * PEAK
 
 
-def test_a_bar_reaches_from_the_number_over_the_estimate_to_the_end_of_its_spread() -> None:
+def test_a_bar_reaches_from_the_number_over_the_estimate() -> None:
     results = [made_up(M) for M in (32, 64)]
     area = estimates(results)["contact_area"]
     raw = results[-1].numbers["contact_area"]
     bar = uncertainty(results)["contact_area"]["discretisation"]
-    assert bar == pytest.approx(raw - area.value + area.spread)
+    assert raw - area.value + 0.83 * area.spread < bar < raw - area.value + 0.9 * area.spread
     assert relative_bar(results, "contact_area") == pytest.approx(bar / raw)
+
+
+@pytest.mark.parametrize("distance", [0.0, 0.3, 1.0, 1.52, 1.54, 4.0])
+def test_a_bar_is_exceeded_by_5_percent_of_a_normal_distribution(distance: float) -> None:
+    """On both sides of 3 deviations, 1.53 spreads, where one side is all that counts."""
+    bar = Estimate(2.0, 0.5).bar(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
+    shift = distance * stats.norm.ppf(0.975)
+    assert stats.norm.sf(bar - shift) + stats.norm.sf(bar + shift) == pytest.approx(0.05, rel=1e-6)
+
+
+@pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
+def test_bars_of_extreme_spreads(spread: float) -> None:
+    assert Estimate(2.0, spread).bar(3.0) == (math.inf if math.isinf(spread) else 1.0)
+    assert Estimate(2.0, spread).bar(2.0) == pytest.approx(spread)
 
 
 def test_an_edge_of_unforeseen_size_is_learnt_from_the_grids() -> None:
@@ -140,7 +157,30 @@ def test_unevenness_knows_no_direction_and_nothing_where_there_is_nothing() -> N
     assert found == pytest.approx(unevenness(2 * pressure, slopes))
     assert unevenness(np.zeros((4, 4)), Slopes(np.eye(4), np.eye(4))) == 0.0
     assert unevenness(np.ones((4, 4)), Slopes.flat((4, 4))) == 0.0
-    assert unevenness(np.ones((1, 1)), Slopes(np.ones((1, 1)), np.ones((1, 1)))) == 0.0
+    assert unevenness(np.ones((2, 2)), Slopes(np.eye(2), np.eye(2))) == 0.0
+
+
+def test_unevenness_sees_bends_alone_and_alternating_slopes() -> None:
+    ramp, pressure = Slopes(np.arange(25.0).reshape(5, 5), np.zeros((5, 5))), np.ones((5, 5))
+    assert unevenness(pressure, ramp) == pytest.approx(0.0, abs=1e-12)
+    signs = np.indices((5, 5)).sum(axis=0) % 2 * 2.0 - 1
+    assert unevenness(pressure, Slopes(signs, signs)) == pytest.approx(math.sqrt(32 / 6) / 5)
+
+
+def test_unevenness_of_slopes_without_neighbours_is_their_means_error_and_four_tenths_more() -> None:
+    draw = np.random.default_rng(6)
+    slopes = Slopes(draw.normal(size=(200, 200)), draw.normal(size=(200, 200)))
+    assert unevenness(np.ones((200, 200)), slopes) == pytest.approx(math.sqrt(2) / 200, rel=0.02)
+
+
+def test_unevenness_of_a_resolved_surface_falls_as_the_cube_of_the_spacing() -> None:
+    def waves(M: int) -> float:
+        x = (np.arange(M) + 0.5) * 2 * math.pi / M
+        return unevenness(
+            np.ones((M, M)), Slopes(np.sin(x)[:, None] + 0 * x, np.cos(x)[None, :] + 0 * x[:, None])
+        )
+
+    assert waves(64) / waves(128) == pytest.approx(8, rel=0.02)
 
 
 @pytest.mark.parametrize(("drop", "more"), [(0.1, 1.0), (1.0, 1 / 0.75), (2.0, math.inf), (4.0, math.inf)])
@@ -173,9 +213,24 @@ def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
     area = 12 * (SIDE / 64) ** 2
     numbers = {**made_up(64).numbers, "contact_area": area}
     single = replace(made_up(64), edge=4 * EDGE_SHARE * area, numbers=numbers)
-    assert estimates([single])["contact_area"].bar(area) == pytest.approx(area, rel=0.05)
+    assert area < estimates([single])["contact_area"].bar(area) < 1.3 * area
     many = replace(single, numbers={**numbers, "contact_area": 1e4 * area}, edge=4e4 * EDGE_SHARE * area)
-    assert estimates([many])["contact_area"].bar(1e4 * area) == pytest.approx(1e4 * area, rel=0.05)
+    assert 1e4 * area < estimates([many])["contact_area"].bar(1e4 * area) < 1.3e4 * area
+
+
+def test_single_elements_leave_mu_open_too() -> None:
+    """Once 0.3 +- 0.03 of a surface of noise, whose finer grids found 0.1."""
+    area = 12 * (SIDE / 64) ** 2
+    results = [
+        replace(
+            told(mu, M, 0.03), edge=share * area, numbers={**told(mu, M, 0.03).numbers, "contact_area": area}
+        )
+        for mu, M in ((0.29, 32), (0.3, 64), (0.3, 128))
+        for share in (4 * EDGE_SHARE,)
+    ]
+    assert estimates(results)["friction_coefficient"].bar(0.3) > 0.3
+    spread_out = [replace(result, edge=result.edge / 10) for result in results]
+    assert estimates(spread_out)["friction_coefficient"].bar(0.3) < 0.06
 
 
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
@@ -288,19 +343,20 @@ def test_nothing_in_contact_ends_the_climb() -> None:
 
 
 def test_bars_hold_against_hertz() -> None:
+    """Of twelve areas one is outside its 95 % bar, by 1 %: at 160, whose edge catches most elements."""
     scene = rf.read_scene("hertz")
-    modulus, R = scene.materials.reduced_modulus, 0.14
-    a = (3 * scene.load * R / (4 * modulus)) ** (1 / 3)
-    exact = {
-        "contact_area": math.pi * a**2,
-        "max_pressure": 1.5 * scene.load / (math.pi * a**2),
-    }
-    for accuracy in (0.03, 0.01):
-        found = rf.solve(scene, accuracy=accuracy)
-        for name, value in exact.items():
-            bar = sum(found.uncertainty[name].values())
-            assert abs(getattr(found, name) - value) <= bar, name
-            assert bar <= 5 * abs(getattr(found, name) - value) or name == "max_pressure"
+    a = (3 * scene.load * 0.14 / (4 * scene.materials.reduced_modulus)) ** (1 / 3)
+    area, peak = math.pi * a**2, 1.5 * scene.load / (math.pi * a**2)
+    found = {M: GridResult.of(rf.solve(scene, M)) for M in (*OPENING, *HERTZ_GRIDS)}
+    shares = []
+    for M in HERTZ_GRIDS:
+        results = [found[N] for N in (*OPENING, M)]
+        bars, numbers = uncertainty(results), results[-1].numbers
+        shares.append(abs(numbers["contact_area"] - area) / sum(bars["contact_area"].values()))
+        assert abs(numbers["max_pressure"] - peak) <= sum(bars["max_pressure"].values())
+    assert sum(share > 1 for share in shares) <= 2
+    assert max(shares) < 1.1
+    assert np.median(shares) > 0.5  # no longer than need be
 
 
 def test_constants_agree_with_the_perimeter_correction() -> None:

@@ -1,0 +1,138 @@
+"""``python -m verification.coverage.priors --store FILE --json FILE``: what training scenes ask of priors.
+
+`refimpl.discretisation` models a number found on nested grids as ``y_k = q + c e_k + r_k``. Nothing is known
+of q beforehand, so the likelihood of the other parameters is that of the numbers' differences from grid to
+grid: no reference is needed, and none can be wrong. It is greatest at the values written here, beside those
+adopted and the logarithm of the likelihood that these give away.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy import optimize, special
+
+from refimpl import discretisation
+from refimpl.discretisation import AREA, BULK, EDGE_SIZE, EDGE_SIZE_SPREAD, SINGLES
+from refimpl.grid import Array
+from refimpl.grid_result import GridResult
+from verification.coverage.store import ladders
+from verification.files import to_json, write_text
+from verification.provenance import provenance
+
+SOLVED = 1e-7
+"""Scatter that solves to a certificate of 1e-6 leave, over the number."""
+_NODES, _SHARES = np.polynomial.hermite_e.hermegauss(15)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """One scene's numbers on its grids, coarse to fine, in one unit: values, weights w_k, edges e_k."""
+
+    values: Array
+    weights: Array
+    edge: Array
+
+
+def areas(results: Sequence[GridResult], singles: float) -> Numbers:
+    """Contact areas over the finest grid's scatter; a lone element's edge counts ``1 + singles`` times."""
+    area = np.array([result.numbers["contact_area"] for result in results])
+    edge = np.array([result.edge for result in results])
+    scatter = discretisation.area_scatter(results)
+    wider = edge * (1 + singles * discretisation.singleness(results) ** 2)
+    return Numbers(area / scatter[-1], scatter / scatter[-1], wider / scatter[-1])
+
+
+def rests(results: Sequence[GridResult], bulk: float, unevenness: float) -> Numbers:
+    """Friction without tau's share over the finest grid's scatter, of which both shares are given."""
+    numbers = [result.numbers for result in results]
+    mu = np.array([found["friction_coefficient"] for found in numbers])
+    area = np.array([found["contact_area"] for found in numbers])
+    slip, uneven = (
+        np.array([getattr(result, name) for result in results]) for name in ("slip", "unevenness")
+    )
+    thin = discretisation.thinness(results) * abs(mu[-1])
+    size = np.hypot.reduce([bulk * thin, unevenness * uneven, np.full(thin.shape, SOLVED * abs(mu[-1]))])
+    weights = np.maximum.accumulate(size[::-1])[::-1]
+    return Numbers(mu - slip * area, weights, np.zeros_like(mu))
+
+
+def log_likelihood(
+    scenes: Iterable[Numbers], edge_size: float, edge_spread: float, scatter: float, weight: float
+) -> float:
+    """Of the model's parameters, q and each scene's own sigma and c integrated out (natural logarithm)."""
+    sizes, total = edge_size + edge_spread * _NODES, 0.0
+    for scene in scenes:
+        precision, count = scene.weights**-2.0, len(scene.values)
+        rest = scene.values - sizes[:, None] * scene.edge
+        centre = rest @ precision / precision.sum()
+        squares = ((rest - centre[:, None]) ** 2) @ precision
+        freedom, prior = weight + count - 1, weight * scatter**2
+        each = 0.5 * (weight * np.log(prior) - freedom * np.log(prior + squares))
+        total += float(special.logsumexp(each, b=_SHARES / _SHARES.sum()))
+        total += float(special.gammaln(freedom / 2) - special.gammaln(weight / 2))
+        total -= float(np.log(scene.weights).sum() + 0.5 * np.log(precision.sum()))
+    return total
+
+
+def fitted(
+    likelihood: Callable[[Array], float], adopted: dict[str, float]
+) -> dict[str, dict[str, float] | float]:
+    """Positive parameters where the likelihood is greatest, and what the adopted ones give away of it."""
+    start = np.log(list(adopted.values()))
+    found = optimize.minimize(
+        lambda logs: -likelihood(np.exp(logs)), start, method="Nelder-Mead", options={"maxiter": 2000}
+    )
+    best = dict(zip(adopted, np.exp(found.x).tolist(), strict=True))
+    return {
+        "adopted": adopted,
+        "likeliest": best,
+        "given_away": -float(found.fun) - likelihood(np.exp(start)),
+    }
+
+
+def document(store: Path) -> dict[str, object]:
+    """Both fits on all scenes of a store."""
+    results = [[rung.result for rung in rungs] for rungs in ladders(store).values()]
+    sheared = [grids for grids in results if grids[-1].numbers["friction_coefficient"] > 0]
+
+    def of_area(p: Array) -> float:
+        size, spread, scatter, weight, singles = p
+        return log_likelihood([areas(grids, singles) for grids in results], size, spread, scatter, weight)
+
+    def of_rest(p: Array) -> float:
+        bulk, unevenness, weight = p
+        return log_likelihood([rests(grids, bulk, unevenness) for grids in sheared], 0.0, 0.0, 1.0, weight)
+
+    adopted_area = {
+        "edge_size": EDGE_SIZE,
+        "edge_size_spread": EDGE_SIZE_SPREAD,
+        "scatter": AREA.scatter,
+        "weight": AREA.weight,
+        "singles": SINGLES,
+    }
+    adopted_rest = {"bulk": BULK.scatter, "unevenness": 1.0, "weight": BULK.weight}
+    return {
+        "study": "priors of the error bars, by likelihood on training scenes",
+        "scenes": len(results),
+        "area": fitted(of_area, adopted_area),
+        "friction_without_tau": fitted(of_rest, adopted_rest),
+        "provenance": provenance(),
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Fit to a store that ``python -m verification.coverage --first 1000 --scenes 200`` has filled."""
+    parser = argparse.ArgumentParser(prog="python -m verification.coverage.priors", description=__doc__)
+    parser.add_argument("--store", type=Path, required=True, help="finished solves of training scenes")
+    parser.add_argument("--json", type=Path, required=True, help="file to write")
+    options = parser.parse_args(arguments)
+    write_text(to_json(document(options.store)), options.json)
+
+
+if __name__ == "__main__":
+    main()
