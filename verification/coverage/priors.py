@@ -20,7 +20,7 @@ from refimpl import discretisation
 from refimpl.discretisation import AREA, BULK, EDGE_SIZE, EDGE_SIZE_SPREAD, SINGLES
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
-from verification.coverage.store import ladders
+from verification.coverage.store import ladders, rungs
 from verification.files import to_json, write_text
 from verification.provenance import provenance
 
@@ -131,6 +131,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--store", type=Path, required=True, help="finished solves of training scenes")
     parser.add_argument("--json", type=Path, required=True, help="file to write")
     options = parser.parse_args(arguments)
+    if not any(True for _ in rungs(options.store)):
+        parser.error(f"{options.store} holds no scenes")
     write_text(to_json(document(options.store)), options.json)
 
 

@@ -1,0 +1,80 @@
+"""Priors fitted to numbers drawn from the model itself, and to a small store."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from refimpl.discretisation import AREA, EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.refine import OPENING
+from verification.coverage import priors
+from verification.coverage.priors import Numbers, fitted, log_likelihood
+from verification.coverage.store import climb, ladders
+
+DRAWN = {"size": 0.7, "spread": 0.1, "scatter": 0.2, "weight": 6.0}
+
+
+def drawn(count: int, grids: int = 8) -> list[Numbers]:
+    """Scenes of the model, each with a number, an edge and a scatter of its own."""
+    rng = np.random.default_rng(11)
+    weights, edge = 2.0 ** (1.5 * np.arange(grids)[::-1]), 5 * 2.0 ** np.arange(grids)[::-1]
+    scenes = []
+    for _ in range(count):
+        sigma = DRAWN["scatter"] * np.sqrt(DRAWN["weight"] / rng.chisquare(DRAWN["weight"]))
+        noise = sigma * weights * rng.standard_normal(grids)
+        size = rng.normal(DRAWN["size"], DRAWN["spread"])
+        scenes.append(Numbers(rng.normal(scale=1e3) + size * edge + noise, weights, edge))
+    return scenes
+
+
+def test_the_likeliest_parameters_are_those_drawn_from() -> None:
+    scenes = drawn(300)
+    found = fitted(lambda p: log_likelihood(scenes, *p), {**DRAWN, "scatter": 0.3})
+    best = found["likeliest"]
+    assert isinstance(best, dict)
+    assert best["size"] == pytest.approx(0.7, abs=0.03)
+    assert best["spread"] == pytest.approx(0.1, abs=0.03)
+    assert best["scatter"] == pytest.approx(0.2, rel=0.1)
+    assert found["given_away"] == pytest.approx(
+        log_likelihood(scenes, *best.values()) - log_likelihood(scenes, 0.7, 0.1, 0.3, 6.0)
+    )
+    assert isinstance(found["given_away"], float)
+    assert found["given_away"] > 20
+
+
+def test_the_likelihood_is_that_of_differences_by_hand() -> None:
+    """Two grids, no edge: the difference is Student's, with the prior's weight for its freedom."""
+    weights, scatter, weight = np.array([3.0, 1.0]), 0.2, 6.0
+    far, near = (
+        log_likelihood([Numbers(np.array([y, 5.0]), weights, np.zeros(2))], 0.0, 0.0, scatter, weight)
+        for y in (7.0, 5.5)
+    )
+    scale = scatter * np.sqrt(10.0)
+    ratio = ((1 + (2.0 / scale) ** 2 / weight) / (1 + (0.5 / scale) ** 2 / weight)) ** (-(weight + 1) / 2)
+    assert far - near == pytest.approx(np.log(ratio))
+
+
+def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
+    store, written = tmp_path / "store.jsonl", tmp_path / "priors.json"
+    climb(store, range(4), [*OPENING, 96])
+    priors.main(["--store", str(store), "--json", str(written)])
+    found = json.loads(written.read_text())
+    assert found["scenes"] == len(ladders(store)) == 4
+    assert found["area"]["adopted"]["edge_size"] == EDGE_SIZE
+    assert found["area"]["adopted"]["edge_size_spread"] == EDGE_SIZE_SPREAD
+    assert found["area"]["adopted"]["scatter"] == AREA.scatter
+    for part in ("area", "friction_without_tau"):
+        assert found[part]["given_away"] >= 0
+        assert all(value >= 0 for value in found[part]["likeliest"].values())
+    assert found["provenance"]
+
+
+def test_a_store_without_scenes_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    written = tmp_path / "priors.json"
+    with pytest.raises(SystemExit, match="2"):
+        priors.main(["--store", str(tmp_path / "none.jsonl"), "--json", str(written)])
+    assert "holds no scenes" in capsys.readouterr().err
+    assert not written.exists()
