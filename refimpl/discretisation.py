@@ -10,10 +10,10 @@ contact's edge (Yastrebov, Anciaux and Molinari 2017), of which only the size ``
 elements varies as sqrt(n), and n goes as 1 / h, so ``w`` falls as h^(3/2). ``q`` given c and sigma is
 normal; sigma integrates to a Student distribution, and c numerically (Gelman et al. 2013, ch. 3, 14).
 Friction takes its edge's share from the area, by ``tau / N``. Every other number's ``w`` is told by the
-grids themselves: by how much of the contact is edge, by how sharp the peak is, by how slopes change within
-elements. These fall as powers of h where a surface is resolved; where it is not they do not, and bars stay
-wide. Where the peak stands alone nothing bounds what finer grids find there, and where spots are single
-elements nothing but the area itself bounds the area.
+grids themselves: by how much of the contact is edge, by how sharp the peak is, by how slopes bend from
+element to element. These fall as powers of h where a surface is resolved; where it is not they do not, and
+bars stay wide. Where the peak stands alone nothing bounds what finer grids find there, and where spots are
+single elements nothing but the number itself bounds area and friction.
 
 The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1199; by
 likelihood in `verification.coverage.priors`); what they promise was judged on the scenes of other seeds. How
