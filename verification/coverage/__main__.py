@@ -20,7 +20,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--json", type=Path, required=True, help="file to write")
     add("--store", type=Path, default=Path("coverage.jsonl"), help="finished solves (default coverage.jsonl)")
     add("--accuracy", type=float, nargs="+", default=[0.01, 0.001], help="accuracies to ask for")
-    add("--first", type=int, default=0, help="first seed; 1000 to 1039 trained the estimator")
+    add("--first", type=int, default=0, help="first seed; 1000 to 1199 trained the estimator")
     add("--scenes", type=int, default=208, help="number of scenes")
     options = parser.parse_args(arguments)
     os.environ.update(dict.fromkeys(THREADS, "1"))
