@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -13,14 +12,13 @@ from refimpl.grid import Grid
 from refimpl.planning.choice import Forced, Term, affordable, choose
 from refimpl.planning.outlook import Outlook, expected
 from refimpl.planning.resolution import Resolution, resolution
-from refimpl.problem import Terms, pose
+from refimpl.posing import Posing
+from refimpl.problem import Terms
 from refimpl.scene import Scene
-from refimpl.surfaces import SurfaceWarning
 
 Method = Literal["dense", "fft", "paper"]
 METHODS: tuple[Method, ...] = ("dense", "fft", "paper")
 
-EVERYTHING = Terms(coupled=True, oblique=True, slope_correction=False)
 _KEYWORDS = {"shear coupling": "coupled", "obliqueness": "oblique", "shear tilt": "tilted"}
 DECISION_GRID = 256  # where terms are decided for all grids of a refinement
 
@@ -104,12 +102,13 @@ def make_plan(
     approach: float | None = None,
     decide_on: int | None = None,
     of_mu: bool = False,
+    posing: Posing | None = None,
 ) -> Plan:
     """Decide the terms from the scene alone and check that the grid fits into memory.
 
     ``True`` and ``False`` force a term in or out, ``None`` leaves it to its estimate against ``demand``,
     the relative accuracy asked of mu and A (``of_mu``: of mu above all), by the heights on ``decide_on``
-    elements a side (M by default).
+    elements a side (M by default), which ``posing`` samples, if it is given, and keeps.
 
     Raises `InputError` for an unknown method, for a grid whose estimate exceeds the free memory, and for
     terms that exclude each other.
@@ -122,9 +121,8 @@ def make_plan(
         raise InputError("method", method, "dense or fft for a periodic scene")
     memory = memory_of(method, M)
     decide_on = decide_on or M
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SurfaceWarning)  # the solve repeats what surfaces have to say
-        outlook = expected(pose(scene, Grid(scene.side, decide_on), EVERYTHING, approach))
+    posing = posing or Posing(scene, approach)
+    outlook = expected(posing.whole(Grid(scene.side, decide_on)))
     budget = affordable(scene, outlook, demand)
     return Plan(
         method=method,

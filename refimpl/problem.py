@@ -61,7 +61,8 @@ class Problem:
     @property
     def heights(self) -> tuple[Array, Array]:
         """Undeformed heights ``(z_lower, z_upper)`` at first touch (m)."""
-        return self.mean_surface - 0.5 * self.gap, self.mean_surface + 0.5 * self.gap
+        half = 0.5 * self.gap
+        return self.mean_surface - half, np.add(self.mean_surface, half, out=half)
 
     def windowed(self, window: Window) -> Problem:
         """The same problem seen on a window of its grid."""
@@ -173,13 +174,13 @@ def pose(scene: Scene, grid: Grid, terms: Terms, approach: float | None) -> Prob
     keep_memory(grid.M**2)
     lower, upper = scene.heights(grid)
     gap = upper - lower
-    gap = gap - gap.min()
+    gap -= gap.min()
     if approach is not None and scene.periodic:
         approach += float(gap.mean())
     return Problem(
         grid=grid,
         gap=gap,
-        mean_surface=lower + 0.5 * gap,
+        mean_surface=_raised(lower, gap, upper),
         pair=scene.materials,
         friction=scene.friction,
         direction=scene.sliding_direction,
@@ -188,3 +189,10 @@ def pose(scene: Scene, grid: Grid, terms: Terms, approach: float | None) -> Prob
         load=scene.load if approach is None else None,
         approach=approach,
     )
+
+
+def _raised(lower: Array, gap: Array, spent: Array) -> Array:
+    """``lower + gap / 2``, in the memory of heights that are no longer needed."""
+    np.multiply(gap, 0.5, out=spent)
+    spent += lower
+    return spent

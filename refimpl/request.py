@@ -8,6 +8,7 @@ from refimpl.errors import InputError, require_number
 from refimpl.grid import Grid
 from refimpl.paper import PAPER_TOLERANCE
 from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
+from refimpl.posing import Posing
 from refimpl.refine import Quantity, check_accuracy, check_quantity, deserved_tolerance
 from refimpl.scene import Scene
 from refimpl.solution import Solution
@@ -106,8 +107,11 @@ class Request:
             return PAPER_TOLERANCE
         return 1e-8 if self.accuracy is None else deserved_tolerance(self.accuracy)
 
-    def plan(self) -> Plan:
-        """What will be modelled; with an accuracy, the terms for all grids and the grid that decided them."""
+    def plan(self, posing: Posing | None = None) -> Plan:
+        """What will be modelled; with an accuracy, the terms for all grids and the grid that decided them.
+
+        ``posing`` samples the heights for it, and keeps them.
+        """
         M = 1 if self.grid is None else Grid(self.scene.side, self.grid).M
         return make_plan(
             self.scene,
@@ -121,4 +125,5 @@ class Request:
             approach=self.approach,
             decide_on=DECISION_GRID if self.grid is None else None,
             of_mu=self.accuracy is not None and self.judged == "friction_coefficient",
+            posing=posing,
         )

@@ -125,6 +125,7 @@ class Scene:
 
 
 def _centred(name: str, heights: Array, grid: Grid) -> Array:
+    """The heights about their mid-height, in place."""
     if not np.all(np.isfinite(heights)):
         raise InputError(f"{name}.surface", "NaN or infinite heights", "finite heights in m")
     low, high = float(heights.min()), float(heights.max())
@@ -134,4 +135,5 @@ def _centred(name: str, heights: Array, grid: Grid) -> Array:
             f"peak-to-valley {high - low:.3g} m",
             f"heights in m whose peak-to-valley is at most the side, {grid.side:.3g} m (wrong unit?)",
         )
-    return heights - (low + 0.5 * (high - low))
+    heights -= low + 0.5 * (high - low)
+    return heights

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -26,13 +25,14 @@ from refimpl.outcome import Outcome, Status, Visited
 from refimpl.paper import solve_paper
 from refimpl.plan import Method, Plan
 from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
-from refimpl.problem import Problem, pose
+from refimpl.posing import Posing
+from refimpl.problem import Problem
 from refimpl.refine import Quantity, refine, uncertainty
 from refimpl.remark import Remark
 from refimpl.request import Request
 from refimpl.scene import Scene
 from refimpl.solution import Cost, Solution
-from refimpl.surfaces import GaussianRoughness, SurfaceWarning
+from refimpl.surfaces import GaussianRoughness
 from refimpl.uncertainty import merged
 from refimpl.validity import cautions
 
@@ -97,10 +97,12 @@ def solve(
         tolerance=tolerance,
         start=start,
     )
+    posing = Posing(scene, approach)
+    plan = request.plan(posing)
     if accuracy is not None:
-        planned = _Planned(scene, request.plan(), approach, request.residual, progress)
+        planned = _Planned(scene, plan, posing, request.residual, progress)
         return refine(planned.solve_at, accuracy, request.judged)
-    solution = _solve_planned(scene, request.plan(), approach, request.residual, progress, start)
+    solution = _solve_planned(scene, plan, posing, request.residual, progress, start)
     return replace(solution, uncertainty=uncertainty([GridResult.of(solution)]))
 
 
@@ -108,10 +110,10 @@ class _Planned:
     """A plan made once for all grids of a refinement; terms that turn out to matter are put back for good."""
 
     def __init__(
-        self, scene: Scene, plan: Plan, approach: float | None, tolerance: float, progress: Progress | None
+        self, scene: Scene, plan: Plan, posing: Posing, tolerance: float, progress: Progress | None
     ) -> None:
         self.scene, self.plan = scene, plan
-        self.asked = approach, tolerance, progress
+        self.asked = posing, tolerance, progress
         self._last: Solution | None = None
 
     def solve_at(self, M: int) -> Solution:
@@ -145,7 +147,7 @@ class _Watched(Counter):
 def _solve_planned(
     scene: Scene,
     plan: Plan,
-    approach: float | None,
+    posing: Posing,
     tolerance: float,
     progress: Progress | None,
     start: Solution | None,
@@ -153,21 +155,20 @@ def _solve_planned(
     """Pose, solve, certify and gather on one grid."""
     started = time.perf_counter()
     counter = Counter() if progress is None else _Watched(plan.M, progress)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", SurfaceWarning)
-        problem = pose(scene, Grid(scene.side, plan.M), plan.switches, approach)
+    problem = posing.take(Grid(scene.side, plan.M), plan.switches)
     outcome, state = _solve_posed(problem, plan, tolerance, counter, _answer(start))
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, outcome.iterations)
     solution = _solution(problem, plan, outcome, state, tolerance, cost)
     del outcome, state  # the displacements are in the surfaces now
-    return replace(solution, warnings=_remarks(scene, problem.grid, caught) + cautions(solution, scene))
+    remarks = _remarks(scene, problem.grid, posing.remarks)
+    return replace(solution, warnings=remarks + cautions(solution, scene))
 
 
-def _remarks(scene: Scene, grid: Grid, caught: Sequence[warnings.WarningMessage]) -> tuple[Remark, ...]:
+def _remarks(scene: Scene, grid: Grid, lines: Sequence[str]) -> tuple[Remark, ...]:
     """What surfaces had to remark; unresolved roughness is told by name (`refimpl.validity`)."""
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     told = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
-    return tuple(Remark(line) for line in dict.fromkeys(str(w.message) for w in caught) if line not in told)
+    return tuple(Remark(line) for line in lines if line not in told)
 
 
 def _solve_posed(

@@ -18,9 +18,10 @@ import refimpl as rf
 from refimpl.fft_solver import solve_fft
 from refimpl.grid import Grid
 from refimpl.operators.fft import Counter
-from refimpl.plan import EVERYTHING, Plan, make_plan
+from refimpl.plan import Plan, make_plan
 from refimpl.planning import effects
 from refimpl.planning.effects import Effect, Scales
+from refimpl.posing import EVERYTHING
 from refimpl.problem import Problem, Terms, pose
 
 SIDE = 1e-3

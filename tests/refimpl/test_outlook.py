@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.plan import EVERYTHING
 from refimpl.planning import effects
 from refimpl.planning.effects import Scales
 from refimpl.planning.outlook import Outlook, _first, _mirrored, _rising, _touched, expected
+from refimpl.posing import EVERYTHING
 from refimpl.problem import Problem, pose
 from verification.coverage.scenes import random_scene
 
