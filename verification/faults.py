@@ -18,7 +18,7 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl import dense_solver, fft_solver, forces, level_solver, problem, slopes
+from refimpl import dense_solver, fft_solver, forces, level_solver, posing, problem, slopes
 from refimpl.contact import certificate
 from refimpl.grid import Array
 from refimpl.kernels import normal_integral, tangential_integral
@@ -62,7 +62,7 @@ def _tables_of(kind: str, factor: float) -> Patch:
 
 def _wherever_imported(name: str, wrong: Any) -> tuple[Patch, ...]:
     solve = importlib.import_module("refimpl.solve")  # the package's `solve` is the function
-    users = (dense_solver, fft_solver, level_solver, certificate, problem, solve)
+    users = (dense_solver, fft_solver, level_solver, certificate, posing, problem, solve)
     return tuple((user, name, wrong) for user in users if hasattr(user, name))
 
 
