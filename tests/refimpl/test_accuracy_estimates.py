@@ -228,7 +228,7 @@ def test_single_elements_leave_mu_open_too() -> None:
         for mu, M in ((0.29, 32), (0.3, 64), (0.3, 128))
         for share in (4 * EDGE_SHARE,)
     ]
-    assert estimates(results)["friction_coefficient"].bar(0.3) > 0.3
+    assert 0.3 < estimates(results)["friction_coefficient"].bar(0.3) < 0.9
     spread_out = [replace(result, edge=result.edge / 10) for result in results]
     assert estimates(spread_out)["friction_coefficient"].bar(0.3) < 0.06
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from refimpl.discretisation import AREA, EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.discretisation import AREA, BULK, EDGE_SIZE, EDGE_SIZE_SPREAD, SINGLES
 from refimpl.refine import OPENING
+from tests.documents import ROOT
 from verification.coverage import priors
 from verification.coverage.priors import Numbers, fitted, log_likelihood
 from verification.coverage.store import climb, ladders
@@ -70,6 +71,19 @@ def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
         assert found[part]["given_away"] >= 0
         assert all(value >= 0 for value in found[part]["likeliest"].values())
     assert found["provenance"]
+
+
+def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
+    """Close to the likeliest of areas; friction without tau's share is held to vary more on purpose."""
+    found = json.loads((ROOT / "reports" / "results" / "priors.json").read_text())
+    area, rest = found["area"], found["friction_without_tau"]
+    assert list(area["adopted"].values()) == [EDGE_SIZE, EDGE_SIZE_SPREAD, AREA.scatter, AREA.weight, SINGLES]
+    assert list(rest["adopted"].values()) == [BULK.scatter, 1.0, BULK.weight]
+    assert area["likeliest"]["edge_size"] == pytest.approx(EDGE_SIZE, abs=0.01)
+    assert area["likeliest"]["edge_size_spread"] == pytest.approx(EDGE_SIZE_SPREAD, abs=0.01)
+    assert area["likeliest"]["scatter"] == pytest.approx(AREA.scatter, rel=0.1)
+    assert all(rest["likeliest"][name] < rest["adopted"][name] for name in ("bulk", "unevenness"))
+    assert found["scenes"] == 200
 
 
 def test_a_store_without_scenes_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
