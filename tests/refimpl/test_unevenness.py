@@ -1,0 +1,46 @@
+"""How far slopes that bend from element to element leave mu open."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from refimpl.grid_result import unevenness
+from refimpl.slopes import Slopes
+
+
+def test_unevenness_knows_no_direction_and_nothing_where_there_is_nothing() -> None:
+    draw = np.random.default_rng(5)
+    pressure = np.pad(draw.uniform(0, 1, (4, 6)), ((2, 3), (1, 4)))
+    slopes = Slopes(draw.normal(size=pressure.shape), draw.normal(size=pressure.shape))
+    found = unevenness(pressure, slopes)
+    assert found == pytest.approx(unevenness(pressure.T, Slopes(slopes.tan_y.T, slopes.tan_x.T)))
+    assert found == pytest.approx(unevenness(2 * pressure, slopes))
+    assert unevenness(np.zeros((4, 4)), Slopes(np.eye(4), np.eye(4))) == 0.0
+    assert unevenness(np.ones((4, 4)), Slopes.flat((4, 4))) == 0.0
+    assert unevenness(np.ones((2, 2)), Slopes(np.eye(2), np.eye(2))) == 0.0
+
+
+def test_unevenness_sees_bends_alone_and_alternating_slopes() -> None:
+    ramp, pressure = Slopes(np.arange(25.0).reshape(5, 5), np.zeros((5, 5))), np.ones((5, 5))
+    assert unevenness(pressure, ramp) == pytest.approx(0.0, abs=1e-12)
+    signs = np.indices((5, 5)).sum(axis=0) % 2 * 2.0 - 1
+    assert unevenness(pressure, Slopes(signs, signs)) == pytest.approx(math.sqrt(32 / 6) / 5)
+
+
+def test_unevenness_of_slopes_without_neighbours_is_their_means_error_and_four_tenths_more() -> None:
+    draw = np.random.default_rng(6)
+    slopes = Slopes(draw.normal(size=(200, 200)), draw.normal(size=(200, 200)))
+    assert unevenness(np.ones((200, 200)), slopes) == pytest.approx(math.sqrt(2) / 200, rel=0.02)
+
+
+def test_unevenness_of_a_resolved_surface_falls_as_the_cube_of_the_spacing() -> None:
+    def waves(M: int) -> float:
+        x = (np.arange(M) + 0.5) * 2 * math.pi / M
+        return unevenness(
+            np.ones((M, M)), Slopes(np.sin(x)[:, None] + 0 * x, np.cos(x)[None, :] + 0 * x[:, None])
+        )
+
+    assert waves(64) / waves(128) == pytest.approx(8, rel=0.02)
