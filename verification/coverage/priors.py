@@ -48,13 +48,11 @@ def areas(results: Sequence[GridResult], singles: float) -> Numbers:
 
 
 def rests(results: Sequence[GridResult], bulk: float, unevenness: float) -> Numbers:
-    """Friction without tau's share over the finest grid's scatter, of which both shares are given."""
+    """Friction without tau's share, for a scatter of one: both parts of its size are given."""
     numbers = [result.numbers for result in results]
     mu = np.array([found["friction_coefficient"] for found in numbers])
     area = np.array([found["contact_area"] for found in numbers])
-    slip, uneven = (
-        np.array([getattr(result, name) for result in results]) for name in ("slip", "unevenness")
-    )
+    slip, uneven = np.array([result.slip for result in results]), discretisation.unevenness(results)
     thin = discretisation.thinness(results) * abs(mu[-1])
     size = np.hypot.reduce([bulk * thin, unevenness * uneven, np.full(thin.shape, SOLVED * abs(mu[-1]))])
     weights = np.maximum.accumulate(size[::-1])[::-1]
