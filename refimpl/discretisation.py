@@ -1,126 +1,129 @@
-"""What a sequence of grids tells of the continuous problem: a Bayesian line through the numbers found.
+"""How far the numbers found on grids are from the continuous problem's: the discretisation's error bars.
 
-A number ``y_k`` found on grid k of spacing ``h_k`` is modelled as
-
-    y_k = q + c e_k + r_k,   c ~ N(c0, s_c^2),   r_k ~ N(0, (sigma w_k)^2),   sigma^2 ~ scaled inverse chi^2.
-
-``q`` is the number of the continuous problem, ``e_k`` the area that whole elements add along the
-contact's edge (Yastrebov, Anciaux and Molinari 2017), of which only the size ``c`` is uncertain, and
-``r_k`` what is left. In an area that is which elements the edge happens to catch: the count of n edge
-elements varies as sqrt(n), and n goes as 1 / h, so ``w`` falls as h^(3/2). ``q`` given c and sigma is
-normal; sigma integrates to a Student distribution, and c numerically (Gelman et al. 2013, ch. 3, 14).
-Friction takes its edge's share from the area, by ``tau / N``. Every other number's ``w`` is told by the
-grids themselves: by how much of the contact is edge, by how sharp the peak is, by how slopes bend from
-element to element. These fall as powers of h where a surface is resolved; where it is not they do not, and
-bars stay wide. Where the peak stands alone nothing bounds what finer grids find there, and where spots are
+Each number is a line's (`refimpl.estimate`), ``y_k = q + c e_k + r_k`` on grid k. In an area ``e_k`` is what
+whole elements add along the contact's edge (Yastrebov, Anciaux and Molinari 2017), and ``r_k`` which elements
+the edge happens to catch: the count of n edge elements varies as sqrt(n), and n goes as 1 / h, so ``w`` falls
+as h^(3/2). Friction takes its edge's share from the area, by ``tau / N``. The highest pressure is that of a
+parabola through the peak, and ``e_k`` its drop to the neighbours (`refimpl.summit`); approaches count from
+first touch, a summit as well (`refimpl.first_touch`). Every other number's ``w`` is told by the grids
+themselves: by how much of the contact is edge, by how slopes bend from element to element. These fall as
+powers of h where a surface is resolved; where it is not they do not, and bars stay wide. Where elements that
+bear half of the highest pressure stand alone nothing bounds what finer grids find there, and where spots are
 single elements nothing but the number itself bounds area and friction.
 
 The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1199; by
 likelihood in `verification.coverage.priors`); what they promise was judged on the scenes of other seeds. How
-bars open where nothing is resolved was chosen on 16 surfaces of noise, and judged on 16 others
+bars open where nothing is resolved was chosen on surfaces of noise and on measured ones as well
 (`test_accuracy_estimates.py`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from functools import cache
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
 
 import numpy as np
-from scipy import optimize, special
 
+from refimpl.estimate import DECAY, Bias, Estimate, Prior, line
+from refimpl.first_touch import POWERS, first_touch, missed, missed_share, touched
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 
 EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
 SINGLES = 1.5  # what a lone element's edge counts more than an edge
-_TWO_SIDED, _ONE_SIDED = 1.959964, 1.644854  # a normal distribution's 95 %
+SUMMIT, SUMMIT_SPREAD = 0.022, 0.013  # c0, s_c: of its drop, as a pressure's parabola peaks too high
 _RAN_OFF = 1e100  # of any number in SI units: squares still fit a double
-DECAY = 1.5  # order of the area's scatter
-_LONE = 2.0  # drop of a peak whose neighbours bear half as much, in the mean
 _ROUNDING = 1e-6  # instead of zero
 _UNKNOWN = 0.15  # of an area, at most, as sigma: with its edge's share a bar then reaches down to none
 
-
-class Prior(NamedTuple):
-    """Of a scatter: sigma on the finest grid in the number's unit, and how many grids that is worth."""
-
-    scatter: float
-    weight: float
-
-
 AREA = Prior(0.2, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit of this and the last: value (edge / area)^1.5
-PEAK = Prior(0.05, 3.0)  # unit: peak times its drop to the neighbours
+PEAK = Prior(0.007, 2.5)  # unit: the summit's drop
 BINORMAL = Prior(0.002, 1.0)  # unit: normal force, else as the next
-OTHER = Prior(0.1, 1.0)
+OTHER = Prior(0.02, 2.0)  # unit: as of friction
 
 
-class Estimate(NamedTuple):
-    """A number of the continuous problem, and the 95 % bound of its error."""
+class _Grids:
+    """What a sequence of grids found, coarse to fine."""
 
-    value: float
-    spread: float
+    def __init__(self, results: Sequence[GridResult]) -> None:
+        self.results = results
+        self.thin, self.spacing = thinness(results), self.each(lambda result: result.spacing)
 
-    def bar(self, found: float) -> float:
-        """95 % bound of the error of a number found on a grid.
+    def each(self, number: Callable[[GridResult], float]) -> Array:
+        """A number of each grid."""
+        return np.array([number(result) for result in self.results])
 
-        A normal distribution's, of which the bound needs one side alone where the number found is far off.
-        Of the wider tails that make ``spread`` one side is shorter still.
+    def found(self, name: str) -> Array:
+        """A reported number of each grid."""
+        return self.each(lambda result: result.numbers[name])
 
-        >>> [round(Estimate(1.0, 0.1).bar(found), 6) for found in (1.0, 1.05, 1.5)]
-        [0.1, 0.134, 0.583923]
-        """
-        distance, deviation = abs(found - self.value), self.spread / _TWO_SIDED
-        if not distance < 3 * deviation:
-            return distance + _ONE_SIDED * deviation
-        return deviation * math.sqrt(special.chndtrix(0.95, 1.0, (distance / deviation) ** 2))
+    def finest(self, name: str) -> float:
+        """The finest grid's, without its sign."""
+        return abs(self.results[-1].numbers[name])
+
+    def hung(self, unit: float) -> Array:
+        """Sizes of a scatter that hangs on the highest peak, less than its pressure does."""
+        return np.array([r.peak.widened(t * unit, 0.5) for r, t in zip(self.results, self.thin, strict=True)])
+
+    def smooth(self, values: Array, prior: Prior, *sizes: Array, bias: Bias | None = None) -> Estimate:
+        """From ``values`` that scatter by ``prior.scatter`` times the first of ``sizes``, and the others."""
+        size = np.hypot.reduce([prior.scatter * sizes[0], *sizes[1:]])
+        if math.isinf(size[-1]):
+            return Estimate(float(values[-1]), math.inf)
+        return line(values, _weights(size, self.spacing), prior._replace(scatter=float(size[-1])), bias)
 
 
 def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
     """Estimates of the reported numbers, from grids coarse to fine (one at least)."""
-    columns = {name: np.array([result.numbers[name] for result in results]) for name in results[0].numbers}
-    fine = {name: abs(float(column[-1])) for name, column in columns.items()}
-    area, force = columns["contact_area"], columns["normal_force"]
-    slip, drop = (np.array([getattr(result, name) for result in results]) for name in ("slip", "drop"))
-    spacing = np.array([result.spacing for result in results])
-    thin, uneven, lone = thinness(results), unevenness(results), drop >= _LONE
-
-    def smooth(values: Array, prior: Prior, *sizes: Array) -> Estimate:
-        size = np.hypot.reduce([prior.scatter * sizes[0], *sizes[1:]])
-        if math.isinf(size[-1]):
-            return Estimate(float(values[-1]), math.inf)
-        return line(values, _weights(size, spacing), prior._replace(scatter=float(size[-1])))
-
-    def peaked(name: str, prior: Prior, size: Array) -> Estimate:
-        """A number that hangs on the highest peak, of which a grid knows less the less its neighbours bear.
-
-        One that stands alone may be of any size below its element's, and of any pressure.
-        """
-        widened = np.full(size.shape, np.inf)
-        np.divide(size, 1 - (drop / _LONE) ** 2, out=widened, where=~lone)
-        return smooth(columns[name], prior, widened)
-
-    def sheared(name: str, share: Array, unit: float) -> Estimate:
-        """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
-        rest = smooth(columns[name] - share * area, BULK, thin * fine[name], uneven * unit)
-        value = rest.value + float(share[-1]) * whole.value
-        return Estimate(value, math.hypot(rest.spread, float(share[-1]) * whole.spread))
-
-    whole, load = _area(results, area), fine["normal_force"]
-    return {
-        "friction_coefficient": sheared("friction_coefficient", slip, 1.0),
-        "friction_force": sheared("friction_force", slip * force, load),
-        "contact_area": whole,
-        "contact_area_corrected": whole,
-        "max_pressure": peaked("max_pressure", PEAK, drop * columns["max_pressure"]),
-        "approach": peaked("approach", OTHER, thin * fine["approach"]),
-        **({} if results[-1].loaded else {"normal_force": peaked("normal_force", OTHER, thin * load)}),
-        "binormal_force": smooth(columns["binormal_force"], BINORMAL, thin * load, uneven * load),
+    grids = _Grids([touched(result) for result in results])
+    area, load = _area(grids.results), grids.finest("normal_force")
+    slip = grids.each(lambda result: result.slip)
+    across = grids.thin * load, unevenness(grids.results) * load
+    found = {
+        "friction_coefficient": _sheared(grids, "friction_coefficient", area, slip, 1.0),
+        "friction_force": _sheared(grids, "friction_force", area, slip * grids.found("normal_force"), load),
+        "contact_area": area,
+        "contact_area_corrected": area,
+        "max_pressure": _peak(grids),
+        "binormal_force": grids.smooth(grids.found("binormal_force"), BINORMAL, *across),
     }
+    if results[-1].loaded:
+        return found | {"approach": _approach(grids)}
+    bounds = missed(grids.results[-1])
+    widened = {name: estimate.widened(bounds[name]) for name, estimate in found.items()}
+    return widened | {"normal_force": _force(grids)}
+
+
+def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float) -> Estimate:
+    """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
+    values = grids.found(name) - share * grids.found("contact_area")
+    rest = grids.smooth(values, BULK, grids.thin * grids.finest(name), unevenness(grids.results) * unit)
+    slipping = float(share[-1])
+    return Estimate(rest.value + slipping * area.value, rest.spread).widened(slipping * area.spread)
+
+
+def _peak(grids: _Grids) -> Estimate:
+    """The highest pressure: that of the parabola, which peaks too high by a share of its drop."""
+    bias = Bias(grids.each(lambda result: result.peak.drop), SUMMIT, SUMMIT_SPREAD)
+    size = grids.each(lambda result: result.peak.widened(result.peak.drop))
+    return grids.smooth(grids.each(lambda result: result.peak.height), PEAK, size, bias=bias)._replace(
+        orders=(2.0, 2.0)
+    )
+
+
+def _approach(grids: _Grids) -> Estimate:
+    """The approach under a load, counted from the surfaces' own first touch."""
+    values = grids.found("approach") + grids.each(lambda result: result.touch.height)
+    return grids.smooth(values, OTHER, grids.hung(grids.finest("approach")), grids.each(first_touch))
+
+
+def _force(grids: _Grids) -> Estimate:
+    """The force at an approach, which the first touch moves by its power of the approach."""
+    load = grids.finest("normal_force")
+    size = POWERS["normal_force"] * load * grids.each(missed_share)
+    return grids.smooth(grids.found("normal_force"), OTHER, grids.hung(load), size)
 
 
 def thinness(results: Sequence[GridResult]) -> Array:
@@ -178,16 +181,17 @@ def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]
     }
 
 
-def _area(results: Sequence[GridResult], area: Array) -> Estimate:
+def _area(results: Sequence[GridResult]) -> Estimate:
     """Contact area: the edge's mean share is a regressor, its scatter that of a count.
 
     A lone element's edge counts for more: finer grids find less of it than of an edge. On the training
     scenes once more is likeliest, on surfaces of noise and on measured ones 1.5 to 2 times.
     """
-    edge = np.array([result.edge for result in results])
+    area, edge = np.transpose([(result.numbers["contact_area"], result.edge) for result in results])
     scatter = area_scatter(results)
     prior = AREA._replace(scatter=AREA.scatter * scatter[-1])
-    return line(area, scatter / scatter[-1], prior, edge * (1 + SINGLES * singleness(results) ** 2))
+    bias = Bias(edge * (1 + SINGLES * singleness(results) ** 2), EDGE_SIZE, EDGE_SIZE_SPREAD)
+    return line(area, scatter / scatter[-1], prior, bias)
 
 
 def area_scatter(results: Sequence[GridResult]) -> Array:
@@ -204,50 +208,3 @@ def area_scatter(results: Sequence[GridResult]) -> Array:
         counted, np.minimum(counted / _known(results), _UNKNOWN * area / AREA.scatter)
     )
     return scatter
-
-
-def line(values: Array, weights: Array, prior: Prior, edge: Array | None = None) -> Estimate:
-    """``q`` of the model above, from ``values`` on grids coarse to fine with ``w_k = weights``.
-
-    ``prior.scatter`` is sigma of the finest grid in the number's unit.
-
-    >>> line(np.array([1.04, 1.02, 1.01]), np.array([8.0, 2.8, 1.0]), Prior(0.001, 1.0)).value < 1.015
-    True
-    """
-    if not np.any(values):
-        return Estimate(0.0, 0.0)
-    sizes, shares = (np.zeros(1), np.ones(1)) if edge is None else _edge_sizes()
-    rest = values - sizes[:, None] * (0 if edge is None else edge)
-    precision = weights**-2.0
-    centre = rest @ precision / precision.sum()
-    squares = ((rest - centre[:, None]) ** 2) @ precision
-    freedom = prior.weight + len(values) - 1
-    variance = (prior.weight * prior.scatter**2 + squares) / freedom
-    variance = np.maximum(variance, np.finfo(float).tiny + (np.finfo(float).eps * values[-1]) ** 2)
-    shares = shares * (variance / variance.min()) ** (-0.5 * freedom)
-    shares = shares / shares.sum()
-    value = float(shares @ centre)
-    scale = np.sqrt(variance / precision.sum())
-    return Estimate(value, _bound(shares, centre - value, scale, freedom))
-
-
-def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> float:
-    """What a mixture of Student's distributions exceeds, either way together, with 5 %."""
-    widest = float(np.max(np.abs(centres)) + np.max(scales) * special.stdtrit(freedom, 0.975))
-    if len(shares) == 1:
-        return widest
-
-    either_way = np.array([centres, -centres])
-
-    def beyond(bound: float) -> float:
-        tails = special.stdtr(freedom, (either_way - bound) / scales)
-        return float((tails @ shares).sum()) - 0.05
-
-    return float(optimize.brentq(beyond, 0.0, widest, rtol=1e-4)) if beyond(widest) < 0 else widest
-
-
-@cache
-def _edge_sizes() -> tuple[Array, Array]:
-    """Nodes and weights of the prior of ``c`` (Gauss-Hermite)."""
-    nodes, weights = np.polynomial.hermite_e.hermegauss(9)
-    return EDGE_SIZE + EDGE_SIZE_SPREAD * nodes, weights / weights.sum()

@@ -13,6 +13,7 @@ from refimpl.grid import Array, inner
 from refimpl.operators.window import Window
 from refimpl.slopes import Slopes
 from refimpl.solution import REPORTED, Solution
+from refimpl.summit import LEVEL, Summit, deepest, highest
 from refimpl.uncertainty import adhesive_share, edge_excess, iteration_parts, merged
 
 
@@ -22,10 +23,11 @@ class GridResult:
 
     ``numbers`` by the names of `Solution`; ``edge`` is the area (m^2) that whole elements are expected
     to add along the contact's edge, ``alike`` how many of its elements come in and out together by
-    symmetry, ``drop`` how sharp the peak is, ``unevenness`` how far slopes within elements leave mu open,
-    ``slip`` is ``d mu / d A = tau / N`` (1/m^2), ``parts`` are the uncertainties that the grid's own
-    solution states (iteration, tau support). ``loaded`` tells a prescribed load, which knows no
-    discretisation, from a prescribed approach.
+    symmetry, ``peak`` the pressure's summit (Pa), ``touch`` that of the gap turned over (m), from which
+    approaches count, ``unevenness`` how far slopes within elements leave mu open, ``slip`` is
+    ``d mu / d A = tau / N`` (1/m^2), ``parts`` are the uncertainties that the grid's own solution states
+    (iteration, tau support). ``loaded`` tells a prescribed load, which knows no discretisation, from a
+    prescribed approach.
     """
 
     M: int
@@ -33,7 +35,8 @@ class GridResult:
     numbers: Mapping[str, float]
     edge: float
     alike: float
-    drop: float
+    peak: Summit
+    touch: Summit
     unevenness: float
     slip: float
     parts: Mapping[str, Mapping[str, float]]
@@ -46,18 +49,20 @@ class GridResult:
 
     @classmethod
     def of(cls, solution: Solution) -> GridResult:
-        """What to keep of a solution."""
+        """What to keep of a solution. Approaches of periodic scenes count from no touch."""
+        problem = solution.problem
         return cls(
             M=solution.grid.M,
             spacing=solution.grid.spacing,
             numbers={name: float(getattr(solution, name)) for name in REPORTED},
             edge=edge_excess(solution),
             alike=alike(solution.contact),
-            drop=drop_beside_peak(solution.pressure),
+            peak=highest(solution.pressure, periodic=problem.periodic),
+            touch=LEVEL if problem.periodic else deepest(problem.gap),
             unevenness=unevenness(solution.pressure, solution.slopes),
             slip=adhesive_share(solution),
             parts=merged(iteration_parts(solution), _own(solution)),
-            loaded=solution.problem.load is not None,
+            loaded=problem.load is not None,
         )
 
 
@@ -79,20 +84,6 @@ def alike(contact: Mask) -> float:
     edge = sum(np.count_nonzero(np.diff(box, axis=axis)) for axis in (0, 1)) + 2 * sum(box.shape)
     misfits = [np.count_nonzero(image != box) for image in flips if image.shape == box.shape]
     return float(sum(max(0.0, 1 - 4 * misfit / edge) for misfit in misfits))
-
-
-def drop_beside_peak(pressure: Array) -> float:
-    """How far the four neighbours of the highest pressure together fall short of it, over it; 0 to 4.
-
-    >>> float(drop_beside_peak(np.array([[0.0, 1, 0], [1, 2, 1], [0, 1, 0]])))
-    2.0
-    """
-    if not np.any(pressure > 0):
-        return 0.0
-    padded = np.pad(pressure, 1, mode="edge")
-    i, j = np.unravel_index(np.argmax(pressure), pressure.shape)
-    beside = padded[i : i + 3 : 2, j + 1].sum() + padded[i + 1, j : j + 3 : 2].sum()
-    return float(4 - beside / pressure[i, j])
 
 
 def unevenness(pressure: Array, slopes: Slopes) -> float:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from refimpl.discretisation import DECAY, Estimate, discretisation, estimates
+from refimpl.discretisation import discretisation, estimates
 from refimpl.errors import InputError, require_number
 from refimpl.grid_result import GridResult
 from refimpl.outcome import Status
@@ -31,6 +31,7 @@ QUANTITIES: tuple[Quantity, ...] = (
 OPENING = (32, 64)
 LADDER = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
 _FARTHEST = 8  # times finer than the last grid: what two coarse grids foretell beyond is worth little
+_BLIND = 2  # the same where the bar is longer than the number, and foretells nothing
 _MARGIN = 0.95  # share of the accuracy that a foretold bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
@@ -88,14 +89,14 @@ def climb(
 def next_grid(results: Sequence[GridResult], accuracy: float, quantity: str, ladder: Sequence[int]) -> int:
     """The coarsest grid of the ladder whose bar is foretold to do, within reach of the last grid."""
     fine = results[-1]
-    reach = [M for M in ladder if M <= _FARTHEST * fine.M] or ladder[:1]
     found = fine.numbers[quantity]
     estimate = estimates(results)[quantity]
+    farthest = fine.M * (_FARTHEST if estimate.spread < abs(found) else _BLIND)
+    reach = [grid for grid in ladder if grid <= farthest] or ladder[:1]
     own = sum(fine.parts.get(quantity, {}).values())
     for M in reach:
         finer = fine.M / M
-        foretold = Estimate(found + (estimate.value - found) * finer, estimate.spread * finer**DECAY)
-        bar = foretold.bar(found) + own * finer
+        bar = estimate.foretold(found, finer) + own * finer
         if bar <= _MARGIN * accuracy * abs(found):
             return M
     return reach[-1]

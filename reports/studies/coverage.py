@@ -17,6 +17,7 @@ NAMES = {
     "max_pressure": "f_max",
 }
 LOWEST = 1e-6  # errors below are drawn there: they are rounding and iteration
+LONGEST = 0.5  # bars beyond are drawn there, and those that have no end
 
 
 def build(document: Document) -> Exhibit:
@@ -117,7 +118,9 @@ def _draw(canvas: Canvas, data: Data) -> None:
     """True error over bar for each number; above the line a bar does not hold."""
     number, kind = np.array(data["number"]), np.array(data["class"])
     error = np.maximum(np.array(data["error"], dtype=float), LOWEST)
-    bar = np.maximum(np.array(data["bar"], dtype=float), LOWEST)
+    bar = np.array(data["bar"], dtype=float)
+    holds = np.isnan(bar) | (error <= bar)  # one without end is no number
+    bar = np.clip(np.where(np.isnan(bar), np.inf, bar), LOWEST, LONGEST)
     classes = list(dict.fromkeys(data["class"]))
     all_axes = canvas.subplots(1, len(NAMES), sharex=True, sharey=True)
     for axes, name in zip(all_axes, NAMES.values(), strict=True):
@@ -136,10 +139,9 @@ def _draw(canvas: Canvas, data: Data) -> None:
             )
         axes.plot([LOWEST, 1], [LOWEST, 1], color=INK, linewidth=1)
         axes.axvline(data["accuracy"], color=INK, linewidth=1, linestyle=":")
-        held = np.mean(error[number == name] <= bar[number == name])
-        axes.set(
-            xscale="log", yscale="log", xlim=(LOWEST, 0.3), ylim=(LOWEST / 1.5, 0.3), xlabel="relative bar"
-        )
+        held = np.mean(holds[number == name])
+        limits = LOWEST / 1.5, 1.5 * LONGEST
+        axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, xlabel="relative bar")
         axes.set_title(f"{name}: {100 * held:.1f} % hold")
     all_axes[0].set_ylabel("relative error against the reference")
     handles, labels = all_axes[0].get_legend_handles_labels()
@@ -150,6 +152,7 @@ FIGURE = Figure(
     "*",
     ("number", "class", "error", "bar", "reached", "accuracy"),
     _draw,
-    "True error over the bar of each scene; dotted: the accuracy asked for.",
+    f"True error over the bar of each scene; bars above {LONGEST:g}, and those without end, are drawn there. "
+    "Dotted: the accuracy asked for.",
     (11.0, 3.8),
 )

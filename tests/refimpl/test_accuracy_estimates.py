@@ -17,21 +17,29 @@ from refimpl.discretisation import (
     EDGE_SHARE,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
-    Estimate,
-    Prior,
+    OTHER,
+    SUMMIT,
+    SUMMIT_SPREAD,
     _weights,
     estimates,
-    line,
 )
+from refimpl.estimate import Bias, Estimate, Prior, line
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 from refimpl.refine import OPENING, climb, next_grid, relative_bar, uncertainty
 from refimpl.solution import REPORTED
+from refimpl.summit import LEVEL, Summit
 from refimpl.validity import Limit
 
 HERTZ_GRIDS = (80, 96, 112, 128, 160, 192, 224, 256, 320, 384, 448, 512)
 SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
+
+
+def summit(h: float, height: float = PEAK, roughness: float = 0.0) -> Summit:
+    """A parabola's through a disc's peak, too high by what the model says."""
+    drop = 2 * (h / RADIUS) ** 2 * height
+    return Summit(height + SUMMIT * drop, drop, roughness)
 
 
 def made_up(M: int, size: float = EDGE_SIZE, jitter: float = 0.0, unevenness: float = 0.0) -> GridResult:
@@ -55,7 +63,8 @@ def made_up(M: int, size: float = EDGE_SIZE, jitter: float = 0.0, unevenness: fl
         numbers=numbers,
         edge=edge,
         alike=1.0,
-        drop=2 * (h / RADIUS) ** 2,
+        peak=summit(h),
+        touch=LEVEL,
         unevenness=unevenness,
         slip=SLIP,
         parts={name: {"iteration": 0.0} for name in REPORTED},
@@ -71,6 +80,7 @@ def test_numbers_that_follow_the_model_are_extrapolated() -> None:
     assert mu.value == pytest.approx(BETA + SLIP * AREA_LIMIT, rel=1e-3)
     assert abs(mu.value - BETA - SLIP * AREA_LIMIT) < mu.spread
     peak = found["max_pressure"]
+    assert peak.value == pytest.approx(PEAK, rel=1e-6)
     assert abs(peak.value - PEAK) < peak.spread < 0.02 * PEAK
 
 
@@ -131,14 +141,22 @@ def test_what_slopes_leave_open_of_mu_they_leave_open_of_forces() -> None:
         assert uneven > 12.7 * 0.02 * 70.0 > 10 * even
 
 
+def peaked(M: int, height: float, drop: float, roughness: float = 0.0) -> GridResult:
+    """A grid with that summit of its pressure."""
+    return replace(made_up(M), peak=Summit(height, drop, roughness))
+
+
 def test_a_peak_that_grows_with_the_grid_is_not_known() -> None:
     """As long as its neighbours fall as far behind."""
-    peaks = {32: 1.0, 64: 2.4, 128: 2.9}
-    sharp = [
-        replace(result, drop=1.0, numbers={**result.numbers, "max_pressure": peaks[result.M]})
-        for result in map(made_up, peaks)
-    ]
+    sharp = [peaked(M, height, height) for M, height in ((32, 1.0), (64, 2.4), (128, 2.9))]
     assert estimates(sharp)["max_pressure"].bar(2.9) > 1.5
+
+
+def test_a_parabola_of_unforeseen_bias_is_learnt_from_the_grids() -> None:
+    size = SUMMIT + 3 * SUMMIT_SPREAD
+    grids = [peaked(M, 1 + size * (16 / M) ** 2, (16 / M) ** 2) for M in (32, 64, 128, 256)]
+    assumed = grids[-1].peak.height - SUMMIT * grids[-1].peak.drop
+    assert abs(estimates(grids)["max_pressure"].value - 1) < abs(assumed - 1)
 
 
 def test_no_grid_counts_for_more_than_a_finer_one() -> None:
@@ -147,18 +165,23 @@ def test_no_grid_counts_for_more_than_a_finer_one() -> None:
     assert _weights(np.array([1.0, 1.0, 1.0, 0.0]), spacing) == pytest.approx(spacing**1.5)
 
 
-@pytest.mark.parametrize(("drop", "more"), [(0.1, 1.0), (1.0, 1 / 0.75), (2.0, math.inf), (4.0, math.inf)])
-def test_a_peak_that_stands_alone_is_not_bounded(drop: float, more: float) -> None:
-    found = estimates([replace(made_up(64), drop=drop)])
-    assert found["max_pressure"].spread == pytest.approx(3.1824 * 0.05 * drop * PEAK * more, rel=0.01)
-    beside = estimates([replace(made_up(64), drop=0.0)])
-    for name in ("approach", "friction_coefficient", "contact_area"):
-        factor = more if name == "approach" else 1.0
-        assert found[name].spread == pytest.approx(factor * beside[name].spread, rel=0.01)
+@pytest.mark.parametrize(
+    ("roughness", "more"), [(0.0, 1.0), (0.5, (4 / 3) ** 4), (0.9, 0.19**-4), (1.0, math.inf)]
+)
+def test_a_peak_that_stands_alone_is_not_bounded(roughness: float, more: float) -> None:
+    even, uneven = (estimates([peaked(64, 1.0, 0.1, rough)]) for rough in (0.0, roughness))
+    for name in ("friction_coefficient", "contact_area"):
+        assert uneven[name].spread == even[name].spread
+    assert uneven["approach"].spread == pytest.approx(math.sqrt(more) * even["approach"].spread)
+    of_parabola, found = (found["max_pressure"].spread for found in (even, uneven))
+    assert of_parabola > 1.96 * math.hypot(0.1 * SUMMIT_SPREAD, 0.1 * discretisation.PEAK.scatter)
+    assert found <= more * of_parabola
+    assert (found > of_parabola) is (more > 1)
+    assert math.isinf(found) is math.isinf(more)
 
 
 def test_full_contact_may_have_a_lone_peak_too() -> None:
-    full = replace(made_up(64), edge=0.0, drop=3.0)
+    full = replace(peaked(64, 1.0, 3.0, 1.0), edge=0.0)
     for results in ([full], [full, replace(full, M=128, spacing=SIDE / 128)]):
         found = estimates(results)
         assert math.isinf(found["max_pressure"].spread)
@@ -168,9 +191,18 @@ def test_full_contact_may_have_a_lone_peak_too() -> None:
 
 def test_a_grid_whose_peak_stands_alone_does_not_count_beside_finer_ones() -> None:
     fine = [made_up(M) for M in (128, 256)]
-    coarse = replace(made_up(64), drop=3.0, numbers={**made_up(64).numbers, "max_pressure": PEAK / 20})
+    coarse = replace(made_up(64), peak=Summit(PEAK / 20, PEAK / 5, 1.0))
     with_it, without = (estimates(results)["max_pressure"] for results in ([coarse, *fine], fine))
     assert with_it.value == pytest.approx(without.value, rel=1e-9)
+
+
+def test_a_first_touch_that_is_not_resolved_leaves_the_approach_open() -> None:
+    steep = [replace(made_up(64), touch=Summit(0.0, 1e-7, rough)) for rough in (0.0, 0.6, 1.0)]
+    bounds = [estimates([result])["approach"].spread for result in (made_up(64), *steep)]
+    assert bounds == sorted(bounds)
+    edge = OTHER.scatter * (made_up(64).edge / made_up(64).numbers["contact_area"]) ** 1.5 * 1e-6
+    assert bounds[1] == pytest.approx(bounds[0] / edge * math.hypot(edge, 0.02 * 1e-7))
+    assert math.isinf(bounds[-1])
 
 
 def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
@@ -200,10 +232,9 @@ def test_single_elements_leave_mu_open_too() -> None:
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
 @pytest.mark.parametrize("seed", range(4))
 def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
-    """No grid resolves these. Of 160 solves of 32 such surfaces, 128 to 512 a side, A's, mu's and Q's bars
-    held in all, f_max's in 153, the approach's in 159, mostly for having no end. The last 16 surfaces,
-    which nothing was chosen on, have 2 of the 8 misses. With grids of 32 and 64 before, which the bars take
-    for surfaces that settle, A's hold in all, mu's in 155, Q's in 154, f_max's in 142, the approach's in 129.
+    """No grid resolves these. Of 160 solves of 32 such surfaces, 128 to 512 a side, all bars held, the peak's
+    and the approach's in 90 for having no end. With grids of 32 and 64 before, which the bars take for
+    surfaces that settle, A's, f_max's and the approach's hold in all, mu's in 155 and Q's in 154.
     """
     noise = np.random.default_rng(seed).normal(scale=60e-9, size=(128, 128))
     scene = rf.Scene(
@@ -221,7 +252,8 @@ def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
             assert abs(getattr(found, name) - getattr(fine, name)) <= bar, (M, name)
         for name in ("friction_coefficient", "binormal_force", "contact_area"):
             assert math.isfinite(bars[name])
-        assert math.isinf(bars["max_pressure"]) == math.isinf(bars["approach"]) == (M <= 256 or seed == 0)
+        wide = bars["max_pressure"] > found.max_pressure and bars["approach"] > found.approach
+        assert wide, M
         assert Limit.RADIUS in {warning.limit for warning in found.warnings}
 
 
@@ -255,7 +287,8 @@ def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
 @pytest.mark.parametrize("grids", [1, 2, 4])
 def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
     values, weights, edge = draws(800, grids)
-    found = [line(row, weights, AREA, edge) for row in values]
+    bias = Bias(edge, EDGE_SIZE, EDGE_SIZE_SPREAD)
+    found = [line(row, weights, AREA, bias) for row in values]
     share = np.mean([abs(estimate.value) <= estimate.spread for estimate in found])
     assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
 

@@ -11,6 +11,7 @@ import refimpl as rf
 from refimpl.discretisation import EDGE_SHARE
 from refimpl.grid_result import GridResult
 from refimpl.solution import REPORTED
+from refimpl.summit import LEVEL, Summit
 from reports.drawing import svg
 from reports.studies import exhibit
 from verification.coverage.document import grids_of, reference_check, solves
@@ -31,7 +32,16 @@ def rung(M: int, *, size: float = 0.85, wrong: float = 0.0, seed: int = 3) -> Ru
     numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
     numbers["friction_coefficient"] = 0.1 + 1e5 * area
     result = GridResult(
-        M, h, numbers, edge, 1.0, 1e-3, 0.0, 1e5, {name: {"iteration": 0.0} for name in REPORTED}
+        M=M,
+        spacing=h,
+        numbers=numbers,
+        edge=edge,
+        alike=1.0,
+        peak=Summit(1.0, 1e-3, 0.0),
+        touch=LEVEL,
+        unevenness=0.0,
+        slip=1e5,
+        parts={name: {"iteration": 0.0} for name in REPORTED},
     )
     carried = 0.75 * M**2 if GRIDS[0] < M else None
     return Rung(seed, result, "converged", 1e-8, float(M**2), 0.1, carried)

@@ -8,7 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from refimpl.discretisation import AREA, BULK, EDGE_SIZE, EDGE_SIZE_SPREAD, SINGLES
+from refimpl.discretisation import (
+    AREA,
+    BULK,
+    EDGE_SIZE,
+    EDGE_SIZE_SPREAD,
+    OTHER,
+    PEAK,
+    SINGLES,
+    SUMMIT,
+    SUMMIT_SPREAD,
+)
+from refimpl.first_touch import TOUCH
 from refimpl.refine import OPENING
 from tests.documents import ROOT
 from verification.coverage import priors
@@ -67,14 +78,14 @@ def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
     assert found["area"]["adopted"]["edge_size"] == EDGE_SIZE
     assert found["area"]["adopted"]["edge_size_spread"] == EDGE_SIZE_SPREAD
     assert found["area"]["adopted"]["scatter"] == AREA.scatter
-    for part in ("area", "friction_without_tau"):
+    for part in ("area", "friction_without_tau", "peak", "approach"):
         assert found[part]["given_away"] >= 0
         assert all(value >= 0 for value in found[part]["likeliest"].values())
     assert found["provenance"]
 
 
 def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
-    """Close to the likeliest of areas; friction without tau's share is held to vary more on purpose."""
+    """Close to the likeliest of areas and peaks; what is left is held to vary more on purpose."""
     found = json.loads((ROOT / "reports" / "results" / "priors.json").read_text())
     area, rest = found["area"], found["friction_without_tau"]
     assert list(area["adopted"].values()) == [EDGE_SIZE, EDGE_SIZE_SPREAD, AREA.scatter, AREA.weight, SINGLES]
@@ -83,6 +94,13 @@ def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
     assert area["likeliest"]["edge_size_spread"] == pytest.approx(EDGE_SIZE_SPREAD, abs=0.01)
     assert area["likeliest"]["scatter"] == pytest.approx(AREA.scatter, rel=0.1)
     assert all(rest["likeliest"][name] < rest["adopted"][name] for name in ("bulk", "unevenness"))
+    peak, approach = found["peak"], found["approach"]
+    assert list(peak["adopted"].values()) == [SUMMIT, SUMMIT_SPREAD, *PEAK]
+    assert peak["likeliest"]["summit"] == pytest.approx(SUMMIT, abs=0.003)
+    assert peak["likeliest"]["summit_spread"] == pytest.approx(SUMMIT_SPREAD, abs=0.003)
+    assert 0.5 * PEAK.scatter < peak["likeliest"]["scatter"] < PEAK.scatter
+    assert list(approach["adopted"].values()) == [OTHER.scatter, TOUCH, OTHER.weight]
+    assert all(approach["likeliest"][name] < approach["adopted"][name] for name in ("other", "touch"))
     assert found["scenes"] == 200
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -89,7 +90,7 @@ def _judged(found: list[Verdict], accuracy: float) -> dict[str, object]:
                 "grid": [v.grids[-1] for v in part],
                 "grids": [list(v.grids) for v in part],
                 "met": [v.met for v in part],
-                "bar": [v.bar for v in part],
+                "bar": [v.bar if math.isfinite(v.bar) else None for v in part],
                 "error": [v.error for v in part],
                 "reference_bound": [v.reference_bound for v in part],
                 "cheapest": [v.cheapest for v in part],

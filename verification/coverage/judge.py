@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -95,12 +96,13 @@ def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> V
 def _reference(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
     """The finest grid's number, without its edge's mean share, and a bound of what is left.
 
-    What is smooth - the peak, friction without tau's share - is bounded by its change from the grid before.
+    What is smooth - the peak of the parabola through the highest elements, friction without tau's share - is
+    bounded by its change from the grid before.
     """
     before, finest = (rung.result for rung in rungs[-2:])
     value = finest.numbers[number]
     if number == "max_pressure":
-        return value, abs(value - before.numbers[number])
+        return finest.peak.height, abs(finest.peak.height - before.peak.height)
     if number == "friction_coefficient":
         rest, rest_before = (r.numbers[number] - r.slip * r.numbers["contact_area"] for r in (finest, before))
         edge = finest.slip * finest.edge
@@ -136,14 +138,19 @@ def summary(found: Iterable[Verdict]) -> dict[str, float | int | None]:
         "covered": sum(verdict.covered for verdict in found) / len(found),
         "covered_at_worst": sum(verdict.covered_at_worst for verdict in found) / len(found),
         "covered_where_met": sum(verdict.covered for verdict in met) / len(met) if met else None,
-        "median_bar_over_error": float(np.median([_ratio(v.bar, v.error) for v in found])),
+        "median_bar_over_error": _bounded(np.median([_ratio(v.bar, v.error) for v in found])),
         "median_cost": float(np.median(costs)) if costs else None,
         "cost_at_most_2": sum(cost <= 2 for cost in costs) / len(costs) if costs else None,
-        "median_bar": float(np.median([verdict.bar for verdict in found])),
+        "median_bar": _bounded(np.median([verdict.bar for verdict in found])),
         "median_reference_bound_over_bar": float(
             np.median([_ratio(v.reference_bound, v.bar) for v in found])
         ),
     }
+
+
+def _bounded(median: np.floating[Any]) -> float | None:
+    """None where half of the bars have no end."""
+    return float(median) if np.isfinite(median) else None
 
 
 def _ratio(over: float, under: float) -> float:

@@ -17,7 +17,18 @@ import numpy as np
 from scipy import optimize, special
 
 from refimpl import discretisation
-from refimpl.discretisation import AREA, BULK, EDGE_SIZE, EDGE_SIZE_SPREAD, SINGLES
+from refimpl.discretisation import (
+    AREA,
+    BULK,
+    EDGE_SIZE,
+    EDGE_SIZE_SPREAD,
+    OTHER,
+    PEAK,
+    SINGLES,
+    SUMMIT,
+    SUMMIT_SPREAD,
+)
+from refimpl.first_touch import TOUCH, first_touch
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 from verification.coverage.store import ladders, rungs
@@ -59,6 +70,30 @@ def rests(results: Sequence[GridResult], bulk: float, unevenness: float) -> Numb
     return Numbers(mu - slip * area, weights, np.zeros_like(mu))
 
 
+def peaks(results: Sequence[GridResult]) -> Numbers:
+    """Heights of the pressure's summits over the finest grid's scatter; their drops for edges."""
+    sizes = np.array([result.peak.widened(result.peak.drop) for result in results])
+    weights = np.maximum.accumulate(sizes[::-1])[::-1] / sizes[-1]
+    heights, drops = np.transpose([(result.peak.height, result.peak.drop) for result in results])
+    return Numbers(heights / sizes[-1], weights, drops / sizes[-1])
+
+
+def approaches(results: Sequence[GridResult], other: float, touch: float) -> Numbers:
+    """Approaches from the surfaces' own first touch, for a scatter of one: both parts of it are given."""
+    found = np.array([result.numbers["approach"] for result in results])
+    thin = other * discretisation.thinness(results) * abs(found[-1])
+    hung = np.array([result.peak.widened(size, 0.5) for result, size in zip(results, thin, strict=True)])
+    touched = np.array([first_touch(result) for result in results]) * (touch / TOUCH)
+    size = np.hypot.reduce([hung, touched, np.full(thin.shape, SOLVED * abs(found[-1]))])
+    weights = np.maximum.accumulate(size[::-1])[::-1]
+    return Numbers(found + [result.touch.height for result in results], weights, np.zeros_like(found))
+
+
+def bounded(results: Sequence[GridResult]) -> list[GridResult]:
+    """The grids on which neither the peak nor the first touch is open to any height."""
+    return [result for result in results if np.isfinite(result.peak.openness * result.touch.openness)]
+
+
 def log_likelihood(
     scenes: Iterable[Numbers], edge_size: float, edge_spread: float, scatter: float, weight: float
 ) -> float:
@@ -94,9 +129,10 @@ def fitted(
 
 
 def document(store: Path) -> dict[str, object]:
-    """Both fits on all scenes of a store."""
+    """All fits, on the scenes of a store; of summits on those that have two grids that know of them."""
     results = [[rung.result for rung in rungs] for rungs in ladders(store).values()]
     sheared = [grids for grids in results if grids[-1].numbers["friction_coefficient"] > 0]
+    summits = [grids for grids in map(bounded, results) if len(grids) > 1]
 
     def of_area(p: Array) -> float:
         size, spread, scatter, weight, singles = p
@@ -106,6 +142,14 @@ def document(store: Path) -> dict[str, object]:
         bulk, unevenness, weight = p
         return log_likelihood([rests(grids, bulk, unevenness) for grids in sheared], 0.0, 0.0, 1.0, weight)
 
+    def of_peak(p: Array) -> float:
+        size, spread, scatter, weight = p
+        return log_likelihood([peaks(grids) for grids in summits], size, spread, scatter, weight)
+
+    def of_approach(p: Array) -> float:
+        other, touch, weight = p
+        return log_likelihood([approaches(grids, other, touch) for grids in summits], 0.0, 0.0, 1.0, weight)
+
     adopted_area = {
         "edge_size": EDGE_SIZE,
         "edge_size_spread": EDGE_SIZE_SPREAD,
@@ -114,11 +158,20 @@ def document(store: Path) -> dict[str, object]:
         "singles": SINGLES,
     }
     adopted_rest = {"bulk": BULK.scatter, "unevenness": 1.0, "weight": BULK.weight}
+    adopted_peak = {
+        "summit": SUMMIT,
+        "summit_spread": SUMMIT_SPREAD,
+        "scatter": PEAK.scatter,
+        "weight": PEAK.weight,
+    }
+    adopted_approach = {"other": OTHER.scatter, "touch": TOUCH, "weight": OTHER.weight}
     return {
         "study": "priors of the error bars, by likelihood on training scenes",
         "scenes": len(results),
         "area": fitted(of_area, adopted_area),
         "friction_without_tau": fitted(of_rest, adopted_rest),
+        "peak": fitted(of_peak, adopted_peak),
+        "approach": fitted(of_approach, adopted_approach),
         "provenance": provenance(),
     }
 

@@ -8,10 +8,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import refimpl as rf
 from refimpl.grid_result import GridResult
 from refimpl.refine import OPENING
+from refimpl.summit import Summit
 from verification.coverage.scenes import random_scene
 from verification.files import Progress
 
@@ -65,7 +67,11 @@ def rungs(path: Path) -> Iterator[Rung]:
             record = json.loads(line)
         except json.JSONDecodeError:
             continue
-        yield Rung(**{**record, "result": GridResult(**record["result"])})
+        yield Rung(**{**record, "result": _result(record["result"])})
+
+
+def _result(record: dict[str, Any]) -> GridResult:
+    return GridResult(**{**record, "peak": Summit(**record["peak"]), "touch": Summit(**record["touch"])})
 
 
 def ladders(path: Path) -> dict[int, list[Rung]]:

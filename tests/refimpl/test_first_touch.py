@@ -1,0 +1,119 @@
+"""Numbers at a prescribed approach, beside Hertz' for the surfaces' own first touch."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.discretisation import estimates
+from refimpl.first_touch import first_touch, missed, missed_share, touched
+from refimpl.grid_result import GridResult
+from refimpl.solution import REPORTED
+from refimpl.summit import LEVEL, Summit
+
+STEEL, RADIUS, SIDE, APPROACH = rf.Material(E=200e9, nu=0.3), 0.01, 1e-3, 3e-6
+FRICTION = rf.Friction(tau=200e6, beta=0.1)
+MODULUS = STEEL.E / (2 * (1 - STEEL.nu**2))
+AREA = math.pi * RADIUS * APPROACH
+FORCE = 4 / 3 * MODULUS * math.sqrt(RADIUS) * APPROACH**1.5
+HERTZ = {
+    "normal_force": FORCE,
+    "contact_area": AREA,
+    "max_pressure": 1.5 * FORCE / AREA,
+    "friction_force": FRICTION.tau * AREA + FRICTION.beta * FORCE,
+    "friction_coefficient": FRICTION.tau * AREA / FORCE + FRICTION.beta,
+}
+PLACES = [(direction, share) for direction in (0.1, 0.6, 1.2) for share in (0.1, 0.25, 0.4, 0.5)]
+
+
+@cache
+def pressed(
+    M: int, direction: float = 0.0, share: float = 0.0, approach: float | None = APPROACH
+) -> GridResult:
+    """A ball below a flat of the same steel, beside the grid's middle by a share of an element of 32 x 32."""
+    scene = rf.Scene(
+        upper=rf.Body(STEEL, rf.Flat()),
+        lower=rf.Body(STEEL, rf.Sphere(radius=-RADIUS)),
+        friction=FRICTION,
+        load=FORCE,
+        side=SIDE,
+        sliding_direction=direction,
+        sliding_offset=share * SIDE / 32,
+    )
+    return GridResult.of(rf.solve(scene, M, approach=approach, oblique=False, tolerance=1e-8))
+
+
+def test_bars_at_a_prescribed_approach_hold_against_hertz() -> None:
+    """Of single grids and of ladders."""
+    shares: dict[str, list[float]] = {name: [] for name in HERTZ}
+    for place in PLACES:
+        for grids in ((32,), (64,), (32, 64, 128)):
+            results = [pressed(M, *place) for M in grids]
+            for name, estimate in estimates(results).items():
+                if name in HERTZ:
+                    found = results[-1].numbers[name]
+                    shares[name].append(abs(found - HERTZ[name]) / estimate.bar(found))
+    for name, found in shares.items():
+        assert np.mean(np.array(found) <= 1) >= 0.92, name
+        assert np.median(found) > 0.2, name  # no longer than need be
+
+
+def test_what_the_touch_takes_is_foretold_by_powers_of_the_approach() -> None:
+    """Half an element beside along both axes, the highest elements lie h^2/4R below the summit."""
+    raw = pressed(64, 0.0, 0.0)
+    assert raw.touch.height == pytest.approx((SIDE / 64) ** 2 / (4 * RADIUS), rel=1e-6)
+    found = touched(raw)
+    for name in ("normal_force", "friction_force"):
+        before, after = (abs(result.numbers[name] / HERTZ[name] - 1) for result in (raw, found))
+        assert after < before
+    assert found.numbers["normal_force"] == pytest.approx(FORCE, rel=1e-3)
+    assert raw.numbers["normal_force"] > FORCE * 1.003
+    assert found.slip * found.numbers["normal_force"] == pytest.approx(FRICTION.tau)
+    rest = found.numbers["friction_coefficient"] - found.slip * found.numbers["contact_area"]
+    assert rest == pytest.approx(FRICTION.beta, rel=1e-6)
+
+
+def test_under_a_load_only_the_approach_hangs_on_the_touch() -> None:
+    loaded = pressed(64, 0.0, 0.0, None)
+    assert touched(loaded) is loaded
+    deeper = replace(loaded, touch=replace(loaded.touch, height=2 * loaded.touch.height))
+    one, other = (estimates([result]) for result in (loaded, deeper))
+    assert other["approach"].value - one["approach"].value == pytest.approx(loaded.touch.height)
+    assert all(one[name] == other[name] for name in one if name != "approach")
+    assert abs(one["approach"].value - APPROACH) < abs(loaded.numbers["approach"] - APPROACH)
+
+
+def test_a_prescribed_number_has_no_discretisation() -> None:
+    assert "approach" not in estimates([pressed(64)])
+    assert "normal_force" not in estimates([pressed(64, 0.0, 0.0, None)])
+
+
+def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
+    lone = replace(pressed(64), touch=Summit(0.0, 1e-9, 1.0))
+    assert math.isinf(first_touch(lone))
+    assert all(math.isinf(bound) for bound in missed(lone).values())
+    assert all(math.isinf(estimate.spread) for estimate in estimates([lone]).values())
+
+
+def test_shear_that_bears_the_whole_force_leaves_everything_open() -> None:
+    """On slopes the normal force may vanish, or pull."""
+    pulled = replace(pressed(64), numbers={**pressed(64).numbers, "normal_force": 0.0}, slip=0.0)
+    assert touched(pulled) is pulled
+    assert all(math.isinf(bound) for bound in missed(pulled).values())
+
+
+def test_what_is_missed_grows_with_the_drop_and_is_nothing_without() -> None:
+    level, steep = (replace(pressed(64), touch=touch) for touch in (LEVEL, Summit(0.0, 1e-7, 0.0)))
+    assert missed_share(level) == 0.0
+    assert not any(missed(level).values())
+    bounds = missed(steep)
+    twice = 2 * missed_share(steep)
+    assert bounds["normal_force"] == pytest.approx(1.5 * twice * steep.numbers["normal_force"], rel=0.01)
+    assert bounds["contact_area"] == pytest.approx(twice * steep.numbers["contact_area"], rel=0.01)
+    assert bounds["approach"] == 0.0
+    assert set(bounds) == set(REPORTED)

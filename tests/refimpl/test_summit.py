@@ -1,0 +1,128 @@
+"""Summits of fields: exact on parabolas, on any grid, and open where elements stand alone."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from refimpl.grid import Array
+from refimpl.summit import LEVEL, Summit, deepest, highest
+
+inside = st.floats(-0.499, 0.499)
+bends = st.floats(1e-3, 4.0)
+
+
+def paraboloid(
+    x0: float, y0: float, along: float, across: float, height: float = 500.0, M: int = 11
+) -> Array:
+    """Second differences ``-along`` and ``-across``, its summit that far from the middle element."""
+    x = np.arange(M) - M // 2
+    return height - 0.5 * (along * (x[:, None] - x0) ** 2 + across * (x - y0) ** 2)
+
+
+@given(inside, inside, bends, bends)
+def test_a_parabolas_summit_is_found_wherever_it_lies(
+    x0: float, y0: float, along: float, across: float
+) -> None:
+    found = highest(paraboloid(x0, y0, along, across))
+    assert found.height == pytest.approx(500.0, rel=1e-12)
+    assert found.drop == pytest.approx(along + across, rel=1e-9)
+    assert found.roughness < 1e-9
+
+
+@given(inside, inside, st.integers(0, 3), st.booleans(), st.floats(1e-9, 1e9))
+def test_turned_mirrored_and_scaled_fields_have_the_same_summit(
+    x0: float, y0: float, turns: int, mirrored: bool, scale: float
+) -> None:
+    field = paraboloid(x0, y0, 1.0, 2.0) + 0.1 * np.random.default_rng(3).random((11, 11))
+    moved = np.rot90(field.T if mirrored else field, turns)
+    found, alike = highest(field), highest(scale * moved)
+    assert alike.height == pytest.approx(scale * found.height, rel=1e-12)
+    assert alike.drop == pytest.approx(scale * found.drop, rel=1e-9)
+    assert alike.roughness == pytest.approx(found.roughness, rel=1e-9)
+
+
+@given(st.integers(0, 15), st.integers(0, 15))
+def test_a_periodic_fields_summit_may_lie_across_its_border(i: int, j: int) -> None:
+    angle = 2 * np.pi * np.arange(16) / 16
+    waves = 3 + np.cos(angle - 0.1)[:, None] + np.cos(angle + 0.05)
+    found, moved = (highest(field, periodic=True) for field in (waves, np.roll(waves, (i, j), (0, 1))))
+    assert moved.height == pytest.approx(found.height, rel=1e-12)
+    assert moved.drop == pytest.approx(found.drop, rel=1e-9)
+    assert found.height == pytest.approx(5.0, abs=1e-3)
+
+
+def test_of_a_resolved_field_drop_and_roughness_fall_as_the_square_and_the_height_converges_faster() -> None:
+    found = []
+    for M in (40, 80, 160):
+        x = (np.arange(M) + 0.5) / M - 0.503
+        found.append(highest(np.exp(-20 * (x[:, None] ** 2 + x**2))))
+    for coarse, fine in pairwise(found):
+        assert coarse.drop / fine.drop == pytest.approx(4.0, rel=0.02)
+        assert coarse.roughness / fine.roughness == pytest.approx(4.0, rel=0.1)
+        assert abs(fine.height - 1) < abs(coarse.height - 1) / 3
+        assert abs(fine.height - 1) < 1e-3 * fine.drop
+
+
+def test_an_element_that_stands_alone_is_rough_on_every_grid() -> None:
+    lone = highest(np.pad([[7.0]], 4))
+    assert lone == Summit(7.0, 28.0, 1.0)
+    assert math.isinf(lone.openness)
+    assert math.isinf(lone.widened(0.0))
+
+
+def test_a_lone_element_beside_a_resolved_summit_counts_from_half_of_it_on() -> None:
+    field = np.pad(np.maximum(paraboloid(0.2, 0.1, 8.0, 8.0), 0.0), ((0, 20), (0, 0)))
+    alone = highest(field)
+    assert alone.roughness < 1e-9
+    for share, rough in ((0.49, False), (0.51, True)):
+        beside = field.copy()
+        beside[-5, 5] = share * field.max()
+        found = highest(beside)
+        assert found.height == alone.height
+        assert (found.roughness == 1.0) is rough
+
+
+def test_at_a_border_a_field_stays_as_it_is() -> None:
+    """Its highest element then has fewer that are lower, and no summit beyond is made up."""
+    corner = highest(np.array([[5.0, 4.0, 3.0], [4.0, 3.0, 2.0], [3.0, 2.0, 1.0]]))
+    assert corner.drop == 2.0
+    assert 5.0 < corner.height < 5.5
+
+
+def test_level_and_empty_fields_have_no_relief() -> None:
+    assert highest(np.zeros((5, 5))) == LEVEL
+    assert deepest(np.zeros((5, 5))) == LEVEL
+    full = highest(np.full((5, 5), 3.0))
+    assert full == Summit(3.0, 0.0, 0.0)
+    assert full.openness == 1.0
+
+
+def test_a_gap_is_deepest_where_it_is_turned_over() -> None:
+    gap = 500.0 - paraboloid(0.3, -0.4, 1.0, 2.0)
+    found = deepest(gap - gap.min())
+    assert found.height == pytest.approx(0.5 * (0.3**2 + 2 * 0.4**2))
+    assert found.drop == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-160, 1e160, 1e300])
+def test_a_summit_of_any_size_is_found(scale: float) -> None:
+    found = highest(scale * paraboloid(0.3, -0.4, 1.0, 2.0))
+    assert found.height == pytest.approx(500 * scale, rel=1e-9)
+    assert found.drop == pytest.approx(3 * scale, rel=1e-6)
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf])
+def test_a_field_that_ran_off_has_no_summit(number: float) -> None:
+    assert highest(np.array([[1.0, number], [0.0, 0.0]])) == LEVEL
+
+
+@given(st.floats(0, 1), st.floats(0, 1))
+def test_rougher_summits_are_less_known(one: float, other: float) -> None:
+    smoother, rougher = (Summit(1.0, 1.0, value) for value in sorted((one, other)))
+    assert 1.0 <= smoother.openness <= rougher.openness
