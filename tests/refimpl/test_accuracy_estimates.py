@@ -26,7 +26,7 @@ from refimpl.discretisation import (
 from refimpl.estimate import Bias, Estimate, Prior, line
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
-from refimpl.refine import OPENING, climb, next_grid, relative_bar, uncertainty
+from refimpl.refine import LADDER, OPENING, climb, next_grid, relative_bar, uncertainty
 from refimpl.solution import REPORTED
 from refimpl.summit import LEVEL, Summit
 from refimpl.validity import Limit
@@ -319,6 +319,21 @@ def test_the_climb_jumps_to_the_grid_that_does() -> None:
     coarser = made_up(asked[-1] * 2 // 3).numbers["contact_area"] / AREA_LIMIT - 1
     assert coarser > 0.0095  # so little was wasted
     assert next_grid(found.results[:2], 0.01, "contact_area", [96, 128]) == 128
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 3e-4, 1e-4])
+def test_a_peaks_bar_is_foretold_to_fall_as_the_square(accuracy: float) -> None:
+    opened = [made_up(M) for M in OPENING]
+    M = next_grid(opened, accuracy, "max_pressure", LADDER)
+    bar, coarser = (relative_bar([*opened, made_up(grid)], "max_pressure") for grid in (M, M * 3 // 4))
+    assert bar <= accuracy < coarser
+
+
+@pytest.mark.parametrize("roughness", [0.9, 1.0])
+def test_a_bar_longer_than_the_number_foretells_twice_as_fine_a_grid(roughness: float) -> None:
+    unknown = [replace(made_up(M), peak=Summit(PEAK, PEAK, roughness)) for M in OPENING]
+    assert next_grid(unknown, 0.01, "max_pressure", LADDER) == 2 * OPENING[-1]
+    assert next_grid(unknown, 0.01, "contact_area", LADDER) > 2 * OPENING[-1]
 
 
 def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_is_told() -> None:

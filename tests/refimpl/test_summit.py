@@ -10,7 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import refimpl as rf
 from refimpl.grid import Array
+from refimpl.grid_result import GridResult
 from refimpl.summit import LEVEL, Summit, deepest, highest
 
 inside = st.floats(-0.499, 0.499)
@@ -120,6 +122,26 @@ def test_a_summit_of_any_size_is_found(scale: float) -> None:
 @pytest.mark.parametrize("number", [math.nan, math.inf])
 def test_a_field_that_ran_off_has_no_summit(number: float) -> None:
     assert highest(np.array([[1.0, number], [0.0, 0.0]])) == LEVEL
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.5])
+def test_a_periodic_result_knows_its_peak_across_the_border_and_no_touch(offset: float) -> None:
+    """Its approach counts from mean planes."""
+    steel, side = rf.Material(E=200e9, nu=0.3), 1e-3
+    scene = rf.Scene(
+        upper=rf.Body(steel, rf.Flat()),
+        lower=rf.Body(steel, rf.Sphere(radius=-0.01)),
+        friction=rf.Friction(),
+        load=20.0,
+        side=side,
+        periodic=True,
+        sliding_direction=0.25 * math.pi,
+        sliding_offset=math.sqrt(2) * offset * side,
+    )
+    found = GridResult.of(rf.solve(scene, 48, tolerance=1e-8))
+    assert found.touch == LEVEL
+    assert found.peak.roughness < 0.02
+    assert found.peak.height == pytest.approx(found.numbers["max_pressure"], rel=0.01)
 
 
 @given(st.floats(0, 1), st.floats(0, 1))
