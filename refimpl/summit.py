@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.operators.window import Window
 
 _RIVAL = 0.5  # of the highest element: lower maxima have no say in how well a summit is known
 _NEAR = np.arange(-2, 3)[:, None]
@@ -76,7 +77,11 @@ def highest(field: Array, *, periodic: bool = False) -> Summit:
     top = float(field.max())
     if not 0 < top < math.inf:
         return LEVEL
-    i, j = np.nonzero(_maxima(field, periodic) & (field >= _RIVAL * top))
+    high = field >= _RIVAL * top
+    if not periodic:
+        box = Window.around(high, margin=2).slices  # all that is looked at
+        field, high = field[box], high[box]
+    i, j = np.nonzero(_maxima(field, periodic) & high)
     heights, drops, roughness = _parabolas(_lines(field, i, j, periodic))
     best = int(np.argmax(heights))
     return Summit(float(heights[best]), float(drops[best]), float(roughness.max()))
