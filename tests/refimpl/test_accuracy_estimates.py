@@ -22,6 +22,7 @@ from refimpl.discretisation import (
     SUMMIT_SPREAD,
     _weights,
     estimates,
+    thinness,
 )
 from refimpl.estimate import Bias, Estimate, Prior, line
 from refimpl.grid import Array
@@ -160,9 +161,9 @@ def test_a_parabola_of_unforeseen_bias_is_learnt_from_the_grids() -> None:
 
 
 def test_no_grid_counts_for_more_than_a_finer_one() -> None:
-    spacing = np.array([8.0, 4.0, 2.0, 1.0])
+    spacing = np.array([16.0, 8.0, 4.0, 2.0])
     assert _weights(np.array([1.0, 6.0, 3.0, 2.0]), spacing).tolist() == [3.0, 3.0, 1.5, 1.0]
-    assert _weights(np.array([1.0, 1.0, 1.0, 0.0]), spacing) == pytest.approx(spacing**1.5)
+    assert _weights(np.array([1.0, 1.0, 1.0, 0.0]), spacing) == pytest.approx((spacing / 2) ** 1.5)
 
 
 @pytest.mark.parametrize(
@@ -212,6 +213,41 @@ def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
     assert area < estimates([single])["contact_area"].bar(area) < 1.3 * area
     many = replace(single, numbers={**numbers, "contact_area": 1e4 * area}, edge=4e4 * EDGE_SHARE * area)
     assert 1e4 * area < estimates([many])["contact_area"].bar(1e4 * area) < 1.3e4 * area
+    assert estimates([many])["contact_area"].spread == pytest.approx(0.4e4 * area, rel=0.02)
+
+
+def test_a_coarse_grids_area_hardly_counts_beside_a_fine_ones() -> None:
+    grids = [made_up(M) for M in (32, 64, 256)]
+    area = grids[0].numbers["contact_area"]
+    moved = replace(grids[0], numbers={**grids[0].numbers, "contact_area": 1.001 * area})
+    one, other = (estimates(results)["contact_area"].value for results in (grids, [moved, *grids[1:]]))
+    assert abs(other - one) < 0.02 * 1e-3 * area
+
+
+def test_a_grid_without_contact_knows_nothing_beside_one_that_has() -> None:
+    numbers = dict.fromkeys(REPORTED, 0.0) | {"normal_force": 70.0}
+    apart, found = replace(made_up(32), numbers=numbers, edge=0.0), made_up(64)
+    assert thinness([apart, found]).tolist() == [1.0, (found.edge / found.numbers["contact_area"]) ** 1.5]
+    assert thinness([replace(found, edge=2 * found.numbers["contact_area"])]) == [1.0]
+    assert discretisation.discretisation([found, apart]) == {}
+    assert set(discretisation.discretisation([apart, found])) == set(REPORTED) - {"normal_force"}
+
+
+@pytest.mark.parametrize("number", [1e101, -1e101, math.inf, math.nan])
+def test_a_state_that_ran_off_has_no_discretisation(number: float) -> None:
+    ran_off = replace(made_up(64), numbers={**made_up(64).numbers, "friction_force": number})
+    assert discretisation.discretisation([ran_off]) == {}
+
+
+def test_what_an_edge_leaves_open_of_forces_goes_with_the_load() -> None:
+    grids = [
+        replace(
+            made_up(64), numbers={**made_up(64).numbers, "normal_force": load, "binormal_force": load / 1e3}
+        )
+        for load in (70.0, 140.0)
+    ]
+    one, twice = (estimates([grid])["binormal_force"].spread for grid in grids)
+    assert twice == pytest.approx(2 * one)
 
 
 def test_single_elements_leave_mu_open_too() -> None:
@@ -327,6 +363,7 @@ def test_a_peaks_bar_is_foretold_to_fall_as_the_square(accuracy: float) -> None:
     M = next_grid(opened, accuracy, "max_pressure", LADDER)
     bar, coarser = (relative_bar([*opened, made_up(grid)], "max_pressure") for grid in (M, M * 3 // 4))
     assert bar <= accuracy < coarser
+    assert estimates(opened)["max_pressure"].orders == (2.0, 2.0)
 
 
 @pytest.mark.parametrize("roughness", [0.9, 1.0])
