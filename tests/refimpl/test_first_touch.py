@@ -102,9 +102,48 @@ def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
 
 def test_shear_that_bears_the_whole_force_leaves_everything_open() -> None:
     """On slopes the normal force may vanish, or pull."""
-    pulled = replace(pressed(64), numbers={**pressed(64).numbers, "normal_force": 0.0}, slip=0.0)
-    assert touched(pulled) is pulled
-    assert all(math.isinf(bound) for bound in missed(pulled).values())
+    for force in (0.0, -1.0):
+        pulled = replace(pressed(64), numbers={**pressed(64).numbers, "normal_force": force}, slip=0.0)
+        assert touched(pulled) is pulled
+        assert all(math.isinf(bound) for bound in missed(pulled).values())
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
+    """Down to a share ``s`` of the approach, and what two standard deviations of the touch take of that."""
+    numbers = dict.fromkeys(REPORTED, unit) | {
+        "approach": 1e-6,
+        "contact_area": 3.0,
+        "friction_force": 0.5 * unit,
+    }
+    found = replace(
+        pressed(64),
+        numbers=numbers,
+        slip=0.1,
+        peak=Summit(2 * unit, 1.0, 0.0),
+        touch=Summit(1e-6 / 3, 5e-6, 0.0),
+    )
+    s = 0.75
+    force, area = unit * s**1.5, 3.0 * s
+    friction = 0.1 * unit * area + (0.5 - 0.3) * unit * s**1.5
+    got = touched(found)
+    assert got.numbers == pytest.approx(
+        {
+            "approach": 1e-6,
+            "normal_force": force,
+            "binormal_force": force,
+            "contact_area": area,
+            "contact_area_corrected": unit * s,
+            "max_pressure": unit * s**0.5,
+            "friction_force": friction,
+            "friction_coefficient": friction / force,
+        }
+    )
+    assert got.peak.height == pytest.approx(2 * unit * s**0.5)
+    assert got.slip == pytest.approx(0.1 * unit / force)
+    less = 1 / 1.2  # 2 x 0.02 x 5e-6 of 1e-6
+    assert missed(found)["contact_area"] == pytest.approx(3.0 * (1 - less))
+    assert missed(found)["normal_force"] == pytest.approx(unit * (1 - less**1.5))
 
 
 def test_what_is_missed_grows_with_the_drop_and_is_nothing_without() -> None:
