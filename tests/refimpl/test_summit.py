@@ -52,8 +52,11 @@ def test_turned_mirrored_and_scaled_fields_have_the_same_summit(
 @given(st.integers(0, 15), st.integers(0, 15), st.integers(0, 9))
 def test_a_periodic_fields_summit_may_lie_across_its_border(i: int, j: int, seed: int) -> None:
     jagged = np.random.default_rng(seed).random((16, 16)) ** 3
-    found, moved = (highest(field, periodic=True) for field in (jagged, np.roll(jagged, (i, j), (0, 1))))
-    assert moved == found
+    hill = 0.3 * jagged
+    hill[7:9, 5:8] += 1
+    for field in (jagged, hill):
+        moved = np.roll(field, (i, j), (0, 1))
+        assert highest(moved, periodic=True) == highest(field, periodic=True)
     angle = 2 * np.pi * np.arange(16) / 16
     waves = 3 + np.cos(angle - 0.1)[:, None] + np.cos(angle + 0.05)
     assert highest(np.roll(waves, (i, j), (0, 1)), periodic=True).height == pytest.approx(5.0, abs=1e-3)
@@ -77,6 +80,13 @@ def test_roughness_is_fourth_differences_over_three_times_the_drop() -> None:
     found = highest(500 - sum(np.meshgrid(x**2 + x**4 / 100, x**2 + x**4 / 100)))
     assert found.drop == pytest.approx(4.04)
     assert found.roughness == pytest.approx(0.48 / (3 * 4.04))
+
+
+def test_roughness_sees_the_elements_next_but_one() -> None:
+    """Also where none but the highest reaches half of it."""
+    field = np.zeros((7, 7))
+    field[3, 1:6] = field[1:6, 3] = 0.3, 0.45, 1.0, 0.45, 0.3
+    assert highest(field).roughness == pytest.approx(6.0 / 6.6)
 
 
 def test_neighbours_lower_than_those_beyond_are_as_rough_as_none() -> None:
