@@ -278,6 +278,10 @@ def test_what_an_edge_leaves_open_of_forces_goes_with_the_load() -> None:
     ]
     one, twice = (estimates([grid])["binormal_force"].spread for grid in grids)
     assert twice == pytest.approx(2 * one)
+    thin = (grids[0].edge / grids[0].numbers["contact_area"]) ** 1.5
+    assert one == pytest.approx(
+        12.706 * discretisation.BINORMAL.scatter * thin * 70.0, rel=1e-3
+    )  # Student's t
 
 
 def test_single_elements_leave_mu_open_too() -> None:
@@ -357,6 +361,10 @@ def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
     found = [line(row, weights, AREA, bias) for row in values]
     share = np.mean([abs(estimate.value) <= estimate.spread for estimate in found])
     assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
+
+
+def test_zeros_are_exact() -> None:
+    assert line(np.zeros(3), np.ones(3), Prior(0.1, 2.0)) == Estimate(0.0, 0.0)
 
 
 def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> None:
