@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from refimpl import coefficient_error, forces, paper, slopes
+from refimpl import coefficient_error, discretisation, forces, paper, slopes, summit
 from refimpl.contact import active_set, bounds, certificate, energy_norm
+from refimpl.estimate import Estimate
 from refimpl.grid import Array, Grid
 from refimpl.kernels import cerruti, far_field, points, tables
 from refimpl.operators.dense import DenseInfluence
@@ -42,7 +43,7 @@ _tractions, _problem_slopes = Problem.tractions, Problem.slopes
 _iterate, _solution, _difference = paper._Scheme._iterate, solve._solution, slopes._difference
 _complementarity, _scene_heights = active_set.complementarity, Scene.heights
 _perimeter, _departure = forces.perimeter_corrected_area, coefficient_error._departure
-_white_noise, _order_for = noise.white_noise, far_field.order_for
+_white_noise, _order_for, _bar = noise.white_noise, far_field.order_for, Estimate.bar
 
 
 def _mean_displaces(self: PeriodicInfluence) -> Array:
@@ -250,6 +251,18 @@ IN_REFIMPL: dict[str, LocalFault] = {
         lambda: _method(paper._Scheme, "_iterate", _never_corrected),
     ),
     "no-nesting": ("the paper's scheme without coarser grids", lambda: ((paper, "_refinements", _one_grid),)),
+    "bars-quartered": (
+        "error bars divided by four",
+        lambda: _method(Estimate, "bar", lambda self, found: _bar(self, found) / 4),
+    ),
+    "touch-of-elements": (
+        "approaches counted from the highest elements",
+        lambda: everywhere(summit.deepest, lambda field: summit.LEVEL),
+    ),
+    "edge-not-expected": (
+        "error bars that know of no edge's excess",
+        lambda: ((discretisation, "EDGE_SIZE", 0.0),),
+    ),
     "error-table": (
         "Appendix A's table read 10 % too low",
         lambda: ((coefficient_error, "_departure", lambda *args: 0.9 * _departure(*args)),),
