@@ -32,14 +32,14 @@ from refimpl.grid_result import GridResult
 EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
 SINGLES = 1.5  # what a lone element's edge counts more than an edge
-SUMMIT, SUMMIT_SPREAD = 0.022, 0.013  # c0, s_c: of its drop, as a pressure's parabola peaks too high
+SUMMIT, SUMMIT_SPREAD = 0.028, 0.009  # c0, s_c: of its drop, as a pressure's parabola peaks too high
 _RAN_OFF = 1e100  # of any number in SI units: squares still fit a double
 _ROUNDING = 1e-6  # instead of zero
 _UNKNOWN = 0.15  # of an area, at most, as sigma: with its edge's share a bar then reaches down to none
 
 AREA = Prior(0.2, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit of this and the last: value (edge / area)^1.5
-PEAK = Prior(0.007, 2.5)  # unit: the summit's drop
+PEAK = Prior(0.008, 2.5)  # unit: the summit's drop
 BINORMAL = Prior(0.002, 1.0)  # unit: normal force, else as the next
 OTHER = Prior(0.02, 2.0)  # unit: as of friction
 
@@ -105,8 +105,13 @@ def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float
 
 
 def _peak(grids: _Grids) -> Estimate:
-    """The highest pressure: that of the parabola, which peaks too high by a share of its drop."""
-    bias = Bias(grids.each(lambda result: result.peak.drop), SUMMIT, SUMMIT_SPREAD)
+    """The highest pressure: that of the parabola, which peaks too high by a share of its drop.
+
+    Elements of even pressure give way by less than the waves they stand for, ``q^2 h^2 / 24`` of it: of a
+    wave that alone would be a 24th of the drop. A periodic scene's operator gives way as waves do.
+    """
+    drop = grids.each(lambda result: result.peak.drop)
+    bias = Bias(drop, 0.0 if grids.results[-1].periodic else SUMMIT, SUMMIT_SPREAD)
     size = grids.each(lambda result: result.peak.widened(result.peak.drop))
     return grids.smooth(grids.each(lambda result: result.peak.height), PEAK, size, bias=bias)._replace(
         orders=(2.0, 2.0)

@@ -27,7 +27,7 @@ class GridResult:
     approaches count, ``unevenness`` how far slopes within elements leave mu open, ``slip`` is
     ``d mu / d A = tau / N`` (1/m^2), ``parts`` are the uncertainties that the grid's own solution states
     (iteration, tau support). ``loaded`` tells a prescribed load, which knows no discretisation, from a
-    prescribed approach.
+    prescribed approach; ``periodic`` is the scene's.
     """
 
     M: int
@@ -41,6 +41,7 @@ class GridResult:
     slip: float
     parts: Mapping[str, Mapping[str, float]]
     loaded: bool = True
+    periodic: bool = False
 
     @property
     def touching(self) -> bool:
@@ -63,6 +64,7 @@ class GridResult:
             slip=adhesive_share(solution),
             parts=merged(iteration_parts(solution), _own(solution)),
             loaded=problem.load is not None,
+            periodic=problem.periodic,
         )
 
 

@@ -154,6 +154,14 @@ def test_a_peak_that_grows_with_the_grid_is_not_known() -> None:
     assert estimates(sharp)["max_pressure"].bar(2.9) > 1.5
 
 
+def test_a_parabola_of_waves_has_no_bias() -> None:
+    free, waves = (replace(peaked(64, 1.0, 0.1), periodic=periodic) for periodic in (False, True))
+    found, unbiased = (estimates([grid])["max_pressure"] for grid in (free, waves))
+    assert found.value == pytest.approx(1 - 0.1 * SUMMIT)
+    assert unbiased.value == pytest.approx(1.0)
+    assert found.spread == pytest.approx(unbiased.spread)
+
+
 def test_a_parabola_of_unforeseen_bias_is_learnt_from_the_grids() -> None:
     size = SUMMIT + 3 * SUMMIT_SPREAD
     grids = [peaked(M, 1 + size * (16 / M) ** 2, (16 / M) ** 2) for M in (32, 64, 128, 256)]

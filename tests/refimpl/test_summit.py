@@ -164,6 +164,7 @@ def test_a_periodic_result_knows_its_peak_across_the_border_and_no_touch(offset:
     )
     found = GridResult.of(rf.solve(scene, 48, tolerance=1e-8))
     assert found.touch.height == found.touch.drop == 0.0
+    assert found.periodic
     assert found.peak.roughness < 0.02
     assert found.peak.height == pytest.approx(found.numbers["max_pressure"], rel=0.01)
 

@@ -85,7 +85,9 @@ def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
 
 
 def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
-    """Close to the likeliest of areas and peaks; what is left is held to vary more on purpose."""
+    """Close to the likeliest of areas; peaks are held to vary up to twice as much, which self-affine ones do,
+    and what is left more than that.
+    """
     found = json.loads((ROOT / "reports" / "results" / "priors.json").read_text())
     area, rest = found["area"], found["friction_without_tau"]
     assert list(area["adopted"].values()) == [EDGE_SIZE, EDGE_SIZE_SPREAD, AREA.scatter, AREA.weight, SINGLES]
@@ -97,7 +99,7 @@ def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
     peak, approach = found["peak"], found["approach"]
     assert list(peak["adopted"].values()) == [SUMMIT, SUMMIT_SPREAD, *PEAK]
     assert peak["likeliest"]["summit"] == pytest.approx(SUMMIT, abs=0.003)
-    assert peak["likeliest"]["summit_spread"] == pytest.approx(SUMMIT_SPREAD, abs=0.003)
+    assert 0.5 * SUMMIT_SPREAD < peak["likeliest"]["summit_spread"] < SUMMIT_SPREAD
     assert 0.5 * PEAK.scatter < peak["likeliest"]["scatter"] < PEAK.scatter
     assert list(approach["adopted"].values()) == [OTHER.scatter, TOUCH, OTHER.weight]
     assert all(approach["likeliest"][name] < approach["adopted"][name] for name in ("other", "touch"))

@@ -144,7 +144,8 @@ def document(store: Path) -> dict[str, object]:
 
     def of_peak(p: Array) -> float:
         size, spread, scatter, weight = p
-        return log_likelihood([peaks(grids) for grids in summits], size, spread, scatter, weight)
+        free = [grids for grids in summits if not grids[-1].periodic]  # of waves there is no bias
+        return log_likelihood([peaks(grids) for grids in free], size, spread, scatter, weight)
 
     def of_approach(p: Array) -> float:
         other, touch, weight = p
