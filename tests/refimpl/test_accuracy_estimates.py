@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -17,9 +16,6 @@ from refimpl.discretisation import (
     EDGE_SHARE,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
-    OTHER,
-    SUMMIT,
-    SUMMIT_SPREAD,
     _weights,
     area_scatter,
     estimates,
@@ -28,49 +24,12 @@ from refimpl.discretisation import (
 from refimpl.estimate import Bias, Estimate, Prior, line
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
-from refimpl.refine import LADDER, OPENING, climb, next_grid, relative_bar, uncertainty
+from refimpl.refine import OPENING, relative_bar, uncertainty
 from refimpl.solution import REPORTED
-from refimpl.summit import LEVEL, Summit
 from refimpl.validity import Limit
+from tests.refimpl.made_up import AREA_LIMIT, BETA, PEAK, SIDE, SLIP, made_up, told
 
 HERTZ_GRIDS = (80, 96, 112, 128, 160, 192, 224, 256, 320, 384, 448, 512)
-SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
-AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
-
-
-def summit(h: float, height: float = PEAK, roughness: float = 0.0) -> Summit:
-    """A parabola's through a disc's peak, too high by what the model says."""
-    drop = 2 * (h / RADIUS) ** 2 * height
-    return Summit(height + SUMMIT * drop, drop, roughness)
-
-
-def made_up(M: int, size: float = EDGE_SIZE, jitter: float = 0.0, unevenness: float = 0.0) -> GridResult:
-    """A disc's numbers on a grid: first order in its area and through tau in mu, second order in its peak."""
-    h = SIDE / M
-    edge = EDGE_SHARE * 8 * RADIUS * h
-    scatter = jitter * math.sqrt(8 * RADIUS / h) * h**2
-    area = AREA_LIMIT + size * edge + scatter
-    numbers = dict.fromkeys(REPORTED, 0.0)
-    numbers |= {
-        "contact_area": area,
-        "contact_area_corrected": area - edge,
-        "friction_coefficient": BETA + SLIP * area,
-        "max_pressure": PEAK * (1 - 0.3 * (h / RADIUS) ** 2),
-        "normal_force": 70.0,
-        "approach": 1e-6,
-    }
-    return GridResult(
-        M=M,
-        spacing=h,
-        numbers=numbers,
-        edge=edge,
-        alike=1.0,
-        peak=summit(h),
-        touch=LEVEL,
-        unevenness=unevenness,
-        slip=SLIP,
-        parts={name: {"iteration": 0.0} for name in REPORTED},
-    )
 
 
 def test_numbers_that_follow_the_model_are_extrapolated() -> None:
@@ -116,12 +75,6 @@ def test_an_edge_of_unforeseen_size_is_learnt_from_the_grids() -> None:
     assert abs(found.value - AREA_LIMIT) < abs(assumed - AREA_LIMIT)
 
 
-def told(mu: float, M: int, unevenness: float) -> GridResult:
-    """A grid on which slopes made mu what it is."""
-    result = made_up(M, unevenness=unevenness)
-    return replace(result, numbers={**result.numbers, "friction_coefficient": mu}, slip=0.0)
-
-
 def test_slopes_that_change_within_elements_leave_mu_open() -> None:
     """Once found 0.249 +- 0.009 of a measured surface, and 0.07 on grids that resolve it."""
     found = [told(mu, M, 0.02) for mu, M in ((0.09, 32), (0.12, 64), (0.25, 512))]
@@ -143,76 +96,10 @@ def test_what_slopes_leave_open_of_mu_they_leave_open_of_forces() -> None:
         assert uneven > 12.7 * 0.02 * 70.0 > 10 * even
 
 
-def peaked(M: int, height: float, drop: float, roughness: float = 0.0) -> GridResult:
-    """A grid with that summit of its pressure."""
-    return replace(made_up(M), peak=Summit(height, drop, roughness))
-
-
-def test_a_peak_that_grows_with_the_grid_is_not_known() -> None:
-    """As long as its neighbours fall as far behind."""
-    sharp = [peaked(M, height, height) for M, height in ((32, 1.0), (64, 2.4), (128, 2.9))]
-    assert estimates(sharp)["max_pressure"].bar(2.9) > 1.5
-
-
-def test_a_parabola_of_waves_has_no_bias() -> None:
-    free, waves = (replace(peaked(64, 1.0, 0.1), periodic=periodic) for periodic in (False, True))
-    found, unbiased = (estimates([grid])["max_pressure"] for grid in (free, waves))
-    assert found.value == pytest.approx(1 - 0.1 * SUMMIT)
-    assert unbiased.value == pytest.approx(1.0)
-    assert found.spread == pytest.approx(unbiased.spread)
-
-
-def test_a_parabola_of_unforeseen_bias_is_learnt_from_the_grids() -> None:
-    size = SUMMIT + 3 * SUMMIT_SPREAD
-    grids = [peaked(M, 1 + size * (16 / M) ** 2, (16 / M) ** 2) for M in (32, 64, 128, 256)]
-    assumed = grids[-1].peak.height - SUMMIT * grids[-1].peak.drop
-    assert abs(estimates(grids)["max_pressure"].value - 1) < abs(assumed - 1)
-
-
 def test_no_grid_counts_for_more_than_a_finer_one() -> None:
     spacing = np.array([16.0, 8.0, 4.0, 2.0])
     assert _weights(np.array([1.0, 6.0, 3.0, 2.0]), spacing).tolist() == [3.0, 3.0, 1.5, 1.0]
     assert _weights(np.array([1.0, 1.0, 1.0, 0.0]), spacing) == pytest.approx((spacing / 2) ** 1.5)
-
-
-@pytest.mark.parametrize(
-    ("roughness", "more"), [(0.0, 1.0), (0.5, (4 / 3) ** 4), (0.9, 0.19**-4), (1.0, math.inf)]
-)
-def test_a_peak_that_stands_alone_is_not_bounded(roughness: float, more: float) -> None:
-    even, uneven = (estimates([peaked(64, 1.0, 0.1, rough)]) for rough in (0.0, roughness))
-    for name in ("friction_coefficient", "contact_area"):
-        assert uneven[name].spread == even[name].spread
-    assert uneven["approach"].spread == pytest.approx(math.sqrt(more) * even["approach"].spread)
-    of_parabola, found = (found["max_pressure"].spread for found in (even, uneven))
-    assert of_parabola > 1.96 * math.hypot(0.1 * SUMMIT_SPREAD, 0.1 * discretisation.PEAK.scatter)
-    assert found <= more * of_parabola
-    assert (found > of_parabola) is (more > 1)
-    assert math.isinf(found) is math.isinf(more)
-
-
-def test_full_contact_may_have_a_lone_peak_too() -> None:
-    full = replace(peaked(64, 1.0, 3.0, 1.0), edge=0.0)
-    for results in ([full], [full, replace(full, M=128, spacing=SIDE / 128)]):
-        found = estimates(results)
-        assert math.isinf(found["max_pressure"].spread)
-        assert math.isinf(found["approach"].spread)
-        assert math.isfinite(found["friction_coefficient"].spread)
-
-
-def test_a_grid_whose_peak_stands_alone_does_not_count_beside_finer_ones() -> None:
-    fine = [made_up(M) for M in (128, 256)]
-    coarse = replace(made_up(64), peak=Summit(PEAK / 20, PEAK / 5, 1.0))
-    with_it, without = (estimates(results)["max_pressure"] for results in ([coarse, *fine], fine))
-    assert with_it.value == pytest.approx(without.value, rel=1e-9)
-
-
-def test_a_first_touch_that_is_not_resolved_leaves_the_approach_open() -> None:
-    steep = [replace(made_up(64), touch=Summit(0.0, 1e-7, rough)) for rough in (0.0, 0.6, 1.0)]
-    bounds = [estimates([result])["approach"].spread for result in (made_up(64), *steep)]
-    assert bounds == sorted(bounds)
-    edge = OTHER.scatter * (made_up(64).edge / made_up(64).numbers["contact_area"]) ** 1.5 * 1e-6
-    assert bounds[1] == pytest.approx(bounds[0] / edge * math.hypot(edge, 0.02 * 1e-7))
-    assert math.isinf(bounds[-1])
 
 
 def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
@@ -335,22 +222,6 @@ def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
         assert Limit.RADIUS in {warning.limit for warning in found.warnings}
 
 
-def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_remark(monkeypatch: pytest.MonkeyPatch) -> None:
-    noise = np.random.default_rng(0).normal(scale=60e-9, size=(128, 128))
-    steel = rf.Material(E=200e9, nu=0.3)
-    scene = rf.Scene(
-        upper=rf.Body(steel, rf.Sphere(radius=0.01)),
-        lower=rf.Body(steel, noise),
-        friction=rf.Friction(),
-        load=0.05,
-        side=50e-6,
-    )
-    monkeypatch.setattr("refimpl.refine.climb", partial(climb, ladder=(64,)))
-    found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
-    assert found.status is rf.Status.ITERATION_LIMIT
-    assert "max_pressure is not bounded, let alone to 0.05" in " ".join(found.warnings)
-
-
 def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
     """Numbers from the model itself with q = 0, their weights and edges, in the unit of the scatter."""
     rng = np.random.default_rng(7)
@@ -382,60 +253,6 @@ def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> 
     alone = line(np.array([3.0]), np.ones(1), prior)
     assert alone.value == 3.0
     assert alone.spread == pytest.approx(4.303 * 0.01, rel=1e-3)  # Student's t with two degrees of freedom
-
-
-def test_the_climb_jumps_to_the_grid_that_does() -> None:
-    asked: list[int] = []
-
-    def result_at(M: int) -> GridResult:
-        asked.append(M)
-        return made_up(M)
-
-    found = climb(result_at, 0.01, "contact_area")
-    assert found.refusal == ""
-    assert tuple(asked[:2]) == OPENING
-    assert len(asked) == 3
-    assert relative_bar(found.results, "contact_area") <= 0.01
-    true_error = found.results[-1].numbers["contact_area"] / AREA_LIMIT - 1
-    assert true_error <= 0.01
-    coarser = made_up(asked[-1] * 2 // 3).numbers["contact_area"] / AREA_LIMIT - 1
-    assert coarser > 0.0095  # so little was wasted
-    assert next_grid(found.results[:2], 0.01, "contact_area", [96, 128]) == 128
-
-
-@pytest.mark.parametrize("accuracy", [1e-3, 3e-4, 1e-4])
-def test_a_peaks_bar_is_foretold_to_fall_as_the_square(accuracy: float) -> None:
-    opened = [made_up(M) for M in OPENING]
-    M = next_grid(opened, accuracy, "max_pressure", LADDER)
-    bar, coarser = (relative_bar([*opened, made_up(grid)], "max_pressure") for grid in (M, M * 3 // 4))
-    assert bar <= accuracy < coarser
-    assert estimates(opened)["max_pressure"].orders == (2.0, 2.0)
-
-
-@pytest.mark.parametrize("roughness", [0.9, 1.0])
-def test_a_bar_longer_than_the_number_foretells_twice_as_fine_a_grid(roughness: float) -> None:
-    unknown = [replace(made_up(M), peak=Summit(PEAK, PEAK, roughness)) for M in OPENING]
-    assert next_grid(unknown, 0.01, "max_pressure", LADDER) == 2 * OPENING[-1]
-    assert next_grid(unknown, 0.01, "contact_area", LADDER) > 2 * OPENING[-1]
-
-
-def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_is_told() -> None:
-    def result_at(M: int) -> GridResult:
-        if M > 100:
-            raise rf.InputError("grid", M, "one that fits")
-        return made_up(M)
-
-    found = climb(result_at, 0.001, "contact_area")
-    assert found.results[-1].M == 96
-    assert "one that fits" in found.refusal
-    ended = climb(made_up, 0.001, "contact_area", ladder=(80, 96))
-    assert ended.results[-1].M == 96
-    assert "96" in ended.refusal
-
-
-def test_nothing_in_contact_ends_the_climb() -> None:
-    apart = replace(made_up(64), numbers=dict.fromkeys(REPORTED, 0.0), edge=0.0)
-    assert len(climb(lambda M: apart, 0.01, "contact_area").results) == len(OPENING)
 
 
 def test_bars_hold_against_hertz() -> None:

@@ -1,0 +1,87 @@
+"""Which grids a climb asks for, on results made up to have a known limit, and how it ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.discretisation import estimates
+from refimpl.grid_result import GridResult
+from refimpl.refine import LADDER, OPENING, climb, next_grid, relative_bar
+from refimpl.solution import REPORTED
+from refimpl.summit import Summit
+from tests.refimpl.made_up import AREA_LIMIT, PEAK, made_up
+
+
+def test_the_climb_jumps_to_the_grid_that_does() -> None:
+    asked: list[int] = []
+
+    def result_at(M: int) -> GridResult:
+        asked.append(M)
+        return made_up(M)
+
+    found = climb(result_at, 0.01, "contact_area")
+    assert found.refusal == ""
+    assert tuple(asked[:2]) == OPENING
+    assert len(asked) == 3
+    assert relative_bar(found.results, "contact_area") <= 0.01
+    true_error = found.results[-1].numbers["contact_area"] / AREA_LIMIT - 1
+    assert true_error <= 0.01
+    coarser = made_up(asked[-1] * 2 // 3).numbers["contact_area"] / AREA_LIMIT - 1
+    assert coarser > 0.0095  # so little was wasted
+    assert next_grid(found.results[:2], 0.01, "contact_area", [96, 128]) == 128
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 3e-4, 1e-4])
+def test_a_peaks_bar_is_foretold_to_fall_as_the_square(accuracy: float) -> None:
+    opened = [made_up(M) for M in OPENING]
+    M = next_grid(opened, accuracy, "max_pressure", LADDER)
+    bar, coarser = (relative_bar([*opened, made_up(grid)], "max_pressure") for grid in (M, M * 3 // 4))
+    assert bar <= accuracy < coarser
+    assert estimates(opened)["max_pressure"].orders == (2.0, 2.0)
+
+
+@pytest.mark.parametrize("roughness", [0.9, 1.0])
+def test_a_bar_longer_than_the_number_foretells_twice_as_fine_a_grid(roughness: float) -> None:
+    unknown = [replace(made_up(M), peak=Summit(PEAK, PEAK, roughness)) for M in OPENING]
+    assert next_grid(unknown, 0.01, "max_pressure", LADDER) == 2 * OPENING[-1]
+    assert next_grid(unknown, 0.01, "contact_area", LADDER) > 2 * OPENING[-1]
+
+
+def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_is_told() -> None:
+    def result_at(M: int) -> GridResult:
+        if M > 100:
+            raise rf.InputError("grid", M, "one that fits")
+        return made_up(M)
+
+    found = climb(result_at, 0.001, "contact_area")
+    assert found.results[-1].M == 96
+    assert "one that fits" in found.refusal
+    ended = climb(made_up, 0.001, "contact_area", ladder=(80, 96))
+    assert ended.results[-1].M == 96
+    assert "96" in ended.refusal
+
+
+def test_nothing_in_contact_ends_the_climb() -> None:
+    apart = replace(made_up(64), numbers=dict.fromkeys(REPORTED, 0.0), edge=0.0)
+    assert len(climb(lambda M: apart, 0.01, "contact_area").results) == len(OPENING)
+
+
+def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_remark(monkeypatch: pytest.MonkeyPatch) -> None:
+    noise = np.random.default_rng(0).normal(scale=60e-9, size=(128, 128))
+    steel = rf.Material(E=200e9, nu=0.3)
+    scene = rf.Scene(
+        upper=rf.Body(steel, rf.Sphere(radius=0.01)),
+        lower=rf.Body(steel, noise),
+        friction=rf.Friction(),
+        load=0.05,
+        side=50e-6,
+    )
+    monkeypatch.setattr("refimpl.refine.climb", partial(climb, ladder=(64,)))
+    found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
+    assert found.status is rf.Status.ITERATION_LIMIT
+    assert "max_pressure is not bounded, let alone to 0.05" in " ".join(found.warnings)
