@@ -97,8 +97,8 @@ def _reference(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
     """The finest grid's number, without its edge's mean share, and a bound of what is left.
 
     What is smooth - the peak of the parabola through the highest elements, friction without tau's share - is
-    bounded by its change from the grid before. The parabola is the estimator's, on elements of half the size at
-    most; against Hertz it is judged by the case ``accuracy/hertz-summits``.
+    bounded by its change from the grid before. The parabola is the estimator's, on elements of half the size
+    at most; against Hertz it is judged by the case ``accuracy/hertz-summits``.
     """
     before, finest = (rung.result for rung in rungs[-2:])
     value = finest.numbers[number]
