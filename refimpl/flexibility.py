@@ -41,7 +41,8 @@ class Flexibility:
 
     def apply(self, pressure: Array) -> Array:
         """``a f``, or ``a f + beta c f`` (m)."""
-        displacement: Array = self._problem.pair.normal_compliance * self._product(pressure)
+        displacement = self._product(pressure)
+        displacement *= self._problem.pair.normal_compliance
         return displacement
 
     def displaced(
@@ -62,11 +63,10 @@ class Flexibility:
             by_traction = problem.friction.beta * by_pressure + self._by_tau(support)
             lower, upper = problem.parted(normal, by_traction)
         else:
-            known = None if problem.terms.slope_correction else displacement
+            corrected = problem.terms.slope_correction
+            product = None if corrected else displacement / problem.pair.normal_compliance
             traction = self._pulled(pressure, support)
-            lower, upper = problem.displacements(
-                operator, pressure, traction, slopes, normal_displacement=known
-            )
+            lower, upper = problem.displacements(operator, pressure, traction, slopes, product=product)
         return lower + upper - displacement, problem.slopes(lower, upper)
 
     def _by_pressure(self, pressure: Array, step: int) -> Array:

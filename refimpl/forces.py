@@ -27,6 +27,8 @@ def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: f
     ``F = sum (f sin theta_x + r cos theta_x) cos theta_y dA``, Eq. (3);
     ``Q = sum (f cos theta_x - r sin theta_x) sin theta_y dA`` (SPEC 1; the paper plots it undefined).
     """
+    if slopes.is_flat:
+        return Forces(float(np.sum(pressure)) * element_area, float(np.sum(traction)) * element_area, 0.0)
     down = pressure * slopes.cos_x - traction * slopes.sin_x
     along = pressure * slopes.sin_x + traction * slopes.cos_x
     return Forces(

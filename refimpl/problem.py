@@ -91,17 +91,14 @@ class Problem:
         traction: Array,
         slopes: Slopes,
         *,
-        normal_displacement: Array | None = None,
+        product: Array | None = None,
     ) -> tuple[Array, Array]:
         """Normal displacements ``(u_lower, u_upper)`` into each body, Eq. (7) (m).
 
-        ``normal_displacement`` is the pair's own answer to the downward traction, if known already.
+        ``product`` is the operator's normal one of the downward traction (Pa m), if known already.
         """
         down, along, across = self.tractions(pressure, traction, slopes)
-        if normal_displacement is None:
-            normal = operator.normal(down)
-        else:
-            normal = normal_displacement / self.pair.normal_compliance
+        normal = operator.normal(down) if product is None else product
         if not (self.terms.shear_moves() and (across is not None or np.any(along))):
             return self.parted(normal, None)
         shear = operator.shear(along)

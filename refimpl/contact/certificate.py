@@ -78,9 +78,9 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
     ``slopes`` enter only through the facet tractions of the slope correction and through the
     residual ``slope``; the cosines are those of the recomputed displacements.
     """
-    normal = problem.pair.normal_compliance * operator.normal(pressure)
-    known = None if problem.terms.slope_correction else normal
-    lower, upper = problem.displacements(operator, pressure, traction, slopes, normal_displacement=known)
+    product = operator.normal(pressure)
+    down = None if problem.terms.slope_correction else product
+    lower, upper = problem.displacements(operator, pressure, traction, slopes, product=down)
     found = problem.slopes(lower, upper)
     v = found.per_obliqueness(lower + upper)
     v += problem.gap
@@ -92,7 +92,7 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
     mean_v = inner(shares, v[box.slices]) if total > 0 else lowest
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, dA)
-    energy = 0.5 * inner(shares, normal[box.slices])
+    energy = 0.5 * inner(shares, problem.pair.normal_compliance * product[box.slices])
     duality = inner(shares, v[box.slices] - lowest)
     if problem.load is not None:
         balance = abs(forces.normal - problem.load) / problem.load

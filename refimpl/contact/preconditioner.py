@@ -6,7 +6,7 @@ import math
 
 from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.fourier import fourier, threads
+from refimpl.operators.fourier import factors, fourier, threads
 from refimpl.operators.periodic import PeriodicInfluence
 
 
@@ -22,7 +22,7 @@ class SpectralPreconditioner:
         flexibility = compliance * operator.symbol
         if flexibility[0, 0] == 0:
             flexibility[0, 0] = 2 * flexibility.max() or 1.0
-        self._symbol = 1 / flexibility
+        self._symbol = factors(1 / flexibility)
 
     def __call__(self, residual: Array) -> Array:
         """The preconditioned residual, same shape; the caller masks argument and result."""

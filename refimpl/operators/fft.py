@@ -15,11 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
-from refimpl.operators.fourier import Complex, fourier, threads
+from refimpl.operators.fourier import Complex, factors, fourier, threads
 from refimpl.operators.tables import signed_table, unit_table
 from refimpl.operators.window import Window, padded_length
-
-_COMPLEX = 100_000  # points up to which NumPy multiplies spectra by complex numbers quicker than by real ones
 
 
 @dataclass
@@ -113,10 +111,7 @@ class FFTInfluence:
 
     @cached_property
     def _normal_hat(self) -> Array | Complex:
-        """The kernel's transform: of a quarter of it, and real, where the circles are even.
-
-        Few real numbers are held as complex ones, which multiply in half the time, to the same last bit.
-        """
+        """The kernel's transform: of a quarter of it, and real, where the circles are even."""
         rows, columns = self._offsets
         points = math.prod(self._padded)
         if not (_is_even(rows) and _is_even(columns)):
@@ -127,7 +122,10 @@ class FFTInfluence:
         quarter = unit_table("normal", max(half, across) + 1)[: half + 1, : across + 1]
         hat = fourier.even_plane(quarter * self.grid.spacing, threads(points))
         hat = np.concatenate([hat, hat[:, across - 1 : 0 : -1]], axis=1)
-        return hat.astype(np.complex128) if points <= _COMPLEX else hat
+        return self._kept(hat)
+
+    def _kept(self, hat: Array) -> Array | Complex:
+        return factors(hat)
 
     @cached_property
     def _shear_hat(self) -> Complex:
@@ -181,6 +179,9 @@ class WholeGridInfluence(FFTInfluence):
     Tractions outside the source are taken to be zero: the caller chose the source to hold them all. It is
     made for one product of each kind, and gives up what that took before the result needs room.
     """
+
+    def _kept(self, hat: Array) -> Array:
+        return hat
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
         spectrum = self._forward(source[self.source.slices])
