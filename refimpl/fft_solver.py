@@ -59,7 +59,8 @@ def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
     operator, precondition = _operators(problem, window, counter)
     loaded = problem.load is not None
     pressure = sharpened(pressure, misfit, contact, precondition, loaded=loaded)
-    return LevelSolver(problem, operator, extended(precondition, pressure > 0), pressure)
+    precondition = extended(precondition, pressure > 0)
+    return LevelSolver(problem, operator, precondition, pressure, strong=start.strong)
 
 
 def _prolonged(problem: Problem, start: Start) -> tuple[Window, Array, Array, Mask]:

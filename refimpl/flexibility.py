@@ -3,7 +3,7 @@
 CG inverts ``a f``, and where it is weak the coupling ``beta c f`` with it. Cerruti's kernel is odd, so ``c``
 is skew: it adds nothing to a curvature ``d.(a d)``, and both kernels are one to the transforms. What is left
 of shear then is tau's, which is constant on a given support. Where the coupling is strong, CG's directions
-lose each other; then all of shear is held, and brought up to date by relaxed updates. So it is with facet
+lose each other; then all of shear is held, and brought up to date by mixed updates. So it is with facet
 tractions, whose shear is no multiple of the pressure.
 """
 

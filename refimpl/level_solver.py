@@ -2,7 +2,8 @@
 
 CG inverts ``a f``, and weak coupling with it (`refimpl.flexibility`). The rest of the shear displacement,
 slopes, the load's weights and tau's support are held while CG reduces the residual as far as they let it,
-and are then brought up to date; their own feedback is weak, so few updates suffice.
+and are then brought up to date. Where their own feedback is weak few updates suffice; where it is not they
+are mixed (`refimpl.mixing`).
 """
 
 from __future__ import annotations
@@ -25,16 +26,16 @@ from refimpl.outcome import Outcome, Status, Visited
 from refimpl.problem import Problem, visit
 from refimpl.slopes import Slopes
 from refimpl.tau_path import followed
+from refimpl.updates import Updates
 
 _REDUCTION = 0.1  # of the residual is as much as CG leaves between updates of what is held
 _LEAST_FEEDBACK = 1e-3  # and this, where the last update brought hardly anything back
 _KEPT = 0.99  # of the tolerance: the certificate, recomputed, rounds otherwise, by 1e-15 against 1e-12
 _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
-_STALLED = 5  # updates in a row that do not halve the best residual: they do not contract
-_UPDATES = 600  # of what is held, in one settling: 36 sigma^2 reach 1e-8, and sigma above 4 is given up
+_MIXED_SHARE = 0.1  # of the tolerance, for CG between mixed updates: what it leaves is noise to them
+_UPDATES = 600  # of what is held, in one settling
 _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
-_LEAST_RELAXATION = 1 / 16  # below this, updates that do not contract are given up
 
 
 WindowInfluence = FFTInfluence | PeriodicInfluence
@@ -48,7 +49,10 @@ def influence(problem: Problem, window: Window, counter: Counter) -> WindowInflu
 
 
 class LevelSolver:
-    """One grid level: CG on a window, with slopes, shear and tau's support brought up to date."""
+    """One grid level: CG on a window, with slopes, shear and tau's support brought up to date.
+
+    ``strong`` says that what is held feeds back so strongly that updates are mixed from the first.
+    """
 
     def __init__(
         self,
@@ -56,6 +60,8 @@ class LevelSolver:
         operator: WindowInfluence,
         precondition: Apply,
         pressure: Array,
+        *,
+        strong: bool = False,
     ) -> None:
         self.whole = problem
         self.counter = operator.counter
@@ -65,20 +71,16 @@ class LevelSolver:
         self.operator = operator
         self.flexibility = Flexibility(self.problem, operator)
         self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
+        self._held: tuple[Array, Array] | None = None  # shear and weights that the present state came from
         self.slopes = self._entered = Slopes.flat(self.window.shape)
         self._nowhere: Mask = np.zeros(self.window.shape, dtype=bool)
         self.support = self._nowhere
-        self._held: tuple[Array, Array] | None = None
         self._withheld: Mask | None = None
         # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.nesting`
         self._stiffness = 0.5 / (problem.pair.normal_compliance * problem.grid.spacing)
-        self.ran_off = False
+        self.ran_off = self.stuck = False
+        self._updates = Updates(math.inf, lags=True, strong=strong)
         self._feedback = _REDUCTION
-        # The lagged beta c f is skew with spectral radius sigma against a f, so the best relaxation is
-        # 1 / (1 + sigma^2) and contracts by sigma / sqrt(1 + sigma^2) for every beta.
-        sigma = 0.0 if self.flexibility.coupled else self.flexibility.sigma
-        self._relaxation = self._best_relaxation = 1 / (1 + sigma**2)
-        self._patience = _STALLED + math.ceil(2 * math.log(2) / math.log1p(1 / max(sigma, 0.1) ** 2))
 
     def answer(self) -> Start:
         """What this grid has to say to a finer one."""
@@ -89,7 +91,7 @@ class LevelSolver:
             )
             outside[self.window.slices] = displacement[self.window.slices]
             displacement = outside
-        return Start(self.full(self.cg.pressure), displacement, self.cg.approach)
+        return Start(self.full(self.cg.pressure), displacement, self.cg.approach, self.strong)
 
     def _onto_whole_grid(self) -> WholeGridInfluence:
         grid = self.whole.grid
@@ -115,13 +117,18 @@ class LevelSolver:
         if status is Status.CONVERGED and not lawful:
             status = Status.CYCLED
         return self._outcome(
-            status if rule.settled or self.ran_off else Status.ITERATION_LIMIT, rule, in_cycles
+            status if rule.settled or self.ran_off or self.stuck else Status.ITERATION_LIMIT, rule, in_cycles
         )
 
     @property
     def contact(self) -> Mask:
         """Where the present pressure is positive."""
         return self.cg.pressure > 0
+
+    @property
+    def strong(self) -> bool:
+        """Whether what is held feeds back so strongly that updates are mixed."""
+        return self._updates.mixing is not None
 
     @property
     def cramped(self) -> bool:
@@ -139,34 +146,35 @@ class LevelSolver:
         """
         self.support, self._withheld = self._nowhere if support is None else support, withheld
         self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
-        self._relaxation = self._best_relaxation  # anew for each of tau's supports
-        self.residual = best = self._update()
-        stalled = 0
+        self.residual = self._update()
+        self._updates, self.stuck = Updates(self.residual, lags=self._lags, strong=self.strong), False
         for _ in range(_UPDATES):
-            if self.residual <= self._tolerance or self.cg_iterations >= self._budget or self.ran_off:
-                break
-            if self._leads_on():
+            if self.residual <= self._tolerance or self._leads_on():
+                return self.residual <= self._tolerance
+            if self.cg_iterations >= self._budget or self.ran_off or self._updates.given_up:
                 break
             last = self.residual
-            frozen = self._reduce(max(self._feedback * last, self._share * tolerance))
+            self._mix()
+            frozen = self._reduce(self._goal(tolerance))
             self.residual = self._update() if self._lags else frozen
-            self._feedback = min(max(_LEAST_FEEDBACK, (self.residual - frozen) / last), _REDUCTION)
-            if self.residual < 0.5 * best:
-                best, stalled = self.residual, 0
-            else:
-                stalled += 1
-            if stalled >= self._patience:
-                if not self._lags or self._relaxation < _LEAST_RELAXATION:
-                    break
-                self._relaxation, stalled = 0.5 * self._relaxation, 0
-        return self.residual <= self._tolerance
+            brought_back = (self.residual - frozen) / last
+            self._feedback = min(max(_LEAST_FEEDBACK, brought_back), _REDUCTION)
+            self._updates.led_to(self.residual, brought_back)
+        self.stuck = self.residual > self._tolerance
+        return not self.stuck
+
+    def _goal(self, tolerance: float) -> float:
+        """How far CG is to bring the frozen problem's residual down before the next update."""
+        if not self.strong:
+            return max(self._feedback * self.residual, self._share * tolerance)
+        return max(_REDUCTION * min(self.residual, max(self.cg.residuals())), _MIXED_SHARE * tolerance)
 
     def _reduce(self, goal: float) -> float:
         """CG steps until the frozen problem's residual, returned, meets the goal or no longer falls."""
         residual = best = max(self.cg.residuals())
         since = 0
         while residual > goal and since < _CG_PATIENCE and self.cg_iterations < self._budget:
-            if self._leads_on():
+            if not self.strong and self._leads_on():  # what is mixed is nobody's contact
                 break
             self.cg.iterate()
             self.cg_iterations += 1
@@ -177,12 +185,11 @@ class LevelSolver:
     def _leads_on(self) -> bool:
         """Whether the contact, beyond doubt, leads tau's rule to another support than the present one.
 
-        Relaxed updates hold a part of the misfit back, so that nothing is beyond doubt; and where tau moves
-        nothing the next state is the same one.
+        Where tau moves nothing the next state is the same one.
         """
         terms = self.problem.terms
         moved = terms.coupled or terms.oblique or terms.slope_correction
-        if self._withheld is None or self._relaxation < 1 or not moved:
+        if self._withheld is None or not moved:
             return False
         if not self.cg.beyond_doubt(self._stiffness):
             return False
@@ -196,8 +203,13 @@ class LevelSolver:
     @property
     def _lags(self) -> bool:
         """Whether anything that CG holds depends on the pressure."""
+        return self.problem.terms.oblique or self._shear_lags
+
+    @property
+    def _shear_lags(self) -> bool:
+        """Whether shear does, beyond what CG has taken in and tau, which stays on its support."""
         terms, sheared = self.problem.terms, self.problem.friction.beta > 0 and not self.flexibility.coupled
-        return terms.oblique or terms.slope_correction or (terms.coupled and sheared)
+        return terms.slope_correction or (terms.coupled and sheared)
 
     def _update(self) -> float:
         """Bring slopes, shear and load weights up to date; the residual of the whole problem."""
@@ -213,15 +225,30 @@ class LevelSolver:
             self.slopes = slopes
         target, balance = self._target(self.slopes.obliqueness)
         K = self.slopes.obliqueness
+        self._asked = shear, K
         self._hold(shear, K, target)
-        residual = math.inf if self.ran_off else max(*self.cg.residuals(), balance, change)
-        if self._held is not None and self._relaxation < 1 and residual > self._tolerance:
-            shear = self._held[0] + self._relaxation * (shear - self._held[0])
-            if problem.terms.oblique:
-                K = self._held[1] + self._relaxation * (K - self._held[1])
-            self._hold(shear, K, self._target(K)[0])
+        return math.inf if self.ran_off else max(*self.cg.residuals(), balance, change)
+
+    def _mix(self) -> None:
+        """Where updates are mixed, go on from a mixture in place of what the present state asks for."""
+        mixing = self._updates.mixing
+        if mixing is None or self._held is None:
+            self._held = self._asked
+            return
+        oblique, sheared = self.problem.terms.oblique, self._shear_lags
+        scale = float(np.abs(self.cg.normal_displacement).max()) or 1.0
+
+        def stacked(shear: Array, K: Array) -> Array:
+            return np.vstack([shear / scale] * sheared + [K] * oblique)
+
+        (shear, K), n = self._asked, self.window.shape[0]
+        mixed = mixing.mixed(stacked(*self._held), stacked(shear, K))
+        if sheared:
+            shear = scale * mixed[:n]
+        if oblique:
+            K = np.clip(mixed[-n:], _STEEPEST, 1.0)
         self._held = shear, K
-        return residual
+        self._hold(shear, K, self._target(K)[0])
 
     def _pulled(self) -> Array:
         """The traction of the present pressure, with tau on its support."""

@@ -13,17 +13,19 @@ from refimpl.friction import Mask, TauSupport
 from refimpl.outcome import Visited
 
 _SUPPORT_ITERATIONS = 200
+_STUCK = 3  # states in a row that cannot be settled: their contacts are no longer the rule's
 _TOLD = 1e-6  # residual at which a cycle's state is told: its mu is off by no larger a share (see the tests)
 
 
 class Settling(Protocol):
     """What walks: a state that settles with tau on a support.
 
-    ``residual`` is that of the whole problem, ``cramped`` says that its window cuts the contact off,
-    ``ran_off`` that slopes have.
+    ``residual`` is that of the whole problem, ``stuck`` says that the last settling came to nothing,
+    ``cramped`` that its window cuts the contact off, ``ran_off`` that slopes have.
     """
 
     residual: float
+    stuck: bool
 
     @property
     def contact(self) -> Mask:
@@ -50,6 +52,7 @@ def followed(state: Settling, tolerance: float) -> tuple[TauSupport, list[Visite
     told = max(tolerance, _TOLD)
     way: list[Visited | None] = []
     in_cycles: list[Visited] = []
+    stuck = 0
     for _ in range(_SUPPORT_ITERATIONS):
         state.settle(tolerance, rule.current, rule.withheld)
         if state.cramped:
@@ -58,7 +61,8 @@ def followed(state: Settling, tolerance: float) -> tuple[TauSupport, list[Visite
         rule.next(state.contact)
         for support in reversed(rule.cycle):  # the last is the present one
             in_cycles.append(way.pop() or _again(state, told, support))
-        if rule.settled or state.ran_off:
+        stuck = stuck + 1 if state.stuck else 0
+        if rule.settled or state.ran_off or stuck == _STUCK:
             break
     return rule, in_cycles
 

@@ -19,12 +19,40 @@ from tests.refimpl.levels import BALL, coupled, level, posed
 
 
 @pytest.mark.parametrize("sigma", [0.5, 2.0])
-def test_strong_couplings_converge_by_relaxation(sigma: float) -> None:
-    """Unrelaxed, the updates multiply the error by sigma."""
+def test_strong_couplings_converge_by_mixing(sigma: float) -> None:
+    """Plain updates multiply the error by sigma."""
     scene = coupled(sigma)
     dense, fft = (rf.solve(scene, 16, method=m, oblique=False, tolerance=1e-9) for m in ("dense", "fft"))
     assert fft.status is rf.Status.CONVERGED
     assert np.abs(fft.pressure - dense.pressure).max() <= 1e-6 * dense.max_pressure
+
+
+STEEP = rf.Scene(
+    upper=rf.Body(rf.Material(50e9, 0.2), rf.Sphere(2.4e-3) + rf.GaussianRoughness(3.3e-6, 51e-6, seed=4344)),
+    lower=rf.Body(rf.Material(2.8e9, 0.24), rf.GaussianRoughness(3.3e-6, 74e-6, seed=4345)),
+    friction=rf.Friction(tau=1.1e6, beta=0.32),
+    load=40.0,
+    side=1e-3,
+)
+"""Rough on rough: slopes of 0.13 (rms), modulus ratio 18, displacements of ten elements on a grid of 256."""
+
+
+def test_steep_slopes_converge_on_fine_grids() -> None:
+    """Their feedback grows with displacement over spacing; relaxed updates stagnated from 256 on."""
+    coarse, fine = (rf.solve(STEEP, M) for M in (128, 256))
+    assert coarse.status is fine.status is rf.Status.CONVERGED
+    assert fine.friction_coefficient == pytest.approx(coarse.friction_coefficient, rel=0.01)
+    assert fine.cost.iterations["CG at 256"] < 200
+
+
+def test_what_feeds_back_strongly_does_so_on_finer_grids() -> None:
+    problem = posed(STEEP, 128, oblique=True)
+    solver = level(problem)
+    solver.settle(1e-3)
+    assert solver.strong
+    assert solver.answer().strong
+    finer = fft_solver.begun(posed(STEEP, 256, oblique=True), solver.answer(), Counter())
+    assert finer.strong
 
 
 @pytest.mark.parametrize("rows", [slice(2, 6), slice(6, 9)])

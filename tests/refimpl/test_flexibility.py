@@ -62,7 +62,7 @@ def test_coupling_that_is_left_out_is_not_applied() -> None:
 
 
 @pytest.mark.parametrize(("slope_correction", "sigma"), [(False, 0.0), (True, 2.5)])
-def test_coupling_that_is_left_out_relaxes_nothing(slope_correction: bool, sigma: float) -> None:
+def test_coupling_that_is_left_out_counts_for_nothing(slope_correction: bool, sigma: float) -> None:
     """Facet tractions bring shear to the gap by themselves."""
     strong = turned(2.5, oblique=True)
     apart = replace(strong, terms=replace(strong.terms, coupled=False, slope_correction=slope_correction))

@@ -12,6 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl import fft_solver
 from refimpl.contact.certificate import certify
+from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.window import Window
 from refimpl.problem import Terms, pose
@@ -50,27 +51,39 @@ def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() ->
     np.testing.assert_allclose(found.cg.pressure, expected.cg.pressure, rtol=1e-4, atol=1.0)
 
 
-@pytest.mark.parametrize("relaxation", [0.25, 0.5])
-def test_a_relaxed_update_goes_that_part_of_the_way(relaxation: float) -> None:
-    """From what was held, in the shear displacement and in the obliqueness."""
-    problem = posed(coupled(0.3), 16, oblique=True)
-    plain, relaxed = level(problem), level(problem)
-    plain._relaxation, relaxed._relaxation = 1.0, relaxation
-    first, second = plain.cg.pressure, 3 * np.sqrt(plain.cg.pressure * plain.cg.pressure.max())
-    held = []
-    for solver in (plain, relaxed):
-        for pressure in (first, second):
-            solver._tolerance, solver.cg.pressure = 0.0, pressure
-            solver.cg.normal_displacement = solver.cg._apply(pressure)
-            solver.support = pressure > 0
-            solver._update()
-            held.append((solver.cg._b, solver.cg._K))
-    before, after, same, between = held
-    for old, new, again, found in zip(before, after, same, between, strict=True):
-        assert np.array_equal(again, old)
-        assert np.abs(new - old).max() > 1e-6 * np.abs(old).max()
-        bound = 1e-14 * np.abs(old).max()
-        np.testing.assert_allclose(found, old + relaxation * (new - old), rtol=0, atol=bound)
+class Between:
+    """Stands for mixing: a quarter of the way from what was held to what is asked for; both are kept."""
+
+    def mixed(self, held: Array, asked: Array) -> Array:
+        self.held, self.asked = held, asked
+        return held + 0.25 * (asked - held)
+
+
+@pytest.mark.parametrize(("sigma", "oblique"), [(0.4, True), (0.4, False), (0.2, True)])
+def test_what_lags_is_mixed_without_units(sigma: float, oblique: bool) -> None:
+    """Shear where CG has not taken it in, in displacements, and cosines where there are slopes."""
+    solver = level(posed(coupled(sigma), 16, oblique=oblique))
+    solver._update()
+    solver._mix()  # nothing to mix yet
+    shear, K = solver._held
+    solver.cg.iterate()
+    solver.cg_iterations += 1
+    solver._update()
+    solver._updates.mixing = mixing = Between()
+    displaced = np.abs(solver.cg.normal_displacement).max()
+    solver._mix()
+    lagging = [(shear, solver._asked[0])] * (sigma > 0.3) + [(K, solver._asked[1])] * oblique
+    scales = [displaced] * (sigma > 0.3) + [1.0] * oblique
+    for part, name in enumerate(("held", "asked")):
+        expected = np.vstack([pair[part] / scale for pair, scale in zip(lagging, scales, strict=True)])
+        np.testing.assert_allclose(getattr(mixing, name), expected, rtol=1e-14)
+    assert np.abs(mixing.asked - mixing.held).max() > 1e-7  # CG moved something
+    mixed_shear = shear + 0.25 * (solver._asked[0] - shear) if sigma > 0.3 else solver._asked[0]
+    mixed_K = K + 0.25 * (solver._asked[1] - K)
+    bound = 1e-14 * np.abs(solver.cg._b).max()
+    np.testing.assert_allclose(solver.cg._K, mixed_K, rtol=1e-14)
+    np.testing.assert_allclose(solver.cg._b, mixed_K * solver.problem.gap + mixed_shear, rtol=0, atol=bound)
+    np.testing.assert_allclose(solver._held[1], mixed_K, rtol=1e-14)
 
 
 @pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=1.0), rf.Friction(beta=0.1)])

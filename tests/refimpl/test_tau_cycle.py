@@ -17,6 +17,7 @@ from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.fft_solver import solve_fft
 from refimpl.friction import Mask
 from refimpl.level_solver import LevelSolver
+from refimpl.mixing import Mixing
 from refimpl.operators.fft import Counter
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
@@ -161,14 +162,17 @@ def test_the_path_is_that_of_settled_states(scene: rf.Scene, monkeypatch: pytest
     assert bool(long.visited) or quick.cg_iterations < 0.9 * thorough.cg_iterations
 
 
-def test_relaxed_updates_leave_doubt() -> None:
-    """They hold back a part of the misfit by which doubt is judged."""
+def test_nothing_leads_on_between_mixed_updates(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is held then is nobody's, and so is the contact; after an update it is the state's own."""
     solver = level(posed(replace(BALL, friction=rf.Friction(tau=1e6, beta=0.1)), 16))
     nothing = np.zeros((16, 16), dtype=bool)
     solver.settle(1e-8, nothing, nothing)
     assert solver._leads_on()
-    solver._relaxation = 0.99
-    assert not solver._leads_on()
+    monkeypatch.setattr(solver, "_leads_on", lambda: True)
+    residual = max(solver.cg.residuals())
+    assert solver._reduce(0.1 * residual) == residual
+    solver._updates.mixing = Mixing()
+    assert solver._reduce(0.1 * residual) < residual
 
 
 @pytest.mark.parametrize(("coupled", "oblique", "leads"), [(1, 0, True), (0, 1, True), (0, 0, False)])

@@ -26,10 +26,17 @@ class Played:
     """The contact that each support leads to; ``left`` supports are left at that residual."""
 
     def __init__(
-        self, contacts: dict[str, str], *, left: str = "", at: float = 1e-3, edge: str = "", runs: str = ""
+        self,
+        contacts: dict[str, str],
+        *,
+        left: str = "",
+        at: float = 1e-3,
+        edge: str = "",
+        runs: str = "",
+        sticks: str = "",
     ) -> None:
         self._contacts, self._left, self._at = contacts, left.split(), at
-        self._edge, self._runs = edge, runs
+        self._edge, self._runs, self._sticks = edge, runs, sticks.split()
         self._support, self.residual = "", math.inf
         self.asked: list[str] = []
 
@@ -44,6 +51,10 @@ class Played:
     @property
     def ran_off(self) -> bool:
         return self._support == self._runs
+
+    @property
+    def stuck(self) -> bool:
+        return self._support in self._sticks
 
     def settle(self, tolerance: float, support: Mask, withheld: Mask | None = None) -> bool:
         assert tolerance == (1e-6 if withheld is None else 1e-8)
@@ -110,5 +121,16 @@ def test_slopes_that_run_off_end_the_path() -> None:
 def test_a_path_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tau_path, "_SUPPORT_ITERATIONS", 2)
     state = Played({"ab": "Ab", "Ab": "AB", "AB": "AB"})
+    assert not followed(state, 1e-8)[0].settled
+    assert state.asked == ["ab", "Ab"]
+
+
+def test_a_path_of_states_that_cannot_be_settled_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A single one on the way is not the end: what comes after it may be settled, and lawful."""
+    monkeypatch.setattr(tau_path, "_STUCK", 2)
+    contacts = {"ab": "Ab", "Ab": "AB", "AB": "AB"}
+    state = Played(contacts, sticks="Ab")
+    assert followed(state, 1e-8)[0].settled
+    state = Played(contacts, sticks="ab Ab")
     assert not followed(state, 1e-8)[0].settled
     assert state.asked == ["ab", "Ab"]
