@@ -8,6 +8,7 @@ the grid. What that takes of a number is foretold by its power of the approach i
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
 
 from refimpl.grid_result import GridResult
@@ -28,13 +29,14 @@ def touched(result: GridResult) -> GridResult:
     if result.loaded or not result.numbers["normal_force"] > 0:
         return result
     approach = result.numbers["approach"]
-    return _at(result, approach / (approach + result.touch.height))
+    share = approach / (approach + result.touch.height)
+    return _at(result, share) if _presses(result, share) else result
 
 
 def missed(result: GridResult) -> dict[str, float]:
     """95 % bounds of what numbers at a prescribed approach may be off by for it."""
     share = 2 * missed_share(result)
-    if math.isinf(share) or not result.numbers["normal_force"] > 0:
+    if math.isinf(share) or not _presses(result, 1 / (1 + share)):
         return dict.fromkeys(result.numbers, math.inf)
     less = _at(result, 1 / (1 + share)).numbers
     return {name: abs(value - less[name]) for name, value in result.numbers.items()}
@@ -48,6 +50,12 @@ def missed_share(result: GridResult) -> float:
 def first_touch(result: GridResult) -> float:
     """Standard deviation of the first touch (m)."""
     return result.touch.widened(TOUCH * result.touch.drop)
+
+
+def _presses(result: GridResult, share: float) -> bool:
+    """Whether a force that numbers can hold is left at that share of the approach."""
+    force: float = result.numbers["normal_force"] * share ** POWERS["normal_force"]
+    return force > sys.float_info.min
 
 
 def _at(result: GridResult, share: float) -> GridResult:

@@ -27,6 +27,13 @@ def test_strong_couplings_converge_by_mixing(sigma: float) -> None:
     assert np.abs(fft.pressure - dense.pressure).max() <= 1e-6 * dense.max_pressure
 
 
+def test_states_that_cannot_be_settled_end_the_path_of_tau_and_say_so() -> None:
+    """A coupling of eight, far beyond what materials have."""
+    solution = rf.solve(coupled(8.0, tau=1e6), 16, oblique=False)
+    assert solution.status is rf.Status.STAGNATED
+    assert solution.cost.iterations["CG at 16"] < 1000
+
+
 STEEP = rf.Scene(
     upper=rf.Body(rf.Material(50e9, 0.2), rf.Sphere(2.4e-3) + rf.GaussianRoughness(3.3e-6, 51e-6, seed=4344)),
     lower=rf.Body(rf.Material(2.8e9, 0.24), rf.GaussianRoughness(3.3e-6, 74e-6, seed=4345)),

@@ -156,3 +156,20 @@ def test_what_is_missed_grows_with_the_drop_and_is_nothing_without() -> None:
     assert bounds["contact_area"] == pytest.approx(twice * steep.numbers["contact_area"], rel=0.01)
     assert bounds["approach"] == 0.0
     assert set(bounds) == set(REPORTED)
+
+
+@pytest.mark.parametrize("approach", [1e-300, 1e-160])
+def test_approaches_far_below_what_the_grid_knows_of_first_touch_have_bars_without_end(
+    approach: float,
+) -> None:
+    """Their share of it is so small that a force would be none."""
+    scene = rf.Scene(
+        upper=rf.Body(STEEL, rf.Sphere(0.14)),
+        lower=rf.Body(rf.Material(E=2.5e9, nu=0.38), rf.Flat()),
+        friction=FRICTION,
+        load=70.0,
+        side=1.61e-3,
+    )
+    solution = rf.solve(scene, 5, approach=approach)
+    bar = solution.uncertainty["normal_force"]["discretisation"]
+    assert bar == math.inf

@@ -86,6 +86,22 @@ def test_what_lags_is_mixed_without_units(sigma: float, oblique: bool) -> None:
     np.testing.assert_allclose(solver._held[1], mixed_K, rtol=1e-14)
 
 
+class Beyond:
+    """Stands for mixing that goes too far: to cosines of no slope."""
+
+    def mixed(self, held: Array, asked: Array) -> Array:
+        return np.where(np.arange(asked.size).reshape(asked.shape) % 2, 1.1, -0.1)
+
+
+def test_mixed_cosines_stay_cosines() -> None:
+    solver = level(posed(BALL, 16, oblique=True))
+    solver._update()
+    solver._mix()
+    solver._updates.mixing = Beyond()
+    solver._mix()
+    assert set(np.unique(solver.cg._K)) == {1e-6, 1.0}
+
+
 @pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=1.0), rf.Friction(beta=0.1)])
 @pytest.mark.parametrize("coupled", [False, True])
 @pytest.mark.parametrize("oblique", [False, True])

@@ -55,9 +55,15 @@ def test_only_the_last_differences_are_remembered(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(mixing, "_DEPTH", 3)
     mixed, x = Mixing(), np.ones((1, 10))
     matrix = skew(10, 2.0, seed=3)
+    held, lacks = [], []
     for _ in range(6):
-        x = mixed.mixed(x, (matrix @ x.ravel())[None])
-    assert len(mixed._steps) == len(mixed._changes) == 3
+        asked = (matrix @ x.ravel())[None]
+        held.append(x)
+        lacks.append(asked - x)
+        x = mixed.mixed(x, asked)
+    changes, moves = np.diff(lacks, axis=0)[-3:], np.diff(held, axis=0)[-3:]
+    np.testing.assert_allclose(mixed._changes, changes, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(mixed._steps, moves + 0.5 * changes, rtol=0, atol=1e-14)
     expected = [[np.vdot(a, b) for a in mixed._changes] for b in mixed._changes]
     np.testing.assert_allclose(mixed._products, expected, rtol=1e-13)
 

@@ -131,6 +131,8 @@ def test_a_path_of_states_that_cannot_be_settled_is_given_up(monkeypatch: pytest
     contacts = {"ab": "Ab", "Ab": "AB", "AB": "AB"}
     state = Played(contacts, sticks="Ab")
     assert followed(state, 1e-8)[0].settled
+    state = Played({"ab": "Ab", "Ab": "aB", "aB": "AB", "AB": "AB"}, sticks="ab aB")
+    assert followed(state, 1e-8)[0].settled
     state = Played(contacts, sticks="ab Ab")
     assert not followed(state, 1e-8)[0].settled
     assert state.asked == ["ab", "Ab"]
