@@ -139,7 +139,7 @@ def dots(values: str | None, *, xlabel: str, limit: float | None = None) -> Draw
         sizes = _numbers(list(entries.values()))
         axes = _axes(canvas, xlabel, "", "x")
         shown = [*sizes[sizes > 0], *([limit] if limit is not None else [])] or [1.0]
-        axes.set_xlim(0.2 * min(shown), 5 * max(shown))
+        axes.set_xlim(min(0.2 * min(shown), 1e-3 * max(shown)), 5 * max(shown))  # labels of decades alone
         axes.set(ylim=(len(sizes) - 0.5, -0.5), yticks=range(len(sizes)), yticklabels=list(entries))
         for k, size in enumerate(sizes):
             if size > 0:

@@ -20,7 +20,7 @@ from refimpl.operators.transforms import allowed_threads
 
 Complex = NDArray[np.complex128]
 
-_FEW = 50_000
+_FEW = 50_000  # numbers of a symbol up to which NumPy multiplies quicker by complex ones
 
 
 class Library(Protocol):
