@@ -89,4 +89,4 @@ class Flexibility:
         return local_friction(self._problem.friction, pressure, support)
 
     def _pulled_by_tau(self, support: Mask) -> Array:
-        return np.where(support, self._problem.friction.tau, 0.0)
+        return self._problem.friction.tau * support.astype(np.float64)

@@ -4,7 +4,9 @@
 it, the support of tau can chase the contact set in a cycle. The rule, for every solver: start from
 no tau anywhere; solve; give tau to the elements in contact; repeat. When a support returns, the
 elements that changed within that cycle are withheld from tau for good, and the iteration goes on.
-The withheld set only grows, so it ends.
+So are those that leave the support for the third time: where many elements flip by themselves, each at
+its own pace, the support as a whole hardly ever returns. Between two such events supports only grow, so
+it ends.
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ from refimpl.grid import Array
 from refimpl.scene import Friction
 
 Mask = NDArray[np.bool_]
+
+_OFTEN = 3  # times that an element leaves tau's support; in cycles of two it is mostly noticed before
 
 
 def local_friction(friction: Friction, pressure: Array, support: Mask) -> Array:
@@ -43,26 +47,38 @@ class TauSupport:
         self.withheld: Mask = np.zeros(shape, dtype=bool)
         self.settled = False
         self.cycle: tuple[Mask, ...] = ()
+        self._left = np.zeros(shape, dtype=np.uint8)
         self._history: list[Mask] = [self.current]
 
     def next(self, contact: Mask) -> Mask:
         """The support for the next solve, given the contact set of the last.
 
-        Sets ``settled`` when it is the last one again, and ``cycle`` to the supports of a cycle that
-        this contact set closes (else to none).
+        Sets ``settled`` when it is the last one again, and ``cycle`` to the supports, the present one last,
+        that elements withheld from now on were part of (to none, if none are): a cycle's that this contact
+        set closes, or the one that they leave once too often.
         """
         self.cycle = ()
         support = contact & ~self.withheld
         self.settled = bool(np.array_equal(support, self.current))
         if self.settled:
             return support
-        for k in range(len(self._history) - 1):
-            if np.array_equal(support, self._history[k]):
-                self.cycle = tuple(self._history[k:])
-                self.withheld = self.withheld | (np.any(self.cycle, axis=0) & ~np.all(self.cycle, axis=0))
-                self._history = []
-                support = contact & ~self.withheld
-                break
+        leaving = self.current & ~support
+        self._left += leaving
+        flipping = leaving & (self._left == _OFTEN)
+        returned = self._first_seen(support)
+        if returned is not None:
+            self.cycle = tuple(self._history[returned:])
+            flipping = np.any(self.cycle, axis=0) & ~np.all(self.cycle, axis=0)
+        elif flipping.any():
+            self.cycle = (self.current,)
+        if self.cycle:
+            self.withheld = self.withheld | flipping
+            self._history = []
+            support = contact & ~self.withheld
         self._history.append(support)
         self.current = support
         return support
+
+    def _first_seen(self, support: Mask) -> int | None:
+        """When this support was current before, since elements were last withheld."""
+        return next((k for k, seen in enumerate(self._history) if np.array_equal(support, seen)), None)

@@ -254,7 +254,7 @@ def _solution(
         certificate=state.certificate,
         tolerance=tolerance,
         uncertainty=merged(
-            _cycle_spread(outcome, found),
+            _cycle_spread(problem, outcome, found, load),
             uncertainty_left_out(
                 changes,
                 float(state.traction.sum()) / total if total else 0.0,
@@ -277,12 +277,22 @@ def _final_status(status: Status, state: State, tolerance: float) -> Status:
     return status
 
 
-def _cycle_spread(outcome: Outcome, found: Visited) -> dict[str, dict[str, float]]:
-    """How far mu and A of the states of tau's cycles lie from the settled ones."""
+def _cycle_spread(
+    problem: Problem, outcome: Outcome, found: Visited, load: float
+) -> dict[str, dict[str, float]]:
+    """How far mu and A of the states of tau's cycles lie from the settled ones.
+
+    For mu no less than all of tau on the contacts that it is withheld from: where tau comes on with pressure,
+    however soon, they bear a share of it (see `verification.cases.tau_shares`).
+    """
     if not outcome.visited:
         return {}
-    names = Visited._fields
-    return {
-        name: {"tau support": max(abs(getattr(v, name) - getattr(found, name)) for v in outcome.visited)}
-        for name in names
+    spread = {
+        name: max(abs(getattr(v, name) - getattr(found, name)) for v in outcome.visited)
+        for name in Visited._fields
     }
+    spared = np.count_nonzero(outcome.withheld & (outcome.pressure > 0)) * problem.grid.element_area
+    spread["friction_coefficient"] = max(
+        spread["friction_coefficient"], float(problem.friction.tau * spared / load) if load else 0.0
+    )
+    return {name: {"tau support": width} for name, width in spread.items()}

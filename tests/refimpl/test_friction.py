@@ -71,6 +71,35 @@ def test_what_came_before_the_cycle_does_not_count() -> None:
     np.testing.assert_array_equal(rule.withheld, mask(".x.."))
 
 
+def test_what_leaves_for_the_third_time_is_withheld_though_no_support_returns() -> None:
+    """The others go on as they are; the state told is the one that it leaves."""
+    on_and_off = ("x.....", ".x....", "x.x...", "...x..", "x...x.")
+    rule = play(*on_and_off)
+    assert rule.cycle == ()
+    np.testing.assert_array_equal(rule.current, mask("x...x."))
+    rule.next(mask(".....x"))
+    assert [list(state) for state in rule.cycle] == [list(mask("x...x."))]
+    np.testing.assert_array_equal(rule.withheld, mask("x....."))
+    np.testing.assert_array_equal(rule.current, mask(".....x"))
+    rule.next(mask("x....x"))
+    assert rule.settled
+    assert rule.cycle == ()
+
+
+def test_elements_that_flip_each_at_its_own_pace_settle_soon() -> None:
+    """Contact goes round in groups of 2, 3, 5 and 7: together they return after 210 supports."""
+    groups = np.split(np.arange(17), [2, 5, 10])
+    rule, contact = TauSupport((17,)), np.zeros(17, dtype=bool)
+    contact[[0, 2, 5, 10]] = True
+    for _ in range(3 * 7 + 1):
+        rule.next(contact)
+        for group in groups:
+            contact[group] = np.roll(contact[group], 1)
+    assert rule.withheld.all()
+    rule.next(contact)
+    assert rule.settled
+
+
 @settings(derandomize=True, deadline=None, max_examples=100)
 @given(st.integers(1, 5), st.integers(0, 2**32 - 1))
 def test_it_ends_whatever_contact_answers(n: int, seed: int) -> None:
@@ -78,8 +107,8 @@ def test_it_ends_whatever_contact_answers(n: int, seed: int) -> None:
     random = np.random.default_rng(seed)
     answer = random.integers(0, 2, (2**n, n)).astype(bool)
     rule, count = TauSupport((n,)), 0
-    # each of at most n + 1 withheld sets lasts for at most 2^n + 1 supports
-    for _ in range((n + 1) * (2**n + 1) + 1):
+    # between two of at most 3 n supports that elements leave, supports grow at most n times
+    for _ in range((3 * n + 1) * (n + 1)):
         rule.next(answer[int(rule.current @ 2 ** np.arange(n))])
         assert int(rule.withheld.sum()) >= count
         assert not np.any(rule.current & rule.withheld)

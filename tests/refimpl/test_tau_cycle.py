@@ -23,6 +23,7 @@ from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
 from refimpl.problem import Problem, Terms, pose
 from tests.refimpl.levels import BALL, level, posed
+from verification.coverage import scenes as study
 
 
 def test_a_cycle_longer_than_two_is_settled() -> None:
@@ -194,3 +195,30 @@ def test_tau_that_moves_nothing_costs_nothing() -> None:
     )
     assert np.abs(still.pressure - rubbed.pressure).max() <= 1e-14 * still.max_pressure
     assert still.cost.applications == rubbed.cost.applications
+
+
+def test_a_support_that_wanders_settles() -> None:
+    """Many elements flip, each at its own pace: no support returned within 200 states, 1776 steps."""
+    found = rf.solve(study.random_scene(2047).scene, 256)
+    assert found.status is rf.Status.CYCLED
+    assert sum(found.cost.iterations.values()) < 400
+    assert 0 < found.uncertainty["friction_coefficient"]["tau support"] < 1e-2 * found.friction_coefficient
+
+
+def test_what_leaves_too_often_is_withheld_by_both_solvers() -> None:
+    """A scene where that happens on a grid for the dense one, found among 1000."""
+    by_fft, dense = (rf.solve(study.random_scene(910).scene, 32, method=m) for m in ("fft", "dense"))
+    assert by_fft.withheld.any()
+    assert np.array_equal(by_fft.withheld, dense.withheld)
+    assert by_fft.friction_coefficient == pytest.approx(dense.friction_coefficient, rel=1e-12)
+
+
+def test_the_bar_of_taus_support_holds_all_of_tau_where_it_is_withheld() -> None:
+    """In this scene the states on the cycle differ by half as much, and by less than laws without a jump."""
+    scene = study.random_scene(2071).scene
+    found = rf.solve(scene, 128)
+    spared = np.count_nonzero(found.withheld & (found.pressure > 0)) * found.grid.element_area
+    assert spared > 0
+    bar = found.uncertainty["friction_coefficient"]["tau support"]
+    assert bar == pytest.approx(scene.friction.tau * spared / scene.load, rel=1e-12)
+    assert "tau support" in found.uncertainty["contact_area"]
