@@ -41,8 +41,16 @@ class Target(NamedTuple):
         return (self.module, *self.tests)
 
 
+def _alone(*names: str) -> tuple[str, ...]:
+    return tuple(f"tests/refimpl/test_{name}.py" for name in names)
+
+
 def _tests(*names: str) -> tuple[str, ...]:
-    return (*(f"tests/refimpl/test_{name}.py" for name in names), *INVARIANTS)
+    return (*_alone(*names), *INVARIANTS)
+
+
+BARS = ("accuracy_summits", "accuracy_climb", "unevenness", "first_touch", "accuracy_estimates")
+SURFACES = _alone("surfaces", "surfaces_statistics", "surfaces_gaussian", "surfaces_measured")
 
 
 TARGETS = (
@@ -74,9 +82,30 @@ TARGETS = (
     Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "start", "solve")),
     Target("equilibrium", "refimpl/flexibility.py", _tests("flexibility", "level_updates")),
     Target("equilibrium", "refimpl/tau_path.py", _tests("tau_path", "tau_cycle")),
+    Target("equilibrium", "refimpl/mixing.py", _alone("mixing", "fft_solver")),
+    Target("equilibrium", "refimpl/updates.py", _alone("updates", "level_solver", "fft_solver")),
     Target("equilibrium", "refimpl/fft_solver.py",
            _tests("fft_solver", "level_updates", "start", "solve", "solve_full_contact", "tau_cycle")),
     Target("equilibrium", "refimpl/level_solver.py",
            _tests("level_solver", "level_updates", "fft_solver", "solve", "solve_full_contact", "tau_cycle")),
+    Target("error bars", "refimpl/estimate.py", _alone(*BARS)),
+    Target("error bars", "refimpl/discretisation.py", _alone(*BARS)),
+    Target("error bars", "refimpl/grid_result.py", _alone("summit", *BARS)),
+    Target("error bars", "refimpl/summit.py", _alone("summit", *BARS)),
+    Target("error bars", "refimpl/first_touch.py", _alone("first_touch", *BARS)),
+    Target("error bars", "refimpl/uncertainty.py", _alone("accuracy", *BARS)),
+    Target("error bars", "refimpl/refine.py", _alone("accuracy_climb", "accuracy", "accuracy_estimates")),
+    Target("error bars", "refimpl/coefficient_error.py", _alone("coefficient_error", "plan_validity")),
+    Target("error bars", "refimpl/element_error.py", _alone("element_error")),
+    Target("bounds", "refimpl/contact/bounds.py", _alone("bounds")),
+    Target("bounds", "refimpl/contact/energy_norm.py", _alone("bounds", "preconditioner")),
+    Target("sensitivity", "refimpl/fixed_set.py", _alone("fixed_set", "sensitivity")),
+    Target("sensitivity", "refimpl/sensitivity.py", _alone("sensitivity")),
+    Target("sensitivity", "refimpl/parameters.py", _alone("sensitivity")),
+    Target("sensitivity", "refimpl/budget.py", _alone("sensitivity_budget")),
+    *(Target("surfaces", f"refimpl/surfaces/{name}.py", SURFACES)
+      for name in ("bicubic", "gaps", "gaussian", "levelling", "measured", "noise", "shapes", "statistics",
+                   "window")),
+    Target("surfaces", "refimpl/materials.py", _alone("materials")),
 )  # fmt: skip
 """What the mutation score speaks of."""
