@@ -86,6 +86,8 @@ def test_a_looser_certificate_has_a_larger_iteration_part() -> None:
     scene = sliding_ball(0.3e-6, 1)
     loose, tight = (rf.solve(scene, grid=64, tolerance=t) for t in (1e-3, 1e-10))
     assert loose.certificate.worst > tight.certificate.worst
+    numbers = ("approach", "binormal_force", "contact_area", "friction_coefficient", "friction_force")
+    assert sorted(iteration_parts(loose)) == [*numbers, "max_pressure", "normal_force"]
     pulled = replace(loose, normal_force=-loose.normal_force)  # steep slopes can do that at an approach
     assert iteration_parts(pulled)["binormal_force"] == iteration_parts(loose)["binormal_force"]
     for name, parts in iteration_parts(tight).items():

@@ -81,7 +81,8 @@ def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_remark(monkeypatch: 
         load=0.05,
         side=50e-6,
     )
-    monkeypatch.setattr("refimpl.refine.climb", partial(climb, ladder=(64,)))
+    refine = rf.solve.__globals__["refine"]  # the one in use, whatever has imported its module again
+    monkeypatch.setitem(refine.__globals__, "climb", partial(climb, ladder=(64,)))
     found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
     assert found.status is rf.Status.ITERATION_LIMIT
     assert "max_pressure is not bounded, let alone to 0.05" in " ".join(found.warnings)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import optimize, stats
 
 import refimpl as rf
 from refimpl import discretisation
@@ -60,6 +60,26 @@ def test_a_bar_is_exceeded_by_5_percent_of_a_normal_distribution(distance: float
     bar = Estimate(2.0, 0.5).bar(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
     shift = distance * stats.norm.ppf(0.975)
     assert stats.norm.sf(bar - shift) + stats.norm.sf(bar + shift) == pytest.approx(0.05, rel=1e-6)
+
+
+def test_finer_grids_are_foretold_a_nearer_number_and_a_shorter_spread() -> None:
+    """By the first and the second of its orders, each in its own way."""
+    still = Estimate(1.0, 0.8, orders=(1.0, 2.0))
+    assert still.foretold(1.0, 0.25) == pytest.approx(0.05)
+    assert still.foretold(21.0, 0.25) == pytest.approx(Estimate(1.0, 0.05).bar(6.0))
+
+
+@pytest.mark.parametrize("grids", [1, 2, 3])
+def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) -> None:
+    """Nine nodes at one place are one node, however their tails are summed."""
+    for seed in range(20):
+        draw = np.random.default_rng(seed)
+        values, sizes = 1 + draw.normal(0, 0.1, grids), draw.uniform(0.1, 0.3, grids)
+        weights, prior = np.ones(grids), Prior(0.05, 2.0)
+        found = line(values, weights, prior, Bias(sizes, 0.7, 0.0))
+        alone = line(values - 0.7 * sizes, weights, prior)
+        assert found.value == pytest.approx(alone.value, rel=1e-12)
+        assert found.spread == pytest.approx(alone.spread, rel=2e-4)  # as closely as bounds are sought
 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
@@ -240,6 +260,44 @@ def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
     found = [line(row, weights, AREA, bias) for row in values]
     share = np.mean([abs(estimate.value) <= estimate.spread for estimate in found])
     assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
+
+
+def integrated(values: Array, weights: Array, prior: Prior, bias: Bias) -> tuple[float, float]:
+    """Value and 95 % bound of the model, its factor integrated over 1001 points instead of nine nodes."""
+    factor = bias.mean + bias.spread * np.linspace(-6, 6, 1001)
+    precision = weights**-2.0
+    rest = values - factor[:, None] * bias.sizes
+    centre = rest @ precision / precision.sum()
+    freedom = prior.weight + len(values) - 1
+    squares = (rest - centre[:, None]) ** 2 @ precision
+    variance = (prior.weight * prior.scatter**2 + squares) / freedom
+    share = stats.norm.pdf(factor, bias.mean, bias.spread) * variance ** (-0.5 * freedom)
+    share /= share.sum()
+    value, scale = float(share @ centre), np.sqrt(variance / precision.sum())
+
+    def outside(bound: float) -> float:
+        either = (bound - (centre - value), bound + (centre - value))
+        return sum(float(share @ stats.t.sf(side / scale, freedom)) for side in either)
+
+    widest = 100 * float(scale.max() + np.abs(centre - value).max())
+    return value, float(optimize.brentq(lambda bound: outside(bound) - 0.05, 0.0, widest))
+
+
+def test_nine_nodes_do_for_the_factors_integral() -> None:
+    """Of 100 ladders nine in ten have bounds within 1.5 % of the integral's, and all within 12 %."""
+    off = []
+    for seed in range(100):
+        draw = np.random.default_rng(seed)
+        spacing = np.sort(draw.uniform(0.2, 1.0, draw.integers(1, 5)))[::-1]
+        weights, sizes = (spacing / spacing[-1]) ** 1.5, spacing * draw.uniform(0.02, 0.3)
+        prior = AREA._replace(scatter=0.2 * draw.uniform(0.01, 0.05))
+        scatter = prior.scatter * weights * draw.standard_normal(len(spacing))
+        bias = Bias(sizes, EDGE_SIZE, EDGE_SIZE_SPREAD)
+        values = 1 + sizes * draw.normal(EDGE_SIZE, EDGE_SIZE_SPREAD) + scatter
+        found, (value, bound) = line(values, weights, prior, bias), integrated(values, weights, prior, bias)
+        off.append((abs(found.value - value) / bound, abs(found.spread / bound - 1)))
+    assert np.all(np.quantile(off, 0.9, axis=0) < (5e-5, 0.02))
+    assert np.max(off) < 0.15
 
 
 def test_zeros_are_exact() -> None:

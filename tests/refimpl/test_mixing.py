@@ -68,6 +68,16 @@ def test_only_the_last_differences_are_remembered(monkeypatch: pytest.MonkeyPatc
     np.testing.assert_allclose(mixed._products, expected, rtol=1e-13)
 
 
+def test_differences_that_are_alike_but_for_little_count_once() -> None:
+    """What they differ by is nobody's: a step that makes use of it would be a thousand times as long."""
+    mixed = Mixing()
+    for x, lack in ((0.0, (4.0, 1e-3)), (1.0, (3.0, 1e-3)), (2.0, (2.0, 1e-3 + 1e-6))):
+        held = np.array([[x, 0.0]])
+        found = mixed.mixed(held, held + np.array([lack]))
+    assert found[0, 0] == pytest.approx(4.0, rel=1e-6)  # there nothing lacks along what they have in common
+    assert found[0, 1] == pytest.approx(0.5e-3, rel=1e-2)
+
+
 def test_where_nothing_is_lacking_nothing_moves() -> None:
     """Differences of zero are remembered, and taken back as often as one likes."""
     mixed, x = Mixing(), np.array([[1.0, 2.0]])

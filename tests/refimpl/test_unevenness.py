@@ -7,8 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from refimpl.grid_result import unevenness
+import refimpl as rf
+from refimpl.grid import Array
+from refimpl.grid_result import GridResult, unevenness
 from refimpl.slopes import Slopes
+from verification.coverage.scenes import random_scene
 
 
 def test_unevenness_knows_no_direction_and_nothing_where_there_is_nothing() -> None:
@@ -44,3 +47,37 @@ def test_unevenness_of_a_resolved_surface_falls_as_the_cube_of_the_spacing() -> 
         )
 
     assert waves(64) / waves(128) == pytest.approx(8, rel=0.02)
+
+
+def bend(line: Array, k: int) -> float:
+    """The second difference at an element, of its neighbour's where it is the last."""
+    if len(line) < 3:
+        return 0.0
+    k = min(max(k, 1), len(line) - 2)
+    return float(line[k - 1] - 2 * line[k] + line[k + 1])
+
+
+@pytest.mark.parametrize("shape", [(5, 6), (2, 5), (5, 2), (1, 4)])
+@pytest.mark.parametrize("everywhere", [True, False])
+def test_unevenness_is_what_elements_one_by_one_add_up_to(shape: tuple[int, int], everywhere: bool) -> None:
+    draw = np.random.default_rng(8)
+    pressure = draw.uniform(0.5, 1, shape)
+    pressure[-1, 1] = 0.0
+    if not everywhere:
+        pressure[0] = 0.0 if shape[0] > 1 else pressure[0]
+    tans = draw.normal(size=(2, *shape))
+    squares = sum(
+        (pressure[i, j] * bend(line, k)) ** 2
+        for i, j in np.ndindex(*shape)
+        for tan in tans
+        for line, k in ((tan[:, j], i), (tan[i], j))
+    )
+    assert unevenness(pressure, Slopes(*tans)) == pytest.approx(math.sqrt(squares / 12) / pressure.sum())
+
+
+def test_a_grids_result_keeps_what_the_solution_states_beside_its_discretisation() -> None:
+    found = rf.solve(random_scene(2047).scene, 64)
+    assert found.status is rf.Status.CYCLED
+    kept = GridResult.of(found).parts["friction_coefficient"]
+    assert set(kept) == {"iteration", "tau support"}
+    assert kept["tau support"] == found.uncertainty["friction_coefficient"]["tau support"]

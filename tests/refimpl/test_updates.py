@@ -29,11 +29,12 @@ def test_two_in_a_row_that_bring_much_back_are_mixed(brought: tuple[float, ...],
     assert (updates.mixing is not None) is mixed
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e-6])
 @pytest.mark.parametrize(("residuals", "mixed"), [([0.51] * 5, True), ([0.51] * 4 + [0.49], False)])
-def test_five_that_do_not_halve_the_best_are_mixed(residuals: list[float], mixed: bool) -> None:
-    updates = begun()
+def test_five_that_do_not_halve_the_best_are_mixed(residuals: list[float], mixed: bool, unit: float) -> None:
+    updates = Updates(unit, lags=True, strong=False)
     for residual in residuals:
-        updates.led_to(residual, 0.0)
+        updates.led_to(residual * unit, 0.0)
     assert (updates.mixing is not None) is mixed
     assert not updates.given_up
 
