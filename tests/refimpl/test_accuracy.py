@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import refimpl as rf
@@ -97,6 +98,26 @@ def test_a_looser_certificate_has_a_larger_iteration_part() -> None:
         assert abs(getattr(loose, name) - getattr(tight, name)) <= parts["iteration"] + 1e-8 * abs(
             getattr(tight, name)
         ), name
+
+
+def test_elements_within_ten_residuals_of_changing_sides_make_the_areas_part() -> None:
+    """Of pressures those below a hundredth of the peak, of clearances those below one of the approach."""
+    solved = rf.solve(sliding_ball(0.3e-6, 1), grid=16)
+    off = replace(solved.certificate, **(dict.fromkeys(vars(solved.certificate), 0.0) | {"gap": 1e-3}))
+    assert off.worst == 1e-3
+    pressure, clearance = np.zeros((16, 16)), np.full((16, 16), 1.0)
+    pressure[0, :6] = 1e6, 0.0101e6, 0.0099e6, 0.0096e6, 1.0, 0.5e6
+    clearance[0] = 0.0
+    clearance[0, 6:] = 1.0
+    clearance[1, :5] = np.array([0.0, 0.0096, 0.0099, 0.0101, 0.5]) * solved.approach
+    found = replace(solved, certificate=off, pressure=pressure, clearance=clearance, max_pressure=1e6)
+    area = 6 * solved.grid.element_area
+    parts = iteration_parts(found)
+    assert parts["contact_area"]["iteration"] == pytest.approx(area)
+    tau, force = solved.friction.tau, solved.normal_force
+    mu, friction = solved.friction_coefficient, solved.friction_force
+    assert parts["friction_force"]["iteration"] == pytest.approx(1e-3 * friction + tau * area)
+    assert parts["friction_coefficient"]["iteration"] == pytest.approx(1e-3 * mu + tau * area / force)
 
 
 def test_parts_are_merged_by_number_and_name() -> None:

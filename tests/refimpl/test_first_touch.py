@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
 from functools import cache
 
@@ -11,7 +12,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.discretisation import estimates
-from refimpl.first_touch import first_touch, missed, missed_share, touched
+from refimpl.first_touch import TOUCH, first_touch, missed, missed_share, touched
 from refimpl.grid_result import GridResult
 from refimpl.solution import REPORTED
 from refimpl.summit import LEVEL, Summit
@@ -98,6 +99,15 @@ def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
     assert math.isinf(first_touch(lone))
     assert all(math.isinf(bound) for bound in missed(lone).values())
     assert all(math.isinf(estimate.spread) for estimate in estimates([lone]).values())
+
+
+def test_a_force_that_numbers_hold_no_longer_further_up_leaves_everything_open() -> None:
+    """Two standard deviations are half of the approach: of the force 0.54 is left."""
+    for force, open_ends in ((1.8, True), (1.9, False)):
+        least = {**pressed(64).numbers, "normal_force": force * sys.float_info.min}
+        touch = Summit(0.0, 0.25 * least["approach"] / TOUCH, 0.0)
+        bounds = missed(replace(pressed(64), numbers=least, touch=touch))
+        assert math.isinf(bounds["contact_area"]) is open_ends
 
 
 def test_shear_that_bears_the_whole_force_leaves_everything_open() -> None:

@@ -121,6 +121,16 @@ def test_at_a_border_a_field_stays_as_it_is() -> None:
     assert corners == [Summit(5.25, 2.0, 2 / 3)] * 4
 
 
+def test_of_elements_that_are_equally_high_all_are_looked_at() -> None:
+    """The parabola through the one beside the deeper neighbour peaks higher: its field turned as well."""
+    row = np.array([0.0, 0.0, 3.0, 3.0, 2.0, 0.0, 0.0])
+    field = np.zeros((7, 7))
+    field[3] = row
+    found = highest(field)
+    assert found.height == pytest.approx(3 + 9 / 24)
+    assert highest(field[:, ::-1]) == highest(field.T) == highest(field.T[::-1]) == found
+
+
 def test_level_and_empty_fields_have_no_relief() -> None:
     assert highest(np.zeros((5, 5))) == LEVEL
     assert deepest(np.zeros((5, 5))) == LEVEL

@@ -1,4 +1,4 @@
-"""How far slopes that bend from element to element leave mu open."""
+"""What a grid's result keeps: how far slopes that bend leave mu open, which edge elements are alike."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.grid_result import GridResult, unevenness
+from refimpl.grid_result import GridResult, alike, unevenness
 from refimpl.slopes import Slopes
 from verification.coverage.scenes import random_scene
 
@@ -20,7 +20,7 @@ def test_unevenness_knows_no_direction_and_nothing_where_there_is_nothing() -> N
     slopes = Slopes(draw.normal(size=pressure.shape), draw.normal(size=pressure.shape))
     found = unevenness(pressure, slopes)
     assert found == pytest.approx(unevenness(pressure.T, Slopes(slopes.tan_y.T, slopes.tan_x.T)))
-    assert found == pytest.approx(unevenness(2 * pressure, slopes))
+    assert found == pytest.approx(unevenness(1e-3 * pressure, slopes))
     assert unevenness(np.zeros((4, 4)), Slopes(np.eye(4), np.eye(4))) == 0.0
     assert unevenness(np.ones((4, 4)), Slopes.flat((4, 4))) == 0.0
     assert unevenness(np.ones((2, 2)), Slopes(np.eye(2), np.eye(2))) == 0.0
@@ -73,6 +73,15 @@ def test_unevenness_is_what_elements_one_by_one_add_up_to(shape: tuple[int, int]
         for line, k in ((tan[:, j], i), (tan[i], j))
     )
     assert unevenness(pressure, Slopes(*tans)) == pytest.approx(math.sqrt(squares / 12) / pressure.sum())
+
+
+def test_images_that_differ_by_one_element_count_by_their_edge() -> None:
+    """A square without a corner: two images of eight are itself, six lack another corner of 26 edges."""
+    contact = np.zeros((9, 9), dtype=bool)
+    contact[1:7, 2:8] = True
+    contact[1, 2] = False
+    assert alike(contact) == pytest.approx(2 + 6 * (1 - 4 * 2 / 26))
+    assert alike(contact[:, ::-1]) == pytest.approx(alike(contact))
 
 
 def test_a_grids_result_keeps_what_the_solution_states_beside_its_discretisation() -> None:
