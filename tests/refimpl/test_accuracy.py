@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.refine import OPENING, refine
 from refimpl.uncertainty import iteration_parts, merged
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
@@ -47,6 +49,23 @@ def test_a_tighter_accuracy_takes_a_finer_grid() -> None:
     assert set(rough.cost.iterations) < set(fine.cost.iterations)
 
 
+def test_the_cost_is_that_of_all_grids() -> None:
+    scene, solved = sliding_ball(0.3e-6, 1), list[rf.Solution]()
+
+    def solve_at(M: int) -> rf.Solution:
+        solved.append(rf.solve(scene, M, tolerance=1e-5))
+        return solved[-1]
+
+    cost = refine(solve_at, 0.02, "friction_coefficient").cost
+    assert len(solved) > len(OPENING)
+    costs = [solution.cost for solution in solved]
+    assert cost.seconds == pytest.approx(sum(one.seconds for one in costs))
+    assert cost.point_logs == pytest.approx(sum(one.point_logs for one in costs))
+    for name in ("applications", "iterations"):
+        counts = [Counter(getattr(one, name)) for one in costs]
+        assert getattr(cost, name) == sum(counts, Counter())
+
+
 def test_another_quantity_can_be_asked_for() -> None:
     found = rf.solve(sliding_ball(0.3e-6, 1), accuracy=0.2, quantity="contact_area")
     assert bar(found, "contact_area") <= 0.2 * found.contact_area
@@ -64,7 +83,7 @@ def test_grid_or_accuracy_and_not_both(arguments: dict[str, float]) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [{"accuracy": 0.0}, {"accuracy": 2}, {"accuracy": 0.1, "quantity": "F"}]
+    "arguments", [{"accuracy": 0.0}, {"accuracy": 1.0}, {"accuracy": 2}, {"accuracy": 0.1, "quantity": "F"}]
 )
 def test_bad_accuracies_are_refused(arguments: dict[str, object]) -> None:
     with pytest.raises(rf.InputError):

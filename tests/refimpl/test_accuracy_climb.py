@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import partial
 
@@ -43,6 +44,21 @@ def test_a_peaks_bar_is_foretold_to_fall_as_the_square(accuracy: float) -> None:
     bar, coarser = (relative_bar([*opened, made_up(grid)], "max_pressure") for grid in (M, M * 3 // 4))
     assert bar <= accuracy < coarser
     assert estimates(opened)["max_pressure"].orders == (2.0, 2.0)
+
+
+def test_what_a_grid_itself_leaves_open_is_foretold_to_fall_as_the_spacing() -> None:
+    """Tau's support, say: 8 % of the peak on 64 elements a side are 2 % on 256, and its own bar is little."""
+    open_to = {"max_pressure": {"tau support": 0.08 * PEAK}}
+    opened = [replace(made_up(M), parts=open_to) for M in OPENING]
+    assert next_grid(opened, 0.0235, "max_pressure", LADDER) == 256
+    assert next_grid(opened, 0.0205, "max_pressure", LADDER) == 320
+
+
+def test_a_zero_that_is_exact_has_no_bar() -> None:
+    opened = [made_up(M) for M in OPENING]
+    assert relative_bar(opened, "binormal_force") == 0.0
+    slanted = replace(opened[-1], parts={"binormal_force": {"iteration": 1e-9}})
+    assert relative_bar([opened[0], slanted], "binormal_force") == math.inf
 
 
 @pytest.mark.parametrize("roughness", [0.9, 1.0])
