@@ -199,6 +199,19 @@ def test_what_an_edge_leaves_open_of_forces_goes_with_the_load() -> None:
     )  # Student's t
 
 
+def test_what_an_edge_leaves_open_of_forces_goes_with_the_finest_grids_load() -> None:
+    def spread(*loads: float) -> float:
+        results = [made_up(M, unevenness=0.01) for M in (32, 64)]
+        forces = [{"normal_force": load, "binormal_force": 5.0} for load in loads]
+        several = zip(results, forces, strict=True)
+        return estimates([replace(r, numbers={**r.numbers, **f}) for r, f in several])[
+            "binormal_force"
+        ].spread
+
+    assert spread(700.0, 70.0) == pytest.approx(spread(70.0, 70.0))
+    assert spread(70.0, 700.0) > 5 * spread(70.0, 70.0)
+
+
 def test_single_elements_leave_mu_open_too() -> None:
     """Once 0.3 +- 0.03 of a surface of noise, whose finer grids found 0.1."""
     area = 12 * (SIDE / 64) ** 2

@@ -71,6 +71,15 @@ def test_what_came_before_the_cycle_does_not_count() -> None:
     np.testing.assert_array_equal(rule.withheld, mask(".x.."))
 
 
+def test_supports_from_before_a_cycle_was_settled_are_forgotten() -> None:
+    """Without its elements contact is another function of the support."""
+    rule = play("x..", ".x.", "x..")
+    np.testing.assert_array_equal(rule.current, mask("..."))
+    for contact in ("..x", "xx."):
+        rule.next(mask(contact))
+    assert [list(support) for support in rule.cycle] == [list(mask("...")), list(mask("..x"))]
+
+
 def test_what_leaves_for_the_third_time_is_withheld_though_no_support_returns() -> None:
     """The others go on as they are; the state told is the one that it leaves."""
     on_and_off = ("x.....", ".x....", "x.x...", "...x..", "x...x.")

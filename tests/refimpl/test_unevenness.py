@@ -82,6 +82,7 @@ def test_images_that_differ_by_one_element_count_by_their_edge() -> None:
     contact[1, 2] = False
     assert alike(contact) == pytest.approx(2 + 6 * (1 - 4 * 2 / 26))
     assert alike(contact[:, ::-1]) == pytest.approx(alike(contact))
+    assert alike(contact & False) == 1.0
 
 
 def test_a_grids_result_keeps_what_the_solution_states_beside_its_discretisation() -> None:

@@ -19,7 +19,13 @@ def test_mixing_is_there_from_the_first_where_a_coarser_grid_needed_it() -> None
 
 @pytest.mark.parametrize(
     ("brought", "mixed"),
-    [((0.31, 0.31), True), ((0.31, 0.29, 0.31), False), ((0.29, 0.29, 0.29), False), ((2.0,), False)],
+    [
+        ((0.31, 0.31), True),
+        ((0.31, 0.29, 0.31), False),
+        ((0.29, 0.31, 0.31), True),
+        ((0.29, 0.29, 0.29), False),
+        ((2.0,), False),
+    ],
 )
 def test_two_in_a_row_that_bring_much_back_are_mixed(brought: tuple[float, ...], mixed: bool) -> None:
     """One may be a contact that opens."""
