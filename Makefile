@@ -29,7 +29,7 @@ nightly: $(READY)
 	$(BIN)/python -m verification.properties --examples 10000 --seed $$(date +%Y%m%d) --json $(OUT)/hypothesis.json
 
 # Small faults that the tests must notice, in a copy of the committed tree; resumed, and extended by a larger N.
-N := 310
+N := 450
 mutation: $(READY)
 	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e ".[mutation]"
 	rm -rf $(OUT)/mutated && git clone -q . $(OUT)/mutated

@@ -55,7 +55,8 @@ _ITERATIONS = 200
 class EnergyNorm:
     """``a`` on the whole grid of a problem, plus ``lift K K'`` where the scene is periodic.
 
-    ``floor`` is a lower bound of the smallest eigenvalue, ``diagonal`` the largest entry ``a_ii`` (m/Pa).
+    ``floor`` is a lower bound of the smallest eigenvalue, ``diagonal`` the first diagonal entry (m/Pa): no
+    ``a_ii`` is larger, as all are alike and the lift only adds to it.
     """
 
     def __init__(self, problem: Problem, K: Array) -> None:
@@ -105,7 +106,7 @@ class EnergyNorm:
         for _ in range(_ITERATIONS):
             energy = float(np.vdot(z, right - residual))
             left = float(np.vdot(residual, residual))
-            if left == 0 or left <= _ENOUGH**2 * self.floor * energy:
+            if left <= _ENOUGH**2 * self.floor * energy:
                 break
             step = np.where(where, self._precondition(residual), 0.0)
             last, product = product, float(np.vdot(residual, step))

@@ -35,4 +35,4 @@ def _spline(values: Array, at: Array) -> Array:
 
 def _reach(at: Array, n: int) -> slice:
     low, high = int(np.floor(at.min())) - MEMORY, int(np.ceil(at.max())) + MEMORY + 1
-    return slice(max(low, 0), min(max(high, 4), n))
+    return slice(max(min(low, n - 4), 0), min(max(high, 4), n))

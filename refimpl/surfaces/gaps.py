@@ -28,7 +28,7 @@ def fill(heights: Array, pixel: tuple[float, float]) -> Array:
     filled = heights.copy()
     if not missing.any():
         return filled
-    unknown = np.full(heights.shape, -1)
+    unknown = np.empty(heights.shape, dtype=np.intp)
     unknown[missing] = np.arange(missing.sum())
     diagonal, right = np.zeros(missing.sum()), np.zeros(missing.sum())
     rows, columns, weights = [], [], []

@@ -36,7 +36,8 @@ def _uniform_tile(seed: int, p: int, q: int) -> Array:
     key = np.array([seed, _STREAM], dtype=np.uint64)
     counter = np.array([0, 0, p % 2**64, q % 2**64], dtype=np.uint64)  # low words run within the tile
     words: NDArray[np.uint64] = np.random.Philox(key=key, counter=counter).random_raw(_TILE * _TILE)
-    return ((words >> np.uint64(11)).astype(np.float64) + 0.5).reshape(_TILE, _TILE) * 2.0**-53
+    uniform = ((words >> np.uint64(11)).astype(np.float64) + 0.5).reshape(_TILE, _TILE) * 2.0**-53
+    return np.minimum(uniform, 1 - 2.0**-53)  # the greatest word's would round to 1
 
 
 def _overlap(nodes: range, tile: int) -> tuple[slice, slice]:

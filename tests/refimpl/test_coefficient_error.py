@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import math
+from dataclasses import FrozenInstanceError
+from importlib import resources
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.coefficient_error import coefficient_error, slope_error
+from refimpl.coefficient_error import SlopeError, _table, coefficient_error, slope_error
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 SOFT, STIFF = rf.Material(E=1e9, nu=0.1), rf.Material(E=1e15, nu=0.1)
+TABLE = json.loads(resources.files("refimpl").joinpath("data", "coefficient_error.json").read_text("utf-8"))
+STEEPEST = math.radians(TABLE["slope_deg"][-1])
+Node = tuple[int, int, int]  # numbers of a slope, a wavelength and a position of the table
 
 
 def flat_neighbour(nu: float) -> float:
@@ -19,6 +25,75 @@ def flat_neighbour(nu: float) -> float:
     source = (np.arange(20000) + 0.5) / 10000 - 1
     log = np.log(np.abs(2 - source)) - np.log(np.abs(source))
     return float(2 * (1 - nu**2) / math.pi * log.mean() * 2)
+
+
+def tabulated(node: Node, nu: float) -> np.ndarray:
+    """Rough minus flat at x = -2 and 2 by the file's ``formula``; beyond the valley by its ``symmetry``."""
+    slope, wave, place = node
+    if place > 4:
+        return tabulated((slope, wave, 8 - place), nu)[::-1]
+    tangent, wavelength = math.tan(math.radians(TABLE["slope_deg"][slope])), TABLE["wavelength"][wave]
+
+    def s(x: float) -> float:
+        turn = 2 * math.pi * (x / wavelength + TABLE["position"][place])
+        return -tangent * wavelength / (2 * math.pi) * math.cos(turn)
+
+    found = []
+    for x in (-2, 2):
+        at = TABLE["offset"].index(x)
+        kappa, constant = (TABLE[part][slope][wave][place][at] for part in ("kappa_part", "constant_part"))
+        rest = tangent**2 * (1 + nu) * ((3 - 4 * nu) * kappa + constant)
+        found.append(rest - (1 + nu) * (1 - 2 * nu) * (s(x / 2) - s(0)))
+    return np.array(found)
+
+
+NODES = [(0, 5, 2), (2, 0, 3), (3, 3, 0), (4, 1, 1), (5, 2, 4)]
+
+
+@pytest.mark.parametrize("node", NODES)
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45])
+def test_tabulated_displacements_are_met(node: Node, nu: float) -> None:
+    """At the table's own points, the flat displacement being ``2 (1 - nu^2) / pi * 3 ln 3``."""
+    slope, wavelength = math.radians(TABLE["slope_deg"][node[0]]), TABLE["wavelength"][node[1]]
+    flat = 2 * (1 - nu**2) / math.pi * math.log(27)
+
+    def found(place: int, upper: rf.Material | None = None) -> float:
+        return coefficient_error(
+            slope, rf.Material(1e9, nu), upper, wavelength=wavelength, position=place / 8
+        )
+
+    expected = np.abs(tabulated(node, nu)).max() / flat
+    assert found(node[2]) == pytest.approx(expected, rel=1e-12)
+    # the upper body, three times as stiff, has its valley over the lower one's crest
+    opposite = (node[0], node[1], node[2] + 4)
+    both = tabulated(node, nu) + tabulated(opposite, nu) / 3
+    expected = np.abs(both).max() / (flat * (1 + 1 / 3))
+    assert found(node[2], rf.Material(3e9, nu)) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("node", [(0, 0, 0), (2, 4, 1), (4, 2, 3)])
+def test_halfway_between_eight_tabulated_points_is_their_mean(node: Node) -> None:
+    """An incompressible body has no first order; the table's parts are linear over tan, ln and position."""
+    corners = [tuple(np.add(node, step)) for step in np.ndindex(2, 2, 2)]
+    tangents = [math.tan(math.radians(TABLE["slope_deg"][corner[0]])) for corner in corners]
+    parts = [tabulated(c, 0.5) / tangent**2 for c, tangent in zip(corners, tangents, strict=True)]
+    tangent = (tangents[0] + tangents[-1]) / 2
+    found = coefficient_error(
+        math.atan(tangent),
+        rf.Material(1e9, 0.5),
+        wavelength=math.sqrt(TABLE["wavelength"][node[1]] * TABLE["wavelength"][node[1] + 1]),
+        position=(TABLE["position"][node[2]] + TABLE["position"][node[2] + 1]) / 2,
+    )
+    expected = np.abs(np.mean(parts, axis=0)).max() * tangent**2 / (1.5 / math.pi * math.log(27))
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_worst_position_is_the_default_and_so_is_the_longest_wave() -> None:
+    slope, flat = math.radians(10.0), 2 * 0.91 / math.pi * math.log(27)
+    worst = max(np.abs(tabulated((2, 5, place), 0.3)).max() for place in range(5)) / flat
+    assert coefficient_error(slope, STEEL) == pytest.approx(worst, rel=1e-12)
+    assert coefficient_error(slope, STEEL, wavelength=1e4) == coefficient_error(slope, STEEL)
+    assert coefficient_error(slope, STEEL, wavelength=256.0) == coefficient_error(slope, STEEL)
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.45])
@@ -35,6 +110,15 @@ def test_identical_bodies_keep_only_the_second_order() -> None:
     assert pair < 0.2 * one
     halved = coefficient_error(math.radians(2.5), STEEL, STEEL)
     assert pair / halved == pytest.approx(4, rel=0.05)
+
+
+def test_below_the_gentlest_tabulated_slope_the_second_order_is_exact() -> None:
+    gentlest = math.tan(math.radians(TABLE["slope_deg"][0]))
+    for nu in (0.1, 0.5):  # identical bodies, and one that couples nothing to first order
+        body, upper = rf.Material(1e9, nu), rf.Material(1e9, nu) if nu < 0.5 else None
+        least, third = (coefficient_error(math.atan(gentlest / n), body, upper) for n in (1, 3))
+        assert least / third == pytest.approx(9, rel=1e-12)
+    assert coefficient_error(0.0, STEEL) == 0.0
 
 
 def test_a_rigid_partner_changes_nothing() -> None:
@@ -56,11 +140,36 @@ def test_mirrored_positions_agree() -> None:
         assert first == pytest.approx(second, rel=1e-12)
 
 
-@pytest.mark.parametrize(("name", "value"), [("slope", 0.6), ("slope", math.nan), ("wavelength", 2.0)])
-def test_outside_the_table_is_refused(name: str, value: float) -> None:
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        ("slope", 0.6, "an angle of 0 to 0.5236 rad"),
+        ("slope", -1e-9, "an angle of 0 to 0.5236 rad"),
+        ("slope", math.nan, "an angle of 0 to 0.5236 rad"),
+        ("wavelength", 2.0, "at least 8 half-widths"),
+        ("wavelength", 7.999, "at least 8 half-widths"),
+        ("position", -1e-9, "a share of the wavelength, 0 to 1"),
+        ("position", 1.001, "a share of the wavelength, 0 to 1"),
+    ],
+)
+def test_outside_the_table_is_refused(name: str, value: float, allowed: str) -> None:
     arguments = {"slope": 0.1} | {name: value}
-    with pytest.raises(rf.InputError, match=name):
+    with pytest.raises(rf.InputError) as refusal:
         coefficient_error(lower=STEEL, **arguments)
+    assert str(refusal.value) == f"{name} = {value!r}: expected {allowed}"
+
+
+@pytest.mark.parametrize("version", [0, 2])
+def test_a_table_of_another_version_is_refused(version: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(json, "loads", lambda _: TABLE | {"version": version})
+    with pytest.raises(rf.InputError, match=rf"coefficient_error\.json = {version}: expected version 1"):
+        _table.__wrapped__()
+
+
+def test_the_tables_ends_belong_to_it() -> None:
+    shortest = coefficient_error(STEEPEST, STEEL, wavelength=8.0, position=0.0)
+    assert coefficient_error(STEEPEST, STEEL, wavelength=8.0, position=1.0) == pytest.approx(shortest)
+    assert shortest > 0
 
 
 def test_a_solution_quotes_its_slopes() -> None:
@@ -73,7 +182,23 @@ def test_a_solution_quotes_its_slopes() -> None:
     assert quoted.rms_slope <= quoted.max_slope
 
 
+def test_slopes_are_weighted_by_pressure_where_it_is() -> None:
+    # squares of the tangents 0.25 and 0.01, weighted 1 : 3, make (0.25 + 0.03) / 4 = 0.07; the rest is free
+    tan_x, tan_y = np.array([[0.3, 0.06], [9.0, 0.0]]), np.array([[-0.4, 0.08], [0.0, 9.0]])
+    found = slope_error(tan_x, tan_y, np.array([[1e6, 3e6], [0.0, -1e6]]), COPPER, STEEL)
+    assert found.rms_slope == pytest.approx(math.atan(math.sqrt(0.07)), rel=1e-15)
+    assert found.max_slope == pytest.approx(math.atan(0.5), rel=1e-15)
+    assert found.at_rms == coefficient_error(found.rms_slope, COPPER, STEEL)
+    assert found.at_max == coefficient_error(found.max_slope, COPPER, STEEL)
+
+
+def test_what_was_quoted_never_changes() -> None:
+    with pytest.raises(FrozenInstanceError):
+        SlopeError(0.0, 0.0, 0.0, 0.0).at_max = None  # type: ignore[misc]  # the point of the test
+
+
 def test_beyond_the_table_is_not_available() -> None:
     steep, none = np.array([[1.0]]), np.zeros((1, 1))
     assert slope_error(steep, none, np.ones((1, 1)), COPPER, STEEL).at_max is None
-    assert slope_error(steep, none, none, COPPER, STEEL).at_max == 0.0
+    assert slope_error(steep, none, none, COPPER, STEEL) == SlopeError(0.0, 0.0, 0.0, 0.0)
+    assert slope_error(none, none, np.ones((1, 1)), COPPER, STEEL) == SlopeError(0.0, 0.0, 0.0, 0.0)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import astuple
+from dataclasses import FrozenInstanceError, astuple
 from importlib import resources
+from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,28 +17,73 @@ from appendix_a.fem3d.leading_order import first_order
 from appendix_a.fem3d.patch import normal_coefficient
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.wavy import Waviness
-from refimpl.element_error import element_error
+from refimpl.element_error import _table, element_error
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RIGID = rf.Material(E=1e22, nu=0.3)
 TABLE = json.loads(
     resources.files("refimpl").joinpath("data", "coefficient_error_3d.json").read_text("utf-8")
 )
+STANDARD = {"wavelength": 20.0, "kind": "ridge", "width": "projected"}
+ROWS = {
+    (p["slope_deg"], p["nu"], p["position"]): p["error"]
+    for p in TABLE["points"]
+    if all(p[k] == v for k, v in STANDARD.items())
+}
+
+
+def row(degrees: float, nu: float, position: float) -> np.ndarray:
+    """The table's ten errors of a ridge of the standard length."""
+    return np.array(ROWS[degrees, nu, position])
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.45])
 @pytest.mark.parametrize("degrees", [2.5, 10.0, 30.0])
 def test_tabulated_errors_are_met(nu: float, degrees: float) -> None:
-    keys = {"slope_deg": degrees, "nu": nu, "wavelength": 20.0, "kind": "ridge", "width": "projected"}
-    rows = [
-        p
-        for p in TABLE["points"]
-        if all(p[k] == v for k, v in keys.items()) and p["position"] in (0, 0.25, 0.5)
-    ]
-    errors = np.abs([row["error"] for row in rows]).max(axis=0)
+    errors = np.abs([row(degrees, nu, position) for position in (0.0, 0.25, 0.5)]).max(axis=0)
     expected = errors[0], errors[1:7].max(), errors[7:].max()
     found = element_error(math.radians(degrees), rf.Material(E=1e9, nu=nu))
     assert astuple(found) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("degrees", [2.5, 6.5, 10.0, 15.0, 30.0])
+@pytest.mark.parametrize("shares", [(1, 1), (3, 1), (1, 2)])
+def test_tabulated_errors_of_two_bodies_add_by_their_compliance(
+    degrees: float, shares: tuple[int, int]
+) -> None:
+    # the upper body's valley is over a crest, and where the lower one climbs along +x the upper one falls:
+    # its +x is the other's -x
+    turned = [0, 4, 5, 6, 1, 2, 3, 7, 8, 9]
+    for ratios in product((0.0, 0.3, 0.45), repeat=2):
+        lower, upper = (
+            rf.Material(E=(1 - nu**2) / share, nu=nu) for nu, share in zip(ratios, shares, strict=True)
+        )
+        worst = np.zeros(10)
+        for below, above in ((0.0, 0.5), (0.25, 0.25), (0.5, 0.0)):
+            other = row(degrees, ratios[1], above)
+            other = other[turned] if above == 0.25 else other
+            both = shares[0] * row(degrees, ratios[0], below) + shares[1] * other
+            worst = np.maximum(worst, np.abs(both) / sum(shares))
+        expected = worst[0], worst[1:7].max(), worst[7:].max()
+        found = element_error(math.radians(degrees), lower, upper)
+        assert astuple(found) == pytest.approx(expected, rel=1e-9, abs=1e-15)
+
+
+def test_between_tabulated_slopes_the_error_over_the_tangent_is_linear() -> None:
+    tangents = [math.tan(math.radians(degrees)) for degrees in (10.0, 15.0)]
+    middle = sum(tangents) / 2
+    worst = np.zeros(10)
+    for position in (0.0, 0.25, 0.5):
+        quotients = [row(d, 0.3, position) / t for d, t in zip((10.0, 15.0), tangents, strict=True)]
+        worst = np.maximum(worst, np.abs(np.mean(quotients, axis=0)) * middle)
+    expected = worst[0], worst[1:7].max(), worst[7:].max()
+    assert astuple(element_error(math.atan(middle), STEEL)) == pytest.approx(expected, rel=1e-9)
+
+
+def test_below_the_table_errors_are_proportional_to_the_tangent() -> None:
+    gentlest = math.tan(math.radians(2.5))
+    least, third = (element_error(math.atan(gentlest / n), COPPER, STEEL) for n in (1, 3))
+    assert np.array(astuple(least)) / astuple(third) == pytest.approx(3.0, rel=1e-12)
 
 
 def test_a_ratio_between_the_tabulated_ones_against_first_order_theory() -> None:
@@ -60,12 +107,41 @@ def test_pairs() -> None:
     assert element_error(slope, STEEL, STEEL).in_line < 0.2 * element_error(slope, STEEL).in_line
 
 
-@pytest.mark.parametrize("slope", [-0.1, 0.53, math.nan])
+@pytest.mark.parametrize("points", [TABLE["points"], TABLE["points"][::-1]], ids=["filed", "reversed"])
+def test_only_projected_ridges_of_the_standard_length_count(
+    points: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wherever egg-boxes, facets and longer waves stand in the file."""
+    monkeypatch.setattr(json, "loads", lambda _: TABLE | {"points": points})
+    slopes, ratios, errors = _table.__wrapped__()
+    assert slopes.tolist() == [2.5, 6.5, 10.0, 15.0, 30.0]
+    assert ratios.tolist() == [0.0, 0.3, 0.45]
+    expected = [[[row(d, nu, at) for d in slopes] for at in (0.0, 0.25, 0.5)] for nu in ratios]
+    np.testing.assert_array_equal(errors, expected)
+
+
+@pytest.mark.parametrize("version", [0, 2])
+def test_a_table_of_another_version_is_refused(version: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(json, "loads", lambda _: TABLE | {"version": version})
+    with pytest.raises(rf.InputError, match=rf"coefficient_error_3d\.json = {version}: expected version 1"):
+        _table.__wrapped__()
+
+
+@pytest.mark.parametrize("slope", [-0.1, -1e-9, 0.5237, 0.53, math.nan])
 def test_refuses_slopes_beyond_the_table(slope: float) -> None:
-    with pytest.raises(rf.InputError, match="slope"):
+    with pytest.raises(rf.InputError, match=r"slope = .*: expected an angle of 0 to 0\.5236 rad"):
         element_error(slope, STEEL)
 
 
-def test_refuses_negative_ratios() -> None:
-    with pytest.raises(rf.InputError, match="nu"):
-        element_error(0.1, rf.Material(E=1e9, nu=-0.1))
+def test_a_level_surface_has_no_error_for_good() -> None:
+    found = element_error(0.0, STEEL, COPPER)
+    with pytest.raises(FrozenInstanceError):
+        found.across = 1.0  # type: ignore[misc]  # the point of the test
+    assert astuple(found) == (0.0, 0.0, 0.0)
+
+
+def test_refuses_negative_ratios_of_either_body() -> None:
+    auxetic = rf.Material(E=1e9, nu=-0.1)
+    for pair in ((auxetic,), (STEEL, auxetic)):
+        with pytest.raises(rf.InputError, match=r"nu = -0\.1: expected a Poisson's ratio of 0 to 0\.5"):
+            element_error(0.1, *pair)

@@ -74,3 +74,40 @@ def test_at_an_approach_the_force_found_is_the_scale() -> None:
     assert fixed.problem.load is None
     found = fixed._plain_inverse(change(fixed))
     assert found[:-1].sum() * fixed.peak == pytest.approx(-s.pressure.sum(), rel=1e-10)
+
+
+def test_the_window_is_the_contact_and_its_neighbours() -> None:
+    """Products are of the contact's size, not of the square's."""
+    s = rf.solve(sliding(), M)
+    fixed = FixedSet(s.problem, 1e-9 * s.pressure, s.contact, s.slopes)  # of nothing beside a pascal
+    contact = np.argwhere(s.contact)
+    (first_row, first_column), (last_row, last_column) = contact.min(axis=0), contact.max(axis=0)
+    rows, columns = fixed.window.slices
+    assert (rows.start, rows.stop) == (first_row - 2, last_row + 3)
+    assert (columns.start, columns.stop) == (first_column - 2, last_column + 3)
+    assert fixed.contact.shape == fixed.operator.source.shape
+
+
+def test_no_change_has_no_answer_and_leaves_nothing() -> None:
+    fixed = fixed_set(sliding())
+    found = fixed.response(0 * change(fixed))
+    assert not found.pressure.any()
+    assert (found.approach, found.residual) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("oblique", [True, False])
+def test_a_solved_state_misses_nothing(oblique: bool) -> None:
+    """Neither Eq. (6) on the set, by approaches, nor the load, by loads."""
+    fixed = fixed_set(sliding(), oblique)
+    missed = fixed.residual(fixed.problem, fixed.pressure, fixed.approach)
+    assert np.abs(missed).max() < 1e-5
+    more = fixed.residual(replace(fixed.problem, load=16.0), fixed.pressure, fixed.approach)
+    assert more[-1] == pytest.approx(0.25, abs=1e-5)
+
+
+@pytest.mark.parametrize("product", ["_jacobian", "_plain_inverse"])
+def test_products_take_the_columns_that_operators_hand_on(product: str) -> None:
+    fixed = fixed_set(sliding())
+    x = np.random.default_rng(2).normal(size=np.count_nonzero(fixed.contact) + 1)
+    apply = getattr(fixed, product)
+    assert np.array_equal(apply(x[:, None]), apply(x))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import FrozenInstanceError
 
 import pytest
 
@@ -42,3 +43,12 @@ def test_a_pair_adds_normal_and_subtracts_shear() -> None:
 @pytest.mark.parametrize("nu", [-0.999, 0.0, 0.5])
 def test_the_whole_range_of_nu_is_allowed(nu: float) -> None:
     assert Material(E=1e9, nu=nu).normal_compliance > 0
+
+
+def test_materials_and_pairs_never_change() -> None:
+    body = Material(E=1e9, nu=0.3)
+    with pytest.raises(FrozenInstanceError):
+        body.nu = 0.2  # type: ignore[misc]  # the point of the test
+    with pytest.raises(FrozenInstanceError):
+        Pair(body, body).upper = body  # type: ignore[misc]  # likewise
+    assert len({Pair(body, body), Pair(Material(E=1e9, nu=0.3), body)}) == 1

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.parameters import parameters, with_parameter
-from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
+from refimpl.fixed_set import FixedSet
+from refimpl.friction import Mask
+from refimpl.grid import Array
+from refimpl.parameters import check_tolerances, parameters, with_parameter
+from refimpl.sensitivity import NUMBERS, Sensitivity, _Edge, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 M, TIGHT = 48, 1e-11
@@ -73,6 +77,12 @@ def test_stresses_scale_together(adhesive: Sensitivity) -> None:
         assert sum(adhesive.relative(number, name) for name in stresses) == pytest.approx(power, abs=2e-4)
 
 
+def test_friction_is_as_uncertain_as_the_area_that_tau_acts_on(adhesive: Sensitivity) -> None:
+    spread = adhesive.scatter["contact_area"]["load"]
+    assert spread > 0
+    assert adhesive.scatter["friction_coefficient"]["load"] == pytest.approx(5e5 / 20.0 * spread, abs=0)
+
+
 def test_the_area_agrees_with_wide_differences_within_its_scatter(adhesive: Sensitivity) -> None:
     scene = sliding(tau=5e5)
     for name in ("lower.material.E", "lower.surface[0].rms"):
@@ -95,6 +105,32 @@ def test_hertz_exponents() -> None:
         assert found.relative("contact_area", name) == pytest.approx(area, rel=scatter)
 
 
+def test_an_incompressible_body_answers_to_its_ratio_from_below() -> None:
+    """Without friction only 1/E* = sum (1 - nu^2)/E counts: d/dnu is 2 nu E/(1 - nu^2) times d/dE."""
+    hertz = rf.read_scene("hertz")
+    scene = replace(hertz, lower=rf.Body(rf.Material(2.5e9, 0.5), hertz.lower.surface))
+    found = sensitivity(scene, rf.solve(scene, 32))
+    stiffer = found.derivatives["max_pressure"]["lower.material.E"]
+    expected = 2 * 0.5 * 2.5e9 / (1 - 0.5**2) * stiffer
+    assert found.derivatives["max_pressure"]["lower.material.nu"] == pytest.approx(expected, rel=1e-4)
+
+
+def test_only_the_load_and_surfaces_are_solved_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = sliding(tau=5e5)
+    base, solved = rf.solve(scene, 24), []
+
+    def counted(changed: rf.Scene, *given: object, **options: object) -> rf.Solution:
+        before = parameters(scene)
+        solved.append([name for name, value in parameters(changed).items() if value != before[name]])
+        return rf.solve(changed, *given, **options)  # type: ignore[arg-type]  # as they come
+
+    monkeypatch.setitem(sensitivity.__globals__, "solve", counted)
+    found = sensitivity(scene, base)
+    named = [name for name in found.parameters if name == "load" or ".surface[" in name]
+    assert len(named) == 4
+    assert solved == [[name] for name in named for _ in range(2)]
+
+
 def test_periodic_scenes_have_no_derivative_by_length() -> None:
     scene = sliding(periodic=True)
     found = sensitivity(scene, rf.solve(scene, M, tolerance=TIGHT))
@@ -113,6 +149,118 @@ def test_parameters_are_read_and_changed_by_name() -> None:
         with_parameter(scene, "upper.colour", 1.0)
     with pytest.raises(rf.InputError, match="load"):
         with_parameter(scene, "load", -1.0)
+
+
+def test_a_changed_surface_keeps_its_kind() -> None:
+    """A sum stays the sum of its parts, and a single part does not become a sum."""
+    ball, rough = rf.Sphere(radius=0.02), rf.GaussianRoughness(2e-6, 400e-6, seed=1)
+    scene = replace(sliding(), upper=rf.Body(STEEL, rf.SurfaceSum((ball, rough))))
+    changed = with_parameter(scene, "upper.surface[1].rms", 1e-6)
+    assert changed.upper.surface == rf.SurfaceSum((ball, replace(rough, rms=1e-6)))
+    changed = with_parameter(scene, "lower.surface[0].rms", 1e-6)
+    assert changed.lower.surface == rf.GaussianRoughness(1e-6, 400e-6, seed=3)
+    assert changed.upper is scene.upper
+
+
+def test_tolerances_are_relative_and_of_what_moves() -> None:
+    scene = sliding()
+    check_tolerances(scene, {"load": 0.0, "lower.material.E": 0.999})
+    for name, tolerance in (("load", -1e-9), ("load", 1.0), ("friction.tau", 0.1), ("colour", 0.1)):
+        with pytest.raises(rf.InputError, match=name):
+            check_tolerances(scene, {name: tolerance})
+
+
+def fixed_set(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedSet:
+    """A fixed set with another contact in it."""
+    scene = sliding(periodic=periodic)
+    s = rf.solve(scene, 16)
+    fixed = copy(FixedSet(s.problem, s.pressure, s.contact, s.slopes))
+    fixed.contact, fixed.pressure = contact, np.where(contact, pressure, 0.0)
+    return fixed
+
+
+def hertz_disc(x: float = 0.0, y: float = 0.0) -> tuple[Array, Array]:
+    """Squared distances from a point over the squared radius, 15.2 elements; Hertz's pressure there."""
+    i, j = np.indices((41, 37))
+    inside = ((i - 20 - x) ** 2 + (j - 18 - y) ** 2) / 15.2**2
+    return inside, np.sqrt(np.maximum(1 - inside, 0.0))
+
+
+def test_the_edge_of_a_disc_moves_as_its_pressure_says() -> None:
+    """d sqrt(1 - (x/a)^2 - (y/b)^2) by both axes for the load, then by one alone: half the area's growth."""
+    inside, pressure = hertz_disc()
+    contact = inside < 1
+    slope = np.divide(1, pressure, where=contact, out=np.zeros_like(pressure)) / 15.2
+    edge = _Edge(fixed_set(contact, pressure), (2 * np.pi * 15.2, 3.0), slope * inside)
+    along = slope * ((np.indices(inside.shape)[0] - 20) / 15.2) ** 2
+    growth, scatter = edge.derivative(along)
+    assert growth == pytest.approx(np.pi * 15.2, rel=0.03)
+    assert scatter == pytest.approx(1.5, rel=0.2)  # half the load's, and what 9 x 9 elements find otherwise
+    assert edge.derivative(pressure) == pytest.approx((0.0, 0.0), abs=1e-10)  # as they are, only more
+    assert edge.derivative(slope * inside) == pytest.approx((2 * np.pi * 15.2, 3.0))
+
+
+def test_an_edge_moves_alike_however_the_square_is_turned() -> None:
+    inside, pressure = hertz_disc(0.3, -0.4)
+    contact = inside < 1
+    contact[18:21, 20] = False
+    moved = np.where(contact, np.random.default_rng(3).random(contact.shape), 0.0)
+    loaded = contact / np.maximum(pressure, 0.1)
+    found = [
+        _Edge(fixed_set(turn(contact), turn(pressure)), (5.0, 0.1), turn(loaded)).derivative(turn(moved))
+        for turn in (np.array, np.flipud, np.fliplr, np.transpose)
+    ]
+    for turned in found[1:]:
+        assert turned == pytest.approx(found[0], rel=1e-9)
+
+
+def test_an_edge_moves_alike_wherever_a_periodic_square_begins() -> None:
+    inside, pressure = hertz_disc()
+    inside, pressure = inside[:37], pressure[:37]
+    moved = np.where(inside < 1, np.random.default_rng(3).random(inside.shape), 0.0)
+    found = []
+    for shift in (0, 9, 20):
+        contact, level, change = (np.roll(a, (shift, -shift), (0, 1)) for a in (inside < 1, pressure, moved))
+        fixed = fixed_set(contact, level, periodic=True)
+        found.append(_Edge(fixed, (5.0, 0.1), contact / np.maximum(level, 0.1)).derivative(change))
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+    assert found[2] == pytest.approx(found[0], rel=1e-9)
+
+
+def test_a_load_that_moves_no_edge_foretells_none() -> None:
+    inside, pressure = hertz_disc()
+    edge = _Edge(fixed_set(inside < 1, pressure), (5.0, 0.1), np.zeros_like(pressure))
+    assert edge.derivative(inside) == (0.0, 0.0)
+
+
+def test_scatter_is_what_other_neighbourhoods_find(monkeypatch: pytest.MonkeyPatch) -> None:
+    """5 x 5 elements against 9 x 9, where counting leaves nothing uncertain."""
+    inside, pressure = hertz_disc()
+    contact = inside < 1
+    moved = np.where(contact, np.random.default_rng(4).random(contact.shape), 0.0)
+    found = []
+    for widths in ((5, 9), (5, 5), (9, 9)):
+        monkeypatch.setitem(_Edge.derivative.__globals__, "_WIDTHS", widths)
+        edge = _Edge(fixed_set(contact, pressure), (5.0, 0.0), contact / np.maximum(pressure, 0.1))
+        found.append(edge.derivative(moved))
+    (near, scatter), (five, none), (nine, _) = found
+    assert near == five != nine
+    assert none == 0
+    assert scatter == pytest.approx(abs(five - nine))
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_the_edge_is_where_a_neighbour_is_open(periodic: bool) -> None:
+    """Outside a free square all is open; a periodic one has neighbours all round."""
+    contact = np.ones((5, 5), dtype=bool)
+    contact[0, 2] = False
+    expected = (
+        ["xx.xx", "x.x.x", "x...x", "x...x", "xxxxx"]
+        if not periodic
+        else [".x.x.", "..x..", *["....."] * 2, "..x.."]
+    )
+    edge = _Edge(fixed_set(contact, np.ones((5, 5)), periodic=periodic), (1.0, 0.0), np.ones((5, 5)))
+    assert ["".join(".x"[mark] for mark in row) for row in edge.elements.astype(int)] == expected
 
 
 def test_what_has_no_sensitivity_is_refused() -> None:

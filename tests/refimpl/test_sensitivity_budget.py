@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 
 import pytest
@@ -70,6 +71,21 @@ def test_cosines_are_those_of_the_exact_facets(found: Budgets, solution: rf.Solu
     assert mu.sources["cosines"] == pytest.approx(abs(exact.friction / exact.normal - mu.value))
     # second order in the slope: about its square, times mu
     assert 0 < mu.sources["cosines"] < 3 * solution.slope_error.max_slope**2
+    across = found.numbers["binormal_force"]
+    assert across.sources["cosines"] == pytest.approx(abs(exact.binormal - across.value))
+
+
+def test_cosines_misjudge_the_load(found: Budgets, solution: rf.Solution) -> None:
+    """The peak and the area are those of another load; the peak, by solving for it."""
+    exact = facet_resultants(
+        solution.pressure, solution.traction, solution.slopes, solution.grid.element_area
+    )
+    tight = [rf.solve(replace(SCENE, load=load), 64, tolerance=1e-11) for load in (100.0, exact.normal)]
+    change = abs(tight[1].max_pressure - tight[0].max_pressure)
+    assert found.numbers["max_pressure"].sources["cosines"] == pytest.approx(change, rel=0.02)
+    share = found.derivatives.relative("contact_area", "load") * abs(exact.normal / solution.normal_force - 1)
+    area = found.numbers["contact_area"]
+    assert area.sources["cosines"] == pytest.approx(share * area.value)
 
 
 def test_coefficients_act_like_a_change_of_both_moduli(found: Budgets, solution: rf.Solution) -> None:
@@ -86,6 +102,8 @@ def test_parts_add_in_squares_and_model_form_as_it_is() -> None:
     part = Budget(1.0, numerical=3.0, inputs={"a": 4.0}, sources={"x": 1.0, "y": 0.5}, sampling=12.0)
     assert part.total == pytest.approx(1.5 + 13.0)
     assert Budget(1.0, 3.0, {}, {}).total == 3.0
+    with pytest.raises(FrozenInstanceError):
+        part.numerical = 0.0  # type: ignore[misc]  # on purpose
 
 
 def test_sampling_is_stated_only_where_given(found: Budgets) -> None:
@@ -99,6 +117,18 @@ def test_tolerances_stand_in_the_scenes_file(tmp_path: Path) -> None:
     file.write_text(scene_to_toml(SCENE) + stated)
     assert read_tolerances(file) == {"lower.material.E": 0.02, "lower.surface[0].rms": 0.05}
     assert rf.read_scene(file).load == SCENE.load
+
+
+def test_without_tolerances_there_is_no_input(solution: rf.Solution) -> None:
+    found = budget(SCENE, solution)
+    assert found.tolerances == {}
+    assert all(part.input == 0 for part in found.numbers.values())
+
+
+@pytest.mark.parametrize("tolerances", [{"lower.material.G": 0.02}, {"load": -0.1}])
+def test_bad_tolerances_have_no_budget(solution: rf.Solution, tolerances: dict[str, float]) -> None:
+    with pytest.raises(rf.InputError, match="tolerances"):
+        budget(SCENE, solution, tolerances)
 
 
 @pytest.mark.parametrize(

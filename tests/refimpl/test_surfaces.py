@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import FrozenInstanceError, fields
 from pathlib import Path
 
 import numpy as np
@@ -120,6 +121,19 @@ def test_only_the_points_a_spline_remembers_matter() -> None:
     np.testing.assert_allclose(resample(far, x, y), resample(data, x, y), rtol=0, atol=1e-12)
     whole = resample(data, np.append(x, 199.0), np.append(y, 149.0))[:-1, :-1]
     np.testing.assert_allclose(resample(data, x, y), whole, rtol=0, atol=1e-13)
+    for x, y in ((np.array([-0.4, 0.0]), np.array([-1.0])), (np.array([199.4]), np.array([148.6, 149.0]))):
+        whole = resample(data, np.hstack([0.0, x, 199.0]), np.hstack([0.0, y, 149.0]))[1:-1, 1:-1]
+        np.testing.assert_allclose(resample(data, x, y), whole, rtol=0, atol=1e-12)
+
+
+def test_the_end_piece_goes_on() -> None:
+    # one cubic is one piece: as exact half a point outside as far outside
+    cubic = np.arange(6.0)[:, None] ** 3 + np.arange(5.0) ** 2
+    x, y = np.array([-0.5, 2.5, 5.5]), np.array([-0.5, 4.5])
+    np.testing.assert_allclose(resample(cubic, x, y), x[:, None] ** 3 + y**2, rtol=0, atol=1e-12)
+    for x, y in ((np.array([-40.0]), np.array([-33.0, -30.0])), (np.array([45.0]), np.array([37.0]))):
+        # over six points an extrapolation by forty amplifies rounding by 40^3
+        np.testing.assert_allclose(resample(cubic, x, y), x[:, None] ** 3 + y**2, rtol=40**3 * 8 * EPS)
 
 
 def test_periodic_resampling_wraps_and_keeps_the_data() -> None:
@@ -197,13 +211,45 @@ SURFACES: list[Surface] = [
     MeasuredSurface(
         Path("/data/a.csv"), unit="um", pixel_size=(1e-6, 2e-6), level="paraboloid", missing="refuse"
     ),
+    MeasuredSurface("/data/b.x3p"),
     Sphere(1.0) + GaussianRoughness(1e-6, 1e-4, 5),
 ]
+
+
+@pytest.mark.parametrize("surface", [*SURFACES, ArraySurface(np.zeros((4, 4)))], ids=lambda s: s.kind)
+def test_surfaces_never_change(surface: Surface) -> None:
+    hash(surface)
+    for name in ("added", *(f.name for f in fields(surface))):  # type: ignore[arg-type]  # dataclasses all
+        with pytest.raises(FrozenInstanceError):
+            setattr(surface, name, 1.0)
 
 
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s.kind)
 def test_tables_read_back(surface: Surface) -> None:
     assert surface_from_dict(surface.to_dict()) == surface
+
+
+def test_a_measured_surfaces_table_holds_plain_values() -> None:
+    table = MeasuredSurface("a.csv", unit="um", pixel_size=2).to_dict()
+    assert table == {
+        "kind": "measured",
+        "path": str(Path("a.csv").absolute()),
+        "unit": "um",
+        "pixel_size": [2.0, 2.0],
+        "level": "plane",
+        "missing": "fill",
+        "max_missing": 0.05,
+    }
+    assert isinstance(table["pixel_size"], list)
+    assert MeasuredSurface("/a.x3p").to_dict().keys() == {"kind", "path", "level", "missing", "max_missing"}
+
+
+def test_numbers_of_numpy_become_plain_ones() -> None:
+    roughness = GaussianRoughness(np.float64(2.0), np.float64(3.0), np.int64(4))  # type: ignore[arg-type]  # as users do
+    for surface in (roughness, Sphere(np.float64(2.0)), GaussianRoughness(2, 3, 4), Sphere(2)):
+        for name, value in surface.to_dict().items():
+            expected = {"kind": str, "seed": int, "normalise": bool}.get(name, float)
+            assert type(value) is expected, name
 
 
 def test_relative_paths_start_at_the_folder() -> None:
@@ -225,6 +271,7 @@ def test_relative_paths_start_at_the_folder() -> None:
         ({"kind": "measured", "path": "a", "level": "sphere"}, "level = 'sphere'"),
         ({"kind": "measured", "path": "a", "unit": "inch"}, "unit = 'inch'"),
         ({"kind": "measured", "path": "a", "pixel_size": [1e-6]}, "pixel_size"),
+        ({"kind": "measured", "path": "a", "pixel_size": [1e-6] * 3}, "pixel_size = [1e-06, 1e-06, 1e-06]"),
         ({"kind": "measured", "path": "a", "pixel_size": -1e-6}, "pixel_size"),
         ({"kind": "measured", "path": "a", "missing": "zero"}, "missing"),
         ({"kind": "measured", "path": "a", "max_missing": 1.0}, "max_missing"),

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning
+from refimpl.surfaces.gaussian import MAX_NODES
 from refimpl.surfaces.noise import white_noise
 from refimpl.surfaces.statistics import kurtosis, skewness
 
@@ -59,6 +60,15 @@ def test_covariance_is_equation_9_wherever_the_points_lie(per_length: float) -> 
     np.testing.assert_allclose((smooth @ smooth.T).toarray(), exact, rtol=0, atol=3e-15)
 
 
+@pytest.mark.parametrize("node", [0, 5, -40])
+def test_the_kernel_is_cut_off_at_17_nodes(node: int) -> None:
+    nodes, smooth = unit(length=3.0).smoothing(np.array([node / 2 + 0.2]))  # a node every 0.5 m
+    assert nodes == range(node - 17, node + 18)
+    from_point = np.arange(-17, 18) * 0.5 - 0.2
+    expected = np.exp(-4.6 * (from_point / 3) ** 2)
+    np.testing.assert_allclose(smooth.toarray()[0] / smooth[0, 17], expected / expected[17], rtol=1e-11)
+
+
 @pytest.mark.parametrize(("period", "length"), [(1.0, 1.0), (7.3, 1.0), (40.0, 3.0)])
 def test_periodic_covariance_is_the_periodic_sum(period: float, length: float) -> None:
     x = np.linspace(-period, period, 57)
@@ -67,6 +77,18 @@ def test_periodic_covariance_is_the_periodic_sum(period: float, length: float) -
     images = sum(np.exp(-2.3 * ((lag + m * period) / length) ** 2) for m in range(-12, 13))
     at_zero = sum(math.exp(-2.3 * (m * period / length) ** 2) for m in range(-9, 10))
     np.testing.assert_allclose((smooth @ smooth.T).toarray(), images / at_zero, rtol=0, atol=5e-15)
+
+
+def test_equation_9_falls_to_a_tenth_at_its_length_and_bends_by_the_rms_slope() -> None:
+    surface = GaussianRoughness(3.0, 2.0, seed=1)
+    # in units of l = 2: exp(-2.3 (r / l)^2) by powers of exp(-2.3) = 0.100259
+    tenth = 0.10025884372280375
+    expected = 9 * np.array([1.0, tenth, tenth**4, tenth**0.25])
+    np.testing.assert_allclose(surface.autocorrelation(np.array([0.0, 2.0, -4.0, 1.0])), expected, rtol=1e-14)
+    # slopes between points a step apart have the mean square 2 (R(0) - R(step)) / step^2 -> -R''(0)
+    step = 1e-4
+    near = surface.autocorrelation(np.array([0.0, step]))
+    assert surface.rms_slope == pytest.approx(math.sqrt(2 * (near[0] - near[1])) / step, rel=1e-6)
 
 
 def test_nested_grids_see_one_surface() -> None:
@@ -111,6 +133,43 @@ def test_deterministic_and_pinned() -> None:
     pinned = [[1.286807986953587, 0.01082817098087742], [0.7851003480687619, 0.4214897034318442]]
     np.testing.assert_allclose(corner, pinned, rtol=1e-12, atol=0)
     np.testing.assert_array_equal(unit().heights(GRID), unit().heights(GRID))
+
+
+@pytest.mark.parametrize(("word", "share"), [(0, "0x1p-54"), (2**64 - 1, "0x1.fffffffffffffp-1")])
+def test_the_least_and_the_greatest_random_word_have_normal_quantiles(
+    word: int, share: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """53 bits stand for the middle of one of 2^53 equal parts of (0, 1), or the nearest number below 1."""
+
+    class Same:
+        def __init__(self, key: np.ndarray, counter: np.ndarray) -> None: ...
+
+        def random_raw(self, size: int) -> np.ndarray:
+            return np.full(size, word, dtype=np.uint64)
+
+    monkeypatch.setattr(np.random, "Philox", Same)
+    with mp.workdps(30):
+        quantile = float(mp.sqrt(2) * mp.erfinv(2 * mp.mpf(float.fromhex(share)) - 1))
+    np.testing.assert_allclose(white_noise(1, range(2), range(3)), quantile, rtol=1e-12)
+
+
+def test_no_other_tiles_are_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tiles of 64 x 64: only those that hold some of the nodes."""
+    drawn, philox = [], np.random.Philox
+
+    def counted(key: np.ndarray, counter: np.ndarray) -> np.random.Philox:
+        drawn.append(tuple(counter[2:].astype(np.int64).tolist()))
+        return philox(key=key, counter=counter)
+
+    monkeypatch.setattr(np.random, "Philox", counted)
+    for rows, columns, tiles in (
+        (range(64), range(64, 192), [(0, 1), (0, 2)]),
+        (range(-64, 0), range(127, 129), [(-1, 1), (-1, 2)]),
+        (range(63, 65), range(-65, -64), [(0, -2), (1, -2)]),
+    ):
+        drawn.clear()
+        assert white_noise(5, rows, columns).shape == (len(rows), len(columns))
+        assert drawn == tiles
 
 
 def test_noise_is_standard_normal_and_white() -> None:
@@ -176,6 +235,43 @@ def test_what_cannot_be_had_is_refused() -> None:
         unit().heights(GRID, (1e7 * LENGTH, 0.0))
 
 
+@pytest.mark.parametrize(("length", "said"), [(1.00495, "1"), (1.00505, "1.01"), (2.00995, "2.01")])
+def test_the_shortest_length_is_as_many_nodes_as_may_be(length: float, said: str) -> None:
+    """The kernel reaches over 34 nodes and rounding over 2: 8156 / 6 lengths fit on an axis of 8192."""
+    x = np.array([0.3, 0.3 + length * 8156 / 6])
+    nodes, _ = unit(length=length * (1 + 1e-9)).smoothing(x)
+    assert MAX_NODES - 2 <= len(nodes) <= MAX_NODES
+    with pytest.raises(InputError) as refusal:
+        unit(length=length * (1 - 1e-9)).smoothing(x)
+    assert refusal.value.field == "correlation_length"
+    assert refusal.value.value == length * (1 - 1e-9)
+    assert refusal.value.allowed == f"at least {said} m on this square (8192 noise nodes an axis)"
+
+
+def test_a_million_lattice_spacings_from_the_origin_digits_are_lost() -> None:
+    surface = unit(length=3.0)  # nodes every 0.5 m
+    for sign in (-1.0, 1.0):
+        surface.smoothing(np.array([sign * 499_999.9]))
+        with pytest.raises(InputError) as refusal:
+            surface.smoothing(np.array([sign * 500_000.1, sign * 499_999.0]))
+        allowed = "within 1e+06 x 0.5 m: beyond, digits are lost"
+        assert (refusal.value.field, refusal.value.allowed) == ("offset", allowed)
+        assert refusal.value.value == 500_000.1
+
+
+def test_the_longest_periodic_length_is_the_period_and_the_shortest_normalised_side_the_length() -> None:
+    grid = Grid(1.0, 8)
+    assert np.isfinite(unit(length=1.0).heights(grid, periodic=True)).all()
+    with pytest.raises(InputError) as refusal:
+        unit(length=1.0 + 1e-9).heights(grid, periodic=True)
+    assert refusal.value.allowed == "at most the period, 1 m"
+    assert np.isfinite(unit(length=1.0, normalise=True).heights(grid)).all()
+    with pytest.raises(InputError) as refusal:
+        unit(length=1.25, normalise=True).heights(grid)
+    assert refusal.value.value is True
+    assert refusal.value.allowed == "false, or a side of at least one correlation length, 1.25 m"
+
+
 def test_long_lengths_are_smooth_not_special() -> None:
     z = unit(length=1e4).heights(Grid(1.0, 8))
     assert np.ptp(z) < 1e-2  # slopes of 2e-4 over a side of 1
@@ -186,7 +282,25 @@ def test_unresolved_roughness_warns() -> None:
     with pytest.warns(SurfaceWarning, match="not resolved"):
         unit().heights(Grid(SIDE, 48))
     assert unit().cautions(Grid(SIDE, 64)) == ()
-    assert "seed 1" in unit().describe(GRID)[0]
+    assert unit(length=1.0).cautions(Grid(4.0, 16)) == ()  # just a quarter
+    (said,) = unit(length=2.0).cautions(Grid(1.25, 2))
+    assert "the element, 0.625 m, exceeds a quarter of the roughness's correlation length, 2 m" in said
+
+
+def test_what_it_is_is_said() -> None:
+    said = "Gaussian roughness of seed 1: rms 1 m in the ensemble, correlation length 0.000104 m"
+    assert unit().describe(GRID) == (said,)
+    said = "Gaussian roughness of seed 1: rms 1 m over the square of 8 m, correlation length 1 m"
+    coarse = unit(length=1.0, normalise=True).describe(Grid(8.0, 16))
+    assert coarse == (said, *unit(length=1.0).cautions(Grid(8.0, 16)))
+    assert len(coarse) == 2
+
+
+def test_the_greatest_and_the_least_seed() -> None:
+    assert GaussianRoughness(1.0, 1.0, 2**63 - 1).seed == 2**63 - 1
+    assert GaussianRoughness(1.0, 1.0, 0).seed == 0
+    with pytest.raises(InputError, match=r"seed = 9223372036854775808: expected a whole number, 0 <= seed"):
+        GaussianRoughness(1.0, 1.0, 2**63)
 
 
 def test_cost_is_small() -> None:

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import FrozenInstanceError
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.interpolate import RectBivariateSpline
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import MeasuredSurface, SurfaceWarning
 from refimpl.surfaces.gaps import fill
 from refimpl.surfaces.levelling import DEGREES, fit
+from refimpl.surfaces.window import Window
 from tests.refimpl.measured import (
     DX,
     DY,
@@ -48,6 +52,17 @@ def test_the_window_is_central_moves_and_is_exact_for_cubics(
     )
 
 
+@pytest.mark.parametrize("offset", [(0.0, 0.0), (4e-7, -3.3e-6)])
+def test_heights_are_those_of_one_spline_through_all_points(
+    tmp_path: Path, offset: tuple[float, float]
+) -> None:
+    """FITPACK's interpolating bicubic (not-a-knot as well) of the whole file, not of a window."""
+    surface, grid = write_npy(tmp_path / "a.npy", ROUGH), Grid(SIDE, 24)
+    (x, y), (at_x, at_y) = points(), elements(grid, offset)
+    whole = RectBivariateSpline(x.ravel(), y.ravel(), ROUGH)(at_x.ravel(), at_y.ravel())
+    np.testing.assert_allclose(quietly(surface, grid, offset), whole, rtol=0, atol=1e-12 * np.ptp(whole))
+
+
 def test_the_whole_measured_width_can_be_used(tmp_path: Path) -> None:
     x, y = points()
     surface, grid = write_npy(tmp_path / "a.npy", x**2 - x * y), Grid(NX * DX, 2 * NX)
@@ -64,11 +79,13 @@ def test_a_surface_that_is_too_small_is_refused_with_both_sizes(tmp_path: Path) 
     surface = write_npy(tmp_path / "a.npy", ROUGH)
     with pytest.raises(InputError, match=r"side = 9.1e-06: expected at most the measured 9e-06 x 1.55e-05 m"):
         surface.heights(Grid(9.1e-6, 16))
-    with pytest.raises(InputError, match="at least 4 pixels"):
-        quietly(surface, Grid(2 * DY, 16))
+    least = r"side = 8\.99e-07: expected at least 4 pixels of a\.npy, each 1\.5e-07 x 3\.1e-07 m"
+    with pytest.raises(InputError, match=least):
+        quietly(surface, Grid(8.99e-7, 16))  # 2.9 DY about a border between pixels: two points
+    assert quietly(surface, Grid(9.31e-7, 16)).shape == (16, 16)  # just more than three pixels: four points
     with pytest.raises(InputError, match=r"offset.*at most 5e-07 x 3.75e-06 m"):
         surface.heights(Grid(SIDE, 16), (5.1e-7, 0.0))
-    with pytest.raises(InputError, match="periodic"):
+    with pytest.raises(InputError, match=r"periodic = True: expected false: a\.npy does not repeat"):
         surface.heights(Grid(SIDE, 16), periodic=True)
 
 
@@ -79,6 +96,23 @@ def test_finer_than_measured_warns(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         surface.heights(Grid(SIDE, 25))  # 3.2e-7 m
+        for M in range(4, 30):
+            surface.heights(Grid(M * DY, M))  # the pixel itself, up to rounding
+
+
+def test_points_on_the_windows_edge_lie_in_it(tmp_path: Path) -> None:
+    np.save(tmp_path / "a.npy", np.zeros((9, 9)))
+    surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0)
+    for side, count in ((9.0, 9), (8.0, 9), (7.9, 7), (6.0, 7)):  # an edge runs half a side from the middle
+        window = Window(surface.reading, side)
+        assert [s.stop - s.start for s in window.points] == [count, count]
+    with pytest.raises(FrozenInstanceError):
+        window.side = 9.0  # type: ignore[misc]  # the point of the test
+
+
+def test_all_but_the_path_goes_by_name() -> None:
+    names = [name for name, p in signature(MeasuredSurface).parameters.items() if p.kind is p.KEYWORD_ONLY]
+    assert names == ["unit", "pixel_size", "level", "missing", "max_missing"]
 
 
 # --- gaps ---
@@ -139,6 +173,27 @@ def test_too_many_gaps_are_refused(tmp_path: Path) -> None:
         write_npy(tmp_path / "b.npy", z).heights(grid)
 
 
+def test_the_fraction_that_may_be_missing_is_allowed_and_no_more(tmp_path: Path) -> None:
+    z = np.zeros((8, 8))
+    z[2, 1:5] = np.nan  # 4 of 64 points: a sixteenth
+    np.save(tmp_path / "a.npy", z)
+
+    def surface(max_missing: float) -> MeasuredSurface:
+        return MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, max_missing=max_missing)
+
+    np.testing.assert_allclose(quietly(surface(1 / 16), Grid(8.0, 8)), 0.0, rtol=0, atol=1e-15)
+    for fraction, allowed in ((0.0, "0"), (0.0624, "0.0624")):
+        with pytest.raises(InputError) as refusal:
+            surface(fraction).heights(Grid(8.0, 8))
+        assert refusal.value.value == "4 of 64 points of the window in a.npy"
+        assert refusal.value.allowed == f"at most a fraction of {allowed}"
+    for refused in (-0.001, 1.0):
+        with pytest.raises(
+            InputError, match=f"max_missing = {refused}: expected a fraction, 0 <= max_missing"
+        ):
+            surface(refused)
+
+
 def test_masked_points_of_instrument_files_are_missing_points(tmp_path: Path) -> None:
     surface = MeasuredSurface(write_x3p(tmp_path / "a.x3p", holed(ROUGH)))
     np.testing.assert_array_equal(np.isnan(surface.reading.heights), np.isnan(holed(ROUGH)))
@@ -179,6 +234,48 @@ def test_level_is_fitted_in_the_window_only(tmp_path: Path) -> None:
     assert abs(slope_y) < 1e-12
     assert level.endswith("m after")
     assert float(level.split()[-3]) < 1e-20
+
+
+def test_each_level_takes_off_its_terms_of_a_paraboloid(tmp_path: Path) -> None:
+    """On 5 x 5 points from -2 to 2 the squares' mean is 2, and the terms are orthogonal but for that.
+
+    So is the cubic (5 x^3 - 17 x) / 6, which every level leaves.
+    """
+    x, y = np.arange(-2.0, 3.0)[:, None], np.arange(-2.0, 3.0)[None, :]
+    cubic = np.array([-1.0, 2.0, 0.0, -2.0, 1.0])[:, None]
+    left = {
+        "none": 7 + 3 * x - y + x**2 + x * y + cubic,
+        "mean": 3 * x - y + (x**2 - 2) + x * y + cubic,
+        "plane": (x**2 - 2) + x * y + cubic,
+        "paraboloid": cubic + 0 * y,
+    }
+    np.save(tmp_path / "a.npy", left["none"])
+    assert set(left) == set(DEGREES)
+    for level, expected in left.items():
+        surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, level=level)
+        np.testing.assert_allclose(surface.heights(Grid(5.0, 5)), expected, rtol=0, atol=1e-13)
+
+
+def test_a_forms_slopes_are_those_at_its_middle() -> None:
+    # z = x^2 + 5 x y - 3 y about the middle (2, 7): dz/dx = 2 * 2 + 5 * 7 = 39, dz/dy = 5 * 2 - 3 = 7
+    x, y = np.arange(0.0, 5.0), np.arange(4.0, 11.0)
+    z = x[:, None] ** 2 + 5 * x[:, None] * y - 3 * y
+    form = fit(x, y, z, 2)
+    assert form.slopes == pytest.approx((39.0, 7.0), rel=1e-12)
+    for axis, at in enumerate((x, y)):  # the form's own coordinates run from -1 to 1 over the points
+        ends = (at[[0, -1]] - form.centre[axis]) / form.scale[axis]
+        np.testing.assert_allclose(ends, [-1.0, 1.0], rtol=0, atol=1e-15)
+    assert fit(x, y, 39 * x[:, None] + 7 * y, 1).slopes == pytest.approx((39.0, 7.0), rel=1e-12)
+    for degree in (-1, 0):
+        assert fit(x, y, z, degree).slopes == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+def test_as_many_points_as_terms_an_axis_are_enough(degree: int) -> None:
+    """On ``degree + 1`` points an axis what is of that degree is met, and no more is asked of them."""
+    x, y = np.arange(3.0, 4.0 + degree), np.arange(-1.0, degree)
+    z = (2 * x[:, None] - y - 1) ** degree
+    np.testing.assert_allclose(fit(x, y, z, degree)(x, y), z, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("level", list(DEGREES))

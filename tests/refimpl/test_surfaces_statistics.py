@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from refimpl.grid import Grid
 from refimpl.surfaces import GaussianRoughness
@@ -54,6 +55,18 @@ def test_correlation_length_interpolates() -> None:
     # points; the finite length shifts the products of the moving wave by O(1 / N) of its amplitude
     assert crossing is not None
     assert abs(crossing - 1 / 16) < 0.2 / N
+
+
+def test_correlation_length_of_a_step_by_hand() -> None:
+    """Heights 1, 1, -1, -1 along y: correlations 1, 1/3, -1, -1 there, and 1, 1, 1, 1 along x."""
+    z = np.tile([1.0, 1.0, -1.0, -1.0], (4, 1))
+    np.testing.assert_allclose(stats.autocorrelation(z, 0), [1, 1, 1, 1], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(stats.autocorrelation(z, 1), [1, 1 / 3, -1, -1], rtol=0, atol=1e-15)
+    # their mean is 1, 2/3, 0, 0 at lags of 0, 0.5, 1 and 1.5 m
+    for level, expected in ((0.9, 0.15), (0.5, 0.625), (0.1, 0.925)):
+        assert stats.correlation_length(z, 0.5, level) == pytest.approx(expected, rel=1e-14)
+    assert stats.correlation_length(z, 0.5) == stats.correlation_length(z, 0.5, 0.1)
+    assert stats.correlation_length(z, 0.5, -0.1) is None
 
 
 def test_gaussian_roughness_has_its_parameters() -> None:

@@ -51,6 +51,7 @@ def _tests(*names: str) -> tuple[str, ...]:
 
 PRIORS = "tests/verification/test_coverage_priors.py::test_the_priors_in_use_are_those_of_the_committed_study"
 BARS = ("accuracy_summits", "accuracy_climb", "unevenness", "first_touch", "accuracy_estimates")
+REFUSED = "tests/refimpl/test_input.py::test_refused_by_one_line_that_names_the_field"
 SURFACES = _alone("surfaces", "surfaces_statistics", "surfaces_gaussian", "surfaces_measured")
 
 
@@ -107,6 +108,7 @@ TARGETS = (
     *(Target("surfaces", f"refimpl/surfaces/{name}.py", SURFACES)
       for name in ("bicubic", "gaps", "gaussian", "levelling", "measured", "noise", "shapes", "statistics",
                    "window")),
-    Target("surfaces", "refimpl/materials.py", _alone("materials")),
+    Target("surfaces", "refimpl/materials.py",
+           (*_alone("materials"), REFUSED)),
 )  # fmt: skip
 """What the mutation score speaks of."""
