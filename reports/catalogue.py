@@ -164,6 +164,16 @@ DECLARED = (
         "Maps of contact pressure and traction.",
         (8.6, 3.8),
     ),
+    *(
+        Figure(
+            f"accuracy/{name}",
+            ("difference / bar",),
+            dots("difference / bar", xlabel="difference of mu / bar of tau's support", limit=1.0),
+            "Scenes that cycle, and how many elements tau is withheld from: what a law without a jump says.",
+            (6.4, height),
+        )
+        for name, height in (("tau-shares", 3.4), ("tau-shares-128", 6.8))
+    ),
     Figure(
         "surfaces/ensemble",
         ("lag / l", "estimate", "eq9", "standard error"),

@@ -144,12 +144,20 @@ def dots(values: str | None, *, xlabel: str, limit: float | None = None) -> Draw
         for k, size in enumerate(sizes):
             if size > 0:
                 axes.plot(size, k, marker="o", color=COLOURS[0])
-                axes.annotate(f"{size:.1e}", (size, k), (8, -3), textcoords="offset points", fontsize=9)
+                side = -1 if limit is not None and 0.02 * limit < size <= limit else 1  # not across the limit
+                axes.annotate(
+                    f"{size:.1e}",
+                    (size, k),
+                    (8 * side, -3),
+                    textcoords="offset points",
+                    fontsize=9,
+                    ha="right" if side < 0 else "left",
+                )
             else:
                 axes.text(axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center")
         if limit is not None:
             axes.axvline(limit, color=COLOURS[1], linestyle="--", label="tolerance")
-            axes.legend(loc="lower right")
+            axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
 
     return draw
 

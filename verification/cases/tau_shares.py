@@ -84,8 +84,13 @@ def apart(seeds: Sequence[int], M: int) -> Measured:
         for column, number in zip(found.values(), numbers, strict=True):
             column.append(number)
     off = np.abs(np.subtract(found["mu in shares"], found["mu"])) + found["moves by"]
-    worst = np.max(off / found["bar"])
-    return Measured(float(worst), data=found, note=f"{len(off)} scenes that cycle, of {len(seeds)}")
+    names = [f"{s:.0f}: {n:.0f} withheld" for s, n in zip(found["scene"], found["withheld"], strict=True)]
+    shares = dict(zip(names, (off / found["bar"]).tolist(), strict=True))
+    return Measured(
+        max(shares.values()),
+        data={**found, "difference / bar": shares},
+        note=f"{len(shares)} scenes that cycle, of {len(seeds)}",
+    )
 
 
 @case(
