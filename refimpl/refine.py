@@ -70,11 +70,16 @@ def climb(
     """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
 
     A grid that ``result_at`` refuses by `InputError` (memory) is replaced by the next coarser one of
-    the ladder, as long as that is finer than the last.
+    the ladder, as long as that is finer than the last. What tau's support leaves open need not get less on
+    finer grids: where it has not, and is more than the accuracy asked for, the climb ends.
     """
     results = [result_at(M) for M in OPENING]
     remaining, refusal = list(ladder), ""
     while results[-1].touching and relative_bar(results, quantity) > accuracy:
+        if ambiguous(results, accuracy, quantity):
+            return Climb(
+                tuple(results), "tau's support leaves more than that open, and no less on finer grids"
+            )
         remaining = [M for M in remaining if M > results[-1].M]
         if not remaining:
             return Climb(tuple(results), refusal or f"at most {results[-1].M} elements a side are tried")
@@ -93,13 +98,34 @@ def next_grid(results: Sequence[GridResult], accuracy: float, quantity: str, lad
     estimate = estimates(results)[quantity]
     farthest = fine.M * (_FARTHEST if estimate.spread < abs(found) else _BLIND)
     reach = [grid for grid in ladder if grid <= farthest] or ladder[:1]
-    own = sum(fine.parts.get(quantity, {}).values())
+    own, order = _own(fine, quantity), _order(results, quantity)
     for M in reach:
         finer = fine.M / M
-        bar = estimate.foretold(found, finer) + own * finer
+        bar = estimate.foretold(found, finer) + own * finer**order
         if bar <= _MARGIN * accuracy * abs(found):
             return M
     return reach[-1]
+
+
+def _own(result: GridResult, quantity: str) -> float:
+    """What a grid's own solution leaves open of a number."""
+    return sum(result.parts.get(quantity, {}).values())
+
+
+def _order(results: Sequence[GridResult], quantity: str) -> float:
+    """The order at which that falls: as to the last grid climbed to, from none to the first."""
+    coarse, fine = (_own(result, quantity) for result in results[-2:])
+    if len(results) == len(OPENING) or not min(coarse, fine) > 0:
+        return 1.0
+    return min(max(math.log(coarse / fine) / math.log(results[-1].M / results[-2].M), 0.0), 1.0)
+
+
+def ambiguous(results: Sequence[GridResult], accuracy: float, quantity: str) -> bool:
+    """Whether tau's support leaves more than that open on a grid climbed to, and no less than before."""
+    if len(results) == len(OPENING):
+        return False
+    coarse, fine = (result.parts.get(quantity, {}).get("tau support", 0.0) for result in results[-2:])
+    return fine >= coarse and fine > accuracy * abs(results[-1].numbers[quantity])
 
 
 def relative_bar(results: Sequence[GridResult], quantity: str) -> float:

@@ -54,6 +54,21 @@ def test_what_a_grid_itself_leaves_open_is_foretold_to_fall_as_the_spacing() -> 
     assert next_grid(opened, 0.0205, "max_pressure", LADDER) == 320
 
 
+@pytest.mark.parametrize(("falls", "expected"), [(4.0, 480), (2.0, 480), (2**0.5, 896), (1.0, 2048)])
+def test_it_is_foretold_to_fall_as_on_the_last_two_grids_but_no_faster(falls: float, expected: int) -> None:
+    """From 3 % of the peak on 256 elements a side to 1.63 %; if it did not, as far as may be foretold."""
+
+    def climbed(coarse: float) -> list[GridResult]:
+        parts = [{"max_pressure": {"tau support": part * PEAK}} for part in (0.0, 0.0, coarse, 0.03)]
+        several = zip((*OPENING, 128, 256), parts, strict=True)
+        return [replace(made_up(M), parts=own) for M, own in several]
+
+    ladder = [32 * k for k in range(9, 65)]
+    assert next_grid(climbed(0.03 * falls), 0.0163 / 0.95, "max_pressure", ladder) == expected
+    assert next_grid(climbed(0.0), 0.0163 / 0.95, "max_pressure", ladder) == 480
+    assert next_grid(climbed(0.01), 0.0305 / 0.95, "max_pressure", ladder) == ladder[0]  # nor is it to grow
+
+
 def test_a_zero_that_is_exact_has_no_bar() -> None:
     opened = [made_up(M) for M in OPENING]
     assert relative_bar(opened, "binormal_force") == 0.0
@@ -80,6 +95,24 @@ def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_is_told() -> No
     ended = climb(made_up, 0.001, "contact_area", ladder=(80, 96))
     assert ended.results[-1].M == 96
     assert "96" in ended.refusal
+
+
+@pytest.mark.parametrize(("power", "grids"), [(0.0, 3), (0.1, 3), (-1.0, 4), (-0.5, 5)])
+def test_what_taus_support_leaves_open_ends_the_climb_unless_finer_grids_leave_less(
+    power: float, grids: int
+) -> None:
+    """A tenth of the peak on 64 elements a side, against the hundredth asked for."""
+    asked: list[int] = []
+
+    def result_at(M: int) -> GridResult:
+        asked.append(M)
+        own = {"max_pressure": {"tau support": 0.1 * PEAK * (M / 64) ** power}}
+        return replace(made_up(M), parts=own)
+
+    found = climb(result_at, 0.01, "max_pressure", ladder=range(64, 2**16, 64))
+    assert len(asked) == grids
+    assert ("tau's support" in found.refusal) is (power >= 0)
+    assert (relative_bar(found.results, "max_pressure") <= 0.01) is (power < 0)
 
 
 def test_nothing_in_contact_ends_the_climb() -> None:
