@@ -54,7 +54,7 @@ def solve_dense(problem: Problem, operator: DenseInfluence) -> tuple[Outcome, St
         if problem.friction.tau > 0:
             rule.next(solver.pressure > 0)
             in_cycles += states[len(states) - len(rule.cycle) :]
-        if rule.settled or problem.friction.tau == 0:
+        if rule.settled or rule.given_up or problem.friction.tau == 0:
             break
     lawful = not np.any(rule.withheld & (solver.pressure > 0))
     ended = solver.slopes_settled and (rule.settled or problem.friction.tau == 0)

@@ -6,7 +6,8 @@ no tau anywhere; solve; give tau to the elements in contact; repeat. When a supp
 elements that changed within that cycle are withheld from tau for good, and the iteration goes on.
 So are those that leave the support for the third time: where many elements flip by themselves, each at
 its own pace, the support as a whole hardly ever returns. Between two such events supports only grow, so
-it ends.
+it ends. Where tau would be withheld from most of the contact nothing is left of the law, and the rule is
+given up.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from refimpl.scene import Friction
 
 Mask = NDArray[np.bool_]
 
+_MOST = 0.5  # of the contact; tau of two to three times the highest pressure comes there
 _OFTEN = 3  # times that an element leaves tau's support; in cycles of two it is mostly noticed before
 
 
@@ -45,7 +47,7 @@ class TauSupport:
     def __init__(self, shape: tuple[int, ...]) -> None:
         self.current: Mask = np.zeros(shape, dtype=bool)
         self.withheld: Mask = np.zeros(shape, dtype=bool)
-        self.settled = False
+        self.settled = self.given_up = False
         self.cycle: tuple[Mask, ...] = ()
         self._left = np.zeros(shape, dtype=np.uint8)
         self._history: list[Mask] = [self.current]
@@ -55,7 +57,7 @@ class TauSupport:
 
         Sets ``settled`` when it is the last one again, and ``cycle`` to the supports, the present one last,
         that elements withheld from now on were part of (to none, if none are): a cycle's that this contact
-        set closes, or the one that they leave once too often.
+        set closes, or the one that they leave once too often. Where it is ``given_up`` nothing changes.
         """
         self.cycle = ()
         support = contact & ~self.withheld
@@ -72,9 +74,12 @@ class TauSupport:
         elif flipping.any():
             self.cycle = (self.current,)
         if self.cycle:
-            self.withheld = self.withheld | flipping
-            self._history = []
-            support = contact & ~self.withheld
+            withheld = self.withheld | flipping
+            if np.count_nonzero(withheld & contact) > _MOST * np.count_nonzero(contact):
+                self.given_up, self.cycle = True, ()
+                return self.current
+            self.withheld, self._history = withheld, []
+            support = contact & ~withheld
         self._history.append(support)
         self.current = support
         return support

@@ -126,7 +126,7 @@ class _Scheme:
             if tau > 0:
                 rule.next(self.pressure > 0)
                 in_cycles += states[len(states) - len(rule.cycle) :]
-            if tau == 0 or rule.settled:
+            if tau == 0 or rule.settled or rule.given_up:
                 break
         lawful = not np.any(rule.withheld & (self.pressure > 0))
         ended = self.settled and (tau == 0 or rule.settled)

@@ -1,7 +1,8 @@
 """Tau's rule (`refimpl.friction`) walked on one grid.
 
 A state on the way need only tell its contact, so it is left as soon as that is beyond doubt. Of a cycle's
-states mu is told as well: those are settled further if need be. Only the last is settled to the tolerance.
+states mu is told as well: those are settled further if need be. Only the last is settled to the tolerance,
+whether the rule settles there or gives up.
 Tau that contact leads by itself may end in another lawful state: the rule alone depends on no way.
 """
 
@@ -61,6 +62,9 @@ def followed(state: Settling, tolerance: float) -> tuple[TauSupport, list[Visite
         rule.next(state.contact)
         for support in reversed(rule.cycle):  # the last is the present one
             in_cycles.append(way.pop() or _again(state, told, support))
+        if rule.given_up:
+            state.settle(tolerance, rule.current)
+            break
         stuck = stuck + 1 if state.stuck else 0
         if rule.settled or state.ran_off or stuck == _STUCK:
             break

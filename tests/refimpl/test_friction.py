@@ -73,11 +73,11 @@ def test_what_came_before_the_cycle_does_not_count() -> None:
 
 def test_supports_from_before_a_cycle_was_settled_are_forgotten() -> None:
     """Without its elements contact is another function of the support."""
-    rule = play("x..", ".x.", "x..")
-    np.testing.assert_array_equal(rule.current, mask("..."))
-    for contact in ("..x", "xx."):
+    rule = play("x..xx", ".x.xx", "x..xx")
+    np.testing.assert_array_equal(rule.current, mask("...xx"))
+    for contact in ("..xxx", "xx.xx"):
         rule.next(mask(contact))
-    assert [list(support) for support in rule.cycle] == [list(mask("...")), list(mask("..x"))]
+    assert [list(support) for support in rule.cycle] == [list(mask("...xx")), list(mask("..xxx"))]
 
 
 def test_what_leaves_for_the_third_time_is_withheld_though_no_support_returns() -> None:
@@ -98,15 +98,31 @@ def test_what_leaves_for_the_third_time_is_withheld_though_no_support_returns() 
 def test_elements_that_flip_each_at_its_own_pace_settle_soon() -> None:
     """Contact goes round in groups of 2, 3, 5 and 7: together they return after 210 supports."""
     groups = np.split(np.arange(17), [2, 5, 10])
-    rule, contact = TauSupport((17,)), np.zeros(17, dtype=bool)
-    contact[[0, 2, 5, 10]] = True
+    rule, contact = TauSupport((21,)), np.zeros(21, dtype=bool)
+    contact[[0, 2, 5, 10, 17, 18, 19, 20]] = True
     for _ in range(3 * 7 + 1):
         rule.next(contact)
         for group in groups:
             contact[group] = np.roll(contact[group], 1)
-    assert rule.withheld.all()
+    assert rule.withheld[:17].all()
+    assert not rule.withheld[17:].any()
     rule.next(contact)
     assert rule.settled
+
+
+@pytest.mark.parametrize(
+    ("wide", "narrow", "given_up"), [("xx.", "x..", False), ("xxxx", "xx..", False), ("xxx.", "x...", True)]
+)
+def test_a_rule_that_would_take_tau_from_most_of_the_contact_is_given_up(
+    wide: str, narrow: str, given_up: bool
+) -> None:
+    """And everything is as before: half of the contact may lose it."""
+    rule = play(wide, narrow, wide)
+    assert rule.given_up is given_up
+    assert not rule.settled
+    assert (rule.cycle == ()) is given_up
+    assert rule.withheld.any() is np.bool_(not given_up)
+    np.testing.assert_array_equal(rule.current, mask(narrow))
 
 
 @settings(derandomize=True, deadline=None, max_examples=100)
@@ -122,9 +138,9 @@ def test_it_ends_whatever_contact_answers(n: int, seed: int) -> None:
         assert int(rule.withheld.sum()) >= count
         assert not np.any(rule.current & rule.withheld)
         count = int(rule.withheld.sum())
-        if rule.settled:
+        if rule.settled or rule.given_up:
             break
-    assert rule.settled
+    assert rule.settled is not rule.given_up
 
 
 def test_shapes_other_than_lines() -> None:

@@ -57,7 +57,7 @@ class Played:
         return self._support in self._sticks
 
     def settle(self, tolerance: float, support: Mask, withheld: Mask | None = None) -> bool:
-        assert tolerance == (1e-6 if withheld is None else 1e-8)
+        assert tolerance == 1e-8 or (withheld is None and tolerance == 1e-6)
         self._support = "".join(c.upper() if on else c for c, on in zip("ab", support, strict=True))
         self.asked.append(self._support + ("" if withheld is not None else " fully"))
         left = withheld is not None and self._support in self._left
@@ -116,6 +116,16 @@ def test_slopes_that_run_off_end_the_path() -> None:
     state = Played({"ab": "Ab", "Ab": "AB"}, runs="Ab")
     followed(state, 1e-8)
     assert state.asked == ["ab", "Ab"]
+
+
+def test_where_the_rule_gives_up_the_last_state_is_settled() -> None:
+    contacts = {"ab": "AB", "AB": "Ab", "Ab": "aB", "aB": "AB"}
+    state = Played(contacts, left="ab AB Ab aB")
+    rule, in_cycles = followed(state, 1e-8)
+    assert rule.given_up
+    assert in_cycles == []
+    assert state.asked == ["ab", "AB", "Ab", "aB", "aB fully"]
+    assert state.residual == 1e-8
 
 
 def test_a_path_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:

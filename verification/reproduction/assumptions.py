@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,20 +20,17 @@ def kinematic_margin(scene: rf.Scene, found: rf.Solution) -> float:
     return float((1 - gap[found.contact] / found.approach).min())
 
 
-def adhesive_scene(ratio: float) -> rf.Scene:
-    """A steel ball on a polymer at 10 mN, its tau ``ratio`` times Hertz' peak pressure."""
+def sheared_scene(beta: float) -> rf.Scene:
+    """A steel ball on a polymer at 10 mN, with a shear of ``beta`` times the pressure."""
     polymer = rf.Material(E=1e9, nu=0.2)
     steel = rf.Material(E=200e9, nu=0.3)
-    bare = rf.Scene(
+    return rf.Scene(
         upper=rf.Body(steel, rf.Sphere(radius=0.14)),
         lower=rf.Body(polymer, rf.Flat()),
-        friction=rf.Friction(),
+        friction=rf.Friction(tau=0.0, beta=beta),
         load=0.01,
         side=4e-4,
     )
-    radius = (3 * bare.load * 0.14 / (4 * bare.materials.reduced_modulus)) ** (1 / 3)
-    peak = 3 * bare.load / (2 * np.pi * radius**2)
-    return replace(bare, friction=rf.Friction(tau=ratio * peak))
 
 
 @dataclass(frozen=True)
