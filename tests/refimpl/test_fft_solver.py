@@ -10,7 +10,9 @@ import pytest
 import refimpl as rf
 from refimpl import fft_solver
 from refimpl.contact.certificate import certify
+from refimpl.contact.projected_cg import Apply
 from refimpl.fft_solver import _beyond, _certified, _widened, solve_fft
+from refimpl.friction import Mask
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
@@ -60,6 +62,24 @@ def test_what_feeds_back_strongly_does_so_on_finer_grids() -> None:
     assert solver.answer().strong
     finer = fft_solver.begun(posed(STEEP, 256, oblique=True), solver.answer(), Counter())
     assert finer.strong
+
+
+def test_residuals_are_continued_beyond_the_contact_that_a_grid_begins_with(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Mask] = []
+
+    def recorded(precondition: Apply, contact: Mask) -> Apply:
+        asked.append(contact)
+        return precondition
+
+    monkeypatch.setattr(fft_solver, "extended", recorded)
+    coarse = level(posed(BALL, 16))
+    coarse.settle(1e-3)
+    finer = fft_solver.begun(posed(BALL, 32), coarse.answer(), Counter())
+    assert finer.contact.any()
+    assert not finer.contact.all()
+    assert np.array_equal(asked[-1], finer.contact)
 
 
 @pytest.mark.parametrize("rows", [slice(2, 6), slice(6, 9)])
