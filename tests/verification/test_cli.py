@@ -153,7 +153,9 @@ def test_list_runs_nothing(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> 
     assert [c["id"] for c in listed] == [c.id for c in registry.load()]
 
 
-@pytest.mark.parametrize("text", ["{", '{"format": "another"}', "[]", "\x00"])
+@pytest.mark.parametrize(
+    "text", ["{", '{"format": "another"}', "[]", "\x00", '{"seconds": ' + "1" * 5000 + "}"]
+)
 def test_report_refuses_what_is_not_a_result_file(text: str, tmp_path: Path, capsys: Capture) -> None:
     path = tmp_path / "results.json"
     path.write_text(text)

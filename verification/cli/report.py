@@ -105,7 +105,7 @@ def _read(option: str, path: Path) -> Any:
     except FileNotFoundError as missing:
         allowed = "a result file; make one with 'rough-friction verify --json FILE'"
         raise InputError(option, str(path), allowed) from missing
-    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError, IsADirectoryError) as broken:
+    except (ValueError, RecursionError, IsADirectoryError) as broken:  # JSON, UTF-8, or thousands of digits
         raise InputError(option, str(path), f"JSON ({broken})") from broken
 
 

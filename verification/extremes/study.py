@@ -122,7 +122,7 @@ def kept_rows(path: Path) -> dict[str, Row]:
         before = json.loads(path.read_text(encoding="utf-8"))
         same = before["format"] == FORMAT and before["provenance"]["commit"] == provenance()["commit"]
         return {row["id"]: row for row in before["states"]} if same and not before["complete"] else {}
-    except (FileNotFoundError, json.JSONDecodeError, KeyError, TypeError, UnicodeDecodeError):
+    except (FileNotFoundError, ValueError, KeyError, TypeError):
         return {}
 
 
