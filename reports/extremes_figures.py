@@ -92,7 +92,7 @@ def _lawful(canvas: Canvas, data: Data) -> None:
             range(len(bottom)), height, bottom=bottom, color=COLOURS[k], label=f"{name} lawful", width=0.75
         )
         bottom += height
-    axes.plot(range(len(bottom)), data["cycled"], MARKERS[0], color=INK, label="told CYCLED by the solver")
+    axes.plot(range(len(bottom)), data["not converged"], MARKERS[0], color=INK, label="not told CONVERGED")
     axes.set_xticks(range(len(bottom)), [f"{tau:g}" for tau in data["tau / mean pressure"]])
     axes.set(xlabel=r"$\tau$ / mean pressure", ylabel="scenes")
     canvas.legend(loc="outside upper center", ncols=4)
@@ -134,7 +134,7 @@ KEPT = Figure(
 )
 LAWFUL = Figure(
     "*",
-    ("tau / mean pressure", "none", "one", "several", "cycled"),
+    ("tau / mean pressure", "none", "one", "several", "not converged"),
     _lawful,
     "Lawful states of 40 rough flats on 3 x 3 elements, counted by trying all contact sets.",
 )

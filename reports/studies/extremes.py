@@ -18,10 +18,11 @@ def build(document: Document) -> Exhibit:
     rows, counts = document["states"], document["counts"]
     said = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS)
     lawful = document["lawful states"]
+    statuses = [row["statuses"]["fft"] for row in lawful]
     taus = {
         "tau / mean pressure": [row["tau"] for row in lawful],
         **{name: [row[name] for row in lawful] for name in ("none", "one", "several")},
-        "cycled": [row["statuses"]["fft"].get("cycled", 0) for row in lawful],
+        "not converged": [sum(told.values()) - told.get("converged", 0) for told in statuses],
     }
     return Exhibit(
         "Every axis to the point of failure",
