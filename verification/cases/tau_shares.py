@@ -21,9 +21,9 @@ from verification.registry import case
 SCENES = range(2000, 2200)
 QUICK = (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)
 """Those of the eleven scenes that cycle at 64 x 64 whose bars are the longest."""
-ONSET = (
-    1e-4  # of f_max: the pressure at which all of tau is on; a tenth of it changes mu by 0.13 bars at most
-)
+ONSET = 1e-4
+"""Of f_max: the pressure at which all of tau is on. A tenth of it moves mu of single elements by up to 0.3
+bars, and none beyond its bar."""
 UPDATES = 60  # of the shares
 TOLERANCE = 1e-9
 SOURCE = "Eq. (8); its jump is the limit of such laws"
