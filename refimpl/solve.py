@@ -224,6 +224,7 @@ def _solution(
         friction_coefficient=state.forces.friction / load if load else math.nan,
         contact_area=float(np.count_nonzero(contact)) * grid.element_area,
     )
+    unlawful = state.certificate.unlawful * problem.friction.tau * grid.element_area / load if load else 0.0
     changes = effects_left_out(plan.left_out, problem, state.pressure, plan.outlook)
     largest = float(state.pressure.max())
     total = float(state.pressure.sum())
@@ -254,7 +255,7 @@ def _solution(
         certificate=state.certificate,
         tolerance=tolerance,
         uncertainty=merged(
-            _cycle_spread(problem, outcome, found, load),
+            _spread_by_support(outcome, found, unlawful),
             uncertainty_left_out(
                 changes,
                 float(state.traction.sum()) / total if total else 0.0,
@@ -277,22 +278,15 @@ def _final_status(status: Status, state: State, tolerance: float) -> Status:
     return status
 
 
-def _cycle_spread(
-    problem: Problem, outcome: Outcome, found: Visited, load: float
-) -> dict[str, dict[str, float]]:
+def _spread_by_support(outcome: Outcome, found: Visited, unlawful: float) -> dict[str, dict[str, float]]:
     """How far mu and A of the states of tau's cycles lie from the settled ones.
 
-    For mu no less than all of tau on the contacts that it is withheld from: where tau comes on with pressure,
+    For mu no less than tau on all elements that have it against the law: where tau comes on with pressure,
     however soon, they bear a share of it (see `verification.cases.tau_shares`).
     """
-    if not outcome.visited:
-        return {}
     spread = {
-        name: max(abs(getattr(v, name) - getattr(found, name)) for v in outcome.visited)
+        name: max((abs(getattr(v, name) - getattr(found, name)) for v in outcome.visited), default=0.0)
         for name in Visited._fields
     }
-    spared = np.count_nonzero(outcome.withheld & (outcome.pressure > 0)) * problem.grid.element_area
-    spread["friction_coefficient"] = max(
-        spread["friction_coefficient"], float(problem.friction.tau * spared / load) if load else 0.0
-    )
-    return {name: {"tau support": width} for name, width in spread.items()}
+    spread["friction_coefficient"] = max(spread["friction_coefficient"], unlawful)
+    return {name: {"tau support": width} for name, width in spread.items() if width > 0}
