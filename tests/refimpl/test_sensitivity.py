@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from copy import copy
 from dataclasses import replace
 
@@ -9,11 +10,13 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.discretisation import AREA, area_scatter
 from refimpl.fixed_set import FixedSet
 from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.grid_result import GridResult
 from refimpl.parameters import check_tolerances, parameters, with_parameter
-from refimpl.sensitivity import NUMBERS, Sensitivity, _Edge, sensitivity
+from refimpl.sensitivity import _STRIDE, NUMBERS, Sensitivity, _Edge, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 M, TIGHT = 48, 1e-11
@@ -81,6 +84,15 @@ def test_friction_is_as_uncertain_as_the_area_that_tau_acts_on(adhesive: Sensiti
     spread = adhesive.scatter["contact_area"]["load"]
     assert spread > 0
     assert adhesive.scatter["friction_coefficient"]["load"] == pytest.approx(5e5 / 20.0 * spread, abs=0)
+
+
+def test_an_areas_scatter_by_the_load_is_that_of_two_counts() -> None:
+    """As the error bars have it of one, over the load's stride; those open a little for small spots."""
+    scene = sliding(tau=5e5)
+    solution = rf.solve(scene, M, tolerance=TIGHT)
+    one = AREA.scatter * float(area_scatter([GridResult.of(solution)])[0])
+    found = sensitivity(scene, solution).scatter["contact_area"]["load"]
+    assert found == pytest.approx(math.sqrt(2) * one / (_STRIDE * scene.load), rel=0.02)
 
 
 def test_the_area_agrees_with_wide_differences_within_its_scatter(adhesive: Sensitivity) -> None:

@@ -278,6 +278,18 @@ def test_as_many_points_as_terms_an_axis_are_enough(degree: int) -> None:
     np.testing.assert_allclose(fit(x, y, z, degree)(x, y), z, rtol=0, atol=1e-13)
 
 
+@pytest.mark.parametrize("along", [0, 1])
+def test_the_central_window_of_a_long_strip_is_levelled_by_itself(tmp_path: Path, along: int) -> None:
+    """Far from both ends: 8 of 140 points, whose squares have a mean of 5.25 about their middle."""
+    at = np.arange(140) - 69.5
+    strip = np.broadcast_to(at[:, None] ** 2 if along == 0 else at**2, (140, 8) if along == 0 else (8, 140))
+    np.save(tmp_path / "a.npy", strip)
+    surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, level="mean")
+    expected = (np.arange(8) - 3.5) ** 2 - 5.25
+    found = np.moveaxis(surface.heights(Grid(8.0, 8)), along, -1)
+    np.testing.assert_allclose(found, np.tile(expected, (8, 1)), rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("level", list(DEGREES))
 def test_fit_is_the_least_squares_polynomial(level: str) -> None:
     degree = DEGREES[level]
