@@ -24,8 +24,8 @@ def build(document: Document) -> Exhibit:
         (
             f"A stratified sample of {document['tried']} of {document['candidates']} small faults "
             "(operators, numbers, comparisons, removed statements), seed "
-            f"{document['seed']}, was put into the kernels, operators, contact, friction, equilibrium, wedge "
-            "and strip modules one at a time; each module's own fast tests had to notice.",
+            f"{document['seed']}, was put into the modules of {', '.join(document['by_subject'])} one at a time; "
+            "each module's own fast tests had to notice.",
             "A mutant that exceeds its processor time counts as noticed; an equivalent one, which computes "
             "the same, counts neither way. Bounds are Clopper and Pearson's, at "
             f"{document['confidence']:.0%}; counted as survivors, equivalent ones leave a score of "
@@ -44,8 +44,8 @@ def notes(document: Document) -> tuple[str, ...]:
     if document["seed"] != 1:
         return ("No test was written and no mutant explained because of this sample before it was judged.",)
     return (
-        "Tests were sharpened against this sample's survivors, so its score says that none is left open; "
-        "how many others would survive is what the fresh sample estimates.",
+        "Tests were sharpened against this sample's survivors, so its score says how few of these are left "
+        "open; how many others would survive is what the fresh sample estimates.",
     )
 
 
