@@ -215,7 +215,7 @@ def test_what_leaves_too_often_is_withheld_by_both_solvers() -> None:
 
 
 def test_the_bar_of_taus_support_holds_all_of_tau_where_it_is_withheld() -> None:
-    """In this scene the states on the cycle differ by half as much, and by less than laws without a jump."""
+    """And not only what the states on the cycle differ by, which is less here."""
     scene = study.random_scene(2071).scene
     found = rf.solve(scene, 128)
     spared = np.count_nonzero(found.withheld & (found.pressure > 0)) * found.grid.element_area
