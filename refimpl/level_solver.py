@@ -1,9 +1,8 @@
 """One grid of the production solver: projected CG on the contact's window, with the rest lagged.
 
-CG inverts ``a f``, and weak coupling with it (`refimpl.flexibility`). The rest of the shear displacement,
-slopes, the load's weights and tau's support are held while CG reduces the residual as far as they let it,
-and are then brought up to date. Where their own feedback is weak few updates suffice; where it is not they
-are mixed (`refimpl.mixing`).
+CG inverts ``a f``, and weak coupling with it (`refimpl.flexibility`). The rest of the problem is held
+(`refimpl.held`) while CG reduces the residual as far as that lets it, and is then brought up to date. Where
+its own feedback is weak few updates suffice; where it is not they are mixed (`refimpl.mixing`).
 """
 
 from __future__ import annotations
@@ -16,15 +15,15 @@ from numpy.typing import NDArray
 
 from refimpl.contact.projected_cg import Apply, ProjectedCG
 from refimpl.flexibility import Flexibility
-from refimpl.friction import Mask, TauSupport, local_friction
-from refimpl.grid import Array, inner
+from refimpl.friction import Mask, TauSupport
+from refimpl.grid import Array
+from refimpl.held import Held
 from refimpl.nesting import Start
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.operators.window import Window
 from refimpl.outcome import Outcome, Status, Visited
 from refimpl.problem import Problem, visit
-from refimpl.slopes import Slopes
 from refimpl.tau_path import followed
 from refimpl.updates import Updates
 
@@ -35,8 +34,6 @@ _CG_LIMIT = 1000
 _CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 _MIXED_SHARE = 0.1  # of the tolerance, for CG between mixed updates: what it leaves is noise to them
 _UPDATES = 600  # of what is held, in one settling
-_STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
-
 
 WindowInfluence = FFTInfluence | PeriodicInfluence
 
@@ -71,14 +68,12 @@ class LevelSolver:
         self.operator = operator
         self.flexibility = Flexibility(self.problem, operator)
         self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
-        self._held: tuple[Array, Array] | None = None  # shear and weights that the present state came from
-        self.slopes = self._entered = Slopes.flat(self.window.shape)
-        self._nowhere: Mask = np.zeros(self.window.shape, dtype=bool)
-        self.support = self._nowhere
+        self.held = Held(self.problem, self.flexibility, self.cg)
+        self._nowhere = self.held.support
         self._withheld: Mask | None = None
         # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.nesting`
         self._stiffness = 0.5 / (problem.pair.normal_compliance * problem.grid.spacing)
-        self.ran_off = self.stuck = False
+        self.stuck = False
         self._updates = Updates(math.inf, lags=True, strong=strong)
         self._feedback = _REDUCTION
 
@@ -126,6 +121,11 @@ class LevelSolver:
         return self.cg.pressure > 0
 
     @property
+    def ran_off(self) -> bool:
+        """Whether slopes did, under pressures far beyond the moduli."""
+        return self.held.ran_off
+
+    @property
     def strong(self) -> bool:
         """Whether what is held feeds back so strongly that updates are mixed."""
         return self._updates.mixing is not None
@@ -137,26 +137,27 @@ class LevelSolver:
 
     def visited(self) -> Visited:
         """The present state's numbers."""
-        return visit(self.problem, self.cg.pressure, self._pulled(), self.slopes)
+        return visit(self.problem, self.cg.pressure, self.held.traction, self.held.slopes)
 
     def settle(self, tolerance: float, support: Mask | None = None, withheld: Mask | None = None) -> bool:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or nowhere.
 
         With what tau's rule has ``withheld``, only until it is beyond doubt that its next support is another.
         """
-        self.support, self._withheld = self._nowhere if support is None else support, withheld
+        self.held.support, self._withheld = self._nowhere if support is None else support, withheld
         self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
-        self.residual = self._update()
-        self._updates, self.stuck = Updates(self.residual, lags=self._lags, strong=self.strong), False
+        self.residual = self.held.update(self.cg_iterations)
+        lags = self.held.lags
+        self._updates, self.stuck = Updates(self.residual, lags=lags, strong=self.strong), False
         for _ in range(_UPDATES):
             if self.residual <= self._tolerance or self._leads_on():
                 return self.residual <= self._tolerance
             if self.cg_iterations >= self._budget or self.ran_off or self._updates.given_up:
                 break
             last = self.residual
-            self._mix()
+            self.held.mix(self._updates.mixing)
             frozen = self._reduce(self._goal(tolerance))
-            self.residual = self._update() if self._lags else frozen
+            self.residual = self.held.update(self.cg_iterations) if lags else frozen
             brought_back = (self.residual - frozen) / last
             self._feedback = min(max(_LEAST_FEEDBACK, brought_back), _REDUCTION)
             self._updates.led_to(self.residual, brought_back)
@@ -193,82 +194,12 @@ class LevelSolver:
             return False
         if not self.cg.beyond_doubt(self._stiffness):
             return False
-        return not np.array_equal(self.cg.contact & ~self._withheld, self.support)
+        return not np.array_equal(self.cg.contact & ~self._withheld, self.held.support)
 
     @property
     def _share(self) -> float:
         """Of the tolerance, for the frozen problem: the rest is for what is held, or for rounding alone."""
-        return 0.3 if self._lags else 0.9
-
-    @property
-    def _lags(self) -> bool:
-        """Whether anything that CG holds depends on the pressure."""
-        return self.problem.terms.oblique or self._shear_lags
-
-    @property
-    def _shear_lags(self) -> bool:
-        """Whether shear does, beyond what CG has taken in and tau, which stays on its support."""
-        terms, sheared = self.problem.terms, self.problem.friction.beta > 0 and not self.flexibility.coupled
-        return terms.slope_correction or (terms.coupled and sheared)
-
-    def _update(self) -> float:
-        """Bring slopes, shear and load weights up to date; the residual of the whole problem."""
-        problem, pressure = self.problem, self.cg.pressure
-        shear, slopes = self.flexibility.displaced(
-            pressure, self.cg_iterations, self.support, self.slopes, self.cg.normal_displacement
-        )
-        self._entered, change = slopes, 0.0
-        if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
-            self._entered, change = self.slopes, slopes.distance(self.slopes, pressure > 0)
-        self.ran_off = not slopes.obliqueness.min() > _STEEPEST
-        if not self.ran_off:
-            self.slopes = slopes
-        target, balance = self._target(self.slopes.obliqueness)
-        K = self.slopes.obliqueness
-        self._asked = shear, K
-        self._hold(shear, K, target)
-        return math.inf if self.ran_off else max(*self.cg.residuals(), balance, change)
-
-    def _mix(self) -> None:
-        """Where updates are mixed, go on from a mixture in place of what the present state asks for."""
-        mixing = self._updates.mixing
-        if mixing is None or self._held is None:
-            self._held = self._asked
-            return
-        oblique, sheared = self.problem.terms.oblique, self._shear_lags
-        scale = float(np.abs(self.cg.normal_displacement).max()) or 1.0
-
-        def stacked(shear: Array, K: Array) -> Array:
-            return np.vstack([shear / scale] * sheared + [K] * oblique)
-
-        (shear, K), n = self._asked, self.window.shape[0]
-        mixed = mixing.mixed(stacked(*self._held), stacked(shear, K))
-        if sheared:
-            shear = scale * mixed[:n]
-        if oblique:
-            K = np.clip(mixed[-n:], _STEEPEST, 1.0)
-        self._held = shear, K
-        self._hold(shear, K, self._target(K)[0])
-
-    def _pulled(self) -> Array:
-        """The traction of the present pressure, with tau on its support."""
-        return local_friction(self.problem.friction, self.cg.pressure, self.support)
-
-    def _hold(self, shear: Array, K: Array, target: float | None) -> None:
-        self.cg.freeze(K * self.problem.gap + shear, K, target=target, approach=self.problem.approach)
-
-    def _target(self, K: Array) -> tuple[float | None, float]:
-        """What ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| / P."""
-        problem, pressure = self.problem, self.cg.pressure
-        if problem.load is None:
-            return None, 0.0
-        weights, offset = problem.load_weights(self.slopes, self.support)
-        dA = problem.grid.element_area
-        found = inner(weights, pressure)
-        target = (problem.load + offset) / dA + inner(K, pressure) - found
-        balance = abs(found * dA - offset - problem.load) / problem.load
-        # shear on slopes that alone exceeds the load leaves no balance: keep some contact and fail by it
-        return max(target, 1e-3 * problem.load / dA), balance
+        return 0.3 if self.held.lags else 0.9
 
     def _ended(self) -> Status:
         if self.residual <= self._tolerance:
@@ -279,8 +210,8 @@ class LevelSolver:
         withheld = rule.withheld if in_cycles else np.zeros(self.window.shape, dtype=bool)
         return Outcome(
             pressure=self.full(self.cg.pressure),
-            traction=self.full(self._pulled()),
-            slopes=self._entered.spread(self.window, self.whole.grid.M),
+            traction=self.full(self.held.traction),
+            slopes=self.held.entered.spread(self.window, self.whole.grid.M),
             status=status,
             withheld=self.full(withheld),
             visited=tuple(in_cycles),

@@ -7,9 +7,9 @@ both solvers.
 
 from __future__ import annotations
 
-import importlib
 import math
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,7 +18,7 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl import dense_solver, fft_solver, forces, level_solver, posing, problem, slopes
+from refimpl import forces, friction, level_solver, problem, slopes
 from refimpl.contact import certificate
 from refimpl.grid import Array
 from refimpl.kernels import normal_integral, tangential_integral
@@ -60,10 +60,16 @@ def _tables_of(kind: str, factor: float) -> Patch:
     return tables, "_TABLES", wrong
 
 
-def _wherever_imported(name: str, wrong: Any) -> tuple[Patch, ...]:
-    solve = importlib.import_module("refimpl.solve")  # the package's `solve` is the function
-    users = (dense_solver, fft_solver, level_solver, certificate, posing, problem, solve)
-    return tuple((user, name, wrong) for user in users if hasattr(user, name))
+def everywhere(right: Any, wrong: Any, packages: Collection[str] = ("refimpl",)) -> tuple[Patch, ...]:
+    """Patches of every module of those packages that holds this function by now, under whatever name."""
+    holders = [
+        module
+        for name, module in sorted(sys.modules.items())
+        if module is not None and name.partition(".")[0] in packages
+    ]
+    return tuple(
+        (module, key, wrong) for module in holders for key, value in vars(module).items() if value is right
+    )
 
 
 def _circle_off_by_one(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
@@ -83,11 +89,11 @@ def _posed(change: Callable[[Array], Array]) -> tuple[Patch, ...]:
         right = _pose(*args)
         return replace(right, gap=change(right.gap), mean_surface=change(right.mean_surface))
 
-    return _wherever_imported("pose", wrong)
+    return everywhere(_pose, wrong)
 
 
 def _resultants(change: Callable[[forces.Forces], forces.Forces]) -> tuple[Patch, ...]:
-    return _wherever_imported("resultants", lambda *args: change(_right_resultants(*args)))
+    return everywhere(_right_resultants, lambda *args: change(_right_resultants(*args)))
 
 
 def _in_single_precision(self: FFTInfluence, source: Array, hat: Any) -> Array:
@@ -167,12 +173,12 @@ FAULTS = {
     ),
     "tau-missing": Fault(
         "friction without tau",
-        _wherever_imported("local_friction", lambda law, f, on: np.asarray(law.beta * f)),
+        everywhere(friction.local_friction, lambda law, f, on: np.asarray(law.beta * f)),
         "local_friction_law",
     ),
     "tau-everywhere": Fault(
         "tau outside the contact as well",
-        _wherever_imported("local_friction", lambda law, f, on: np.asarray(law.tau + law.beta * f)),
+        everywhere(friction.local_friction, lambda law, f, on: np.asarray(law.tau + law.beta * f)),
         "local_friction_law",
     ),
     "transposed": Fault("x and y exchanged in the gap", _posed(lambda z: z.T.copy()), "displacements"),
@@ -217,7 +223,7 @@ FAULTS = {
     ),
     "stuck": Fault(
         "three CG steps and a certificate that is always clean",
-        ((level_solver, "_CG_LIMIT", 3), *_wherever_imported("certify", _certified_blindly)),
+        ((level_solver, "_CG_LIMIT", 3), *everywhere(_certify, _certified_blindly)),
         "complementarity",
     ),
 }

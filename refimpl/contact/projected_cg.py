@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from refimpl.contact.cut import cut_at_zero, room
 from refimpl.contact.support import Support
 from refimpl.friction import Mask
 from refimpl.grid import Array, inner
@@ -25,7 +26,6 @@ Apply = Callable[[Array], Array]
 
 FIRST_LENGTH = 0.7  # of a step: the preconditioned spectrum lies between 1 and 2 (see the tests)
 _SHORTER = 0.8  # trial over last best length: a trial too long would leave cut elements halfway
-_LITTLE = 1e-3  # of the load: from 1e-2 to 1e-4 CG takes as many steps, within half a per cent
 _NOTHING = 1e-12  # of a pressure: what a step that makes it vanish may leave
 _DOUBT = 2.0  # times the worst misfit; 1 is enough for all of tau's states on random scenes (see the tests)
 _TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its length before it cuts
@@ -193,7 +193,7 @@ class ProjectedCG:
         cut: Mask | None = None
         if trial.min() < 0:
             cut = trial < 0
-            if not self._cut(trial, pressure, change):
+            if not cut_at_zero(trial, pressure, change, self._weights, self._target):
                 return False
         moved = self._apply(self._support.onto(change))
         curvature = inner(change, self._support.seen(moved))
@@ -203,33 +203,13 @@ class ProjectedCG:
         self._trusted = _TRUSTED[0] < best < _TRUSTED[1]
         return True
 
-    def _cut(self, trial: Array, pressure: Array, change: Array) -> bool:
-        """Cut a trial at zero, and change ``change`` to what leads there at the load; False if nothing stays.
-
-        Load that the cut adds is taken from all pressures; a little only from those that rise, as scaling the
-        rest as well would stir up what has long settled.
-        """
-        np.maximum(trial, 0.0, out=trial)
-        total, target = inner(self._weights, trial), self._target
-        if total <= 0:
-            return False
-        if target is not None and total > (1 + _LITTLE) * target:
-            trial *= target / total
-            total = target
-        np.subtract(trial, pressure, out=change)
-        if target is not None and total > target:
-            rising = np.maximum(change, 0.0)
-            rising *= (total - target) / inner(self._weights, rising)
-            change -= rising
-        return True
-
     def _take(self, share: float, change: Array, moved: Array, cut: Mask | None) -> None:
         """That share of a change, but no pressure below zero; what is cut or falls to zero leaves."""
         before = self._pressing()
         pressure = before + share * change
         beyond = share > 1 and bool(pressure.min() < 0)
         if beyond:
-            share = _room(before, change)
+            share = room(before, change)
             pressure = before + share * change
         if beyond or cut is not None:
             pressure[pressure < _NOTHING * before] = 0.0  # whatever trace rounding leaves
@@ -274,9 +254,3 @@ class ProjectedCG:
         self.pressure = self.pressure * factor
         if displace:
             self.normal_displacement = self.normal_displacement * factor
-
-
-def _room(pressure: Array, change: Array) -> float:
-    """The multiple of a change at which the first pressure reaches zero."""
-    falling = change < 0
-    return float(np.min(pressure[falling] / -change[falling]))

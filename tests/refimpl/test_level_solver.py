@@ -54,7 +54,7 @@ class Script:
     def __init__(self, *residuals: float) -> None:
         self.residuals, self.count = list(residuals), 0
 
-    def __call__(self) -> float:
+    def __call__(self, step: int) -> float:
         self.count += 1
         return self.residuals[min(self.count, len(self.residuals)) - 1]
 
@@ -67,8 +67,8 @@ def settled(
 ) -> tuple[bool, LevelSolver, Script]:
     """What `settle` says where updates have those residuals, and CG leaves nothing; the solver."""
     solver, updates = level(posed(coupled(sigma), 4)), Script(*residuals)
-    monkeypatch.setattr(solver, "_update", updates)
-    monkeypatch.setattr(solver, "_mix", lambda: None)
+    monkeypatch.setattr(solver.held, "update", updates)
+    monkeypatch.setattr(solver.held, "mix", lambda mixing: None)
     monkeypatch.setattr(solver.cg, "residuals", lambda: (1.0, 1.0))
     monkeypatch.setattr(solver, "_reduce", lambda goal: 0.0)
     return solver.settle(1e-3), solver, updates
@@ -86,7 +86,7 @@ def test_updates_that_bring_much_back_are_mixed_from_then_on(monkeypatch: pytest
     meets, solver, _ = settled(monkeypatch, 1.0, 0.9, 0.8, 1e-4)
     assert meets
     assert solver.strong
-    monkeypatch.setattr(solver, "_update", Script(0.5, 1e-4))
+    monkeypatch.setattr(solver.held, "update", Script(0.5, 1e-4))
     assert solver.settle(1e-3)
     assert solver.strong
 
@@ -110,14 +110,14 @@ def test_updates_are_as_far_apart_as_they_bring_little_back(
         goals.append(goal / residuals[-1])
         return goal
 
-    def update() -> float:
+    def update(step: int) -> float:
         if goals:
             residuals.append((goals[-1] + feedback) * residuals[-1])
         return residuals[-1]
 
     monkeypatch.setattr(solver, "_reduce", reduce)
-    monkeypatch.setattr(solver, "_update", update)
-    monkeypatch.setattr(solver, "_mix", lambda: None)
+    monkeypatch.setattr(solver.held, "update", update)
+    monkeypatch.setattr(solver.held, "mix", lambda mixing: None)
     monkeypatch.setattr(level_solver, "_UPDATES", 2)
     solver.settle(1e-12)
     assert goals == pytest.approx([0.1, next_share], rel=1e-12)
@@ -129,9 +129,9 @@ def test_the_certificate_may_round_otherwise(
 ) -> None:
     """A residual counts as met a hundredth below the tolerance: 1e-12 leaves rounding a thousandth."""
     solver = level(posed(BALL, 4))
-    monkeypatch.setattr(solver, "_update", lambda: share * 1e-12)
+    monkeypatch.setattr(solver.held, "update", lambda step: share * 1e-12)
     monkeypatch.setattr(solver, "_reduce", lambda goal: share * 1e-12)
-    monkeypatch.setattr(solver, "_mix", lambda: None)
+    monkeypatch.setattr(solver.held, "mix", lambda mixing: None)
     assert solver.settle(1e-12) is met
 
 
@@ -145,7 +145,7 @@ def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
 
     def settle(tolerance: float, support: Mask, withheld: Mask | None = None) -> bool:
         contact = support if withheld is None else next(contacts)  # a state of the cycle, or the path's next
-        solver.cg.pressure, solver.support = np.where(contact, 0.5, 0.0), support
+        solver.cg.pressure, solver.held.support = np.where(contact, 0.5, 0.0), support
         solver.residual, solver._tolerance = 0.0, tolerance
         return True
 

@@ -28,8 +28,8 @@ def test_without_a_support_tau_is_nowhere() -> None:
     assert solver.settle(1e-9)
     pressure, friction = solver.cg.pressure, solver.problem.friction
     assert 1 < np.count_nonzero(pressure) < 16**2
-    assert np.array_equal(solver._pulled(), friction.beta * pressure)
-    assert not solver.support.any()
+    assert np.array_equal(solver.held.traction, friction.beta * pressure)
+    assert not solver.held.support.any()
 
 
 def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() -> None:
@@ -63,27 +63,26 @@ class Between:
 def test_what_lags_is_mixed_without_units(sigma: float, oblique: bool) -> None:
     """Shear where CG has not taken it in, in displacements, and cosines where there are slopes."""
     solver = level(posed(coupled(sigma), 16, oblique=oblique))
-    solver._update()
-    solver._mix()  # nothing to mix yet
-    shear, K = solver._held
+    held = solver.held
+    held.update(0)
+    held.mix(None)  # nothing to mix yet
+    shear, K = held._led
     solver.cg.iterate()
-    solver.cg_iterations += 1
-    solver._update()
-    solver._updates.mixing = mixing = Between()
-    displaced = np.abs(solver.cg.normal_displacement).max()
-    solver._mix()
-    lagging = [(shear, solver._asked[0])] * (sigma > 0.3) + [(K, solver._asked[1])] * oblique
+    held.update(1)
+    displaced, mixing = np.abs(solver.cg.normal_displacement).max(), Between()
+    held.mix(mixing)
+    lagging = [(shear, held._asked[0])] * (sigma > 0.3) + [(K, held._asked[1])] * oblique
     scales = [displaced] * (sigma > 0.3) + [1.0] * oblique
     for part, name in enumerate(("held", "asked")):
         expected = np.vstack([pair[part] / scale for pair, scale in zip(lagging, scales, strict=True)])
         np.testing.assert_allclose(getattr(mixing, name), expected, rtol=1e-14)
     assert np.abs(mixing.asked - mixing.held).max() > 1e-7  # CG moved something
-    mixed_shear = shear + 0.25 * (solver._asked[0] - shear) if sigma > 0.3 else solver._asked[0]
-    mixed_K = K + 0.25 * (solver._asked[1] - K)
+    mixed_shear = shear + 0.25 * (held._asked[0] - shear) if sigma > 0.3 else held._asked[0]
+    mixed_K = K + 0.25 * (held._asked[1] - K)
     bound = 1e-14 * np.abs(solver.cg._b).max()
     np.testing.assert_allclose(solver.cg._K, mixed_K, rtol=1e-14)
     np.testing.assert_allclose(solver.cg._b, mixed_K * solver.problem.gap + mixed_shear, rtol=0, atol=bound)
-    np.testing.assert_allclose(solver._held[1], mixed_K, rtol=1e-14)
+    np.testing.assert_allclose(held._led[1], mixed_K, rtol=1e-14)
 
 
 class Beyond:
@@ -95,10 +94,9 @@ class Beyond:
 
 def test_mixed_cosines_stay_cosines() -> None:
     solver = level(posed(BALL, 16, oblique=True))
-    solver._update()
-    solver._mix()
-    solver._updates.mixing = Beyond()
-    solver._mix()
+    solver.held.update(0)
+    solver.held.mix(None)
+    solver.held.mix(Beyond())
     assert set(np.unique(solver.cg._K)) == {1e-6, 1.0}
 
 
@@ -110,13 +108,13 @@ def test_what_lags(friction: rf.Friction, coupled: bool, oblique: bool, slope_co
     """Slopes, and tractions on them; tau is constant on its support."""
     terms = Terms(coupled=coupled, oblique=oblique, slope_correction=slope_correction)
     problem = pose(replace(BALL, friction=friction), rf.Grid(BALL.side, 4), terms, None)
-    assert level(problem)._lags is max(oblique, slope_correction)
+    assert level(problem).held.lags is max(oblique, slope_correction)
 
 
 @pytest.mark.parametrize("tau", [0.0, 1e6])
 @pytest.mark.parametrize(("sigma", "lags"), [(0.29, False), (0.31, True)])
 def test_strong_coupling_lags(sigma: float, lags: bool, tau: float) -> None:
-    assert level(posed(coupled(sigma, tau=tau), 4))._lags is lags
+    assert level(posed(coupled(sigma, tau=tau), 4)).held.lags is lags
 
 
 def test_any_pressure_is_contact() -> None:
@@ -124,8 +122,8 @@ def test_any_pressure_is_contact() -> None:
     solver = level(posed(replace(BALL, friction=rf.Friction(tau=1.0, beta=0.0)), 8))
     solver.cg.pressure = np.where(ONE_OF_EIGHT, 1e-3, 0.0)
     assert np.array_equal(solver.contact, ONE_OF_EIGHT)
-    solver.support = solver.contact
-    assert np.array_equal(solver._pulled(), 1.0 * ONE_OF_EIGHT)
+    solver.held.support = solver.contact
+    assert np.array_equal(solver.held.traction, 1.0 * ONE_OF_EIGHT)
 
 
 @pytest.mark.parametrize(("inside", "seen"), [(True, True), (False, False)])
@@ -135,16 +133,16 @@ def test_slopes_of_facets_that_are_out_of_date_count_where_there_is_contact(insi
     assert solver.settle(1e-8)
     where = (solver.cg.pressure > 0) == inside
     assert 1 < np.count_nonzero(where) < 16**2
-    solver.slopes = Slopes(solver.slopes.tan_x + 1e-3 * where, solver.slopes.tan_y)
-    assert (solver._update() >= 0.999e-3) is seen
+    solver.held.slopes = Slopes(solver.held.slopes.tan_x + 1e-3 * where, solver.held.slopes.tan_y)
+    assert (solver.held.update(solver.cg_iterations) >= 0.999e-3) is seen
 
 
 def test_a_load_that_shear_on_slopes_exceeds_leaves_some_contact() -> None:
     """A thousandth of the load, more or less: enough to go on from, and too little to balance."""
     solver = level(posed(replace(BALL, friction=rf.Friction(tau=1e9, beta=0.0)), 8, oblique=True))
-    solver.support = np.ones((8, 8), dtype=bool)
-    solver.slopes = Slopes(np.full((8, 8), -0.5), np.zeros((8, 8)))  # downhill: tau takes from the load
-    target, balance = solver._target(solver.slopes.obliqueness)
+    solver.held.support = np.ones((8, 8), dtype=bool)
+    solver.held.slopes = Slopes(np.full((8, 8), -0.5), np.zeros((8, 8)))  # downhill: tau takes from the load
+    target, balance = solver.held._target(solver.held.slopes.obliqueness)
     assert target is not None
     pressed = target * solver.problem.grid.element_area / BALL.load
     assert 1e-4 <= pressed <= 1e-2
@@ -186,7 +184,7 @@ def test_a_solver_that_is_dropped_is_gone_at_once() -> None:
 def test_without_facet_tractions_an_update_applies_no_pressure() -> None:
     solver = level(posed(coupled(0.2), 16))
     before = dict(solver.counter.tally)
-    solver._update()
+    solver.held.update(solver.cg_iterations)
     assert solver.counter.tally == before
 
 

@@ -180,36 +180,3 @@ def test_without_contact_what_penetrates_comes_in() -> None:
     assert cg.pressure.tolist() == [[0.0, 0.0]]
     cg.iterate()
     np.testing.assert_allclose(cg.pressure, [[4.0, 0.0]], rtol=1e-15)
-
-
-def cut(pressure: list[float], step: list[float], target: float | None) -> tuple[bool, np.ndarray]:
-    """Whether a cut trial holds anything, and the change that leads to it, with weights of one."""
-    cg = springs(1.0, pressure, [0.0] * len(pressure))
-    approach = None if target else 0.0
-    cg.freeze(np.zeros((1, len(pressure))), np.ones((1, len(pressure))), target=target, approach=approach)
-    cg._exchange()
-    change = np.array([step])
-    return cg._cut(np.array([pressure]) + change, np.array([pressure]), change), change
-
-
-def test_little_load_that_a_cut_adds_is_taken_from_what_rises() -> None:
-    """Here 1 of 11,000: the third rises by 3, the fourth falls as it did, the second ends at zero."""
-    kept, change = cut([5000.0, 1.0, 4999.0, 1000.0], [0.0, -2.0, 4.0, -2.0], target=11000.0)
-    assert kept
-    np.testing.assert_allclose(change, [[0.0, -1.0, 3.0, -2.0]], rtol=1e-12)
-
-
-def test_much_load_that_a_cut_adds_is_taken_from_all() -> None:
-    kept, change = cut([50.0, 1.0, 49.0], [0.0, -21.0, 21.0], target=100.0)
-    assert kept
-    np.testing.assert_allclose(change, [[50 / 1.2 - 50, -1.0, 70 / 1.2 - 49]], rtol=1e-12)
-
-
-def test_at_an_approach_a_cut_gives_nothing_back() -> None:
-    kept, change = cut([50.0, 1.0, 49.0], [0.0, -21.0, 21.0], target=None)
-    assert kept
-    np.testing.assert_allclose(change, [[0.0, -1.0, 21.0]])
-
-
-def test_a_cut_that_leaves_nothing_says_so() -> None:
-    assert not cut([1.0, 2.0], [-2.0, -3.0], target=None)[0]

@@ -5,7 +5,6 @@ Most of them leave most results untouched: they show what only a few checks, or 
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl import coefficient_error, discretisation, forces, paper, slopes, summit
+from refimpl import coefficient_error, discretisation, forces, gathered, paper, slopes, summit
 from refimpl.contact import active_set, bounds, certificate, energy_norm
 from refimpl.estimate import Estimate
 from refimpl.grid import Array, Grid
@@ -30,8 +29,6 @@ from refimpl.surfaces.gaussian import GaussianRoughness
 from verification.faults import Patch
 from verification.matrix.patches import LocalFault, everywhere, wrapped
 
-solve = importlib.import_module("refimpl.solve")  # the package's attribute is the function
-
 
 def _method(owner: type, name: str, wrong: Any) -> Iterator[Patch]:
     yield owner, name, wrong
@@ -40,7 +37,7 @@ def _method(owner: type, name: str, wrong: Any) -> Iterator[Patch]:
 _normal_symbol = vars(PeriodicInfluence)["_normal_symbol"].func
 _fft_across, _dense_along = FFTInfluence.shear_across, DenseInfluence._along
 _tractions, _problem_slopes = Problem.tractions, Problem.slopes
-_iterate, _solution, _difference = paper._Scheme._iterate, solve._solution, slopes._difference
+_iterate, _gathered, _difference = paper._Scheme._iterate, gathered.gathered, slopes._difference
 _complementarity, _scene_heights = active_set.complementarity, Scene.heights
 _perimeter, _departure = forces.perimeter_corrected_area, coefficient_error._departure
 _white_noise, _order_for, _bar = noise.white_noise, far_field.order_for, Estimate.bar
@@ -89,7 +86,7 @@ def _slid_backwards(self: Scene, grid: Grid) -> Any:
 
 
 def _from_first_touch(posed: Problem, *args: Any) -> Any:
-    found = _solution(posed, *args)
+    found = _gathered(posed, *args)
     return replace(found, approach=found.approach + float(posed.gap.mean())) if posed.periodic else found
 
 
@@ -168,7 +165,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "periodic-datum": (
         "periodic approach counted from first touch",
-        lambda: ((solve, "_solution", _from_first_touch),),
+        lambda: everywhere(_gathered, _from_first_touch),
     ),
     "across-sign": (
         "shear across the sliding direction with the other sign, in both operators",
@@ -239,7 +236,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "always-converged": (
         "status CONVERGED whatever the certificate says",
-        lambda: ((solve, "_final_status", lambda *a: Status.CONVERGED),),
+        lambda: ((gathered, "_final_status", lambda *a: Status.CONVERGED),),
     ),
     "bounds-quartered": ("proven bounds divided by four", lambda: wrapped(bounds.proven_bounds, _quartered)),
     "least-eigenvalue": (

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from verification import faults
 from verification.faults import Fault, Patch
 
 LocalFault = tuple[str, Callable[[], Iterable[Patch]]]
@@ -15,16 +15,9 @@ OURS = ("refimpl", "appendix_a", "verification")
 
 
 def everywhere(right: Any, wrong: Any) -> tuple[Patch, ...]:
-    """Patches of every module that holds this function, under whatever name."""
-    found = []
-    for name, module in sorted(sys.modules.items()):
-        if (
-            name.partition(".")[0] in OURS
-            and module is not None
-            and not name.startswith("verification.matrix")
-        ):
-            found += [(module, key, wrong) for key, value in vars(module).items() if value is right]
-    return tuple(found)
+    """Patches of every module that holds this function by now, but for those that describe faults."""
+    found = faults.everywhere(right, wrong, OURS)
+    return tuple(patch for patch in found if not patch[0].__name__.startswith("verification.matrix"))
 
 
 def wrapped(right: Callable[..., Any], change: Callable[[Any], Any]) -> tuple[Patch, ...]:
