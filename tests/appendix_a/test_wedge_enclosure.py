@@ -28,4 +28,6 @@ def test_the_tails_bound_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(enclosure, "TAIL_EXPONENT", 0.1)
     with pytest.raises(ArithmeticError, match="from xi = 1"):
         enclosure._tail_start(flint.arb, flint.arb(0.5), flint.arb(0.0))
+    with pytest.raises(ArithmeticError, match="from xi = 1"):
+        enclosure._tail_start(flint.arb, flint.arb(0.895), flint.arb(0.0))  # 1.464 and 1.456
     assert enclosure._tail_start(flint.arb, flint.arb(1.0), flint.arb(0.0)) == 1  # 1.36 and 1.81

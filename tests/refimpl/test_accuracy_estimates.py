@@ -174,6 +174,7 @@ def test_a_grid_without_contact_knows_nothing_beside_one_that_has() -> None:
     apart, found = replace(made_up(32), numbers=numbers, edge=0.0), made_up(64)
     assert thinness([apart, found]).tolist() == [1.0, (found.edge / found.numbers["contact_area"]) ** 1.5]
     assert thinness([replace(found, edge=2 * found.numbers["contact_area"])]) == [1.0]
+    assert thinness([replace(found, edge=-0.5 * found.numbers["contact_area"])]) == [0.0]  # of holes
     assert discretisation.discretisation([found, apart]) == {}
     assert set(discretisation.discretisation([apart, found])) == set(REPORTED) - {"normal_force"}
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from refimpl.errors import InputError
-from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
+from refimpl.kernels import normal_integral, normal_table, tables, tangential_integral, tangential_table
 from refimpl.kernels.far_field import NEAR, ORDERS, TRUNCATION, order_for, reach, relative_error_bound, shells
 from verification.case import Status
 from verification.cases import kernel_forms, kernels
@@ -169,6 +169,14 @@ def test_the_first_offset_that_is_refused_is_named():
     with pytest.raises(InputError) as refused:
         normal_integral([0.0, np.inf, -np.inf], 0.0, 1.0, 1.0)
     assert refused.value.value == np.inf
+
+
+@pytest.mark.parametrize("known", [0, 3, 47, 64, 107, 108])
+def test_what_a_table_knows_is_not_worked_out_again(known: int) -> None:
+    """Whole slabs, that is: one that ends beyond begins where it always does."""
+    every = list(tables._slabs(108, 108, 0))
+    assert [start for start, _ in every[1:]] == [stop for _, stop in every[:-1]]
+    assert list(tables._slabs(108, 108, known)) == [slab for slab in every if slab[1] > known]
 
 
 @pytest.mark.parametrize("table", [normal_table, tangential_table])

@@ -12,6 +12,7 @@ import refimpl as rf
 from refimpl import level_solver
 from refimpl.friction import Mask
 from refimpl.level_solver import LevelSolver
+from refimpl.operators.window import Window
 from refimpl.problem import Terms, pose
 from refimpl.updates import Updates
 from tests.refimpl.levels import BALL, coupled, level, posed
@@ -230,3 +231,12 @@ def test_between_mixed_updates_cg_leaves_a_tenth_of_what_mixing_has_left(
         solver.residual = residual
         monkeypatch.setattr(solver.cg, "residuals", lambda left=left: (0.0, left))
         assert solver._goal(1e-8) == pytest.approx(goal, rel=1e-12)
+
+
+@pytest.mark.parametrize(("tau", "cramped"), [(0.0, False), (1e6, True)])
+def test_only_states_on_taus_way_must_keep_off_a_windows_edge(tau: float, cramped: bool) -> None:
+    """Without tau there is one state, and the check on the whole grid tells what its window lacks."""
+    problem = posed(coupled(0.3, tau=tau), 16)
+    solver = level(problem, Window(4, 8, 4, 12))
+    solver.cg.pressure = np.ones((4, 8))
+    assert solver.cramped is cramped

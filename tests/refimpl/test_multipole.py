@@ -41,6 +41,12 @@ def test_as_few_terms_as_suffice(kernel, distance):
     assert terms == 1 or SERIES[kernel].remainder(terms - 1, distance) > TRUNCATION
 
 
+def test_a_remainder_is_relative_to_the_least_that_the_whole_can_be():
+    """Of a first term 1 that lacks up to a half, the whole is at least a half; what two terms lack is 0.1."""
+    expansion = multipole.Expansion(sum=None, lacking=lambda terms, u: {1: 0.5, 2: 0.1}[terms])
+    assert expansion.remainder(2, 10.0) == 0.2
+
+
 @pytest.mark.parametrize("kernel", SERIES)
 @pytest.mark.parametrize("distance", [multipole.FAR, 31, 400])
 def test_the_same_integrals(kernel, distance):

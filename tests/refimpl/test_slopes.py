@@ -47,6 +47,13 @@ def test_periodic_differences_wrap() -> None:
     np.testing.assert_allclose(slopes.tan_y, 0, atol=1e-15)
 
 
+def test_two_elements_that_repeat_have_no_slope() -> None:
+    """Either is its neighbour's neighbour on both sides; alone, one is above the other."""
+    step = np.array([[0.0], [1.0]])
+    assert Slopes.of_surface(step, H, 0.0, periodic=True).tan_x.tolist() == [[0.0], [0.0]]
+    assert np.all(Slopes.of_surface(step, H, 0.0).tan_x > 0)
+
+
 def test_cosines_and_sines_are_those_of_the_angles() -> None:
     slopes = Slopes(np.array([-2.0, 0.0, 0.1]), np.array([0.5, -1e-9, 3.0]))
     theta_x, theta_y = np.arctan(slopes.tan_x), np.arctan(slopes.tan_y)

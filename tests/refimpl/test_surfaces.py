@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from refimpl.errors import InputError
+from refimpl.errors import LEAST, InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import (
     ArraySurface,
@@ -44,6 +44,7 @@ def test_sphere_is_the_paraboloid_about_the_centre_and_moves_with_the_offset() -
         Sphere(0.14).heights(GRID, offset), expected, rtol=0, atol=8 * EPS * expected.max()
     )
     np.testing.assert_array_equal(Sphere(-0.14).heights(GRID), -Sphere(0.14).heights(GRID))
+    assert [Sphere(radius).radius for radius in (LEAST, -LEAST)] == [LEAST, -LEAST]
 
 
 @given(st.floats(1e-6, 1e3), st.integers(1, 40))

@@ -137,6 +137,8 @@ def test_a_path_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_a_path_of_states_that_cannot_be_settled_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """A single one on the way is not the end: what comes after it may be settled, and lawful."""
+    state = Played({"ab": "Ab", "Ab": "aB", "aB": "AB", "AB": "AB"}, sticks="ab Ab")
+    assert followed(state, 1e-8)[0].settled  # two are not, either
     monkeypatch.setattr(tau_path, "_STUCK", 2)
     contacts = {"ab": "Ab", "Ab": "AB", "AB": "AB"}
     state = Played(contacts, sticks="Ab")

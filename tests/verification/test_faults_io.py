@@ -15,7 +15,6 @@ import signal
 import sqlite3
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -220,17 +219,26 @@ def test_a_corrupted_store_is_refused_and_left_as_it_is(
     assert store.read_bytes() == bytes(content)
 
 
+def other_than(unread: Path, read: Callable[..., str]) -> Callable[..., str]:
+    """The same for all paths but one."""
+
+    def reading(path: Path, *args: str, **options: str) -> str:
+        assert path != unread
+        return read(path, *args, **options)
+
+    return reading
+
+
 def test_fifty_megabytes_of_toml_are_refused_unread(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "huge.toml"
     with path.open("wb") as file:
         file.write(b"load = 1.0\n")
         file.truncate(50 * 2**20)
+    monkeypatch.setattr(Path, "read_text", other_than(path, Path.read_text))
     for command in (["solve"], ["sweep"]):
-        begun = time.process_time()
         assert main([*command, str(path)]) == 2
-        assert time.process_time() - begun < 1.0
         one_line(Ended(2, capsys.readouterr().err), "at most", 2)
 
 

