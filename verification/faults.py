@@ -168,7 +168,7 @@ FAULTS = {
     "padding": Fault("one padding row too few", ((fft, "_circle", _circle_off_by_one),), "displacements"),
     "periodic": Fault(
         "periodic images instead of a free half-space",
-        ((FFTInfluence, "_offsets", property(_periodic_images)),),
+        ((FFTInfluence, "_offsets", property(_periodic_images)), (fft, "_is_even", lambda circle: False)),
         "displacements",
     ),
     "tau-missing": Fault(

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
 from refimpl.operators.fourier import Complex, factors, fourier, threads
+from refimpl.operators.symmetric import even_hat, odd_hat
 from refimpl.operators.tables import signed_table, unit_table
 from refimpl.operators.window import Window, padded_length
 
@@ -24,7 +25,8 @@ from refimpl.operators.window import Window, padded_length
 class Counter:
     """How often operators were applied, each application with its ``n log2 n`` padded points.
 
-    A kernel's own transform counts as the half of an application that it is, or an eighth by symmetry.
+    A kernel's own transform counts as the half of an application that it is, or by symmetry as an eighth for
+    each of its parts.
     """
 
     point_logs: float = 0.0
@@ -112,17 +114,17 @@ class FFTInfluence:
     @cached_property
     def _normal_hat(self) -> Array | Complex:
         """The kernel's transform: of a quarter of it, and real, where the circles are even."""
-        rows, columns = self._offsets
         points = math.prod(self._padded)
-        if not (_is_even(rows) and _is_even(columns)):
+        if not all(map(_is_even, self._offsets)):
             self.counter.add("normal kernel", points // 2)
-            return self._transformed(signed_table("normal", rows, columns))
+            return self._transformed(signed_table("normal", *self._offsets))
         self.counter.add("normal kernel", points // 8)
-        half, across = len(rows) // 2, len(columns) // 2
-        quarter = unit_table("normal", max(half, across) + 1)[: half + 1, : across + 1]
-        hat = fourier.even_plane(quarter * self.grid.spacing, threads(points))
-        hat = np.concatenate([hat, hat[:, across - 1 : 0 : -1]], axis=1)
-        return self._kept(hat)
+        N, K = self._padded
+        return self._kept(even_hat(self._quarter("normal", N // 2, K // 2), threads(points)))
+
+    def _quarter(self, kind: str, rows: int, columns: int) -> Array:
+        """The kernel at the offsets from 0 up to those (m)."""
+        return unit_table(kind, max(rows, columns) + 1)[: rows + 1, : columns + 1] * self.grid.spacing
 
     def _kept(self, hat: Array) -> Array | Complex:
         return factors(hat)
@@ -136,11 +138,20 @@ class FFTInfluence:
         return self._tangential_hat(self.direction + math.pi / 2)
 
     def _tangential_hat(self, angle: float) -> Complex:
+        """The kernel's transform: of quarters of its parts along x and y where circles are odd for both."""
+        points, (N, K) = math.prod(self._padded), self._padded
+        cos, sin = math.cos(angle), math.sin(angle)
+        farthest = _farthest(self.source, self.target)
+        if all(map(_is_even, self._offsets)) and farthest[0] < N // 2 and farthest[1] < K // 2:
+            self.counter.add("shear kernel", points // 8 * (2 if sin else 1))
+            along_x = cos * self._quarter("tangential", N // 2, K // 2)
+            along_y = sin * self._quarter("tangential", K // 2, N // 2).T if sin else None
+            return odd_hat(along_x, along_y, threads(points))
         rows, columns = self._offsets
         along_x = signed_table("tangential", rows, columns)
         along_y = signed_table("tangential", columns, rows).T
-        self.counter.add("shear kernel", math.prod(self._padded) // 2)
-        return self._transformed(math.cos(angle) * along_x + math.sin(angle) * along_y)
+        self.counter.add("shear kernel", points // 2)
+        return self._transformed(cos * along_x + sin * along_y)
 
     def _transformed(self, unit_kernel: Array) -> Complex:
         return fourier.plane(unit_kernel * self.grid.spacing, self._padded, threads(math.prod(self._padded)))
@@ -198,11 +209,16 @@ def _padded(source: Window, target: Window) -> tuple[int, int]:
     A kernel's transform then costs an eighth of an application instead of a half, which is worth a third.
     """
     lengths = [n + m - 1 for n, m in zip(source.shape, target.shape, strict=True)]
-    rows = max(target.i1 - source.i0, source.i1 - target.i0) - 1
-    columns = max(target.j1 - source.j0, source.j1 - target.j0) - 1
+    rows, columns = _farthest(source, target)
     least = padded_length(lengths[0]), padded_length(lengths[1])
     even = padded_length(max(lengths[0], 2 * rows)), padded_length(max(lengths[1], 2 * columns))
     return even if 3 * math.prod(even) <= 4 * math.prod(least) else least
+
+
+def _farthest(source: Window, target: Window) -> tuple[int, int]:
+    """The greatest offsets from source to target along each axis, either way."""
+    rows = max(target.i1 - source.i0, source.i1 - target.i0) - 1
+    return rows, max(target.j1 - source.j0, source.j1 - target.j0) - 1
 
 
 def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:

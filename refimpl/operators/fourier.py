@@ -49,6 +49,9 @@ class Library(Protocol):
     def even_plane(self, quarter: Array, workers: int) -> Array:
         """An even field's transform, by quarters with both ends; the one given may be overwritten."""
 
+    def odd_plane(self, quarter: Array, workers: int) -> Array:
+        """``i`` times that of a field odd along the first axis, where both ends are taken to be zero."""
+
 
 class SciPy:
     """`Library` by scipy.fft."""
@@ -83,6 +86,14 @@ class SciPy:
     def even_plane(self, quarter: Array, workers: int) -> Array:
         """See `Library`."""
         found: Array = sfft.dctn(quarter, type=1, overwrite_x=True, workers=workers)
+        return found
+
+    def odd_plane(self, quarter: Array, workers: int) -> Array:
+        """See `Library`."""
+        found = np.zeros(quarter.shape)
+        if len(found) > 2:
+            cosines = sfft.dct(quarter[1:-1], type=1, axis=1, workers=workers)
+            found[1:-1] = sfft.dst(cosines, type=1, axis=0, overwrite_x=True, workers=workers)
         return found
 
 
@@ -138,6 +149,15 @@ class Ducc:
         """See `Library`."""
         self._fft.dct(quarter, type=1, axes=(0, 1), out=quarter, nthreads=workers)
         return quarter
+
+    def odd_plane(self, quarter: Array, workers: int) -> Array:
+        """See `Library`."""
+        found = np.zeros(quarter.shape)
+        if len(found) > 2:
+            inner = found[1:-1]
+            self._fft.dct(quarter[1:-1], type=1, axes=(1,), out=inner, nthreads=workers)
+            self._fft.dst(inner, type=1, axes=(0,), out=inner, nthreads=workers)
+        return found
 
 
 def best_installed() -> Library:

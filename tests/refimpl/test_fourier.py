@@ -7,7 +7,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.contact import preconditioner
-from refimpl.operators import fft, fourier, periodic
+from refimpl.operators import fft, fourier, periodic, symmetric
 from refimpl.operators.fourier import Ducc, Library, SciPy
 
 RANDOM = np.random.default_rng(5)
@@ -74,12 +74,42 @@ def test_an_even_plane_by_its_quarter(library: Library, shape: tuple[int, int]) 
     np.testing.assert_allclose(found, whole.real[: shape[0], : shape[1]], atol=1e-13)
 
 
+@pytest.mark.parametrize("shape", [(2, 2), (2, 5), (3, 2), (6, 4)])
+def test_an_odd_plane_by_its_quarter(library: Library, shape: tuple[int, int]) -> None:
+    """Whatever the quarter holds at 0 and opposite; it stays as it was."""
+    quarter = RANDOM.normal(size=shape)
+    kept, inside = quarter.copy(), quarter.copy()
+    inside[[0, -1]] = 0
+    i, j = (np.r_[0:n, 2 - n : 0] for n in shape)
+    whole = by_sums(by_sums(np.sign(i)[:, None] * inside[np.ix_(np.abs(i), np.abs(j))], 1), 0)
+    assert np.abs(whole.real).max() < 1e-13
+    found = library.odd_plane(quarter, 1)
+    np.testing.assert_allclose(found, -whole.imag[: shape[0], : shape[1]], atol=1e-13)
+    assert np.array_equal(quarter, kept)
+
+
+@pytest.mark.parametrize("across", [False, True])
+def test_kernels_by_their_quarters(across: bool) -> None:
+    """Spread over circles of 10 and 6, the sum of two parts: odd along x, and along y."""
+    along_x, along_y = RANDOM.normal(size=(2, 6, 4))
+    along_x[[0, -1]] = 0
+    along_y[:, [0, -1]] = 0
+    i, j = np.r_[0:6, -4:0], np.r_[0:4, -2:0]
+    place = np.ix_(np.abs(i), np.abs(j))
+    parts = np.sign(i)[:, None] * along_x[place], np.sign(j) * along_y[place]
+    whole = sum(parts) if across else parts[0]
+    found = symmetric.odd_hat(along_x, along_y if across else None, 1)
+    np.testing.assert_allclose(found, by_sums(by_sums(whole, 1), 0)[:6], atol=1e-13)
+    even = symmetric.even_hat(along_x.copy(), 1)
+    np.testing.assert_allclose(even, by_sums(by_sums(along_x[place], 1), 0)[:6], atol=1e-13)
+
+
 @pytest.mark.parametrize("name", ["table1-rough", "rough-planes"])
 def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """To rounding: measured 1e-14 of the largest pressure."""
     found = []
     for library in (SciPy(), ducc()):
-        for module in (fourier, fft, periodic, preconditioner):
+        for module in (fourier, fft, symmetric, periodic, preconditioner):
             monkeypatch.setattr(module, "fourier", library)
         found.append(rf.solve(rf.read_scene(name), 48, tolerance=1e-10))
     one, other = found

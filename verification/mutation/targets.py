@@ -64,8 +64,9 @@ TARGETS = (
       for name in ("cerruti", "far_field", "love", "multipole", "points", "tables")),
     *(Target("operators", f"refimpl/operators/{name}.py", OPERATORS)
       for name in ("dense", "periodic", "tables", "fft", "window")),
-    Target("operators", "refimpl/operators/fourier.py",
-           ("tests/refimpl/test_fourier.py", "tests/refimpl/test_operators.py")),
+    *(Target("operators", f"refimpl/operators/{name}.py",
+             ("tests/refimpl/test_fourier.py", "tests/refimpl/test_operators.py"))
+      for name in ("fourier", "symmetric")),
     Target("contact", "refimpl/contact/active_set.py", _tests("active_set", "dense_solver")),
     Target("contact", "refimpl/contact/certificate.py", _tests("certificate", "solve")),
     Target("friction", "refimpl/friction.py", _tests("friction", "tau_cycle")),
