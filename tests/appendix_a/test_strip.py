@@ -72,6 +72,12 @@ def test_superposition_is_the_first_order_beside_the_strip() -> None:
     np.testing.assert_allclose(by_paper - flat, expanded - flat, rtol=2e-3)
 
 
+def test_one_offset_needs_no_array() -> None:
+    one, several = (printed(3.0, 20.0, 0.3, offsets=x) for x in (1.5, [1.5]))
+    assert [found.shape for found in one] == [(1,), (1,)]
+    np.testing.assert_array_equal(one, several)
+
+
 def test_superposition_reaches_far_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     x = np.array([0.5, 3.0, 20.0])
     once, _ = printed(15.0, 10.0, 0.3, offsets=x)

@@ -223,6 +223,13 @@ def test_input_is_refused(arguments: tuple[float, ...], field: str) -> None:
     assert refused.value.field == field
 
 
+def test_a_wedge_that_is_too_narrow_is_told_how_wide_it_must_be() -> None:
+    """All angles within 1.18e-3 rad of the load's line take 500,000 nodes; the message rounds that."""
+    with pytest.raises(InputError, match=r"a wedge of at least 0\.0012 rad"):
+        stresses(1.0, 0.0, np.pi / 2 - 0.99 * 1.1765e-3 / 2)
+    assert np.isfinite(stresses(1.0, 0.0, np.pi / 2 - 1.01 * 1.1765e-3 / 2)).all()
+
+
 def test_limits_of_the_input_are_allowed() -> None:
     """Both ends of the range of r, and a face that its rounding puts outside."""
     assert np.isfinite(stresses([1e-300, 1e300], 0.0, 0.1)).all()

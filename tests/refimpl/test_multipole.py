@@ -47,6 +47,17 @@ def test_a_remainder_is_relative_to_the_least_that_the_whole_can_be():
     assert expansion.remainder(2, 10.0) == 0.2
 
 
+@pytest.mark.parametrize("terms", range(1, multipole.MOST + 1))
+def test_bounds_are_as_tight_as_their_terms(terms):
+    """From afar one term counts: ``|P_n| <= 1``, and ``|cos((4j + 1) phi)| <= (4j + 1) |cos(phi)|``."""
+    u = 1e-6
+    love, cerruti = float(multipole.moment(2 * terms)), float(multipole.moment(4 * terms))
+    assert multipole.LOVE.lacking(terms, u) == pytest.approx(love * u**terms, rel=1e-5, abs=0)
+    assert multipole.CERRUTI.lacking(terms, u) == pytest.approx(
+        (4 * terms + 1) * cerruti * u ** (2 * terms), rel=1e-5, abs=0
+    )
+
+
 @pytest.mark.parametrize("kernel", SERIES)
 @pytest.mark.parametrize("distance", [multipole.FAR, 31, 400])
 def test_the_same_integrals(kernel, distance):

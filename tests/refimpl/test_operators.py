@@ -197,6 +197,7 @@ def test_window():
     marked[2, 1] = marked[3, 4] = True
     assert Window.around(marked, margin=0) == Window(2, 4, 1, 5)
     assert Window.around(marked, margin=2) == Window(0, 6, 0, 6)
+    assert Window.around(np.ones((5, 3), dtype=bool), margin=1) == Window(0, 5, 0, 3)
     assert Window(2, 4, 1, 5).filling(6) == Window(2, 4, 1, 5)  # 3 and 7 elements pad to 4 and 8
     assert Window(20, 37, 60, 64).filling(64) == Window(20, 38, 60, 64)  # 33 pad to 36, room for 18
     assert Window(2, 4, 1, 5).spread(np.ones((2, 4)), 6).sum() == 8

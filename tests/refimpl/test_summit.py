@@ -183,3 +183,12 @@ def test_a_periodic_result_knows_its_peak_across_the_border_and_no_touch(offset:
 def test_rougher_summits_are_less_known(one: float, other: float) -> None:
     smoother, rougher = (Summit(1.0, 1.0, value) for value in sorted((one, other)))
     assert 1.0 <= smoother.openness <= rougher.openness
+
+
+def test_beyond_its_border_a_gap_stays_as_it_is() -> None:
+    """Its deepest place lies in a corner; what lies beyond the opposite ones is no neighbour."""
+    field = 5.0 + np.arange(49.0).reshape(7, 7)
+    field[0, 0] = 0.0
+    far = field.copy()
+    far[-2:], far[:, -2:] = 1e3, 1e3
+    assert deepest(far) == deepest(field)

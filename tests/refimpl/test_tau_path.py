@@ -139,6 +139,9 @@ def test_a_path_of_states_that_cannot_be_settled_is_given_up(monkeypatch: pytest
     """A single one on the way is not the end: what comes after it may be settled, and lawful."""
     state = Played({"ab": "Ab", "Ab": "aB", "aB": "AB", "AB": "AB"}, sticks="ab Ab")
     assert followed(state, 1e-8)[0].settled  # two are not, either
+    state = Played({"ab": "Ab", "Ab": "aB", "aB": "AB", "AB": "AB"}, sticks="ab Ab aB")
+    assert not followed(state, 1e-8)[0].settled
+    assert state.asked == ["ab", "Ab", "aB"]
     monkeypatch.setattr(tau_path, "_STUCK", 2)
     contacts = {"ab": "Ab", "Ab": "AB", "AB": "AB"}
     state = Played(contacts, sticks="Ab")
