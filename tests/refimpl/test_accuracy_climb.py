@@ -12,7 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl.discretisation import estimates
 from refimpl.grid_result import GridResult
-from refimpl.refine import LADDER, OPENING, climb, next_grid, relative_bar
+from refimpl.refine import LADDER, OPENING, ambiguous, climb, next_grid, relative_bar
 from refimpl.solution import REPORTED
 from refimpl.summit import Summit
 from tests.refimpl.made_up import AREA_LIMIT, PEAK, made_up
@@ -67,6 +67,14 @@ def test_it_is_foretold_to_fall_as_on_the_last_two_grids_but_no_faster(falls: fl
     assert next_grid(climbed(0.03 * falls), 0.0163 / 0.95, "max_pressure", ladder) == expected
     assert next_grid(climbed(0.0), 0.0163 / 0.95, "max_pressure", ladder) == 480
     assert next_grid(climbed(0.01), 0.0305 / 0.95, "max_pressure", ladder) == ladder[0]  # nor is it to grow
+
+
+def test_what_stays_open_is_measured_by_the_finest_grids_number() -> None:
+    """3 % of it, on the last two grids: out of reach of 2 %, however large the number was on the first."""
+    grids = [replace(made_up(M), parts={"approach": {"tau support": 3e-8}}) for M in (32, 64, 128)]
+    numbers = {**grids[0].numbers, "approach": 1e-3}
+    grids[0] = replace(grids[0], numbers=numbers)
+    assert [ambiguous(grids, accuracy, "approach") for accuracy in (0.02, 0.04)] == [True, False]
 
 
 def test_a_zero_that_is_exact_has_no_bar() -> None:
