@@ -116,6 +116,13 @@ def test_an_explanation_needs_words(tmp_path: Path) -> None:
         score.explanations(listed)
 
 
+def test_one_explanation_is_enough(tmp_path: Path) -> None:
+    listed = tmp_path / "explained.toml"
+    listed.write_text(2 * '[[equivalent]]\nmodule = "m"\nbefore = "a"\nafter = "b"\nreason = "c"\n')
+    with pytest.raises(ValueError, match="twice"):
+        score.explanations(listed)
+
+
 def test_explanations_name_lines_that_exist() -> None:
     for module, before, _ in score.explanations():
         text = " ".join((ROOT / module).read_text(encoding="utf-8").split())

@@ -19,11 +19,16 @@ Change = tuple[str, str, str]
 
 
 def explanations(path: Path = EXPLAINED) -> dict[Change, str]:
-    """Why a mutant can't be told from the original, by its change. Raises ValueError for an empty reason."""
+    """Why a mutant can't be told from the original, by its change; each once.
+
+    Raises ValueError for an empty reason, and for a second one.
+    """
     entries = tomllib.loads(path.read_text(encoding="utf-8")).get("equivalent", [])
     found = {(entry["module"], entry["before"], entry["after"]): entry["reason"] for entry in entries}
     if not all(reason.strip() for reason in found.values()):
         raise ValueError(f"{path.name}: an explanation is empty")
+    if len(found) < len(entries):
+        raise ValueError(f"{path.name}: a mutant is explained twice")
     return found
 
 
