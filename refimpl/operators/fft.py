@@ -138,18 +138,18 @@ class FFTInfluence:
         return self._tangential_hat(self.direction + math.pi / 2)
 
     def _tangential_hat(self, angle: float) -> Complex:
-        """The kernel's transform: of quarters of its parts along x and y where circles are odd for both."""
+        """The kernel's transform: of quarters of its parts along x and y, unless offsets opposite 0 count."""
         points, (N, K) = math.prod(self._padded), self._padded
         cos, sin = math.cos(angle), math.sin(angle)
-        farthest = _farthest(self.source, self.target)
-        if all(map(_is_even, self._offsets)) and farthest[0] < N // 2 and farthest[1] < K // 2:
+        rows, columns = _farthest(self.source, self.target)
+        if all(map(_is_even, self._offsets)) and rows < N // 2 and columns < K // 2:
             self.counter.add("shear kernel", points // 8 * (2 if sin else 1))
             along_x = cos * self._quarter("tangential", N // 2, K // 2)
             along_y = sin * self._quarter("tangential", K // 2, N // 2).T if sin else None
             return odd_hat(along_x, along_y, threads(points))
-        rows, columns = self._offsets
-        along_x = signed_table("tangential", rows, columns)
-        along_y = signed_table("tangential", columns, rows).T
+        i, j = self._offsets
+        along_x = signed_table("tangential", i, j)
+        along_y = signed_table("tangential", j, i).T
         self.counter.add("shear kernel", points // 2)
         return self._transformed(cos * along_x + sin * along_y)
 

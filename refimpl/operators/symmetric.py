@@ -20,7 +20,7 @@ def even_hat(quarter: Array, workers: int) -> Array:
 def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
     """Of the sum of kernels odd along the first axis and along the second (if any), even along the other.
 
-    Zero where they are odd, opposite 0: an offset that nobody needs, as it would occur with both signs.
+    Opposite 0 they are taken to be zero where they are odd: the caller sees to it that nobody needs that.
     """
     sines = _mirrored(fourier.odd_plane(along_x, workers), 1.0)
     if along_y is not None:
