@@ -7,12 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import optimize, stats
 
 import refimpl as rf
 from refimpl import discretisation
 from refimpl.discretisation import (
-    AREA,
     EDGE_SHARE,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
@@ -21,8 +19,6 @@ from refimpl.discretisation import (
     estimates,
     thinness,
 )
-from refimpl.estimate import Bias, Estimate, Prior, line
-from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 from refimpl.refine import OPENING, relative_bar, uncertainty
 from refimpl.solution import REPORTED
@@ -52,40 +48,6 @@ def test_a_bar_reaches_from_the_number_over_the_estimate() -> None:
     bar = uncertainty(results)["contact_area"]["discretisation"]
     assert raw - area.value + 0.83 * area.spread < bar < raw - area.value + 0.9 * area.spread
     assert relative_bar(results, "contact_area") == pytest.approx(bar / raw)
-
-
-@pytest.mark.parametrize("distance", [0.0, 0.3, 1.0, 1.52, 1.54, 4.0])
-def test_a_bar_is_exceeded_by_5_percent_of_a_normal_distribution(distance: float) -> None:
-    """On both sides of 3 deviations, 1.53 spreads, where one side is all that counts."""
-    bar = Estimate(2.0, 0.5).bar(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
-    shift = distance * stats.norm.ppf(0.975)
-    assert stats.norm.sf(bar - shift) + stats.norm.sf(bar + shift) == pytest.approx(0.05, rel=1e-6)
-
-
-def test_finer_grids_are_foretold_a_nearer_number_and_a_shorter_spread() -> None:
-    """By the first and the second of its orders, each in its own way."""
-    still = Estimate(1.0, 0.8, orders=(1.0, 2.0))
-    assert still.foretold(1.0, 0.25) == pytest.approx(0.05)
-    assert still.foretold(21.0, 0.25) == pytest.approx(Estimate(1.0, 0.05).bar(6.0))
-
-
-@pytest.mark.parametrize("grids", [1, 2, 3])
-def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) -> None:
-    """Nine nodes at one place are one node, however their tails are summed."""
-    for seed in range(20):
-        draw = np.random.default_rng(seed)
-        values, sizes = 1 + draw.normal(0, 0.1, grids), draw.uniform(0.1, 0.3, grids)
-        weights, prior = np.ones(grids), Prior(0.05, 2.0)
-        found = line(values, weights, prior, Bias(sizes, 0.7, 0.0))
-        alone = line(values - 0.7 * sizes, weights, prior)
-        assert found.value == pytest.approx(alone.value, rel=1e-12)
-        assert found.spread == pytest.approx(alone.spread, rel=2e-4)  # as closely as bounds are sought
-
-
-@pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
-def test_bars_of_extreme_spreads(spread: float) -> None:
-    assert Estimate(2.0, spread).bar(3.0) == (math.inf if math.isinf(spread) else 1.0)
-    assert Estimate(2.0, spread).bar(2.0) == pytest.approx(spread)
 
 
 def test_an_edge_of_unforeseen_size_is_learnt_from_the_grids() -> None:
@@ -254,77 +216,6 @@ def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
         wide = bars["max_pressure"] > found.max_pressure and bars["approach"] > found.approach
         assert wide, M
         assert Limit.RADIUS in {warning.limit for warning in found.warnings}
-
-
-def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
-    """Numbers from the model itself with q = 0, their weights and edges, in the unit of the scatter."""
-    rng = np.random.default_rng(7)
-    weights = 2.0 ** (1.5 * np.arange(grids)[::-1])
-    edge = 5 * 2.0 ** np.arange(grids)[::-1]
-    size = rng.normal(EDGE_SIZE, EDGE_SIZE_SPREAD, count)
-    sigma = AREA.scatter * np.sqrt(AREA.weight / rng.chisquare(AREA.weight, count))
-    noise = rng.standard_normal((count, grids)) * weights * sigma[:, None]
-    return size[:, None] * edge + noise, weights, edge
-
-
-@pytest.mark.parametrize("grids", [1, 2, 4])
-def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
-    values, weights, edge = draws(800, grids)
-    bias = Bias(edge, EDGE_SIZE, EDGE_SIZE_SPREAD)
-    found = [line(row, weights, AREA, bias) for row in values]
-    share = np.mean([abs(estimate.value) <= estimate.spread for estimate in found])
-    assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
-
-
-def integrated(values: Array, weights: Array, prior: Prior, bias: Bias) -> tuple[float, float]:
-    """Value and 95 % bound of the model, its factor integrated over 1001 points instead of nine nodes."""
-    factor = bias.mean + bias.spread * np.linspace(-6, 6, 1001)
-    precision = weights**-2.0
-    rest = values - factor[:, None] * bias.sizes
-    centre = rest @ precision / precision.sum()
-    freedom = prior.weight + len(values) - 1
-    squares = (rest - centre[:, None]) ** 2 @ precision
-    variance = (prior.weight * prior.scatter**2 + squares) / freedom
-    share = stats.norm.pdf(factor, bias.mean, bias.spread) * variance ** (-0.5 * freedom)
-    share /= share.sum()
-    value, scale = float(share @ centre), np.sqrt(variance / precision.sum())
-
-    def outside(bound: float) -> float:
-        either = (bound - (centre - value), bound + (centre - value))
-        return sum(float(share @ stats.t.sf(side / scale, freedom)) for side in either)
-
-    widest = 100 * float(scale.max() + np.abs(centre - value).max())
-    return value, float(optimize.brentq(lambda bound: outside(bound) - 0.05, 0.0, widest))
-
-
-def test_nine_nodes_do_for_the_factors_integral() -> None:
-    """Of 100 ladders nine in ten have bounds within 1.5 % of the integral's, and all within 12 %."""
-    off = []
-    for seed in range(100):
-        draw = np.random.default_rng(seed)
-        spacing = np.sort(draw.uniform(0.2, 1.0, draw.integers(1, 5)))[::-1]
-        weights, sizes = (spacing / spacing[-1]) ** 1.5, spacing * draw.uniform(0.02, 0.3)
-        prior = AREA._replace(scatter=0.2 * draw.uniform(0.01, 0.05))
-        scatter = prior.scatter * weights * draw.standard_normal(len(spacing))
-        bias = Bias(sizes, EDGE_SIZE, EDGE_SIZE_SPREAD)
-        values = 1 + sizes * draw.normal(EDGE_SIZE, EDGE_SIZE_SPREAD) + scatter
-        found, (value, bound) = line(values, weights, prior, bias), integrated(values, weights, prior, bias)
-        off.append((abs(found.value - value) / bound, abs(found.spread / bound - 1)))
-    assert np.all(np.quantile(off, 0.9, axis=0) < (5e-5, 0.02))
-    assert np.max(off) < 0.15
-
-
-def test_zeros_are_exact() -> None:
-    assert line(np.zeros(3), np.ones(3), Prior(0.1, 2.0)) == Estimate(0.0, 0.0)
-
-
-def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> None:
-    calm, wild = np.array([1.0, 1.0, 1.0]), np.array([1.3, 0.9, 1.0])
-    weights, prior = np.array([8.0, 2.8, 1.0]), Prior(0.01, 2.0)
-    assert line(wild, weights, prior).spread > 2 * line(calm, weights, prior).spread
-    alone = line(np.array([3.0]), np.ones(1), prior)
-    assert alone.value == 3.0
-    assert alone.spread == pytest.approx(4.303 * 0.01, rel=1e-3)  # Student's t with two degrees of freedom
 
 
 def test_bars_hold_against_hertz() -> None:

@@ -50,7 +50,7 @@ def _tests(*names: str) -> tuple[str, ...]:
 
 
 PRIORS = "tests/verification/test_coverage_priors.py::test_the_priors_in_use_are_those_of_the_committed_study"
-BARS = ("accuracy_summits", "accuracy_climb", "unevenness", "first_touch", "accuracy_estimates")
+BARS = ("estimate", "accuracy_summits", "accuracy_climb", "unevenness", "first_touch", "accuracy_estimates")
 REFUSED = "tests/refimpl/test_input.py::test_refused_by_one_line_that_names_the_field"
 SURFACES = _alone("surfaces", "surfaces_statistics", "surfaces_gaussian", "surfaces_measured")
 
