@@ -267,7 +267,7 @@ def test_literal_kernel_does_not_decay() -> None:
 
 @pytest.mark.parametrize(("gamma", "nodes"), [(1e-6, 188), (1.5, 4155)])
 def test_a_map_takes_one_line_of_few_nodes(gamma: float, nodes: int) -> None:
-    """What they take in is a point each: all terms beyond the last node are below exp(-CUTOFF)."""
+    """However many points it has. The last node is the first whose terms are below exp(-CUTOFF)."""
     log_r = np.log(np.geomspace(1e-4, 1e4, 100))
     (points,) = fast.groups(log_r)
     line = fast.line_for(log_r[points], gamma)

@@ -228,3 +228,8 @@ def test_resampling_is_interpolation_along_either_axis(n: int, M: int) -> None:
     across = np.array([np.interp(new, old, row) for row in values])
     expected = np.array([np.interp(new, old, column) for column in across.T]).T
     np.testing.assert_allclose(resampled(values, M), expected, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("M", [1, 2, 3])
+def test_of_a_single_element_there_is_its_own_value_everywhere(M: int) -> None:
+    assert np.array_equal(resampled(np.array([[3.0]]), M), np.full((M, M), 3.0))

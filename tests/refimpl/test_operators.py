@@ -180,7 +180,9 @@ def test_counter_counts():
     assert counter.point_logs == 2 * 64 * 6 + 2 * 8 * 3
     operator.shear_across(np.zeros((4, 4)))
     assert counter.tally == {"normal": 1, "shear": 2, "normal kernel": 1, "shear kernel": 2}
-    assert counter.point_logs == 3 * 64 * 6 + 2 * 8 * 3 + 16 * 4  # of two parts, but for rounding's direction
+    assert (
+        counter.point_logs == 3 * 64 * 6 + 2 * 8 * 3 + 16 * 4
+    )  # of two parts: a right angle's cosine rounds to 6e-17
 
 
 def test_a_transform_of_a_point_or_two_counts_as_one_logarithm():
