@@ -25,7 +25,7 @@ def gathered(
     tolerance: float,
     cost: Cost,
 ) -> Solution:
-    """The solution of a problem from its outcome and certified state; the status yields to the certificate."""
+    """A problem's solution from its outcome and certified state; the status yields to the certificate."""
     grid, contact = problem.grid, state.pressure > 0
     load = problem.load if problem.load is not None else state.forces.normal
     surface_lower, surface_upper = problem.heights
