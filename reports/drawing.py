@@ -91,6 +91,8 @@ def lines(
             axes.fill_between(
                 data[x], middle - width, middle + width, color=COLOURS[0], alpha=0.2, label=band[1]
             )
+        if "x" in log:
+            _few_ticks(axes, np.asarray(data[x], dtype=float))
         if len(series) > _INSIDE:
             canvas.legend(loc="outside right upper")
         else:
@@ -186,6 +188,21 @@ def _axes(canvas: Canvas, xlabel: str, ylabel: str, log: str) -> Axes:
     axes.set_xscale("log" if "x" in log else "linear")
     axes.set_yscale("log" if "y" in log else "linear")
     return axes
+
+
+def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
+    """Ticks at the points of a logarithmic axis within two decades, where minor ones would be labelled.
+
+    Those too close to the last one labelled have no tick.
+    """
+    if not 0 < x.max() < 100 * x.min():
+        return
+    kept = [x.min()]
+    for value in np.unique(x):
+        if value > kept[-1] * (x.max() / x.min()) ** 0.08:
+            kept.append(value)
+    axes.set_xticks(kept, [f"{value:.4g}" for value in kept])
+    axes.xaxis.set_minor_locator(NullLocator())
 
 
 def _numbers(series: Sequence[Any]) -> np.ndarray[Any, np.dtype[np.float64]]:

@@ -67,7 +67,8 @@ def _plain(data: Mapping[str, Any], most: int = 6) -> list[Figure]:
     sizes = [max(abs(value) for value in data[name] if value is not None) for name in others]
     if "y" not in log and not max(sizes) <= 100 * min(sizes):
         return []
-    draw = lines(x, dict(zip(others, others, strict=True)), xlabel=x, ylabel="", log=log, marker=True)
+    ylabel = others[0] if len(others) == 1 else ""
+    draw = lines(x, dict(zip(others, others, strict=True)), xlabel=x, ylabel=ylabel, log=log, marker=True)
     return [Figure("*", (x, *others), draw, "The series that the case recorded.")]
 
 

@@ -24,6 +24,11 @@ def _label(axes: Axes, xlabel: str, ylabel: str, title: str = "") -> None:
     axes.set(xlabel=xlabel, ylabel=ylabel, title=title)
 
 
+def _below(canvas: Canvas, columns: int) -> None:
+    """One legend for all panels, which have the same lines, where it hides none of them."""
+    canvas.legend(*canvas.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=columns)
+
+
 def _values(data: Data, name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     return np.array(data[name], dtype=float)
 
@@ -64,7 +69,7 @@ def _fig5(canvas: Canvas, data: Data) -> None:
         axes.plot(x, data["hertz (MPa)"], DOTTED, color=INK, label="Hertz")
         axes.plot(x, data["coulomb (MPa)"], DASHED, color=INK, label="Coulomb, same $\\mu$")
         _label(axes, "distance from the centre (mm)", "stress (MPa)", title)
-        axes.legend(loc="upper right")
+    _below(canvas, 4)
 
 
 def _fig6(canvas: Canvas, data: Data) -> None:
@@ -108,7 +113,7 @@ def _fig7(canvas: Canvas, data: Data) -> None:
 
 
 def _fig8(canvas: Canvas, data: Data) -> None:
-    friction, area, rates = _row(canvas, 3)
+    friction, area, rates, key = _row(canvas, 2, rows=2)
     sigma = _values(data, "sigma_e (um)")
     for k, load in enumerate(LOADS):
         style: dict[str, Any] = {
@@ -120,16 +125,20 @@ def _fig8(canvas: Canvas, data: Data) -> None:
         friction.errorbar(sigma, data[f"mu, {load}"], data[f"mu half width, {load}"], **style)
         area.errorbar(sigma, data[f"A (mm^2), {load}"], data[f"A half width (mm^2), {load}"], **style)
         middle = data["sigma_e of rates (um)"]
-        rates.plot(middle, data[f"rate of mu, {load}"], color=COLOURS[k], label=f"$\\mu$, {load}")
-        rates.plot(middle, data[f"rate of A, {load}"], DASH_DOT, color=INK, linewidth=1)
+        rates.plot(middle, data[f"rate of mu, {load}"], color=COLOURS[k], label=f"$\\mu$, P = {load}")
+        ring: dict[str, Any] = {"markerfacecolor": "none", "markersize": 7, "color": INK}
+        rates.plot(middle, data[f"rate of A, {load}"], "", marker=MARKERS[k], label=f"A, P = {load}", **ring)
     _label(friction, "$\\sigma_e$ (µm)", "friction coefficient", "(a)")
     _label(area, "$\\sigma_e$ (µm)", "contact area (mm²)", "(b)")
-    _label(rates, "$\\sigma_e$ (µm)", "rate of change / its first", "(c), A dash-dotted")
+    _label(rates, "$\\sigma_e$ (µm)", "rate of change / its first", "(c)")
     per_micron = _values(data, "psi")[-1] / sigma[-1]
     for axes in (friction, area, rates):
         above = axes.secondary_xaxis("top", (lambda s: s * per_micron, lambda p: p / per_micron))
         above.set_xlabel("$\\psi$, Eq. (12) with the correlation length")
-        axes.legend()
+    key.set_axis_off()
+    for panel, height in ((friction, 0.95), (rates, 0.55)):
+        handles = panel.get_legend_handles_labels()
+        key.add_artist(key.legend(*handles, loc="upper left", bbox_to_anchor=(0.05, height), fontsize=10))
 
 
 def _fig9(canvas: Canvas, data: Data) -> None:
@@ -170,7 +179,7 @@ def _fig11(canvas: Canvas, data: Data) -> None:
         title = f"({letter}) skewness {skew:+.2f} ± {half:.2f}, kurtosis {kurtosis:.2f} ± {wide:.2f}"
         axes.set_title(title, fontsize=9)
         axes.set(xlabel=unit, ylabel="density")
-    canvas.axes[0].legend(fontsize=8)
+    _below(canvas, 2)
 
 
 def _traces(canvas: Canvas, data: Data) -> None:
@@ -254,7 +263,7 @@ REPRODUCTION = (
         _FIG8_NEEDS,
         _fig8,
         "Fig. 8: friction, contact area and their rates of change; bars are 95 % intervals.",
-        (10.5, 4.2),
+        (8.6, 7.0),
     ),
     Figure(
         "reproduction/fig9*",

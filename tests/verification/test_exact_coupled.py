@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from refimpl.errors import InputError
 from verification.exact import coupled_indentation, fourier, patch
-from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
+from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere, first_order_shift
 from verification.exact.hertz import Sphere
 
 HERTZ = Sphere(load=70.0, radius=0.14, modulus=81.6e9)
@@ -46,6 +49,20 @@ def test_sheared_sphere_shifts_and_stays_level() -> None:
     np.testing.assert_allclose(level, sphere.approach, rtol=1e-13)
     assert sphere.pressure(sphere.shift, 0) == pytest.approx(HERTZ.peak_pressure, rel=1e-14)
     assert 0 < sphere.uncertainty < 1e-5
+
+
+def test_first_order_shift_of_tau_is_the_exact_one_and_of_beta_the_work_on_a_tilted_punch() -> None:
+    sphere = ShearedSphere(HERTZ, c0=2e-13, tau=15e6)
+    assert first_order_shift(HERTZ, 2e-13, 15e6, 0.0) == pytest.approx(sphere.shift, rel=1e-15)
+    # (2 E*/pi) x (a^2 - r^2)^(-1/2) tilts the disc by one; at r = a sin(t) its edge is no singularity
+    a, state = HERTZ.contact_radius, CoupledHertz(HERTZ, 2e-13, 0.0, 0.3)
+
+    def work(t: float) -> float:
+        r = a * math.sin(t)
+        return r**2 * float(state.coupling_displacement(r, 0.0))
+
+    moment = -2 * HERTZ.modulus * quad(work, 0, math.pi / 2, epsrel=1e-12)[0]
+    assert first_order_shift(HERTZ, 2e-13, 0.0, 0.3) == pytest.approx(moment / HERTZ.load, rel=1e-12)
 
 
 @pytest.mark.parametrize("place", [(0, 0), (1, 0.5), (1, 0.2), (0.3, 0.1), (3, 2), (0, 5), (0.999999, 0)])

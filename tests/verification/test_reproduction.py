@@ -160,12 +160,41 @@ def test_turning_keeps_realisations_and_directions_apart() -> None:
     assert np.allclose(turned.elastic[1], 1 / np.array([11, 12, 13]))
 
 
-def test_decay_finds_an_exponential() -> None:
-    rms = np.linspace(0, 1.7e-6, 8)
-    mu = 0.09 + 0.1 * np.exp(-rms / 0.25e-6)
-    found = fig8.decay(fig8.Curve(70.0, rms, mu, 0 * mu, mu, 0 * mu))
-    assert found.exponential < 1e-6 < found.hyperbolic
-    assert found.scale == pytest.approx(0.25e-6, rel=1e-5)
+RMS = np.linspace(0, 1.7e-6, 8)
+LAWS = {
+    "exponential": np.exp(-RMS / 0.25e-6),
+    "hyperbolic": 1 / (1 + RMS / 0.25e-6),
+    "algebraic": 1 / (1 + (RMS / 0.25e-6) ** 1.5),
+}
+
+
+def decay_of(mu: np.ndarray) -> fig8.Decay:
+    known = np.array([0.0, *np.full(len(mu) - 1, 1e-4)])  # the smooth contact has no error
+    return fig8.decay(fig8.Curve(70.0, RMS, mu, 2 * known, known, mu, 2 * known))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_decay_knows_its_laws_apart(law: str) -> None:
+    found = decay_of(0.09 + 0.1 * LAWS[law])
+    misfits = {name: getattr(found, name) for name in LAWS}
+    assert misfits.pop(law) < 1e-6
+    assert min(misfits.values()) > 0.005
+    if law == "exponential":
+        assert (found.scale, found.limit) == pytest.approx((0.25e-6, 0.09), rel=1e-5)
+        assert found.standard_errors < 0.01
+
+
+def test_decay_counts_in_standard_errors() -> None:
+    mu = 0.09 + 0.1 * LAWS["exponential"]
+    mu[4] += 5e-3  # 50 of them, of which the fit takes some up
+    assert 25 < decay_of(mu).standard_errors < 50
+
+
+def test_the_mean_slope_is_the_first_harmonic_and_nothing_else() -> None:
+    angle = np.radians(np.arange(0, 360, 30))
+    second = np.cos(2 * angle)
+    assert slides.beyond_mean_slope(angle, np.array([2 + np.sin(angle), second])) == pytest.approx(0.5)
+    assert slides.beyond_mean_slope(angle, np.array([second])) == pytest.approx(1.0)
 
 
 def test_levels_of_the_effective_pressure() -> None:
@@ -174,6 +203,8 @@ def test_levels_of_the_effective_pressure() -> None:
     assert float(np.sum(rings * profile.hertz)) == pytest.approx(70.0, rel=1e-12)
     assert float(np.sum(rings * profile.greenwood_tripp)) == pytest.approx(70.0, rel=0.02)
     assert profile.central(profile.hertz) == 1.0
+    area = np.average((profile.hertz - profile.greenwood_tripp) ** 2, weights=profile.r)
+    assert profile.without_roughness == pytest.approx(np.sqrt(area) / hertz().peak_pressure, rel=1e-12)
 
 
 def test_a_cell_compares_ours_with_print() -> None:
@@ -185,4 +216,5 @@ def test_a_cell_compares_ours_with_print() -> None:
     cells = table3.cells(rows, "contact_area", (128,))
     assert [round(cell.deviation, 12) for cell in cells[1:]] == [0.1, 0.1, 0.1]
     assert cells[0].ours.n == 1
+    assert [cell.within_sampling for cell in cells] == [False, True, True, True]
     assert table3.series(cells)["realisations"] == [1, 2, 2, 2]

@@ -18,6 +18,7 @@ from appendix_a.fem3d.wavy import Waviness
 from verification.case import Measured
 from verification.cases.appendix_fem3d import FLANK, NU, SOURCE, WAVELENGTH, shipped
 from verification.registry import case
+from verification.verdict import Verdict, judged
 
 Array = NDArray[np.float64]
 COPPER, STEEL = (118e9, 0.3), (200e9, 0.3)
@@ -26,6 +27,7 @@ RATIOS = (0.0, 0.3, 0.45)
 FINE = np.arange(0.0, 30.001, 0.05)
 GROUPS = {"self": [0], "in line": [1, 2, 3, 4, 5, 6], "across": [7, 8, 9]}
 RMS, MAXIMUM = 2.5, 6.5  # degrees: what the paper says of its surfaces
+STEEPEST = 8.42  # degrees: the mean of 75 of them, reproduction/largest-slope-full
 
 
 def errors(place: str, nu: float, slopes: Array, *, pair: bool) -> Array:
@@ -67,9 +69,14 @@ def less_than_two_percent() -> Measured:
             data[f"{body}, {group}"] = found
             for reading, value in zip(slopes, found, strict=True):
                 (true if value < 2.0 else false).append(f"{body}, {group}, {reading} ({value:.1f} %)")
-    value = max(worst(MAXIMUM, NU, group, pair=True) for group in GROUPS)
-    note = f"true of {len(true)} of {len(true) + len(false)} readings; false of: " + "; ".join(false)
-    return Measured(value, unit="%", data=data, note=note)
+    value, steep = (max(worst(s, NU, group, pair=True) for group in GROUPS) for s in (MAXIMUM, STEEPEST))
+    data["at the slope that surfaces reach"] = steep
+    sentence = (
+        f"{value:.2f} % for the paper's pair at its 6.5 degrees, {steep:.2f} % at {STEEPEST:g} degrees, "
+        "which surfaces like its roughest one reach (reproduction/largest-slope-full); true of "
+        f"{len(true)} of {len(true) + len(false)} readings of slope, bodies and coefficients; false of: "
+    )
+    return judged(Verdict.CONDITIONAL, sentence + "; ".join(false), value, data=data, unit="%")
 
 
 @case(

@@ -131,7 +131,7 @@ def exact_wave() -> Measured:
     contacts = slide_on_three_meshes(pair, load).contacts
     errors = [abs(c.approach / exact.approach - 1) for c in contacts]
     lengths = [abs(c.length / exact.contact_fraction - 1) for c in contacts]
-    return Measured(value=errors[-1], data={"approach": errors, "length": lengths})
+    return Measured(errors[-1], data={"approach by mesh": _by_mesh(errors), "length": _by_mesh(lengths)})
 
 
 @case(
@@ -155,4 +155,9 @@ def exact_sliding_wave() -> Measured:
     misses = [np.abs(np.subtract(c.ends, exact.edges)).max() / exact.contact_fraction for c in contacts]
     friction = pair.beta * load + pair.tau * exact.contact_fraction
     errors = [abs(c.friction / friction - 1) for c in contacts]
-    return Measured(value=float(misses[-1]), data={"ends": misses, "friction": errors})
+    data = {"ends by mesh": _by_mesh(misses), "friction": _by_mesh(errors)}
+    return Measured(value=float(misses[-1]), data=data)
+
+
+def _by_mesh(errors: list[float]) -> dict[str, float]:
+    return {f"mesh {k}": error for k, error in enumerate(errors, 1)}

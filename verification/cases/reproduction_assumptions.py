@@ -14,7 +14,7 @@ from verification.registry import case
 from verification.reproduction import assumptions
 from verification.reproduction.table1 import rough
 from verification.reproduction.tiers import in_both_tiers
-from verification.reproduction.verdict import Verdict, judged
+from verification.verdict import Verdict, judged
 
 TAGS = ("reproduction", "assumptions")
 GRID = {"quick": 128, "full": 512}

@@ -7,12 +7,13 @@ from functools import cache
 import numpy as np
 
 from verification.case import Measured
+from verification.exact.coupled_indentation import first_order_shift
 from verification.registry import case
 from verification.reproduction import fig5, fig6, fig7
 from verification.reproduction.printed import FIG6_RMS
-from verification.reproduction.table1 import SMOOTH, hertz
+from verification.reproduction.table1 import SMOOTH, coupling, hertz
 from verification.reproduction.tiers import in_both_tiers
-from verification.reproduction.verdict import Verdict, judged
+from verification.verdict import Verdict, judged
 
 GRID = {"quick": 128, "full": 512}
 SIZES_FIG6 = {"quick": (4, 128), "full": (75, 256)}  # realisations, elements per side
@@ -40,10 +41,12 @@ def _fig5_data(grid: int) -> dict[str, object]:
     title="Fig. 5: the pressure shifts to the trailing edge",
     claim="Section 7: friction slightly shifts the pressure of a hard sphere on a softer flat to the "
     "trailing edge",
-    source="paper Fig. 5, section 7",
+    source="paper Fig. 5, section 7; verification.exact.coupled_indentation, by reciprocity",
     metric="relative",
-    tolerance=0.05,
-    tolerance_reason="grid error: 128 and 512 elements differ by less",
+    tolerance=0.01,
+    tolerance_reason="edge elements place the centroid, a quarter of an element from the axis on 128 of "
+    "them, to 1 % of the shift, as in reference/sheared-sphere-shift; what is left of higher order in the "
+    "coupling is its square, 1e-4. Measured 2e-3 and, on 512, 1e-4",
     tags=("fig5",),
 )
 def shift(tier: str) -> Measured:
@@ -52,10 +55,9 @@ def shift(tier: str) -> Measured:
     sentence = (
         f"the pressure's centroid lies {along:+.3%} of the Hertz radius along sliding, {across:+.1e} across"
     )
-    finest = fig5.profiles(256).shift[0] if tier == "quick" else along
-    return judged(
-        Verdict.CONFIRMED, sentence, along, reference=finest, unit="a0", data=_fig5_data(GRID[tier])
-    )
+    friction = SMOOTH.friction
+    exact = first_order_shift(hertz(), coupling(), friction.tau, friction.beta) / hertz().contact_radius
+    return judged(Verdict.CONFIRMED, sentence, along, reference=exact, unit="a0", data=_fig5_data(GRID[tier]))
 
 
 @in_both_tiers(
@@ -109,7 +111,7 @@ FIG6_VERDICTS = {
     0.511e-6: Verdict.CONDITIONAL,
     2.69e-6: Verdict.CONFIRMED,
 }
-FIG6_TOLERANCE = {"quick": 0.25, "full": 0.12}
+FIG6_TOLERANCE = {"a": 0.95, "b": 0.45, "c": 0.30}  # of 75 realisations
 
 
 def _declare_fig6(rms: float, panel: str) -> None:
@@ -119,25 +121,26 @@ def _declare_fig6(rms: float, panel: str) -> None:
         claim=f"Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {rms * 1e6:g} um",
         source="paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5",
         metric="at_most",
-        tolerance=FIG6_TOLERANCE,
-        tolerance_reason="rms difference over Hertz' peak, by area. The summit model makes every summit "
-        "yield alone; here the Hertz circle holds 37 summits only, which touch as one: it is too soft "
-        "by up to 20 % of p0 at the least roughness. The rest is sampling, 0.05 for 75 realisations and "
-        "0.2 for 4",
+        tolerance={"quick": 0.95, "full": FIG6_TOLERANCE[panel]},
+        tolerance_reason="rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure: 1 "
+        "for a solver that sees no roughness. The summit model makes every summit yield alone; here the "
+        "Hertz circle holds 37 summits only, which touch as one: it is too soft by up to 20 % of p0 at the "
+        "least roughness, most of what roughness does there. Half of their pressure would be 0.86 at 0.511 "
+        "um and 0.37 at 2.69. The rest is sampling, 0.06 to 0.13 for 75 realisations and up to 0.9 for 4",
         tags=("fig6",),
     )
     def agreement(tier: str) -> Measured:
         found = _fig6(rms, tier)
         ours, theirs = found.central(found.pressure), found.central(found.greenwood_tripp)
-        misfit = found.misfit(found.greenwood_tripp)
+        misfit, smooth = found.misfit(found.greenwood_tripp), found.without_roughness
         sentence = (
-            f"rms difference {misfit:.3f} p0 (sampling {found.noise:.3f}; "
+            f"rms difference {misfit:.3f} p0, Hertz' pressure {smooth:.3f} (sampling {found.noise:.3f}; "
             f"{found.misfit(found.textbook):.3f} from the textbook's curve of mu = 4 and the caption's "
             "alpha, which these surfaces do not have); over the inner half of the Hertz circle "
             f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
             "load outside a0"
         )
-        return judged(FIG6_VERDICTS[rms], sentence, misfit, data=_fig6_data(rms, tier))
+        return judged(FIG6_VERDICTS[rms], sentence, misfit / smooth, data=_fig6_data(rms, tier))
 
 
 @case(

@@ -9,16 +9,14 @@ import numpy as np
 from verification.case import Measured
 from verification.reproduction import fig8, table3
 from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
-from verification.reproduction.printed import (
-    RESOLUTION,
-    TABLE3,
-)
+from verification.reproduction.printed import LOADS, RESOLUTION, TABLE3
 from verification.reproduction.tiers import in_both_tiers
-from verification.reproduction.verdict import Verdict, judged
 from verification.sweep.run import Row
 from verification.sweep.study import read_study
+from verification.verdict import Verdict, judged
 
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
+LOADS_IN_WORDS = ", ".join(f"{load:g}" for load in LOADS) + " N"
 
 
 def _curves(tier: str) -> tuple[fig8.Curve, ...]:
@@ -46,9 +44,9 @@ def _series(curves: tuple[fig8.Curve, ...]) -> dict[str, object]:
     claim="Fig. 8(a): mu falls with sigma_e, exponentially, at 14, 42 and 70 N",
     source="paper Fig. 8(a), section 8",
     metric="at_most",
-    tolerance=0.05,
+    tolerance=0.03,
     tolerance_reason="rms misfit over the fall of mu; a plot shows no less. A hyperbola with as many "
-    "parameters is the rival",
+    "parameters misses by 3.4 % (75 realisations) and 4.2 % (three)",
     tags=("fig8",),
 )
 def exponential(tier: str) -> Measured:
@@ -57,13 +55,20 @@ def exponential(tier: str) -> Measured:
     if any(np.any(np.diff(c.friction) >= 0) for c in curves):
         raise ArithmeticError("mu does not fall everywhere")
     worst = max(fit.exponential for fit in fits)
-    rival = max(fit.hyperbolic for fit in fits)
+    beyond = [c.friction[-1] - f.limit for c, f in zip(curves, fits, strict=True)]
     sentence = (
-        f"rms misfit {worst:.1%} of the fall (hyperbola {rival:.1%}), decay over "
-        f"{min(f.scale for f in fits) * 1e6:.2f} to {max(f.scale for f in fits) * 1e6:.2f} um by load"
+        f"rms misfit {worst:.1%} of the fall (hyperbola {max(f.hyperbolic for f in fits):.1%}), decay over "
+        f"{min(f.scale for f in fits) * 1e6:.2f} to {max(f.scale for f in fits) * 1e6:.2f} um by load: as an "
+        "exponential to what a plot shows. The ensembles know better: means lie up to "
+        f"{max(f.standard_errors for f in fits):.0f} standard errors from it, mu ends "
+        f"{', '.join(f'{b:+.4f}' for b in beyond)} from its limits ({LOADS_IN_WORDS}), and "
+        "1 / (1 + (sigma / s)^1.5), with as many parameters, misses by "
+        f"{max(f.algebraic for f in fits):.1%}"
     )
     data = _series(curves) | {"decay (um)": [f.scale * 1e6 for f in fits]}
-    return judged(Verdict.CONFIRMED, sentence, worst, data=data)
+    data |= {"exponential's limit": [f.limit for f in fits], "misfit": [f.exponential for f in fits]}
+    data |= {"misfit of 1 / (1 + (sigma / s)^1.5)": [f.algebraic for f in fits]}
+    return judged(Verdict.CONDITIONAL, sentence, worst, data=data)
 
 
 @in_both_tiers(

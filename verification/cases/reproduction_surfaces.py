@@ -11,7 +11,7 @@ from verification.case import Measured
 from verification.reproduction import fig4, fig11
 from verification.reproduction.printed import CORRELATION_LENGTH, FLAT_RMS, LARGEST_SLOPE, QUOTED_SLOPES, SIDE
 from verification.reproduction.tiers import in_both_tiers
-from verification.reproduction.verdict import Verdict, judged
+from verification.verdict import Verdict, judged
 
 SIZES = {"quick": (12, 128), "full": (75, 512)}  # realisations, elements per side
 SIZES_FIG11 = {"quick": (12, 128), "full": (75, 256)}
@@ -95,23 +95,25 @@ def quoted_slopes(tier: str) -> Measured:
     title="Appendix A: the largest asperity slope",
     claim="Appendix A: the largest asperity slope did not exceed 6.5 degrees",
     source="paper Appendix A",
-    metric="at_most",
-    tolerance=1.5,
-    tolerance_reason="largest gradient of the undeformed 1.68 um surfaces over 6.5 degrees: the "
+    metric="at_least",
+    tolerance=1.1,
+    tolerance_reason="mean of the largest gradients of the undeformed 1.68 um surfaces over 6.5 degrees: the "
     "expected maximum of a Rayleigh variable of 2 degrees over n = 240 l^2 per surface, sqrt(2 log n), "
-    "is 7 to 9 degrees",
+    "is 7 to 9 degrees; above 1 the printed number does not hold, and sampling leaves 4 % (12 surfaces)",
     tags=("appendix",),
 )
 def largest(tier: str) -> Measured:
     found, contact = _statistics(tier), _panels(tier)[3]
-    mean = fig4.degrees(found.largest_gradient.mean, FLAT_RMS[1])
+    steepest = found.largest_gradient
+    mean, least = (fig4.degrees(slope, FLAT_RMS[1]) for slope in (steepest.mean, found.least_steep))
     in_contact = float(np.abs(contact.centres[contact.density > 0]).max())
     sentence = (
-        f"largest gradient of a 1.68 um surface: {mean:.2f} deg on average over {found.radius.n} "
-        f"surfaces; in true contact, along sliding, at most {in_contact:.2f} deg"
+        f"largest gradient of a 1.68 um surface: {mean:.2f} deg on average over {steepest.n} surfaces, "
+        f"{least:.2f} on the least steep; in true contact, along sliding, at most {in_contact:.2f} deg"
     )
-    data = {"largest gradient (deg)": mean, "largest in contact (deg)": in_contact}
-    return judged(Verdict.CONDITIONAL, sentence, mean / LARGEST_SLOPE, data=data)
+    data = {"largest gradient (deg)": mean, "of the least steep surface (deg)": least}
+    data |= {"largest in contact (deg)": in_contact}
+    return judged(Verdict.REFUTED, sentence, mean / LARGEST_SLOPE, data=data)
 
 
 def _component_slope(h: float) -> float:

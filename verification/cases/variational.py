@@ -14,6 +14,7 @@ from verification.registry import case
 from verification.variational.energy import Array, Energy, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, Minimum, interior_point
 from verification.variational.timing import Contact, growth, measure, table
+from verification.verdict import Verdict, judged
 
 COMMITTED = Path(__file__).resolve().parents[2] / "reports" / "results" / "table2.json"
 SOURCE = "paper Table 2; the principle: Kalker and van Randen 1972, Tian and Bhushan 1996"
@@ -139,7 +140,13 @@ def approach_is_multiplier() -> Measured:
 def transform_work() -> Measured:
     contact = Contact.of(table2_scene(), 64)
     work = {method: contact.run(method)[1]["n log2 n"] for method in ("paper", "L-BFGS-B", "production")}
-    return Measured(work["L-BFGS-B"] / work["paper"], data={f"n log2 n: {k}": v for k, v in work.items()})
+    share = work["L-BFGS-B"] / work["paper"]
+    sentence = (
+        f"L-BFGS-B on the energy, with products by FFT, does {share:.2f} of the scheme's transform work. "
+        "What costs as Table 2's rival did is a solver with the matrix (table2-rerun): the FFT is the "
+        "advantage, and a variational method may have it too"
+    )
+    return judged(Verdict.CONDITIONAL, sentence, share, data={f"n log2 n: {k}": v for k, v in work.items()})
 
 
 @case(

@@ -13,6 +13,8 @@ s/rho^2).
    only moves: Hertz pressure about x = -pi c0 tau R. The jump of q at the leading edge presses the free
    surface against the sphere over a width ~ shift^2/2a (see `sliding_plane`), which the solution leaves out:
    relative error (shift/a)^3.
+
+`first_order_shift` has both, for a plain sphere: to first order in c0, by the reciprocal theorem.
 """
 
 from __future__ import annotations
@@ -104,6 +106,18 @@ class ShearedSphere:
     def uncertainty(self) -> float:
         """Relative error by the pressureless zone at the leading edge."""
         return abs(self.shift / self.hertz.contact_radius) ** 3
+
+
+def first_order_shift(hertz: Sphere, c0: float, tau: float, beta: float) -> float:
+    """Centroid of the pressure along x (m) under ``r = tau + beta p``, to first order in ``c0`` (1/Pa).
+
+    The coupling displacement of the Hertz state, c0 x Q(r)/r^2, changes the pressure's moment by minus the
+    work of a tilted punch's pressure, (2 E*/pi) x (a^2 - r^2)^(-1/2) per unit tilt, on it (Betti):
+    -2 E* c0 times the integral of Q(r) r (a^2 - r^2)^(-1/2) over 0 < r < a. tau contributes -pi c0 tau R, as
+    in `ShearedSphere`, and beta -(3/2) E* c0 beta a.
+    """
+    by_tau = np.pi * tau * hertz.radius
+    return float(-c0 * (by_tau + 1.5 * hertz.modulus * beta * hertz.contact_radius))
 
 
 def coupling_by_quadrature(state: CoupledHertz, x: float, y: float) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from verification.reproduction.table1 import FIRST_SEED
 @dataclass(frozen=True)
 class Statistics:
     """Estimates over realisations of unit-rms surfaces: moments, correlation radius (m), slopes per unit rms
-    (1/m): component rms, mean magnitude of the gradient, and largest magnitude.
+    (1/m): component rms, mean magnitude of the gradient, and largest magnitude; and the least of these.
     """
 
     skewness: Estimate
@@ -27,6 +27,7 @@ class Statistics:
     component_slope: Estimate
     mean_gradient: Estimate
     largest_gradient: Estimate
+    least_steep: float
 
 
 def surface(realisation: int, grid: int, *, ball: bool = False) -> Array:
@@ -57,7 +58,9 @@ def measured(realisations: int, grid: int) -> Statistics:
                 largest,
             )
         )
-    return Statistics(*(estimate(values) for values in zip(*found, strict=True)))
+    *others, steepest = zip(*found, strict=True)
+    skewness, kurtosis, length, slope, mean_gradient = (estimate(values) for values in others)
+    return Statistics(skewness, kurtosis, length, slope, mean_gradient, estimate(steepest), min(steepest))
 
 
 def degrees(slope_per_rms: float, rms: float) -> float:

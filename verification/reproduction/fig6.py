@@ -40,13 +40,20 @@ class Profile:
 
     def misfit(self, theory: Array) -> float:
         """Rms difference from a theory, weighted by area, over Hertz' peak."""
-        square = np.sum(self.r * (self.pressure - theory) ** 2) / np.sum(self.r)
-        return float(np.sqrt(square)) / hertz().peak_pressure
+        return self._rms(self.pressure - theory)
+
+    @property
+    def without_roughness(self) -> float:
+        """The misfit of Hertz' pressure from Greenwood and Tripp's."""
+        return self._rms(self.hertz - self.greenwood_tripp)
 
     @property
     def noise(self) -> float:
         """What sampling alone adds to a misfit: the rms standard error, weighted and scaled alike."""
-        square = np.sum(self.r * (self.half_width / 2) ** 2) / np.sum(self.r)
+        return self._rms(self.half_width / 2)
+
+    def _rms(self, pressure: Array) -> float:
+        square = np.sum(self.r * pressure**2) / np.sum(self.r)
         return float(np.sqrt(square)) / hertz().peak_pressure
 
     def central(self, curve: Array) -> float:

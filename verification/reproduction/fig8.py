@@ -24,12 +24,16 @@ QUICK_RMS = (0.0, 0.252e-6, 0.504e-6, 1.008e-6, 1.680e-6)  # m
 
 @dataclass(frozen=True)
 class Curve:
-    """One load's curves over ``rms`` = sigma_e (m), the smooth contact first: means and 95 % half widths."""
+    """One load's curves over ``rms`` = sigma_e (m), the smooth contact first: means and 95 % half widths.
+
+    ``error`` is the standard error of mu.
+    """
 
     load: float
     rms: Array
     friction: Array
     friction_half: Array
+    error: Array
     area: Array
     area_half: Array
 
@@ -71,26 +75,30 @@ def curves(found: Sequence[Row], mesh: int) -> tuple[Curve, ...]:
 def _curve(found: Sequence[Row], load: float, mesh: int) -> Curve:
     flats = sorted({row["lower_rms"] for row in found})
     smooth = rf.solve(rough(0.0, load=load), mesh)
-    points = [(0.0, smooth.friction_coefficient, 0.0, smooth.contact_area, 0.0)]
+    points = [(0.0, smooth.friction_coefficient, 0.0, 0.0, smooth.contact_area, 0.0)]
     for flat in flats:
         where = {"load": load, "lower_rms": flat}
         mu = estimate(column(found, "friction_coefficient", **where))
         area = estimate(column(found, "contact_area", **where))
         rms = float(np.hypot(flat, SPHERE_RMS))
-        points.append((rms, mu.mean, mu.half_width, area.mean, area.half_width))
+        error = mu.scatter * mu.mean / np.sqrt(mu.n)
+        points.append((rms, mu.mean, mu.half_width, error, area.mean, area.half_width))
     return Curve(load, *np.array(points).T)
 
 
 @dataclass(frozen=True)
 class Decay:
-    """Misfits (rms, relative to the fall over the range) of ``mu - limit`` falling as an exponential and as a
-    hyperbola ``1 / (1 + sigma / scale)``, and the exponential's limit.
+    """Misfits (rms, relative to the fall over the range) of ``mu - limit`` falling as an exponential, as a
+    hyperbola ``1 / (1 + sigma / scale)`` and as ``1 / (1 + (sigma / scale)^1.5)``, and what the exponential
+    says: its limit, its scale (m), and how far the means lie from it at most, in standard errors.
     """
 
     exponential: float
     hyperbolic: float
+    algebraic: float
     limit: float
     scale: float
+    standard_errors: float
 
 
 def decay(curve: Curve) -> Decay:
@@ -103,12 +111,24 @@ def decay(curve: Curve) -> Decay:
     def hyperbola(s: Array, limit: float, height: float, scale: float) -> Array:
         return np.asarray(limit + height / (1 + s / scale))
 
+    def algebraic(s: Array, limit: float, height: float, scale: float) -> Array:
+        return np.asarray(limit + height / (1 + (s / scale) ** 1.5))
+
     start = (float(curve.friction[-1]), fall, 0.2)
     bounds = ((0.0, 0.0, 1e-3), (1.0, 10.0, 10.0))
-    first, _ = curve_fit(exponential, x, curve.friction, start, bounds=bounds)
-    second, _ = curve_fit(hyperbola, x, curve.friction, start, bounds=bounds)
-    misfits = [
-        float(np.sqrt(np.mean((f(x, *p) - curve.friction) ** 2))) / fall
-        for f, p in ((exponential, first), (hyperbola, second))
-    ]
-    return Decay(misfits[0], misfits[1], float(first[0]), float(first[2]) * 1e-6)
+    fits = {
+        law: curve_fit(law, x, curve.friction, start, bounds=bounds)[0]
+        for law in (exponential, hyperbola, algebraic)
+    }
+    misfits = {law: float(np.sqrt(np.mean((law(x, *p) - curve.friction) ** 2))) for law, p in fits.items()}
+    limit, _, scale = fits[exponential]
+    rough = curve.friction_half > 0
+    missed = np.abs(exponential(x, *fits[exponential]) - curve.friction)[rough]
+    return Decay(
+        exponential=misfits[exponential] / fall,
+        hyperbolic=misfits[hyperbola] / fall,
+        algebraic=misfits[algebraic] / fall,
+        limit=float(limit),
+        scale=float(scale) * 1e-6,
+        standard_errors=float((missed / curve.error[rough]).max()),
+    )

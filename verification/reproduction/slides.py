@@ -96,6 +96,19 @@ def turning(found: Sequence[Row]) -> list[Turning]:
     return result
 
 
+def beyond_mean_slope(direction: Array, values: Array) -> float:
+    """Share of the variance over directions (rad) that first harmonics leave; shape as in `Turning`.
+
+    >>> angle = np.radians([0, 60, 120, 180, 240, 300])
+    >>> round(beyond_mean_slope(angle, np.array([3 * np.cos(angle) + np.sin(angle)])), 12)
+    0.0
+    """
+    mean_free = values - values.mean(axis=1, keepdims=True)
+    harmonic = np.column_stack([np.cos(direction), np.sin(direction)])
+    fitted = mean_free @ np.linalg.pinv(harmonic).T @ harmonic.T
+    return float(np.sum((mean_free - fitted) ** 2) / np.sum(mean_free**2))
+
+
 @dataclass(frozen=True)
 class Trace:
     """A quantity over the sliding offset (m): its values, its mean, the scatter of one position, the standard

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import refimpl as rf
@@ -40,6 +41,15 @@ def rough(
         load=load,
         sliding_direction=sliding_direction,
     )
+
+
+def coupling() -> float:
+    """``c0`` of `verification.exact.coupled_indentation` (1/Pa), from the moduli as printed."""
+
+    def factor(m: rf.Material) -> float:
+        return (1 + m.nu) * (1 - 2 * m.nu) / (2 * math.pi * m.E)
+
+    return factor(SMOOTH.lower.material) - factor(SMOOTH.upper.material)
 
 
 def hertz(load: float = SMOOTH.load, radius: float = RADIUS) -> Sphere:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -31,6 +32,11 @@ class Cell:
     def deviation(self) -> float:
         """Ours over printed, less 1."""
         return self.ours.mean / self.printed - 1
+
+    @property
+    def within_sampling(self) -> bool:
+        """Whether the deviation is within the 95 % half width of a difference of two such ensembles."""
+        return abs(self.ours.mean - self.printed) <= math.sqrt(2) * self.ours.half_width
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The sentence that every reproduced claim ends with: the verdict and the number that decides."""
+"""The sentence that a case about the paper ends with: the verdict on its claim, and what decides."""
 
 from __future__ import annotations
 
