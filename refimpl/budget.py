@@ -19,16 +19,15 @@ Independent sources add in squares; a model's error is no matter of chance, and 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from refimpl.errors import InputError, require_number
 from refimpl.forces import facet_resultants
 from refimpl.parameters import check_tolerances
 from refimpl.scene import Scene
 from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
 from refimpl.solution import Solution
-from refimpl.surfaces import SurfaceWarning
 
 
 @dataclass(frozen=True)
@@ -85,11 +84,13 @@ def budget(
 
     Raises `InputError` for unknown names, and as `refimpl.sensitivity` does.
     """
-    tolerances = dict(tolerances or {})
+    tolerances, sampling = _mapping("tolerances", tolerances), _mapping("sampling", sampling)
     check_tolerances(scene, tolerances)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SurfaceWarning)  # the solution's own warnings have them
-        derivatives = sensitivity(scene, solution)
+    for number, half_width in sampling.items():
+        if number not in NUMBERS:
+            raise InputError(f"sampling.{number!r}", half_width, f"one of {', '.join(NUMBERS)}")
+        require_number(f"sampling.{number!r}", half_width, "a half-width, not negative", at_least=0)
+    derivatives = sensitivity(scene, solution)
     sources = _model_form(solution, derivatives)
     numbers = {
         number: Budget(
@@ -100,11 +101,17 @@ def budget(
                 for name, tolerance in tolerances.items()
             },
             sources=sources[number],
-            sampling=(sampling or {}).get(number),
+            sampling=sampling.get(number),
         )
         for number in NUMBERS
     }
     return Budgets(numbers, derivatives, tolerances)
+
+
+def _mapping(name: str, given: Mapping[str, float] | None) -> dict[str, float]:
+    if not isinstance(given, Mapping | None):
+        raise InputError(name, given, "numbers by name")
+    return dict(given or {})
 
 
 def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[str, float]]:

@@ -51,11 +51,12 @@ def coefficient_error(
     slope : maximum slope of the waviness (rad), up to the table's 30 degrees
     lower, upper : the pair; one body alone when ``upper`` is None. In a pair the first-order parts
         enter as lower minus upper.
-    wavelength : of the waviness in element half-widths; the table's largest by default
+    wavelength : of the waviness in element half-widths; the table's largest by default. On longer waves what
+        the table adds to first order is that of its largest, which is more.
     position : of the element on the waviness, 0 crest to 0.5 valley as the lower body sees it; the
         worst one by default
 
-    Raises `InputError` outside the table.
+    Raises `InputError` for steeper slopes and shorter waves than the table's.
 
     >>> steel = Material(E=200e9, nu=0.3)
     >>> coefficient_error(0.02, steel) > coefficient_error(0.02, steel, steel)
@@ -67,7 +68,6 @@ def coefficient_error(
     wavelength = table["wavelength"][-1] if wavelength is None else wavelength
     least = table["wavelength"][0]
     require_number("wavelength", wavelength, f"at least {least:g} half-widths", at_least=least)
-    wavelength = min(wavelength, table["wavelength"][-1])
     if position is not None:
         require_number("position", position, "a share of the wavelength, 0 to 1", at_least=0, at_most=1)
     positions = np.array(table["position"] if position is None else [position])
@@ -101,7 +101,8 @@ def _errors(
     bodies = [(lower, positions)]
     if upper is not None:  # a crest of one body is a valley of the other
         bodies.append((upper, (positions + 0.5) % 1.0))
-    rests = _rests(np.tan(slopes), wavelength, np.concatenate([at for _, at in bodies]))
+    tabulated = min(wavelength, _table()["wavelength"][-1])
+    rests = _rests(np.tan(slopes), tabulated, np.concatenate([at for _, at in bodies]))
     rough = np.zeros((len(slopes), len(positions), 2))
     for (body, at), rest in zip(bodies, np.split(rests, len(bodies), axis=1), strict=True):
         rough += _departure(np.tan(slopes), wavelength, at, body.nu, rest) / body.E

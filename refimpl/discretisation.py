@@ -1,6 +1,7 @@
 """How far the numbers found on grids are from the continuous problem's: the discretisation's error bars.
 
-Each number is a line's (`refimpl.estimate`), ``y_k = q + c e_k + r_k`` on grid k. In an area ``e_k`` is what
+Each number is the intercept q of a line over the grids (`refimpl.estimate`), ``y_k = q + c e_k + r_k``. In an
+area ``e_k`` is what
 whole elements add along the contact's edge (Yastrebov, Anciaux and Molinari 2017), and ``r_k`` which elements
 the edge happens to catch: the count of n edge elements varies as sqrt(n), and n goes as 1 / h, so ``w`` falls
 as h^(3/2). Friction takes its edge's share from the area, by ``tau / N``. The highest pressure is that of a
@@ -26,10 +27,10 @@ import numpy as np
 
 from refimpl.estimate import DECAY, Bias, Estimate, Prior, line
 from refimpl.first_touch import POWERS, first_touch, missed, missed_share, touched
+from refimpl.forces import EDGE_SHARE
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 
-EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
 SINGLES = 1.5  # what a lone element's edge counts more than an edge
 SUMMIT, SUMMIT_SPREAD = 0.028, 0.009  # c0, s_c: of its drop, as a pressure's parabola peaks too high
@@ -177,10 +178,13 @@ def _weights(size: Array, spacing: Array) -> Array:
 
 
 def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]:
-    """Discretisation parts of the finest grid's numbers; none without contact or of a state that ran off."""
+    """Discretisation parts of the finest numbers: none without contact, no bound where a state ran off."""
     found = results[-1].numbers
-    if not results[-1].touching or not all(abs(value) < _RAN_OFF for value in found.values()):
+    if not results[-1].touching:
         return {}
+    if not all(abs(value) < _RAN_OFF for value in found.values()):
+        given = "normal_force" if results[-1].loaded else "approach"
+        return {name: {"discretisation": math.inf} for name in found if name != given}
     return {
         name: {"discretisation": estimate.bar(found[name])} for name, estimate in estimates(results).items()
     }

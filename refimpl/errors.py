@@ -89,6 +89,17 @@ def require_number(
     raise InputError(field, value, allowed)
 
 
+def keep_doubles(parameters: object, *names: str) -> None:
+    """Store the numbers of a frozen dataclass as doubles: arithmetic is as good as the least of its operands.
+
+    Whole numbers, fractions, NumPy's of any width: what `require_number` has let pass. None stays.
+    """
+    for name in names:
+        value = getattr(parameters, name)
+        if value is not None:
+            object.__setattr__(parameters, name, float(value))
+
+
 def require_size(field: str, value: object, allowed: str) -> None:
     """Raise `InputError` unless ``value`` is a positive size in SI units that arithmetic can bear.
 

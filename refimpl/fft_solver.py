@@ -39,18 +39,17 @@ def solve_fft(
         solver = begun(nested.pop(0), solver.answer(), counter)
     while True:
         outcome, window, cramped = solver.solve(tolerance), solver.window, solver.cramped
+        strong = solver.strong
         del solver  # what it holds is no longer needed when the whole grid's arrays come
-        if cramped:
-            beyond = window.mask(problem.grid.M)
-        else:
+        beyond = window.mask(problem.grid.M)
+        if not cramped:
             state = _certified(problem, outcome, counter)
-            beyond = _beyond(problem, state, window, tolerance)
-            if not beyond.any():
+            missed = _beyond(problem, state, window, tolerance)
+            if not missed.any():
                 outcome.iterations.update(iterations)
                 return outcome, state
-            if problem.friction.tau > 0:  # states before the last may have needed all of this window
-                beyond |= window.mask(problem.grid.M)
-        solver = _widened(problem, outcome, beyond, counter)
+            beyond |= missed  # windows only grow, so that this ends
+        solver = _widened(problem, outcome, beyond, counter, strong=strong)
 
 
 def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
@@ -59,6 +58,10 @@ def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
     operator, precondition = _operators(problem, window, counter)
     loaded = problem.load is not None
     pressure = sharpened(pressure, misfit, contact, precondition, loaded=loaded)
+    if (
+        loaded and not pressure.any()
+    ):  # contact is likely where the other grid had none: nothing to go on from
+        return _unprepared(problem, counter)
     precondition = extended(precondition, pressure > 0)
     return LevelSolver(problem, operator, precondition, pressure, strong=start.strong)
 
@@ -117,11 +120,14 @@ def _beyond(problem: Problem, state: State, window: Window, tolerance: float) ->
     return beyond
 
 
-def _widened(problem: Problem, outcome: Outcome, beyond: Mask, counter: Counter) -> LevelSolver:
-    """A solver that starts from a pressure found, on a window that holds what was beyond the last as well."""
-    window = Window.around((outcome.pressure > 0) | beyond, MARGIN).filling(len(beyond))
+def _widened(
+    problem: Problem, outcome: Outcome, needed: Mask, counter: Counter, *, strong: bool
+) -> LevelSolver:
+    """A solver that starts from a pressure found, on a window that holds all elements needed."""
+    window = Window.around(needed, MARGIN).filling(len(needed))
     pressure = outcome.pressure[window.slices]
     operator, precondition = _operators(problem, window, counter)
-    solver = LevelSolver(problem, operator, extended(precondition, pressure > 0), pressure)
+    precondition = extended(precondition, pressure > 0)
+    solver = LevelSolver(problem, operator, precondition, pressure, strong=strong)
     solver.cg_iterations = sum(outcome.iterations.values())
     return solver

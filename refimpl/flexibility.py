@@ -75,7 +75,7 @@ class Flexibility:
         if self._pressed is None or self._pressed[0] != step:
             self._pressed = step, total, self._operator.shear(pressure)
         _, applied, product = self._pressed
-        return product if total == applied else (total / applied) * product
+        return product if applied in (0.0, total) else (total / applied) * product
 
     def _by_tau(self, support: Mask) -> Array | float:
         """The shear product of tau alone, applied once for a support."""

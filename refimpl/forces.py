@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from refimpl.grid import Array
 from refimpl.slopes import Slopes
 
+EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
+
 
 class Forces(NamedTuple):
     """Normal force N, friction force F and binormal force Q (N)."""
@@ -56,16 +58,16 @@ def perimeter_corrected_area(contact: NDArray[np.bool_], spacing: float, *, peri
     """Contact area (m^2) less the mean excess that whole elements add along the contact's edge.
 
     ``A - (pi - 1 + ln 2) / 24 * S * spacing`` with ``S`` the length of the element edges between
-    contact and no contact (Yastrebov, Anciaux and Molinari 2017, Tribology International 114, 161).
+    contact and no contact (Yastrebov, Anciaux and Molinari 2017, Tribology International 114, 161). The
+    border of a square that does not repeat is none: where contact ends there it ends exactly.
     """
     edges = 0
     for rows in (contact, contact.T):
         edges += int(np.count_nonzero(rows[1:] != rows[:-1]))
-        first, last = rows[0], rows[-1]
-        edges += int(np.count_nonzero(first != last) if periodic else np.count_nonzero([first, last]))
+        edges += int(np.count_nonzero(rows[0] != rows[-1])) if periodic else 0
     perimeter = edges * spacing
     raw = int(np.count_nonzero(contact)) * spacing**2
-    return raw - (math.pi - 1 + math.log(2)) / 24 * perimeter * spacing
+    return raw - EDGE_SHARE * perimeter * spacing
 
 
 def smooth_friction_coefficient(tau: float, beta: float, mean_pressure: float) -> float:

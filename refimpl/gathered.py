@@ -8,13 +8,14 @@ import numpy as np
 
 from refimpl.coefficient_error import slope_error
 from refimpl.contact.certificate import State
+from refimpl.first_touch import POWERS
 from refimpl.forces import perimeter_corrected_area
 from refimpl.outcome import Outcome, Status, Visited
 from refimpl.plan import Plan
 from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
 from refimpl.problem import Problem
 from refimpl.solution import Cost, Solution
-from refimpl.uncertainty import merged
+from refimpl.uncertainty import AREAS, merged
 
 
 def gathered(
@@ -40,6 +41,11 @@ def gathered(
     changes = effects_left_out(plan.left_out, problem, state.pressure, plan.outlook)
     largest = float(state.pressure.max())
     total = float(state.pressure.sum())
+    follows = (
+        {"approach": state.approach}
+        if problem.load is not None
+        else {"normal_force": POWERS["normal_force"] * state.forces.normal}
+    )
     return Solution(
         status=_final_status(outcome.status, state, tolerance),
         approach=state.approach - (float(problem.gap.mean()) if problem.periodic else 0.0),
@@ -67,12 +73,12 @@ def gathered(
         certificate=state.certificate,
         tolerance=tolerance,
         uncertainty=merged(
-            _spread_by_support(outcome, found, unlawful),
+            _spread_by_support(outcome, found, unlawful, load),
             uncertainty_left_out(
                 changes,
                 float(state.traction.sum()) / total if total else 0.0,
                 load,
-                {"contact_area": found.contact_area, "max_pressure": largest},
+                dict.fromkeys(AREAS, found.contact_area) | {"max_pressure": largest} | follows,
             ),
         ),
         plan=plan,
@@ -90,8 +96,10 @@ def _final_status(status: Status, state: State, tolerance: float) -> Status:
     return status
 
 
-def _spread_by_support(outcome: Outcome, found: Visited, unlawful: float) -> dict[str, dict[str, float]]:
-    """How far mu and A of the states of tau's cycles lie from the settled ones.
+def _spread_by_support(
+    outcome: Outcome, found: Visited, unlawful: float, load: float
+) -> dict[str, dict[str, float]]:
+    """How far mu, F and the areas of the states of tau's cycles lie from the settled ones.
 
     For mu no less than tau on all elements that have it against the law: where tau comes on with pressure,
     however soon, they bear a share of it (see `verification.cases.tau_shares`).
@@ -101,4 +109,6 @@ def _spread_by_support(outcome: Outcome, found: Visited, unlawful: float) -> dic
         for name in Visited._fields
     }
     spread["friction_coefficient"] = max(spread["friction_coefficient"], unlawful)
+    spread["friction_force"] = spread["friction_coefficient"] * load
+    spread |= dict.fromkeys(AREAS, spread["contact_area"])
     return {name: {"tau support": width} for name, width in spread.items() if width > 0}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, require_size
+from refimpl.errors import InputError, keep_doubles, require_size
 
 Array = NDArray[np.float64]
 
@@ -43,6 +43,8 @@ class Grid:
         if not (isinstance(self.M, int | np.integer) and not isinstance(self.M, bool) and self.M >= 1):
             raise InputError("grid", self.M, "a whole number of elements per side, at least 1")
         require_size("side", self.side, "a positive length in m")
+        keep_doubles(self, "side")
+        object.__setattr__(self, "M", int(self.M))
 
     @property
     def spacing(self) -> float:

@@ -15,13 +15,16 @@ from refimpl.problem import Problem
 from refimpl.slopes import Slopes
 
 _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
+_FARTHEST = (
+    1e30  # sides; shear displacements beyond have run off: they, and products of them, still fit a double
+)
 
 
 class Held:
     """The rest of a window's problem, brought up to date with the pressure of ``cg`` and held from then on.
 
     ``support`` is where tau is; ``slopes`` are those that the last update left, and ``entered`` those that
-    the displacements of the present state came from. ``ran_off`` says that slopes did.
+    the displacements of the present state came from. ``ran_off`` says that slopes or shear did.
     """
 
     def __init__(self, problem: Problem, flexibility: Flexibility, cg: ProjectedCG) -> None:
@@ -56,7 +59,8 @@ class Held:
         self.entered, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
             self.entered, change = self.slopes, slopes.distance(self.slopes, pressure > 0)
-        self.ran_off = not slopes.obliqueness.min() > _STEEPEST
+        within = np.abs(shear).max() < _FARTHEST * problem.grid.side
+        self.ran_off = not (slopes.obliqueness.min() > _STEEPEST and within)
         if not self.ran_off:
             self.slopes = slopes
         K = self.slopes.obliqueness

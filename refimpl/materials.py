@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from refimpl.errors import LEAST, require_number, require_size
+from refimpl.errors import LEAST, keep_doubles, require_number, require_size
 
 RIGID = 1e100  # Pa; beside any other body's it is as good as infinite, and its square is a double
 
@@ -32,6 +32,7 @@ class Material:
         require_number("nu", self.nu, "a Poisson's ratio in (-1, 0.5]", above=-1, at_most=0.5)
         if self.hardness is not None:
             require_size("hardness", self.hardness, "a positive, finite hardness in Pa")
+        keep_doubles(self, "E", "nu", "hardness")
 
     @property
     def plane_strain_modulus(self) -> float:

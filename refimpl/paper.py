@@ -35,6 +35,7 @@ from refimpl.slopes import Slopes
 PAPER_TOLERANCE = 1e-4  # |(P - N) / P|, section 5
 _PRESSURE_SHARE = 0.1  # |df| / |f| may be this share of the load tolerance: 1e-5, section 5
 _STEPS, _PASSES, _APPROACHES, _SUPPORTS = 2000, 60, 60, 100
+_BUDGET = 20_000  # steps and passes on one grid, of which the shipped scenes take 620 at most (128 x 128)
 
 
 @dataclass(eq=False)
@@ -126,7 +127,7 @@ class _Scheme:
             if tau > 0:
                 rule.next(self.pressure > 0)
                 in_cycles += states[len(states) - len(rule.cycle) :]
-            if tau == 0 or rule.settled or rule.given_up:
+            if tau == 0 or rule.settled or rule.given_up or self._spent:
                 break
         lawful = not np.any(rule.withheld & (self.pressure > 0))
         ended = self.settled and (tau == 0 or rule.settled)
@@ -150,13 +151,16 @@ class _Scheme:
     def balance(self, approach: float | None, support: Mask | None) -> float:
         """(2) Iteration two: the approach at which N = P, by secants within a bracket; returns it (m)."""
         if self.problem.approach is not None:
+            self.settled = True
             self.contact(self.problem.approach, support)
             return self.problem.approach
         assert self.problem.load is not None
-        load = self.problem.load
+        self.settled, load = True, self.problem.load
         approach = approach or 0.05 * float(self.problem.gap.max()) or self.problem.grid.spacing
         low, high, last = 0.0, math.inf, None
         for _ in range(_APPROACHES):
+            if self._spent:
+                break
             normal = self.contact(approach, support)
             if abs(load - normal) <= self.tolerance * load:
                 return approach
@@ -195,10 +199,19 @@ class _Scheme:
             before = self.pressure
             if not returning.any() and change <= _PRESSURE_SHARE * self.tolerance:
                 break
+            if self._spent:
+                self.settled = False
+                break
         else:
             self.settled = False
         weights, offset = problem.load_weights(self.slopes, tau_on)
         return inner(weights, self.pressure) * problem.grid.element_area - offset
+
+    @property
+    def _spent(self) -> bool:
+        """Whether more was done on this grid than any state that settles takes: limits of loops multiply."""
+        trace = self.trace
+        return trace.periodic_steps + trace.correction_steps + trace.passes >= _BUDGET
 
     def _bring_up_to_date(self, support: Mask | None) -> tuple[Array, Mask]:
         """Slopes, and the displacement of everything but ``a f``, from the pressure so far."""
@@ -231,6 +244,9 @@ class _Scheme:
             self.trace.periodic_steps += periodic
             self.trace.correction_steps += not periodic
             if change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found)):
+                break
+            if self._spent:
+                self.settled = False
                 break
         else:
             self.settled = False

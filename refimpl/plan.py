@@ -23,9 +23,10 @@ _KEYWORDS = {"shear coupling": "coupled", "obliqueness": "oblique", "shear tilt"
 DECISION_GRID = 256  # where terms are decided for all grids of a refinement
 
 # Bytes per element at the peak, measured on the shipped scenes with slopes and shear coupling: FFT
-# work arrays, two kernel tables and their transforms; or five dense matrices of Eq. (7).
+# work arrays, two kernel tables and their transforms; or dense matrices of Eq. (7), 5.2 of them without and
+# 7.2 with the slope correction, which has a kernel more (40 and 56 elements a side).
 _FFT_BYTES = 520
-_DENSE_MATRICES = 5
+_DENSE_MATRICES, _DENSE_MATRICES_CORRECTED = 6, 8
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,8 @@ class Plan:
     def on(self, scene: Scene, M: int) -> Plan:
         """The same terms on another grid, checked against the free memory."""
         asked = resolution(scene, M, self.demand)
-        return replace(self, M=M, memory=memory_of(self.method, M), resolution=asked)
+        memory = memory_of(self.method, M, corrected=self.forced.slope_correction)
+        return replace(self, M=M, memory=memory, resolution=asked)
 
     def put_back(self, scene: Scene, name: str) -> Plan:
         """The plan with a term that turned out to matter."""
@@ -119,7 +121,7 @@ def make_plan(
     forced.check()
     if method == "paper" and scene.periodic:
         raise InputError("method", method, "dense or fft for a periodic scene")
-    memory = memory_of(method, M)
+    memory = memory_of(method, M, corrected=slope_correction)
     decide_on = decide_on or M
     posing = posing or Posing(scene, approach)
     outlook = expected(posing.whole(Grid(scene.side, decide_on)))
@@ -138,9 +140,10 @@ def make_plan(
     )
 
 
-def memory_of(method: Method, M: int) -> int:
+def memory_of(method: Method, M: int, *, corrected: bool = False) -> int:
     """Estimated bytes at the peak of a solve; raises `InputError` when they exceed the free memory."""
-    memory = 8 * _DENSE_MATRICES * M**4 if method == "dense" else _FFT_BYTES * M**2
+    matrices = _DENSE_MATRICES_CORRECTED if corrected else _DENSE_MATRICES
+    memory = 8 * matrices * M**4 if method == "dense" else _FFT_BYTES * M**2
     free = free_memory()
     if memory > free:
         raise InputError(

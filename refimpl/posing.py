@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 from refimpl.grid import Grid
 from refimpl.problem import Problem, Terms, pose
 from refimpl.scene import Scene
-from refimpl.surfaces import SurfaceWarning
 
 EVERYTHING = Terms(coupled=True, oblique=True, slope_correction=False)
 
@@ -32,8 +30,6 @@ class Posing:
         return replace(seen, terms=terms) if seen and seen.grid == grid else self._posed(grid, terms)
 
     def _posed(self, grid: Grid, terms: Terms) -> Problem:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", SurfaceWarning)
-            problem = pose(self._scene, grid, terms, self._approach)
-        self.remarks = tuple(dict.fromkeys(str(warning.message) for warning in caught))
+        problem = pose(self._scene, grid, terms, self._approach)
+        self.remarks = self._scene.cautions(grid)
         return problem

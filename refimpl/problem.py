@@ -169,7 +169,7 @@ def pose(scene: Scene, grid: Grid, terms: Terms, approach: float | None) -> Prob
     the scene is periodic (m).
     """
     keep_memory(grid.M**2)
-    lower, upper = scene.heights(grid)
+    lower, upper = scene.sampled(grid)
     gap = upper - lower
     gap -= gap.min()
     if approach is not None and scene.periodic:

@@ -154,7 +154,7 @@ def refine(solve_at: Callable[[int], Solution], accuracy: float, quantity: Quant
         return GridResult.of(solved[-1])
 
     climbed = climb(result_at, accuracy, quantity)
-    fine = replace(solved[-1], cost=_total(solution.cost for solution in solved))
+    fine = replace(solved[-1], cost=total_cost(solution.cost for solution in solved))
     if not climbed.results[-1].touching:
         return fine
     fine = replace(fine, uncertainty=uncertainty(climbed.results))
@@ -166,7 +166,8 @@ def refine(solve_at: Callable[[int], Solution], accuracy: float, quantity: Quant
     return replace(fine, status=Status.ITERATION_LIMIT, warnings=(*fine.warnings, reached))
 
 
-def _total(costs: Iterable[Cost]) -> Cost:
+def total_cost(costs: Iterable[Cost]) -> Cost:
+    """What several solves cost together."""
     total = Cost(0.0, {}, 0.0, {})
     for cost in costs:
         total = Cost(

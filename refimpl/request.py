@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from refimpl.errors import InputError, require_number
+from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Grid
 from refimpl.paper import PAPER_TOLERANCE
 from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
@@ -55,9 +55,10 @@ class Request:
             raise InputError("grid", self.grid, allowed)
         if self.start is not None:
             self._check_start(self.start)
+        keep_doubles(self, "accuracy", "approach", "tolerance")
 
     def _check_strains(self) -> None:
-        """No body is elastic so far; beyond, squares of slopes would overflow."""
+        """Refuse tau, loads and approaches beyond a strain of 1e6: squares of slopes would overflow."""
         side, modulus = self.scene.side, self.scene.materials.reduced_modulus
         most = MOST_STRAIN * modulus
         allowed = f"at most {most:.3g} Pa, {MOST_STRAIN:g} times the reduced modulus"

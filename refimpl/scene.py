@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from refimpl.errors import MOST, InputError, require_number, require_size
+from refimpl.errors import MOST, InputError, keep_doubles, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.materials import Material, Pair
-from refimpl.surfaces import Surface, as_surface
+from refimpl.surfaces import Surface, SurfaceWarning, as_surface
 
 # What a surface is asked with, by the names that the scene has for it.
 _ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
@@ -28,6 +29,7 @@ class Friction:
         require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
         allowed = "a finite number, not negative, at most 1e6"
         require_number("friction.beta", self.beta, allowed, at_least=0, at_most=1e6)
+        keep_doubles(self, "tau", "beta")
 
     @property
     def is_zero(self) -> bool:
@@ -88,6 +90,7 @@ class Scene:
         require_number("sliding_offset", self.sliding_offset, allowed, at_least=-MOST, at_most=MOST)
         if not isinstance(self.periodic, bool):
             raise InputError("periodic", self.periodic, "true or false")
+        keep_doubles(self, "load", "side", "sliding_direction", "sliding_offset")
 
     @property
     def materials(self) -> Pair:
@@ -99,8 +102,20 @@ class Scene:
 
         Mid-heights are taken off because only the gap enters: heights may come with any datum.
 
-        Raises `InputError` when a surface's peak-to-valley exceeds the side, which means a wrong unit.
+        Raises `InputError` when a surface's peak-to-valley exceeds the side, which means a wrong unit; warns
+        (`SurfaceWarning`) of `cautions`.
         """
+        for caution in self.cautions(grid):
+            warnings.warn(caution, SurfaceWarning, stacklevel=2)
+        return self.sampled(grid)
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        """What a user should know of how the heights of this grid were had, each once."""
+        parts = (*self.lower.surface.parts, *self.upper.surface.parts)
+        return tuple(dict.fromkeys(line for part in parts for line in part.cautions(grid)))
+
+    def sampled(self, grid: Grid) -> tuple[Array, Array]:
+        """The `heights`, without a warning."""
         slide = (
             self.sliding_offset * math.cos(self.sliding_direction),
             self.sliding_offset * math.sin(self.sliding_direction),
@@ -114,7 +129,7 @@ class Scene:
         z = np.zeros((grid.M, grid.M))
         for k, part in enumerate(body.surface.parts):
             try:
-                z += part.heights(grid, offset, periodic=self.periodic)
+                z += part.sample(grid, offset, periodic=self.periodic)
             except InputError as refused:
                 field, value = f"{name}.surface[{k}].{refused.field}", refused.value
                 if refused.field in _ASKED_OF_SURFACES:

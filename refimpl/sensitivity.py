@@ -14,8 +14,8 @@ to friction.
   over two full solves for each.
 
 The scatter stated beside the area (and through tau beside friction) is that of counting elements in
-two solves, and of comparing the edge with 5 x 5 or with 9 x 9 elements. Beside every number's answer to a
-shape or a roughness stands how far the fixed set's answer is from that of the two solves.
+two solves, and of comparing the edge with 5 x 5 or with 9 x 9 elements. Beside every number's answer to the
+load, a shape or a roughness stands how far the fixed set's answer is from that of the two solves.
 """
 
 from __future__ import annotations
@@ -27,11 +27,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import binary_erosion, uniform_filter
 
-from refimpl.discretisation import AREA, EDGE_SHARE
-from refimpl.errors import InputError
+from refimpl.discretisation import AREA
+from refimpl.errors import LEAST, InputError
 from refimpl.fixed_set import FixedSet
+from refimpl.forces import EDGE_SHARE
 from refimpl.grid import Array
 from refimpl.grid_result import alike
+from refimpl.materials import RIGID
 from refimpl.parameters import moving, parameters, with_parameter
 from refimpl.problem import Problem, pose
 from refimpl.scene import Scene
@@ -44,7 +46,9 @@ _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient 
 _STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
 _WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
-_TOP_RATIO = 0.5  # of Poisson
+_RANGES = {".nu": (math.nextafter(-1, 0), 0.5), ".E": (LEAST, RIGID)}  # that steps may not leave
+_TIED = 1e-9  # of the highest pressure, within which others are as high: symmetric scenes, to rounding
+_SOLVED = 1e-3  # of a linear solve's right side, at most, may be left: a derivative's digits
 
 
 @dataclass(frozen=True)
@@ -66,8 +70,12 @@ class Sensitivity:
     def relative(self, number: str, parameter: str) -> float:
         """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
 
-        Raises `InputError` for a number that is zero.
+        Raises `InputError` for a number that is zero, and for a name that is none.
         """
+        if number not in self.derivatives:
+            raise InputError("number", number, f"one of {', '.join(self.derivatives)}")
+        if parameter not in self.parameters:
+            raise InputError("parameter", parameter, f"one of {', '.join(self.parameters)}")
         derivative, found = self.derivatives[number][parameter], self.found[number]
         if found == 0:
             raise InputError("number", number, "one that is not zero")
@@ -79,18 +87,10 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, and two
     solves on the solution's grid for the load and for each number of a surface. Raises `InputError`
-    for a solution that is not in contact or was not found under the scene's load.
+    for a solution that is not in contact, has not converged or is another scene's, `ArithmeticError` where a
+    linear or full solve does not converge.
     """
-    if not isinstance(scene, Scene):
-        raise InputError("scene", scene, "a Scene")
-    if not isinstance(solution, Solution):
-        raise InputError("solution", solution, "a Solution")
-    if not solution.contact.any():
-        raise InputError("solution", solution.status.value, "a solution in contact")
-    if solution.problem.periodic and not solution.problem.gap.any():
-        raise InputError("solution", "two flats that repeat", "one whose approach is not zero")
-    if abs(solution.normal_force / scene.load - 1) > 1e-3:
-        raise InputError("solution", solution.normal_force, f"one under the scene's load of {scene.load:g} N")
+    _check(scene, solution)
     base = solution.problem
     support = solution.contact & ~solution.withheld
     fixed = FixedSet(base, solution.pressure, support, solution.slopes)
@@ -113,32 +113,60 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     return _gathered(scene, solution, answers, areas, solved)
 
 
+def _check(scene: Scene, solution: Solution) -> None:
+    if not isinstance(scene, Scene):
+        raise InputError("scene", scene, "a Scene")
+    if not isinstance(solution, Solution):
+        raise InputError("solution", solution, "a Solution")
+    if not solution.contact.any():
+        raise InputError("solution", solution.status.value, "a solution in contact")
+    if not solution.converged:
+        raise InputError("solution", solution.status.value, "a solution that has converged")
+    problem = solution.problem
+    if problem.periodic and not problem.gap.any():
+        raise InputError("solution", "two flats that repeat", "one whose approach is not zero")
+    if problem.load != scene.load:
+        raise InputError("solution", problem.load, f"one under the scene's load of {scene.load:g} N")
+    found = problem.pair, problem.friction, problem.direction, problem.grid.side, problem.periodic
+    own = scene.materials, scene.friction, scene.sliding_direction, scene.side, scene.periodic
+    if found != own:
+        raise InputError("solution", "another scene's", "the scene's own")
+
+
 @dataclass(frozen=True, eq=False)
 class _Answer:
-    """Derivatives at the fixed set: pressures (window's shape), their peak, F and Q over the parameter."""
+    """Derivatives at the fixed set: pressures (window's shape), their peak, F and Q over the parameter.
+
+    Of peaks that tie the middle one counts, as for a central difference; ``torn`` is how far others are off.
+    """
 
     pressure: Array
     peak: float
+    torn: float
     friction: float
     binormal: float
     residual: float
 
 
 def _answer(scene: Scene, base: Problem, fixed: FixedSet, name: str, value: float) -> _Answer:
-    low, high = value * (1 - _STEP), value * (1 + _STEP)
-    if name.endswith(".nu"):
-        high = min(high, _TOP_RATIO)
+    low, high = sorted((value * (1 - _STEP), value * (1 + _STEP)))
+    least, most = next((ends for key, ends in _RANGES.items() if name.endswith(key)), (low, high))
+    low, high = max(low, least), min(high, most)
     span = high - low
     below, above = (
         _changed(scene, base, with_parameter(scene, name, at)).windowed(fixed.window) for at in (low, high)
     )
     residuals = [fixed.residual(problem, fixed.pressure, fixed.approach) for problem in (below, above)]
     found = fixed.response((residuals[1] - residuals[0]) / span)
+    if not found.residual <= _SOLVED:
+        raise ArithmeticError(f"the derivative over {name} is not found: {found.residual:.1e} is left of it")
     before = fixed.forces(below, fixed.pressure + (low - value) * found.pressure)
     after = fixed.forces(above, fixed.pressure + (high - value) * found.pressure)
+    tied = found.pressure[fixed.pressure >= (1 - _TIED) * fixed.peak]
     return _Answer(
         pressure=found.pressure,
-        peak=float(found.pressure.flat[int(np.argmax(fixed.pressure))]),
+        peak=0.5 * float(tied.max() + tied.min()),
+        torn=0.5 * float(np.ptp(tied)),
         friction=(after.friction - before.friction) / span,
         binormal=(after.binormal - before.binormal) / span,
         residual=found.residual,
@@ -167,6 +195,9 @@ def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> d
         )
         for factor in (1 - step, 1 + step)
     )
+    for ended in (below, above):
+        if not ended.converged:
+            raise ArithmeticError(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
     return {
         number: (getattr(above, number) - getattr(below, number)) / (2 * step * value) for number in NUMBERS
     }
@@ -240,9 +271,10 @@ def _gathered(
         if name == "load":
             friction -= solution.friction_coefficient / load
         found = (friction, area, answer.peak, answer.binormal)
-        for number, derivative, spread in zip(NUMBERS, found, (slip * loose, loose, 0.0, 0.0), strict=True):
-            # surfaces that change meet elsewhere, which no fixed set knows: two solves tell how far it errs
-            apart = abs(derivative - solved[name][number]) if ".surface" in name else 0.0
+        spreads = slip * loose, loose, answer.torn, 0.0
+        for number, derivative, spread in zip(NUMBERS, found, spreads, strict=True):
+            # what changes meets elsewhere, which no fixed set knows: where there are two solves they tell
+            apart = abs(derivative - solved[name][number]) if name in solved else 0.0
             derivatives[number][name], scatter[number][name] = derivative, math.hypot(spread, apart)
     return Sensitivity(
         found={number: float(getattr(solution, number)) for number in NUMBERS},

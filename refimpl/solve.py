@@ -25,7 +25,7 @@ from refimpl.plan import Method, Plan
 from refimpl.planning.afterwards import effects_left_out
 from refimpl.posing import Posing
 from refimpl.problem import Problem
-from refimpl.refine import Quantity, refine, uncertainty
+from refimpl.refine import Quantity, refine, total_cost, uncertainty
 from refimpl.remark import Remark
 from refimpl.request import Request
 from refimpl.scene import Scene
@@ -94,11 +94,11 @@ def solve(
         tolerance=tolerance,
         start=start,
     )
-    posing = Posing(scene, approach)
+    posing = Posing(scene, request.approach)
     plan = request.plan(posing)
-    if accuracy is not None:
+    if request.accuracy is not None:
         planned = _Planned(scene, plan, posing, request.residual, progress)
-        return refine(planned.solve_at, accuracy, request.judged)
+        return refine(planned.solve_at, request.accuracy, request.judged)
     solution = _solve_planned(scene, plan, posing, request.residual, progress, start)
     return replace(solution, uncertainty=uncertainty([GridResult.of(solution)]))
 
@@ -125,7 +125,8 @@ class _Planned:
         if sum(sizes.values()) <= self.plan.budget:
             return solution
         self.plan = self.plan.put_back(self.scene, max(sizes, key=lambda name: sizes[name]))
-        return self.solve_at(M)
+        again = self.solve_at(M)
+        return replace(again, cost=total_cost((solution.cost, again.cost)))
 
 
 class _Watched(Counter):

@@ -7,12 +7,14 @@ is withheld from; ``discretisation`` from one grid or a sequence of grids (`refi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 
 from refimpl.solution import Solution
 
+AREAS = "contact_area", "contact_area_corrected"  # open by the same elements
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 
@@ -20,24 +22,33 @@ Uncertainty = dict[str, Parts]
 def iteration_parts(solution: Solution) -> Uncertainty:
     """What the certificate leaves open.
 
-    Forces and lengths are uncertain by the worst residual. The area is uncertain by the elements
-    whose pressure or clearance is within ten worst residuals of zero, and friction by tau on them.
+    Forces and lengths are uncertain by the worst residual: of the approach from first touch, of the normal
+    force, which slopes turn to friction and to Q. The area is uncertain by the elements whose pressure or
+    clearance is within ten worst residuals of zero, and friction by tau on them.
     """
     worst = solution.certificate.worst
     margin = 10 * worst
     marginal = (solution.pressure > 0) & (solution.pressure <= margin * solution.max_pressure)
-    lift = abs(solution.approach) or solution.grid.spacing
+    lift = from_first_touch(solution) or solution.grid.spacing
     marginal |= (solution.pressure == 0) & (solution.clearance <= margin * lift)
     area = float(np.count_nonzero(marginal)) * solution.grid.element_area
-    relative = ("max_pressure", "approach", "normal_force")
-    parts: Uncertainty = {name: {"iteration": worst * abs(getattr(solution, name))} for name in relative}
-    parts["binormal_force"] = {"iteration": worst * abs(solution.normal_force)}
-    parts["contact_area"] = {"iteration": area}
-    friction = worst * abs(solution.friction_force) + solution.friction.tau * area
+    normal = abs(solution.normal_force)
+    sizes = {"max_pressure": solution.max_pressure, "approach": lift}
+    sizes |= dict.fromkeys(("normal_force", "binormal_force"), normal)
+    parts: Uncertainty = {name: {"iteration": worst * size} for name, size in sizes.items()}
+    parts |= {name: {"iteration": area} for name in AREAS}
+    turned = math.tan(solution.slope_error.rms_slope) * normal
+    friction = worst * (abs(solution.friction_force) + turned) + solution.friction.tau * area
     parts["friction_force"] = {"iteration": friction}
-    share = worst * abs(solution.friction_coefficient) + adhesive_share(solution) * area
-    parts["friction_coefficient"] = {"iteration": share}
+    share = worst * (abs(solution.friction_coefficient) + (turned / normal if normal else 0.0))
+    parts["friction_coefficient"] = {"iteration": share + adhesive_share(solution) * area}
     return parts
+
+
+def from_first_touch(solution: Solution) -> float:
+    """The approach counted from first touch, also of periodic scenes, which count from mean planes (m)."""
+    problem = solution.problem
+    return abs(solution.approach + (float(problem.gap.mean()) if problem.periodic else 0.0))
 
 
 def adhesive_share(solution: Solution) -> float:

@@ -100,7 +100,7 @@ def roughness_slope(scene: Scene, solution: Solution) -> float:
         rough = [part for part in body.surface.parts if not isinstance(part, Sphere | Flat)]
         z = np.zeros((solution.grid.M, solution.grid.M))
         for part in rough:
-            z += part._sample(solution.grid, (0.0, 0.0), scene.periodic)
+            z += part.sample(solution.grid, periodic=scene.periodic)
         if rough and solution.grid.M > 1:
             along_x, along_y = rms_slopes(z, solution.grid.spacing)
             total += 0.5 * (along_x**2 + along_y**2)

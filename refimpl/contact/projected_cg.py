@@ -89,7 +89,7 @@ class ProjectedCG:
                 v /= self._K
             pressure = self._pressing()
             total = float(pressure.sum())
-            apart = self._approach or 0.0  # a step overshot: what does not press is not off
+            apart = self._approach or 0.0  # a step overshot: nothing presses, so no mean can be missed
             self._seen = _Seen(v, inner(pressure, self._support.seen(v)) / total if total > 0 else apart)
         return self._seen
 
@@ -250,7 +250,10 @@ class ProjectedCG:
 
     def _scale_to_target(self, *, displace: bool = True) -> None:
         assert self._target is not None
-        factor = self._target / inner(self._K, self.pressure)
+        carried = inner(self._K, self.pressure)
+        if carried == 0:  # nothing presses: no factor helps, and the balance of the load says so
+            return
+        factor = self._target / carried
         self.pressure = self.pressure * factor
         if displace:
             self.normal_displacement = self.normal_displacement * factor

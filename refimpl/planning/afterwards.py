@@ -38,9 +38,10 @@ def effects_left_out(
 def uncertainty_left_out(
     changes: Mapping[str, Effect], local_friction: float, load: float, numbers: Mapping[str, float]
 ) -> dict[str, dict[str, float]]:
-    """The same as parts of the uncertainty, in each number's unit; pressures change as areas do, Q as F.
+    """The same as parts of the uncertainty, in each number's unit; Q changes as F does.
 
-    ``local_friction`` is ``r`` over ``f``, both summed; ``numbers`` holds A and f_max (m^2, Pa).
+    ``local_friction`` is ``r`` over ``f``, both summed; ``numbers`` holds what changes as areas do: A, f_max,
+    the approach from first touch, or at an approach the force by as many of these as it is a power of them.
     """
     if not changes:
         return {}

@@ -41,13 +41,19 @@ class Surface(ABC):
         heights that repeat with the period ``side`` along both axes. Raises InputError where the surface
         cannot be had there; warns (SurfaceWarning) of everything in ``cautions(grid)``.
         """
-        ox, oy = offset
-        if not (math.isfinite(ox) and math.isfinite(oy)):
-            raise InputError("offset", offset, "two finite lengths in m")
-        z = self._sample(grid, (float(ox), float(oy)), periodic)
+        z = self.sample(grid, offset, periodic=periodic)
         for caution in self.cautions(grid):
             warnings.warn(caution, SurfaceWarning, stacklevel=2)
         return z
+
+    def sample(
+        self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0), *, periodic: bool = False
+    ) -> Array:
+        """The same without a warning: Python's filters of warnings belong to all threads of a process."""
+        ox, oy = offset
+        if not (math.isfinite(ox) and math.isfinite(oy)):
+            raise InputError("offset", offset, "two finite lengths in m")
+        return self._sample(grid, (float(ox), float(oy)), periodic)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         """What was read, cut, levelled, resampled or normalised for this grid, one sentence each."""

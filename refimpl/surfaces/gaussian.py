@@ -9,7 +9,7 @@ numbers w on the nodes of an infinite square lattice of spacing h, smoothed by t
 make a Gaussian field, analytic in x and y. Its covariance is R(r) but for two errors, both below rounding:
 
 - The lattice. By Poisson's sum the covariance at the mean position c of two points is R(r) times
-  ``1 + 2 exp(-pi^2 l^2 / (9.2 h^2)) cos(2 pi c / h) + ...`` for each axis: with h = l / 6, 1.7e-17 cos(...).
+  ``1 + 2 exp(-pi^2 l^2 / (9.2 h^2)) cos(2 pi c / h) + ...`` for each axis: with h = l / 6, 3.4e-17 cos(...).
 - Cutting the kernel off at 17 nodes, r = 2.83 l: what is dropped is below exp(-4.6 * 2.83^2) = 9e-17 of its
   peak.
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.grid_result import REPORTED
 from refimpl.refine import OPENING, refine
 from refimpl.uncertainty import iteration_parts, merged
 
@@ -106,8 +108,7 @@ def test_a_looser_certificate_has_a_larger_iteration_part() -> None:
     scene = sliding_ball(0.3e-6, 1)
     loose, tight = (rf.solve(scene, grid=64, tolerance=t) for t in (1e-3, 1e-10))
     assert loose.certificate.worst > tight.certificate.worst
-    numbers = ("approach", "binormal_force", "contact_area", "friction_coefficient", "friction_force")
-    assert sorted(iteration_parts(loose)) == [*numbers, "max_pressure", "normal_force"]
+    assert set(iteration_parts(loose)) == set(REPORTED)
     pulled = replace(loose, normal_force=-loose.normal_force)  # steep slopes can do that at an approach
     assert iteration_parts(pulled)["binormal_force"] == iteration_parts(loose)["binormal_force"]
     for name, parts in iteration_parts(tight).items():
@@ -133,10 +134,33 @@ def test_elements_within_ten_residuals_of_changing_sides_make_the_areas_part() -
     area = 6 * solved.grid.element_area
     parts = iteration_parts(found)
     assert parts["contact_area"]["iteration"] == pytest.approx(area)
+    assert parts["contact_area_corrected"]["iteration"] == pytest.approx(area)
     tau, force = solved.friction.tau, solved.normal_force
-    mu, friction = solved.friction_coefficient, solved.friction_force
+    friction = solved.friction_force + math.tan(solved.slope_error.rms_slope) * force  # which may cancel
     assert parts["friction_force"]["iteration"] == pytest.approx(1e-3 * friction + tau * area)
-    assert parts["friction_coefficient"]["iteration"] == pytest.approx(1e-3 * mu + tau * area / force)
+    expected = (1e-3 * friction + tau * area) / force
+    assert parts["friction_coefficient"]["iteration"] == pytest.approx(expected)
+
+
+def test_a_sum_over_slopes_that_cancels_is_no_better_known_than_its_terms() -> None:
+    """Without friction F is slopes alone, a vector's component: there is a direction in which it is zero."""
+    scene = replace(sliding_ball(0.3e-6, 1), friction=rf.Friction())
+    ahead = rf.solve(scene, grid=64, oblique=True, tolerance=1e-12)
+    across = math.atan2(-ahead.friction_force, ahead.binormal_force)
+    scene = replace(scene, sliding_direction=across)
+    loose, tight = (rf.solve(scene, grid=64, oblique=True, tolerance=t) for t in (1e-3, 1e-12))
+    assert abs(tight.friction_force) < 1e-6 * abs(tight.binormal_force)
+    for name in ("friction_coefficient", "friction_force"):
+        missed = abs(getattr(loose, name) - getattr(tight, name))
+        assert 0.01 * abs(getattr(loose, name)) < missed < iteration_parts(loose)[name]["iteration"]
+
+
+def test_a_periodic_approach_is_known_as_it_is_from_first_touch() -> None:
+    """From mean planes it may be anything, zero among it."""
+    scene = replace(sliding_ball(0.3e-6, 1), periodic=True)
+    solved = rf.solve(scene, grid=32)
+    expected = solved.certificate.worst * (solved.approach + solved.problem.gap.mean())
+    assert iteration_parts(solved)["approach"]["iteration"] == pytest.approx(expected)
 
 
 def test_parts_are_merged_by_number_and_name() -> None:

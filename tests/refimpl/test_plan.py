@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.grid_result import REPORTED
 from refimpl.operators import tables
 from refimpl.plan import make_plan
 from refimpl.planning import effects
@@ -218,6 +219,28 @@ def test_slopes_left_out_of_a_frictionless_scene_leave_mu_open() -> None:
     for name in ("friction_coefficient", "friction_force", "binormal_force"):
         assert getattr(s, name) == 0.0
         assert 0 < abs(getattr(full, name)) <= s.uncertainty[name]["left out"], name
+
+
+@pytest.mark.parametrize("at_approach", [False, True])
+def test_terms_left_out_are_in_the_bars_of_all_numbers(at_approach: bool) -> None:
+    """Of the approach and the corrected area as well, which followed without one; then of the force."""
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(6.6e10, 0.0), rf.Sphere(0.0498)),
+        lower=rf.Body(rf.Material(3.55e16, 0.3), rf.Sphere(0.0699)),
+        friction=rf.Friction(0.0, 0.3),
+        load=14883.7,
+        side=8.3517e-3,
+        sliding_direction=5.2365,
+    )
+    approach = 5.5e-5 if at_approach else None
+    s = rf.solve(scene, accuracy=0.2, quantity="contact_area", approach=approach)
+    assert "shear coupling" in s.plan.left_out
+    full = rf.solve(scene, s.grid.M, approach=approach)
+    given = {"approach"} if at_approach else {"normal_force"}
+    for name in set(REPORTED) - given:
+        left_out = s.uncertainty[name]["left out"]
+        assert abs(getattr(s, name) - getattr(full, name)) <= left_out, name
+    assert "left out" not in s.uncertainty.get(given.pop(), {})
 
 
 def test_who_asks_for_mu_without_friction_asks_for_slopes() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import pickle
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -185,6 +186,19 @@ def test_remarks_are_read_like_cautions() -> None:
     again = pickle.loads(pickle.dumps(remark))
     assert (again, again.limit) == (remark, "remark")
     assert plain_warning(remark) == {"name": "remark", "number": None, "limit": None, "text": str(remark)}
+
+
+@pytest.mark.parametrize("corrected", [False, True])
+def test_dense_matrices_fit_into_what_is_foreseen(corrected: bool) -> None:
+    """At the peak of a solve, of all that is allocated; and by no more than a quarter too much."""
+    scene = rf.read_scene("table1-rough")
+    rf.solve(scene, 8, method="dense", slope_correction=corrected)
+    tracemalloc.start()
+    rf.solve(scene, 32, method="dense", slope_correction=corrected)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    foreseen = plan.memory_of("dense", 32, corrected=corrected)
+    assert 0.75 * foreseen < peak < foreseen
 
 
 def test_refinement_out_of_memory_is_a_remark(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -83,7 +83,7 @@ def test_stresses_scale_together(adhesive: Sensitivity) -> None:
 def test_friction_is_as_uncertain_as_the_area_that_tau_acts_on(adhesive: Sensitivity) -> None:
     spread = adhesive.scatter["contact_area"]["load"]
     assert spread > 0
-    assert adhesive.scatter["friction_coefficient"]["load"] == pytest.approx(5e5 / 20.0 * spread, abs=0)
+    assert adhesive.scatter["friction_coefficient"]["load"] == pytest.approx(5e5 / 20.0 * spread, rel=0.05)
 
 
 def test_an_areas_scatter_by_the_load_is_that_of_two_counts() -> None:
@@ -296,7 +296,7 @@ def test_a_derivative_that_two_ways_disagree_on_says_so() -> None:
     coarse, fine = (sensitivity(scene, rf.solve(scene, grid)) for grid in (64, 256))
     for number in ("max_pressure", "binormal_force"):
         assert coarse.scatter[number][name] > 0.2 * abs(coarse.derivatives[number][name])
-        assert coarse.scatter[number]["load"] == 0
+        assert 0 < coarse.scatter[number]["load"] < 0.3 * abs(coarse.derivatives[number]["load"])
         steady = "lower.surface[0].rms"
         assert fine.scatter[number][steady] < 0.3 * abs(fine.derivatives[number][steady])
 

@@ -41,6 +41,10 @@ def test_a_cycle_longer_than_two_is_settled() -> None:
     assert s.status is rf.Status.CYCLED
     assert s.certificate.worst <= s.tolerance
     assert s.uncertainty["friction_coefficient"]["tau support"] < 1e-3 * s.friction_coefficient
+    of_mu, of_force = (s.uncertainty[f"friction_{name}"]["tau support"] for name in ("coefficient", "force"))
+    assert of_force == pytest.approx(of_mu * scene.load)
+    of_area, corrected = (s.uncertainty[n]["tau support"] for n in ("contact_area", "contact_area_corrected"))
+    assert of_area == corrected > 0
 
 
 FAINT = replace(

@@ -144,8 +144,8 @@ def quarter_of_a_bar(self: Estimate, found: float) -> float:
     return _bar(self, found) / 4
 
 
-def states_alone(outcome: Any, found: Any, unlawful: float) -> Any:
-    return _spread_by_support(outcome, found, 0.0)
+def states_alone(outcome: Any, found: Any, unlawful: float, load: float) -> Any:
+    return _spread_by_support(outcome, found, 0.0, load)
 
 
 def low_departure(*args: Any) -> Any:

@@ -1,0 +1,163 @@
+"""Solves that end: scenes of random searches that crashed, never came back, or were refused by a hair."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl import dense_solver, paper
+
+RIGID = rf.Material(E=1e100, nu=0.3)
+
+
+def squeezed(M: int, valley: float = 0.25) -> rf.Scene:
+    """Heights of a quarter of the side under a pressure of the modulus: far beyond any elastic body."""
+    z = np.random.default_rng(1).normal(size=(M, M))
+    z *= valley / np.ptp(z)
+    lower, upper = rf.Body(rf.Material(4e3, 0.5), rf.Flat()), rf.Body(rf.Material(1.0, 0.0), z)
+    return rf.Scene(upper, lower, rf.Friction(0.1, 0.4), load=1.0, side=1.0, sliding_direction=0.3)
+
+
+def test_contact_where_the_coarser_grid_had_none() -> None:
+    """One element is likely, the grid before pressed others: the start has no pressure at all."""
+    z = np.random.default_rng(1).normal(size=(32, 32))
+    z *= 3.5e-6 / np.ptp(z)
+    soft = rf.Material(E=4.3e7, nu=0.3)
+    scene = rf.Scene(rf.Body(soft, z), rf.Body(soft, rf.Flat()), rf.Friction(), load=3.46e-4, side=3.95e-3)
+    afresh = rf.solve(scene, grid=64)
+    found = rf.solve(scene, grid=64, start=rf.solve(scene, grid=32))
+    assert found.converged
+    assert np.allclose(found.pressure, afresh.pressure, rtol=0, atol=1e-7 * afresh.max_pressure)
+
+
+@pytest.mark.parametrize("tau", [1e11, 1e12, 1e14])
+def test_tau_beyond_all_pressures_ends_with_a_status(tau: float) -> None:
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(200e9, 0.3), rf.Sphere(radius=0.05)),
+        lower=rf.Body(
+            rf.Material(2.5e9, 0.38), rf.GaussianRoughness(rms=0.8e-6, correlation_length=150e-6, seed=3)
+        ),
+        friction=rf.Friction(tau=tau, beta=0.12),
+        load=5.0,
+        side=2e-3,
+    )
+    assert not rf.solve(scene, grid=64).converged
+
+
+def test_beta_beyond_all_sense_ends_with_a_status() -> None:
+    """Without slopes nothing but displacements can run off."""
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(1.0, 0.0), rf.Flat()),
+        lower=rf.Body(rf.Material(1e20, 0.3), rf.Flat()),
+        friction=rf.Friction(4.3e-4, 1000.0),
+        load=1e-4,
+        side=1.0,
+        sliding_direction=0.3,
+    )
+    assert not rf.solve(scene, grid=11, approach=0.75, oblique=False).converged
+
+
+def test_limits_of_nested_loops_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(paper, "_BUDGET", 500)
+    monkeypatch.setattr(dense_solver, "_SOLVES", 100)
+    scene = squeezed(16)
+    by_paper, dense = (rf.solve(scene, grid=16, method=method) for method in ("paper", "dense"))
+    assert by_paper.status is dense.status is rf.Status.ITERATION_LIMIT
+    taken = by_paper.cost.iterations
+    assert 500 <= taken["periodic"] + taken["correction"] + taken["passes"] < 500 + 3
+    assert 100 <= dense.cost.iterations["linear solves"] < 120
+
+
+def test_a_scheme_that_settles_late_has_settled() -> None:
+    """Approaches on the way that did not are not the last one."""
+    problem_scene = rf.read_scene("table1-rough")
+    assert rf.solve(problem_scene, grid=32, method="paper").status is rf.Status.CONVERGED
+
+
+@pytest.mark.parametrize(("seed", "M"), [(13, 16), (170, 16), (170, 24), (458, 16)])
+def test_what_the_loop_accepts_the_certificate_does(seed: int, M: int) -> None:
+    """Shear and cosines are held for a pressure that is then scaled to the load, by 1e-8 or so."""
+    draw = np.random.default_rng(seed)
+    nu, beta = float(draw.choice([0.0, 0.2, 0.3])), float(draw.choice([0.8, 1.2, 1.5, 2.0]))
+    lower: rf.Surface = rf.Flat()
+    if draw.random() >= 0.3:
+        lower = rf.GaussianRoughness(10 ** draw.uniform(-7.5, -5.5), 3e-4, seed=int(draw.integers(1000)))
+    upper = rf.Flat() if draw.random() < 0.5 else rf.Sphere(radius=10 ** draw.uniform(-2, 1))
+    scene = rf.Scene(
+        upper=rf.Body(RIGID, upper),
+        lower=rf.Body(rf.Material(5e9, nu), lower),
+        friction=rf.Friction(beta=beta),
+        load=5e3 * 10 ** draw.uniform(-4, -1),
+        side=1e-3,
+        sliding_direction=draw.uniform(0, 6),
+    )
+    assert rf.solve(scene, M, oblique=True).status is rf.Status.CONVERGED
+
+
+def test_a_term_put_back_costs_what_it_cost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The solve that showed that it matters is part of the price."""
+    scene = rf.read_scene("table1-rough")
+    spent: list[float] = []
+
+    def counted(*args: Any) -> rf.Solution:
+        found = planned(*args)
+        spent.append(found.cost.point_logs)
+        return found
+
+    module = sys.modules["refimpl.solve"]  # the package's attribute of that name is the function
+    planned = module._solve_planned
+    monkeypatch.setattr(module, "_solve_planned", counted)
+    changes = iter([{"obliqueness": _Large()}, *[{}] * 20])
+    monkeypatch.setattr(module, "effects_left_out", lambda *args: next(changes))
+    found = rf.solve(scene, accuracy=0.2)
+    assert found.cost.point_logs == pytest.approx(sum(spent), rel=1e-12)
+    assert len(spent) == 3  # two grids to open with, the first of them twice
+
+
+class _Large:
+    larger = 1.0
+
+
+def test_threads_do_not_mix_what_surfaces_remark() -> None:
+    """Python's filters of warnings belong to the process: solving leaves them alone."""
+    draw, soft = np.random.default_rng(0), rf.Material(1e9, 0.3)
+    scenes = [
+        rf.Scene(
+            upper=rf.Body(soft, rf.Sphere(0.01)),
+            lower=rf.Body(soft, draw.normal(size=(8, 8) if k % 2 else (32, 32)) * 1e-6),
+            friction=rf.Friction(1e6, 0.1),
+            load=1e-2,
+            side=1e-3,
+        )
+        for k in range(24)
+    ]
+    found: dict[int, list[str]] = {}
+
+    def work(first: int) -> None:
+        for k in range(first, len(scenes), 4):
+            found[k] = [str(line) for line in rf.solve(scenes[k], grid=32).warnings]
+
+    before, patience = list(warnings.filters), sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)  # threads take turns a thousand times as often
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    sys.setswitchinterval(patience)
+    assert list(warnings.filters) == before
+    for k, lines in found.items():
+        assert sum("finer than the array" in line for line in lines) == k % 2
+
+
+def test_a_scenes_heights_warn_who_asks_for_them() -> None:
+    scene = replace(rf.read_scene("table1-smooth"), lower=rf.Body(rf.Material(1e9, 0.3), np.zeros((8, 8))))
+    with pytest.warns(rf.SurfaceWarning, match="finer"):
+        scene.heights(rf.Grid(scene.side, 16))
