@@ -24,7 +24,8 @@ def iteration_parts(solution: Solution) -> Uncertainty:
 
     Forces and lengths are uncertain by the worst residual: of the approach from first touch, of the normal
     force, which slopes turn to friction and to Q. The area is uncertain by the elements whose pressure or
-    clearance is within ten worst residuals of zero, and friction by tau on them.
+    clearance is within ten worst residuals of zero, and friction by tau on them; the highest pressure by what
+    the highest elements would press by themselves for what their separation is off, where that is more.
     """
     worst = solution.certificate.worst
     margin = 10 * worst
@@ -33,9 +34,9 @@ def iteration_parts(solution: Solution) -> Uncertainty:
     marginal |= (solution.pressure == 0) & (solution.clearance <= margin * lift)
     area = float(np.count_nonzero(marginal)) * solution.grid.element_area
     normal = abs(solution.normal_force)
-    sizes = {"max_pressure": solution.max_pressure, "approach": lift}
-    sizes |= dict.fromkeys(("normal_force", "binormal_force"), normal)
+    sizes = dict.fromkeys(("normal_force", "binormal_force"), normal) | {"approach": lift}
     parts: Uncertainty = {name: {"iteration": worst * size} for name, size in sizes.items()}
+    parts["max_pressure"] = {"iteration": max(worst * solution.max_pressure, _misplaced(solution))}
     parts |= {name: {"iteration": area} for name in AREAS}
     turned = math.tan(solution.slope_error.rms_slope) * normal
     friction = worst * (abs(solution.friction_force) + turned) + solution.friction.tau * area
@@ -43,6 +44,16 @@ def iteration_parts(solution: Solution) -> Uncertainty:
     share = worst * (abs(solution.friction_coefficient) + (turned / normal if normal else 0.0))
     parts["friction_coefficient"] = {"iteration": share + adhesive_share(solution) * area}
     return parts
+
+
+def _misplaced(solution: Solution) -> float:
+    """Pressure (Pa) that takes the highest elements back where they should be: ``a`` at its highest frequency.
+
+    Those with half of the highest pressure; at edges separations are off by more, and no peak is there.
+    """
+    high = solution.contact & (solution.pressure >= 0.5 * solution.max_pressure)
+    off = float(np.abs(solution.clearance[high]).max(initial=0.0))
+    return 0.5 * off / (solution.problem.pair.normal_compliance * solution.grid.spacing)
 
 
 def from_first_touch(solution: Solution) -> float:
