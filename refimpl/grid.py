@@ -17,7 +17,7 @@ _ONE_THREAD = 10_000  # numbers whose product OpenBLAS sums by one thread
 def inner(a: Array, b: Array) -> float:
     """``sum a b`` of two fields: the same to the last bit on any number of threads.
 
-    BLAS is quickest, and sums what is longer by as many threads as it likes: then row by row.
+    BLAS is quickest, but splits long sums over its threads, which changes the last bits: those go row by row.
 
     >>> inner(np.ones((2, 3)), np.full((2, 3), 2.0))
     12.0

@@ -142,7 +142,7 @@ class LevelSolver:
     def settle(self, tolerance: float, support: Mask | None = None, withheld: Mask | None = None) -> bool:
         """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or nowhere.
 
-        With what tau's rule has ``withheld``, only until it is beyond doubt that its next support is another.
+        Given what tau's rule has ``withheld``, it stops as soon as the next support is certain to be another.
         """
         self.held.support, self._withheld = self._nowhere if support is None else support, withheld
         self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
@@ -179,7 +179,9 @@ class LevelSolver:
         residual = best = max(self.cg.residuals())
         since = 0
         while residual > goal and since < _CG_PATIENCE and self.cg_iterations < self._budget:
-            if not self.strong and self._leads_on():  # what is mixed is nobody's contact
+            if (
+                not self.strong and self._leads_on()
+            ):  # a mixed state solves no frozen problem: its contact proves nothing
                 break
             self.cg.iterate()
             self.cg_iterations += 1

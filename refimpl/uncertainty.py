@@ -47,7 +47,7 @@ def iteration_parts(solution: Solution) -> Uncertainty:
 
 
 def _misplaced(solution: Solution) -> float:
-    """Pressure (Pa) that takes the highest elements back where they should be: ``a`` at its highest frequency.
+    """Pressure (Pa) that takes the highest elements back where they should be, each by itself.
 
     Those with half of the highest pressure; at edges separations are off by more, and no peak is there.
     """

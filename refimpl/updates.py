@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from refimpl.mixing import Mixing
 
-_STRONG = 0.3  # of the residual brought back by updates: where these are not mixed it is better they were
-_TWICE = 2  # in a row; once may be a contact that opens
+_STRONG = 0.3  # an update that brings back more than this share of the last residual counts as strong
+_TWICE = 2  # such updates in a row start the mixing; one may be a contact that opens
 _STALLED = 5  # updates in a row that do not halve the best residual: they do not contract
 _STALE = 10  # the same of mixed ones, before they begin anew: what they remember may be another regime's
 _PATIENCE = 30  # and before they are given up

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from refimpl.forces import EDGE_SHARE
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid, resampled
 from refimpl.operators.window import Window
@@ -67,7 +68,7 @@ class Outlook:
 
         On a circle of radius r the excess of `refimpl.forces.perimeter_corrected_area` is 0.30 spacing / r.
         """
-        return 0.30 * math.sqrt(math.pi * self.spots / self.elements)
+        return 8 / math.pi * EDGE_SHARE * math.sqrt(math.pi * self.spots / self.elements)
 
 
 def expected(problem: Problem) -> Outlook:
