@@ -301,3 +301,15 @@ def test_printed_panels_follow_the_shortest_scale(
     found = printed.stresses(r, 0.1, gamma)
     left = np.subtract(astuple(found)[:3], astuple(exact)[:3])
     assert np.abs(left).max() <= 0.05 * found.error  # 0.035 at most; a third fewer panels: 0.29
+
+
+def test_of_several_angles_beyond_the_faces_the_first_is_named() -> None:
+    with pytest.raises(InputError) as refused:
+        stresses(0.5, np.array([0.1, 1.6, -1.7]), 0.1)
+    assert refused.value.value == 1.6
+
+
+def test_displacements_scale_with_the_load() -> None:
+    """Units are the loaded length's: twice as long and twice as far away is the same."""
+    single, double = displacements(1.5, 0.4, 0.2, 0.3), displacements(3.0, 0.4, 0.2, 0.3, 2.0)
+    assert np.allclose(single, double, rtol=1e-14, atol=0)

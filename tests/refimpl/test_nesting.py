@@ -220,7 +220,7 @@ def test_sharpening_by_hand(loaded: bool) -> None:
     assert found[0, 1] == found[1, 1] == 0
 
 
-@pytest.mark.parametrize(("n", "M"), [(12, 6), (12, 5), (5, 12), (2, 1)])
+@pytest.mark.parametrize(("n", "M"), [(12, 6), (12, 5), (5, 12), (2, 1), (12, 4), (8, 3)])
 def test_resampling_is_interpolation_along_either_axis(n: int, M: int) -> None:
     """Halved grids, by pairs, as all others; `np.interp` is level beyond the outermost centres too."""
     values = np.random.default_rng(8).normal(size=(n, n))

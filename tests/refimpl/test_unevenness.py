@@ -85,6 +85,14 @@ def test_images_that_differ_by_one_element_count_by_their_edge() -> None:
     assert alike(contact & False) == 1.0
 
 
+def test_an_edge_has_sides_along_both_axes() -> None:
+    """Three bars in a frame of 3 x 5 elements, open to one side: 10 sides within it, and 16 around."""
+    comb = np.array([[True] * 5, [True, False, True, False, True], [True, False, True, False, True]])
+    mirrored, upside_down = 1.0, 1 - 4 * 4 / (2 + 8 + 16)
+    assert alike(np.pad(comb, 1)) == pytest.approx(2 * mirrored + 2 * upside_down)
+    assert alike(np.pad(comb.T, 1)) == alike(np.pad(comb, 1))
+
+
 def test_a_grids_result_keeps_what_the_solution_states_beside_its_discretisation() -> None:
     found = rf.solve(random_scene(2047).scene, 64)
     assert found.status is rf.Status.CYCLED
