@@ -1,4 +1,8 @@
-"""How transforms are carried out, which changes no bit of them: threads allowed, memory kept between them."""
+"""How transforms are carried out: threads allowed, memory kept between them.
+
+Memory changes no bit; threads change none of SciPy's, and the last ones of ducc0's, up to 6e-16 of the largest
+number (0.42, sizes of 150 to 700). ducc0 has no more threads than OMP_NUM_THREADS says when it is imported.
+"""
 
 from __future__ import annotations
 

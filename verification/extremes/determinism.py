@@ -14,9 +14,10 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.plan import Method
 
-GRIDS: dict[Method, int] = {"fft": 256, "dense": 24}
-"""256: vectors of 65536 numbers, which BLAS sums in parallel; 24: matrices that it factorises in parallel."""
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+GRIDS: dict[Method, int] = {"fft": 384, "dense": 24}
+"""384: transforms that get two threads, periodic or not; 24: matrices that BLAS factorises in parallel."""
+TRANSFORMS, BLAS = "OMP_NUM_THREADS", ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Where each reads its number of threads; BLAS from the first as well, unless its own says otherwise."""
 CHILD = "from verification.extremes.determinism import tell; tell({method!r}, {periodic!r})"
 NUMBERS = ("approach", "normal_force", "friction_force", "contact_area", "max_pressure")
 
@@ -36,9 +37,9 @@ def tell(method: Method, periodic: bool) -> None:
     json.dump({"pressure": solution.pressure.tobytes().hex(), **numbers}, sys.stdout)
 
 
-def in_a_process(method: Method, periodic: bool, threads: int) -> dict[str, str]:
-    """What a fresh process with that many threads says."""
-    environment = os.environ | dict.fromkeys(THREADS, str(threads))
+def in_a_process(method: Method, periodic: bool, *, transforms: int, blas: int) -> dict[str, str]:
+    """What a fresh process with that many threads for either says."""
+    environment = os.environ | {TRANSFORMS: str(transforms), **dict.fromkeys(BLAS, str(blas))}
     code = CHILD.format(method=method, periodic=periodic)
     done = subprocess.run(
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
