@@ -27,7 +27,7 @@ class Metric(StrEnum):
     RELATIVE = "relative"  # |value - reference| / |reference|
     ABSOLUTE = "absolute"  # |value - reference|
     AT_MOST = "at_most"  # the value is itself an error, and has no reference
-    AT_LEAST = "at_least"  # the value is a figure of merit
+    AT_LEAST = "at_least"  # the value is a figure of merit, and has no reference
     EQUAL = "equal"  # exact
 
 
@@ -194,12 +194,10 @@ def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
     uncertainty = _finite("reference_uncertainty", measured.reference_uncertainty)
     if uncertainty < 0:
         raise ValueError(f"reference_uncertainty {uncertainty!r} is negative")
-    if metric is Metric.AT_LEAST:
-        return value
-    if metric is Metric.AT_MOST:
+    if metric in (Metric.AT_LEAST, Metric.AT_MOST):
         if reference is not None:
-            raise ValueError("'at_most' judges the value itself; a reference would be ignored")
-        if value < 0:
+            raise ValueError(f"{metric.value!r} judges the value itself; a reference would be ignored")
+        if value < 0 and metric is Metric.AT_MOST:
             raise ValueError(f"value {value!r} is negative, so it is no error measure")
         return value
     if reference is None:
