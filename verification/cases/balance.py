@@ -30,8 +30,7 @@ def solved(name: str, M: int) -> rf.Solution:
 def normal_force(solution: rf.Solution) -> float:
     """Eq. (2) with trigonometric functions of angles measured on the returned surfaces, exactly summed."""
     common = (solution.surface_lower + solution.surface_upper) / 2
-    periodic = solution.approach < 0  # of the shipped scenes only the periodic one counts from mean planes
-    border = 1 if periodic else 0
+    border = 1 if solution.problem.periodic else 0
     wide, inner = np.pad(common, border, mode="wrap"), slice(border, solution.grid.M + border)
     along_i, along_j = (np.gradient(wide, solution.grid.spacing, axis=k)[inner, inner] for k in (0, 1))
     phi = solution.sliding_direction
