@@ -156,14 +156,14 @@ class Oracle:
         f = np.full(len(K), mp.mpf(0), dtype=object)
         if self.approach is not None:
             if len(index):
-                f[index] = _solve(G[np.ix_(index, index)], (right + K * self.approach)[index])
+                f[index] = eliminated(G[np.ix_(index, index)], (right + K * self.approach)[index])
             return f, self.approach
         n = len(index)
         bordered = np.full((n + 1, n + 1), mp.mpf(0), dtype=object)
         bordered[:n, :n], bordered[:n, n], bordered[n, :n] = (
             G[np.ix_(index, index)] / _size(G), -K[index], weights[index] / _size(weights)
         )  # fmt: skip
-        found = _solve(bordered, np.append(right[index], target * _size(G) / _size(weights)))
+        found = eliminated(bordered, np.append(right[index], target * _size(G) / _size(weights)))
         # pressures come in units of 1/|G|: the border and the block then have one size
         f[index] = found[:n] / _size(G)
         return f, found[n]
@@ -180,7 +180,7 @@ def _infeasible(f: Exact, room: Exact, contact: NDArray[np.bool_]) -> tuple[NDAr
     return bad, min(margins)
 
 
-def _solve(matrix: Exact, right: Exact) -> Exact:
+def eliminated(matrix: Exact, right: Exact) -> Exact:
     """Gaussian elimination with partial pivoting on object arrays."""
     m, x = matrix.copy(), right.copy()
     n = len(x)

@@ -17,7 +17,7 @@ import scipy.fft as sfft
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.love import LOVE
 from verification.exact import kernel_reference
-from verification.extremes.oracle import _solve
+from verification.extremes.oracle import eliminated
 
 REFERENCE_DIGITS, MP_DIGITS = 80, 30
 
@@ -192,7 +192,7 @@ def _linear_solve(a: Arithmetic) -> Any:
         [[a.number(float(np.float32(1 / (1 + abs(i - j))))) for j in range(n)] for i in range(n)],
         dtype=object,
     )
-    return list(_solve(matrix, np.array([a.number(v) for v in CLOSE[:n]], dtype=object)))
+    return list(eliminated(matrix, np.array([a.number(v) for v in CLOSE[:n]], dtype=object)))
 
 
 def _in_many_digits(value: Callable[[Arithmetic], Any]) -> Callable[[], Any]:
