@@ -62,6 +62,25 @@ def test_nothing_can_be_kept_twice(tmp_path: Path) -> None:
         store.add(run, done.rows[0], 0.0)
 
 
+def test_a_fault_of_the_callers_own_sql_is_no_bad_input(tmp_path: Path) -> None:
+    path = tmp_path / "s.sqlite"
+    with pytest.raises(sqlite3.OperationalError, match="no such table"), open_store(path) as store:
+        store._connection.execute("select 1 from nowhere")
+    with open_store(path):  # and the lock is given back
+        pass
+
+
+@pytest.mark.parametrize(
+    ("stop", "said"),
+    [("pragma query_only = on", "readonly"), ("pragma max_page_count = 1", "full")],
+    ids=["read-only", "full"],
+)
+def test_a_store_that_can_no_longer_be_written_is_refused(tmp_path: Path, stop: str, said: str) -> None:
+    with pytest.raises(InputError, match=said), open_store(tmp_path / "s.sqlite") as store:
+        store._connection.execute(stop)
+        store._connection.execute("create table t as select zeroblob(100000)")
+
+
 def test_a_point_without_roughness_is_one_run_of_all_its_realisations(tmp_path: Path) -> None:
     axes = {"grid": [8], "upper_rms": [0.0], "lower_rms": [0.0, 1e-6], "correlation_length": [1e-4, 2e-4]}
     study = study_from_dict({"scene": "table1-rough", "realisations": 2, "vary": axes})

@@ -19,6 +19,8 @@ APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
 VERSION = 1
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
 _OURS = [APPLICATION_ID, VERSION]
+_PRIMARY = 0xFF  # of a result code; the other bits say which kind of it
+_UNWRITABLE = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR)
 _TABLE = f"""create table runs (
     key text primary key,
     {", ".join((*COORDINATES, *OUTCOMES))},
@@ -63,24 +65,31 @@ class Store:
 def open_store(path: Path) -> Iterator[Store]:
     """Open or create a store for one sweep.
 
-    Raises InputError for a file that is not a store, cannot be written, or is in use by another sweep.
+    Raises InputError for a file that is not a store, cannot be written, or is in use by another sweep; and
+    in the block where the disk is full or no longer lets it be written. Other faults are raised as they are.
     """
-    with _locked(path), closing(_connect(path)) as connection:
-        yield Store(connection)
+    with closing(_lock(path)), closing(_connect(path)) as connection:
+        try:
+            yield Store(connection)
+        except sqlite3.OperationalError as refused:
+            if refused.sqlite_errorcode & _PRIMARY not in _UNWRITABLE:
+                raise
+            raise InputError("store", str(path), f"a file that can be written ({refused})") from refused
 
 
-@contextmanager
-def _locked(path: Path) -> Iterator[None]:
-    lock = path.with_name(path.name + ".lock")
+def _lock(path: Path) -> sqlite3.Connection:
+    """A connection that holds the exclusive transaction on the file beside ``path`` until it is closed."""
+    holder = None
     try:
-        holder = sqlite3.connect(lock, timeout=0.0, isolation_level=None)
-        with closing(holder):
-            holder.execute("begin exclusive")
-            yield
+        holder = sqlite3.connect(path.with_name(path.name + ".lock"), timeout=0.0, isolation_level=None)
+        holder.execute("begin exclusive")
     except sqlite3.OperationalError as refused:
+        if holder is not None:
+            holder.close()
         if "locked" in str(refused):
             raise InputError("store", str(path), "a file that no other sweep is using now") from refused
         raise InputError("store", str(path), f"a file that can be written ({refused})") from refused
+    return holder
 
 
 def _connect(path: Path) -> sqlite3.Connection:
