@@ -1,22 +1,19 @@
-"""Worker processes for cases: one BLAS thread each, so that their number changes no result."""
+"""Worker processes for cases: one thread each, so that their number changes no result."""
 
 from __future__ import annotations
 
 import importlib
 import itertools
 import multiprocessing
-import os
 import queue
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 
 from verification import registry
 from verification.case import Case, Result, Status
-
-BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+from verification.threads import one_thread
 
 
 class Worker:
@@ -61,7 +58,7 @@ def run_all(cases: Iterable[Case], jobs: int, tick: Callable[[Result], None]) ->
             worker.close()
         return results
 
-    with _one_blas_thread(), ThreadPoolExecutor(jobs) as threads:
+    with one_thread(), ThreadPoolExecutor(jobs) as threads:
         found = {r.id: r for results in threads.map(work, range(jobs)) for r in results}
     return [found[c.id] for c in cases]
 
@@ -85,18 +82,3 @@ def _run_in_worker(module: str, case_id: str) -> Result:
     """In the worker, find the case again by module and id: its function need not be picklable."""
     importlib.import_module(module)
     return registry.find(case_id).run()
-
-
-@contextmanager
-def _one_blas_thread() -> Iterator[None]:
-    """Workers inherit the environment and read it when they import numpy."""
-    before = {name: os.environ.get(name) for name in BLAS_THREADS}
-    os.environ.update(dict.fromkeys(BLAS_THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value

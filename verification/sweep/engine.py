@@ -30,7 +30,7 @@ from refimpl.errors import InputError
 from verification.sweep.run import Row, Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study
-from verification.workers import BLAS_THREADS
+from verification.threads import one_thread
 
 PER_WORKER = 2  # runs submitted per worker: one at work, one waiting
 CONNECT_SECONDS = 10.0  # for a scheduler to answer
@@ -138,20 +138,14 @@ def _through(executor: Executor, runs: Iterable[Run], depth: int) -> Done:
 
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Fresh interpreters ('spawn') with one BLAS thread each, that end when this process does."""
-    before = {name: os.environ.get(name) for name in BLAS_THREADS}
-    os.environ.update(dict.fromkeys(BLAS_THREADS, "1"))
+    """Fresh interpreters ('spawn') with one thread each, that end when this process does."""
     context = multiprocessing.get_context("spawn")
-    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
-    try:
-        yield executor
-    finally:
-        executor.shutdown(cancel_futures=True)
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+    with one_thread():
+        executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
+        try:
+            yield executor
+        finally:
+            executor.shutdown(cancel_futures=True)
 
 
 def _end_with_parent() -> None:

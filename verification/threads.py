@@ -1,0 +1,34 @@
+"""How many threads child processes have, of BLAS and of transforms: so far as they say so, one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Where libraries of BLAS, ducc0 and `refimpl.operators.transforms` read it, most of them at import."""
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Processes started in the block have one; the environment is put back as it was.
+
+    >>> import os
+    >>> before = dict(os.environ)
+    >>> with one_thread():
+    ...     os.environ["MKL_NUM_THREADS"]
+    '1'
+    >>> os.environ == before
+    True
+    """
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
