@@ -107,8 +107,27 @@ def test_help_does_not_wait_for_numpy() -> None:
         (["report", "--results", "."], "--results"),
         (["appendix-a"], "required"),
         ([*WEDGE, "--gamma-deg", "10", "--r", "x"], "'x'"),
-        ([*WEDGE, "--gamma-deg", "95"], "gamma"),
-        ([*FEM, "--nu", "0.6"], "nu = 0.6"),
+        (
+            [*WEDGE, "--gamma-deg", "95"],
+            "--gamma-deg = 95.0: expected a slope angle of 0 to below 90 degrees",
+        ),
+        ([*WEDGE, "--gamma-deg", "nan"], "'nan'"),
+        ([*WEDGE, "--gamma-deg", "89.999999"], "--gamma-deg = 89.999999: expected a smaller slope angle"),
+        (
+            [*WEDGE, "--gamma-deg", "10", "--theta-deg", "10,85"],
+            "--theta-deg = 85.0: expected angles within the faces at +-80 degrees",
+        ),
+        ([*WEDGE, "--gamma-deg", "10", "--r", "1,-1"], "--r = -1.0"),
+        ([*WEDGE, "--gamma-deg", "10", "--half-width", "0"], "--half-width = 0.0"),
+        ([*FEM, "--nu", "0.6"], "--nu = 0.6"),
+        (
+            [*FEM, "--nu", "0.3", "--slope-deg", "50"],
+            "--slope-deg = 50.0: expected a maximum slope of 0 to 45 deg",
+        ),
+        ([*FEM, "--nu", "0.3", "--offsets", "0,1e5"], "--offsets = [0.0, 100000.0]"),
+        (["appendix-a", "strip", *FEM[2:], "--nu", "0.3", "--slope-deg", "95"], "--slope-deg = 95.0"),
+        (["appendix-a", "strip", *FEM[2:], "--nu", "0.3", "--offsets", "nan"], "--offsets: 'nan'"),
+        (["appendix-a", "map", "--slopes-deg", "6,50"], "--slopes-deg = 50.0: expected 0.1 to 45 degrees"),
         (["appendix-a", "map", "--slopes-deg", "0"], "--slopes-deg"),
         (["appendix-a", "map", "--wavelengths", "1,10"], "--wavelengths"),
         (["appendix-a", "map", "--positions", "nan"], "--positions"),
@@ -194,6 +213,12 @@ def test_wedge_of_no_slope_is_the_half_plane(capsys: Capture) -> None:
     assert found["sigma_r"] == pytest.approx([-0.5 - 1 / 3.141592653589793], abs=1e-9)
     assert found["sigma_theta"] == pytest.approx([-0.5 + 1 / 3.141592653589793], abs=1e-9)
     assert found["tau_rtheta"] == pytest.approx([0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("gamma", [0.1, 10.3, 33.3, 70.7])
+def test_a_theta_on_the_face_is_inside(gamma: float) -> None:
+    angles = f"--theta-deg={gamma - 90},{90 - gamma},{round(90 - gamma, 6)}"
+    assert main([*WEDGE, "--gamma-deg", str(gamma), angles]) == 0
 
 
 def test_number_lists() -> None:

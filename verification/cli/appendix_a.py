@@ -4,15 +4,23 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from verification.cli.output import Parsers, add_json, columns, emit
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
-MAP_RANGES = {"slopes-deg": (0.1, 45.0), "wavelengths": (4.0, 1e4), "positions": (0.0, 0.5)}
+MAP_RANGES = {
+    "slopes-deg": (0.1, 45.0, "degrees"),
+    "wavelengths": (4.0, 1e4, "half-widths"),
+    "positions": (0.0, 0.5, "wavelengths"),
+}
+FACE_SLACK_DEG = 1e-11  # 90 - gamma rounds; `appendix_a.wedge` allows for more
+NARROW = "a smaller slope angle in degrees: so narrow a wedge has no bound on its cost at these r"
 MAP_AXES = ("slope_deg", "wavelength", "position", "offset")
 
 WAVE = "--slope-deg 6.5 --wavelength 100 --position 0.25 --nu 0.3 --offsets=-3,3"
@@ -42,15 +50,26 @@ def add_parser(commands: Parsers) -> None:
 
 
 def numbers(text: str) -> list[float]:
-    """Argument type: numbers with commas between them.
+    """Argument type: finite numbers with commas between them.
 
     >>> numbers("-10,3.5")
     [-10.0, 3.5]
     """
     try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
+        return [number(part) for part in text.split(",")]
+    except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers like -3,0,3") from None
+
+
+def number(text: str) -> float:
+    """Argument type: a finite number."""
+    try:
+        found = float(text)
+    except ValueError:
+        found = math.nan
+    if not math.isfinite(found):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
+    return found
 
 
 def _add_strip(problems: Parsers) -> None:
@@ -75,25 +94,25 @@ def _add_map(problems: Parsers) -> None:
 
 def _wavy_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("--slope-deg", type=float, required=True, help="maximum slope of the profile (degrees)")
-    add("--wavelength", type=float, required=True, help="in half-widths of the strip")
+    add("--slope-deg", type=number, required=True, help="maximum slope of the profile (degrees)")
+    add("--wavelength", type=number, required=True, help="in half-widths of the strip")
     add(
         "--position",
-        type=float,
+        type=number,
         required=True,
         help="centre of the strip: crest 0, flank 0.25, valley 0.5",
     )
-    add("--nu", type=float, required=True, help="Poisson's ratio")
+    add("--nu", type=number, required=True, help="Poisson's ratio")
     add("--offsets", type=numbers, required=True, help="distances from the centre, in half-widths")
 
 
 def _add_wedge(problems: Parsers) -> None:
     parser = _problem(problems, "wedge", wedge, "stresses of a wedge pressed on both faces near its tip")
-    parser.add_argument("--gamma-deg", type=float, required=True, help="slope angle of the faces (degrees)")
+    parser.add_argument("--gamma-deg", type=number, required=True, help="slope angle of the faces (degrees)")
     parser.add_argument("--r", type=numbers, required=True, help="distances from the tip")
     parser.add_argument("--theta-deg", type=numbers, required=True, help="angles from the bisector (degrees)")
     parser.add_argument(
-        "--half-width", type=float, default=1.0, help="pressed length of each face (default 1)"
+        "--half-width", type=number, default=1.0, help="pressed length of each face (default 1)"
     )
 
 
@@ -124,7 +143,8 @@ def strip(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
     from appendix_a.strip import first_order
 
-    wavy, flat = first_order(*_wave(options), offsets=options.offsets)
+    with _by_option():
+        wavy, flat = first_order(*_wave(options), offsets=options.offsets)
     document = {"offsets": options.offsets, "wavy": wavy.tolist(), "flat": flat.tolist()}
     emit(document, options.json, _displacements(document, "to first order in the slope"))
     return 0
@@ -134,7 +154,8 @@ def fem(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem import fem_json
 
-    document = fem_json(*_wave(options), offsets=options.offsets)
+    with _by_option():
+        document = fem_json(*_wave(options), offsets=options.offsets)
     remark = f"discretisation error {document['discretisation_error']:.1g}"
     emit(document, options.json, _displacements(document, remark))
     return 0
@@ -153,9 +174,10 @@ def coefficient_map(options: argparse.Namespace) -> int:
         "wavelengths": tuple(options.wavelengths or WAVELENGTHS),
         "positions": tuple(options.positions or POSITIONS),
     }
-    for name, (low, high) in MAP_RANGES.items():
-        if not all(low <= value <= high for value in axes[name]):
-            raise InputError(f"--{name}", axes[name], f"numbers from {low:g} to {high:g}")
+    for name, (low, high, unit) in MAP_RANGES.items():
+        for value in axes[name]:
+            if not low <= value <= high:
+                raise InputError(f"--{name}", value, f"{low:g} to {high:g} {unit}")
     progress = Progress(len(axes["slopes-deg"]) * len(axes["wavelengths"]))
     found = compute(
         *axes.values(), workers=options.jobs, progress=lambda *_: progress.tick("slopes and wavelengths")
@@ -188,8 +210,10 @@ def wedge(options: argparse.Namespace) -> int:
 
     from appendix_a.wedge import stresses
 
+    _refuse_angles(options)
     r, degrees = (a.ravel() for a in np.meshgrid(options.r, options.theta_deg, indexing="ij"))
-    found = stresses(r, np.radians(degrees), float(np.radians(options.gamma_deg)), options.half_width)
+    with _by_option(gamma=("gamma_deg", options.gamma_deg, NARROW)):
+        found = stresses(r, np.radians(degrees), math.radians(options.gamma_deg), options.half_width)
     names = ("r", "theta_deg", "sigma_r", "sigma_theta", "tau_rtheta")
     series = dict(zip(names, (r, degrees, *found), strict=True))
     rows = [[f"{number:.9g}" for number in row] for row in zip(*series.values(), strict=True)]
@@ -197,3 +221,28 @@ def wedge(options: argparse.Namespace) -> int:
                 **{name: values.tolist() for name, values in series.items()}}  # fmt: skip
     emit(document, options.json, columns([list(names), *rows], indent=""))
     return 0
+
+
+def _refuse_angles(options: argparse.Namespace) -> None:
+    """In degrees, as they were typed, what `appendix_a.wedge` would refuse in radians."""
+    from refimpl.errors import InputError
+
+    if not 0 <= options.gamma_deg < 90:
+        raise InputError("--gamma-deg", options.gamma_deg, "a slope angle of 0 to below 90 degrees")
+    face = 90 - options.gamma_deg
+    for theta in options.theta_deg:
+        if abs(theta) > face + FACE_SLACK_DEG:
+            raise InputError("--theta-deg", theta, f"angles within the faces at +-{face:g} degrees")
+
+
+@contextmanager
+def _by_option(**other: tuple[str, float, str]) -> Iterator[None]:
+    """Refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by field."""
+    from appendix_a.errors import InputError
+
+    try:
+        yield
+    except InputError as refused:
+        value = refused.value.tolist() if hasattr(refused.value, "tolist") else refused.value
+        name, value, allowed = other.get(refused.field, (refused.field, value, refused.allowed))
+        raise InputError(f"--{name.replace('_', '-')}", value, allowed) from refused
