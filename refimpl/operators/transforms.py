@@ -1,7 +1,7 @@
 """How transforms are carried out: threads allowed, memory kept between them.
 
-Memory changes no bit; threads change none of SciPy's, and the last ones of ducc0's, up to 6e-16 of the largest
-number (0.42, sizes of 150 to 700). ducc0 has no more threads than OMP_NUM_THREADS says when it is imported.
+Memory changes no bit; threads change none of SciPy's, and the last ones of ducc0's (0.42), by up to 6e-16 of
+the largest number for sizes of 150 to 700. ducc0 takes no more threads than OMP_NUM_THREADS says at first.
 """
 
 from __future__ import annotations

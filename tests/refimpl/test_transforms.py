@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import refimpl as rf
 from refimpl.grid import Array
 from refimpl.operators import fourier, transforms
 

@@ -76,9 +76,9 @@ def test_a_fault_of_the_callers_own_sql_is_no_bad_input(tmp_path: Path) -> None:
     ids=["read-only", "full"],
 )
 def test_a_store_that_can_no_longer_be_written_is_refused(tmp_path: Path, stop: str, said: str) -> None:
+    stopped = f"{stop}; create table t as select zeroblob(100000)"
     with pytest.raises(InputError, match=said), open_store(tmp_path / "s.sqlite") as store:
-        store._connection.execute(stop)
-        store._connection.execute("create table t as select zeroblob(100000)")
+        store._connection.executescript(stopped)
 
 
 def test_a_point_without_roughness_is_one_run_of_all_its_realisations(tmp_path: Path) -> None:

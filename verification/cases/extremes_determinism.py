@@ -46,8 +46,8 @@ def processes() -> Measured:
     metric="at_most",
     tolerance=1e-12,
     tolerance_reason="a transform by two threads differs by up to 6e-16, CG amplifies that: 4e-14 measured. "
-    "Where rounding decides which iteration is the last, the solver's tolerance is the bound (table1-smooth on "
-    "512 x 512: 8e-9)",
+    "Where rounding decides which iteration is the last, the solver's tolerance is the bound: 8e-9 of "
+    "table1-smooth on 512 x 512",
     tier="full",
     tags=("extremes", "determinism"),
 )
