@@ -21,6 +21,12 @@ def _dense_reach(dense: Data) -> str:
     return f"The dense reference takes {dense['seconds']:.0f} s at about {dense['M']} elements a side."
 
 
+def _left_out(study: Mapping[str, Any]) -> str:
+    """What the study of this scene does without, and why; older files left nothing out."""
+    told = "; ".join(f"{NAMES.get(what, what)}: {why}" for what, why in study.get("left out", {}).items())
+    return f" Left out: {told}." if told else ""
+
+
 def build(document: Document) -> Exhibit:
     """Of every scene studied: diagrams over time and over convolutions, prices, growth."""
     tables: list[Table] = []
@@ -35,7 +41,7 @@ def build(document: Document) -> Exhibit:
         doubt = ", ".join(f"{NAMES[q]} {value:.1e}" for q, value in study["reference"]["doubt"].items())
         notes.append(
             f"{study['scene']}: reference on {study['reference']['M']} elements a side (its own doubt: "
-            f"{doubt}). {_dense_reach(study['dense up to'])}"
+            f"{doubt}). {_dense_reach(study['dense up to'])}{_left_out(study)}"
         )
         tables.append(
             Table(
@@ -70,7 +76,10 @@ def build(document: Document) -> Exhibit:
                 ],
             )
         )
-        figures += [(_diagram(study["scene"], quantity), _series(study, quantity)) for quantity in NAMES]
+        figures += [
+            (_diagram(study["scene"], quantity), _series(study, quantity))
+            for quantity in study["reference"]["numbers"]
+        ]
     return Exhibit("What an error costs", notes, tables, figures)
 
 

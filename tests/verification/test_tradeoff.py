@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib import resources
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,14 @@ from verification.tradeoff import prices
 from verification.tradeoff.measure import QUANTITIES, Run, run
 from verification.tradeoff.settings import Setting, settings
 
+SHIPPED = {
+    "hertz": {"friction_coefficient"},
+    "metal-polymer": set(),
+    "rough-planes": {"paper", "qp", "single"},
+    "table1-rough": set(),
+    "table1-smooth": set(),
+}
+"""What is left out of the study of every shipped scene."""
 REFERENCE = dict.fromkeys(QUANTITIES, 1.0)
 
 
@@ -72,6 +81,37 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     for M, said in ((None, "takes three of its grids"), (123, "takes 60 s at about 123 elements")):
         told = build({"studies": [found | {"dense up to": {"seconds": 60.0, "M": M}}]})
         assert any(said in note for note in told.paragraphs)
+
+
+@pytest.mark.parametrize("scene", sorted(SHIPPED))
+def test_every_shipped_scene_has_a_price_list(
+    scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without friction mu is zero and has no relative error; periodic scenes have fewer ways."""
+    out = tmp_path / "t.json"
+    command = ["tradeoff", scene, "--grids", "8,12", "--reference", "24", "--repeats", "1"]
+    assert main([*command, "--json", str(out)]) == 0
+    found, told = json.loads(out.read_text()), capsys.readouterr().out
+    left_out = SHIPPED[scene]
+    assert set(found["left out"]) == left_out
+    assert all(f"  {name} " in told for name in left_out)
+    methods = {run["method"] for run in found["runs"]} | {"single" for run in found["runs"] if run["single"]}
+    assert methods == {"fft", "paper", "dense", "qp", "single"} - left_out
+    quantities = set(QUANTITIES) - left_out
+    for of in (found["reference"]["numbers"], found["reference"]["doubt"], found["front"]):
+        assert set(of) == quantities
+    assert {row["quantity"] for row in found["prices"]} == quantities
+    assert all(set(run["errors"]) == quantities for run in found["runs"])
+    shown = build({"studies": [found]})
+    assert len(shown.figures) == len(quantities)
+    assert any("Left out: " in note for note in shown.paragraphs) is bool(left_out)
+    old = {key: value for key, value in found.items() if key != "left out"}
+    assert not any("Left out: " in note for note in build({"studies": [old]}).paragraphs)
+
+
+def test_the_scenes_above_are_all_that_are_shipped() -> None:
+    folder = resources.files("refimpl") / "data" / "scenes"
+    assert {path.name.removesuffix(".toml") for path in folder.iterdir()} == set(SHIPPED)
 
 
 @pytest.mark.parametrize("bad", [["--reference", "16"], ["--grids", "8,x"], ["--repeats", "0"]])

@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.errors import InputError
     from refimpl.scene_file import read_scene
     from verification.files import Progress
-    from verification.tradeoff.settings import settings
+    from verification.tradeoff.settings import inapplicable, settings
     from verification.tradeoff.study import TOLERANCES, study
 
     if options.reference < 2 * max(options.grids) or options.reference % 2:
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
         raise InputError("--repeats", options.repeats, "at least one")
     scene = read_scene(options.scene)
     refuse_inputs([Path(options.scene), *files_of(scene)], json=options.json)
-    progress = Progress(len(settings(options.grids, TOLERANCES)))
+    progress = Progress(len(settings(options.grids, TOLERANCES, inapplicable(scene))))
     try:
         found = study(scene, options.scene, options.grids, options.reference, options.repeats, progress.tick)
     finally:
@@ -73,7 +73,8 @@ def _table(found: dict[str, Any]) -> str:
     for row in found["prices"]:
         offer = [row["way"] or "none tried", *(_short(row[key]) for key in ("M", "seconds", "convolutions"))]
         rows.append([row["quantity"], f"{row['error']:.1%}", *offer])
-    return columns(rows)
+    left_out = columns([list(item) for item in found["left out"].items()])
+    return f"{columns(rows)}\n\nleft out:\n{left_out}" if left_out else columns(rows)
 
 
 def _short(value: float | None) -> str:

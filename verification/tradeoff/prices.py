@@ -8,22 +8,26 @@ from typing import Any
 
 import numpy as np
 
-from verification.tradeoff.measure import QUANTITIES, Run
+from verification.tradeoff.measure import Run
 
 DEMANDS = (0.1, 0.03, 0.01, 0.003, 0.001)
 SETTLED = ("converged", "cycled")
 
 
-def errors(run: Run, reference: Mapping[str, float]) -> dict[str, float]:
-    """Relative errors by quantity."""
-    return {name: abs(run.numbers[name] / reference[name] - 1) for name in QUANTITIES}
+def relative(numbers: Mapping[str, float], reference: Mapping[str, float]) -> dict[str, float]:
+    """Relative errors by quantity of ``reference``, which holds none that is zero.
+
+    >>> relative({"contact_area": 3.0, "friction_coefficient": 0.0}, {"contact_area": 4.0})
+    {'contact_area': 0.25}
+    """
+    return {name: abs(numbers[name] / number - 1) for name, number in reference.items()}
 
 
 def front(runs: Sequence[Run], reference: Mapping[str, float], quantity: str) -> list[Run]:
     """The runs that no other beats in both time and error, cheapest first; only settled ones compete."""
     best, kept = math.inf, []
     for run in sorted((r for r in runs if r.status in SETTLED), key=lambda r: r.seconds):
-        error = errors(run, reference)[quantity]
+        error = relative(run.numbers, reference)[quantity]
         if error < best:
             best = error
             kept.append(run)
@@ -33,13 +37,13 @@ def front(runs: Sequence[Run], reference: Mapping[str, float], quantity: str) ->
 def price_list(
     runs: Sequence[Run], reference: Mapping[str, float], doubt: Mapping[str, float]
 ) -> list[dict[str, Any]]:
-    """The cheapest way to every demanded error of every quantity, None where no way got there.
+    """The cheapest way to every demanded error of the reference's quantities, None where no way got there.
 
     A way counts only if all finer grids of the same way meet the demand too: an error that is small by chance
     is no price. Demands below twice the reference's own ``doubt`` (relative, by quantity) have no answer.
     """
     rows = []
-    for quantity in QUANTITIES:
+    for quantity in reference:
         for demand in DEMANDS:
             cheapest = None
             if demand >= 2 * doubt[quantity]:
@@ -82,7 +86,7 @@ def _reliably(
     run: Run, runs: Sequence[Run], reference: Mapping[str, float], quantity: str, demand: float
 ) -> bool:
     finer = [r for r in runs if r.setting.way == run.setting.way and r.setting.M >= run.setting.M]
-    return all(r.status in SETTLED and errors(r, reference)[quantity] <= demand for r in finer)
+    return all(r.status in SETTLED and relative(r.numbers, reference)[quantity] <= demand for r in finer)
 
 
 def _offer(run: Run | None) -> dict[str, Any]:

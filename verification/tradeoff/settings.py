@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from typing import Literal
+
+import refimpl as rf
 
 Way = Literal["fft", "paper", "dense", "qp"]
 OTHERS: tuple[Way, ...] = ("paper", "dense", "qp")
@@ -45,8 +47,25 @@ class Setting:
         return ", ".join(parts)
 
 
-def settings(grids: Sequence[int], tolerances: Sequence[float]) -> list[Setting]:
-    """Every way that is compared: production at each tolerance, then one thing changed at a time."""
+APERIODIC = {
+    "paper": "the paper's scheme is of free half-spaces",
+    "qp": "the energy that it minimises is of free half-spaces",
+    "single": "only convolutions on free half-spaces have a single precision",
+}
+
+
+def inapplicable(scene: rf.Scene) -> dict[str, str]:
+    """The ways, by method or "single", that such a scene cannot be solved in, and why."""
+    return dict(APERIODIC) if scene.periodic else {}
+
+
+def settings(
+    grids: Sequence[int], tolerances: Sequence[float], without: Container[str] = ()
+) -> list[Setting]:
+    """Every way that is compared: production at each tolerance, then one thing changed at a time.
+
+    ``without`` are those that do not apply, see `inapplicable`.
+    """
     middle = tolerances[len(tolerances) // 2]
     ways: list[Setting] = []
     for M in grids:
@@ -57,4 +76,4 @@ def settings(grids: Sequence[int], tolerances: Sequence[float]) -> list[Setting]
         ways.append(Setting("fft", M, middle, coupled=False))
         ways.append(Setting("fft", M, middle, oblique=False, coupled=False))
         ways += [Setting(other, M, middle) for other in OTHERS if LARGEST[other] >= M]
-    return ways
+    return [way for way in ways if way.method not in without and not (way.single and "single" in without)]

@@ -10,9 +10,10 @@ import refimpl as rf
 from verification.provenance import provenance
 from verification.tradeoff import prices
 from verification.tradeoff.measure import QUANTITIES, Run, run
-from verification.tradeoff.settings import settings
+from verification.tradeoff.settings import inapplicable, settings
 
 TOLERANCES = (1e-3, 1e-5, 1e-8)
+IS_ZERO = "it is zero here, and of zero there is no relative error"
 _DENSE_PATIENCE = 60.0  # s: what a user would wait for the plain reference
 
 
@@ -26,26 +27,30 @@ def study(
 ) -> dict[str, Any]:
     """The document of the study: reference, runs, Pareto fronts, price list, growth.
 
-    ``finest`` is the reference's grid; its doubt is the change from half of it.
+    ``finest`` is the reference's grid; its doubt is the change from half of it. Ways that do not apply to the
+    scene and numbers that are zero, of which there is no relative error, are "left out", with the reason.
     """
     solved = [rf.solve(scene, M) for M in (finest // 2, finest)]
-    coarse, reference = ({name: float(getattr(s, name)) for name in QUANTITIES} for s in solved)
-    doubt = {name: abs(coarse[name] / reference[name] - 1) for name in QUANTITIES}
+    coarse, numbers = ({name: float(getattr(s, name)) for name in QUANTITIES} for s in solved)
+    reference = {name: number for name, number in numbers.items() if number}
+    doubt = prices.relative(coarse, reference)
+    left_out = inapplicable(scene)
     runs: list[Run] = []
-    for setting in settings(grids, TOLERANCES):
+    for setting in settings(grids, TOLERANCES, left_out):
         progress(f"{setting.way} at {setting.M}")
         runs.append(run(scene, setting, repeats))
     return {
         "scene": name,
+        "left out": left_out | {name: IS_ZERO for name in numbers if name not in reference},
         "reference": {"M": finest, "numbers": reference, "doubt": doubt},
         "runs": [_row(r, reference) for r in runs],
         "front": {
             name: [
                 {"way": r.setting.way, "M": r.setting.M, "seconds": r.seconds, "error": e}
                 for r in prices.front(runs, reference, name)
-                for e in [prices.errors(r, reference)[name]]
+                for e in [prices.relative(r.numbers, reference)[name]]
             ]
-            for name in QUANTITIES
+            for name in reference
         },
         "prices": prices.price_list(runs, reference, doubt),
         "growth": prices.growth(runs),
@@ -63,5 +68,5 @@ def _row(run: Run, reference: dict[str, float]) -> dict[str, Any]:
         "convolutions": run.convolutions,
         "distance from the limit": run.seconds / run.limit,
         "peak_bytes": run.peak_bytes,
-        "errors": prices.errors(run, reference),
+        "errors": prices.relative(run.numbers, reference),
     }
