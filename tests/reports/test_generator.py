@@ -80,6 +80,35 @@ def test_the_summary_counts_and_no_claim_passes_on_a_failure() -> None:
     assert rows == [("fail", "Eq. (7) holds"), ("pass", "other")]
 
 
+def summary_of(page: str) -> Page:
+    """The summary alone."""
+    found = re.search(r'<section id="summary">.*?</section>', page, flags=re.S)
+    assert found
+    return Page(found[0])
+
+
+def test_the_summary_lists_what_did_not_pass() -> None:
+    broken = (
+        case("a/2", "fail", error=0.2, note="see c"),
+        case("a/3", "error", note="ValueError: no luck", **UNJUDGED),
+        case("b/1", "unavailable", note="needs tamaas", **UNJUDGED),
+    )
+    old = results(case("c/1", "fail", title="Long and failed", error=0.3))
+    page = summary_of(render(results(case("a/1"), *broken), {"old": old}))
+    for text in (
+        *("Title of a/2", "0.2 > 0.1", "see c", "ValueError: no luck", "not judged", "needs tamaas"),
+        *("Long and failed", "0.3 > 0.1"),
+    ):
+        assert text in page.text
+    assert page.links == [f"#case-{id}" for id in ("a-2", "a-3", "b-1", "c-1")]
+
+
+def test_the_summary_lists_nothing_when_all_passed() -> None:
+    page = summary_of(render(results(case("a/1"), case("a/2"))))
+    assert "table" not in page.tags
+    assert page.links == []
+
+
 def test_no_request_leaves_the_page() -> None:
     page = Page(render(results(case("kernels/textbook-x-fails", data=TEXTBOOK))))
     inside = ("#", "data:image/svg+xml;base64,", "data:text/csv;base64,")
