@@ -55,7 +55,7 @@ CHAPTERS = (
         "Other codes, and yours",
         "The suite that any contact solver can be run through, what it makes of published codes, and proof "
         "that it sees what it is there to see.",
-        ("contestants",),
+        ("contestant", "contestants"),
         ("cross_code",),
     ),
     Chapter(

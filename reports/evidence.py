@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from reports.contestant import solver
 from reports.results import FORMAT, Case, check
 
 
@@ -22,20 +23,22 @@ class Evidence:
     studies: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @property
-    def counts(self) -> dict[str, int]:
-        """Number of cases by status, those of committed runs included."""
-        return {status: sum(c["status"] == status for c in self.cases) for status in self.run["counts"]}
+    def solver(self) -> str | None:
+        """Name of somebody else's solver that the run is about; None where it is about this project's."""
+        return solver(self.run)
 
 
 def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidence:
     """The run with the committed files, by name without suffix, that it does not replace.
 
     A case counts once: the run's own result, else that of the newest committed run in which it was judged.
+    Committed runs of somebody else's solver are left out: they are no evidence of this project's.
     Raises ResultFileError for a run, or a committed run of `verify`, that is none.
     """
     checked = check(run)
     runs = {name: check(file) for name, file in committed.items() if file.get("format") == FORMAT}
-    newest = sorted(runs.items(), key=lambda item: str(item[1]["provenance"]["date"]), reverse=True)
+    own = {name: file for name, file in runs.items() if solver(file) is None}
+    newest = sorted(own.items(), key=lambda item: str(item[1]["provenance"]["date"]), reverse=True)
     cases = {case["id"]: {**case, "origin": None} for case in checked["cases"]}
     errata = {erratum["equation"]: erratum for erratum in checked["errata"]}
     for judged in (True, False):

@@ -8,12 +8,13 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import drawing, figures
+from reports import contestant, drawing, figures
 from reports.chapters import CHAPTERS, exhibits_of, subjects_of, unplaced
 from reports.comparison import compared
 from reports.evidence import Evidence, gathered
 from reports.exhibit import address, as_csv
 from reports.results import Case, by, worst
+from reports.summary import groups
 from reports.traceability import traced
 
 
@@ -44,10 +45,12 @@ def render(
         chapters=[(c, subjects_of(c, evidence), exhibits_of(c, evidence)) for c in CHAPTERS],
         unplaced=unplaced(evidence),
         leading=leading(evidence),
+        solver=evidence.solver,
+        groups=groups(evidence),
         changes=None if against is None else compared(against, results),
         judgement=judgement,
         facts=facts,
-        rerun=rerun,
+        rerun=lambda case: rerun(case, evidence),
         pictures=lambda case: pictures(case, evidence),
         picture=picture,
         cell=cell,
@@ -100,8 +103,10 @@ def _text(value: Any) -> str:
     return str(value) if isinstance(value, str | bool) else number(value)
 
 
-def rerun(case: Case) -> str:
-    """The command that runs this case alone."""
+def rerun(case: Case, evidence: Evidence) -> str:
+    """The command that runs this case alone, with the solver that it was run with."""
+    if evidence.solver is not None and case["origin"] is None:
+        return contestant.rerun(evidence.run["provenance"]["command"], case["id"])
     tier = " --tier full" if case["tier"] == "full" else ""
     return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"
 
@@ -144,7 +149,9 @@ LEADING = (
 
 
 def leading(evidence: Evidence) -> list[tuple[Case, Mapping[str, Any]]]:
-    """The figures of the first page, with their cases."""
+    """The figures of the first page, with their cases; none where another's solver was run: they are ours."""
+    if evidence.solver is not None:
+        return []
     cases = {case["id"]: case for case in evidence.cases}
     found = []
     for ids in LEADING:

@@ -40,6 +40,8 @@ def check(results: object) -> Mapping[str, Any]:
         raise ResultFileError(f"not a file of the format {FORMAT!r}")
     _require(results, TOP_KEYS, "the file")
     _require(results["provenance"], PROVENANCE_KEYS, "the provenance")
+    if "contestant" in results:  # only where somebody else's solver was run
+        _require(results["contestant"], ("name",), "the contestant")
     for key in ("cases", "errata"):
         if not isinstance(results[key], list):
             raise ResultFileError(f"{key} are no list")

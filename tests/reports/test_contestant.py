@@ -1,0 +1,99 @@
+"""A report on somebody else's solver names it, counts its cases apart, and tells how to run them again."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from typing import Any
+
+import pytest
+
+from reports.contestant import rerun
+from reports.evidence import gathered
+from reports.generator import render
+from reports.results import ResultFileError, check
+from reports.summary import groups
+from tests.reports.sample import UNJUDGED, case, results
+from tests.reports.test_generator import Page, summary_of
+from verification.cli import parser
+
+COMMAND = "rough-friction verify --exec './mine --fast' --able load --only 'contestant/*' --json out.json"
+
+
+def theirs(*cases: dict[str, Any], command: str = COMMAND) -> dict[str, Any]:
+    made = results(
+        *cases,
+        tier="full",
+        contestant={"name": "./mine --fast", "abilities": None, "not_applicable": {}},
+    )
+    made["provenance"]["command"] = command
+    return made
+
+
+RUN = theirs(
+    case("contestant/pins"),
+    case("contestant/hertz", "fail", error=0.2),
+    case("contestant/shear", "unavailable", note="the solver does not offer: coupling", **UNJUDGED),
+)
+OURS = {"quick": results(case("hertz/a"), case("hertz/b", tier="full"), case("hertz/c", "fail", error=0.3))}
+
+
+def test_title_and_summary_name_the_solver() -> None:
+    html = render(RUN, OURS)
+    assert "<title>Report on ./mine --fast</title>" in html
+    heading = re.search(r"<h1>.*?</h1>", html)
+    assert heading
+    assert "./mine --fast" in heading[0]
+    assert "./mine --fast" in summary_of(html).text
+    own = render(OURS["quick"], {})
+    assert "<title>Validation report" in own
+    assert "solver under test" not in own
+
+
+def test_its_cases_are_counted_apart_from_the_projects_own() -> None:
+    mine, ours = groups(gathered(RUN, OURS))
+    assert mine.counts == {"pass": 1, "fail": 1, "error": 0, "unavailable": 1}
+    assert ours.counts == {"pass": 2, "fail": 1, "error": 0, "unavailable": 0}
+    assert summary_of(render(RUN, OURS)).links == [
+        "#case-contestant-hertz",
+        "#case-contestant-shear",
+        "#case-hertz-c",
+    ]
+    assert re.findall(r"<b>(\d)</b> pass", render(RUN)) == ["1"]
+
+
+def test_every_case_says_how_it_is_run_again_with_the_solver_it_was_run_with() -> None:
+    text = Page(render(RUN, OURS)).text
+    assert "rough-friction verify --exec './mine --fast' --able load --only contestant/pins" in text
+    assert "rough-friction verify --only hertz/a" in text
+    assert "rough-friction verify --tier full --only hertz/b" in text
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        COMMAND,
+        "rough-friction verify --only=contestant/a --solver a:b --js=x.json --timeout 5 --largest=32",
+        "/usr/bin/rough-friction verify --tie full --solver=a:b --job 3 --on 'contestant/*' --precision 1e-6",
+    ],
+)
+def test_the_command_is_parsed_to_the_same_solver(command: str) -> None:
+    words = shlex.split(rerun(command, "contestant/pins"))
+    assert words[0] == "rough-friction"
+    before, after = (parser().parse_args(w[1:]) for w in (shlex.split(command.replace("x.json", "-")), words))
+    for name in ("solver", "exec", "able", "largest", "precision", "timeout"):
+        assert getattr(after, name) == getattr(before, name)
+    assert after.only == ["contestant/pins"]
+    assert after.json is None
+
+
+def test_a_committed_run_of_another_solver_is_no_evidence_of_ours() -> None:
+    found = gathered(OURS["quick"], {"theirs": RUN})
+    assert [c["id"] for c in found.cases] == ["hertz/a", "hertz/b", "hertz/c"]
+    assert "theirs" not in found.studies
+
+
+@pytest.mark.parametrize("alien", [None, "mine", {}])
+def test_a_contestant_without_a_name_is_refused(alien: object) -> None:
+    with pytest.raises(ResultFileError, match="contestant"):
+        check(results(case("a/1"), contestant=alien))
