@@ -135,6 +135,12 @@ def test_the_table_names_what_was_found(scene: str, capsys: Capture) -> None:
     assert printed.err == ""
 
 
+def test_help_says_that_a_settled_cycle_is_a_success(capsys: Capture) -> None:
+    with pytest.raises(SystemExit):
+        main(["solve", "--help"])
+    assert "exit status: 0 CONVERGED, or CYCLED: a settled cycle" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("status", "exit_status"),
     [
