@@ -33,8 +33,8 @@ EPILOG = """examples:
   rough-friction solve scene.toml --approach 1.2e-6
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
-exit status: 0 CONVERGED, or CYCLED: a settled cycle of the elements that carry tau, certified as well,
-whose error bars hold what it may make; 1 any other status; 2 bad input
+exit status: 0 CONVERGED, or CYCLED: a settled cycle of the elements that carry tau, certified too,
+and error bars hold what it may make; 1 any other status; 2 bad input
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
