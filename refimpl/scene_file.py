@@ -55,7 +55,7 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
     if path.stat().st_size > _MAX_BYTES:
         raise InputError("scene", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
         raise InputError("scene", str(path), f"valid TOML ({error})") from error
     return table, path.parent

@@ -99,7 +99,7 @@ def _npy(path: Path) -> Array:
 
 
 def _text(path: Path) -> Array:
-    with path.open(encoding="utf-8") as lines:
+    with path.open(encoding="utf-8-sig") as lines:  # with or without a byte order mark
         return np.loadtxt(lines, delimiter="," if path.suffix.lower() == ".csv" else None, ndmin=2)
 
 

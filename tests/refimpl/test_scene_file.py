@@ -84,6 +84,12 @@ def test_measured_surfaces_are_relative_to_the_file(tmp_path: Path) -> None:
     assert scene.sliding_direction == 0.5
 
 
+def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(rf.scene_to_toml(rf.read_scene("hertz")), encoding="utf-8-sig")
+    assert scene_to_dict(rf.read_scene(path)) == scene_to_dict(rf.read_scene("hertz"))
+
+
 def test_optional_keys_have_their_defaults() -> None:
     body = {"material": {"E": 1e9, "nu": 0.3}}
     scene = scene_from_dict({"load": 1.0, "side": 1.0, "upper": body, "lower": body}, Path())

@@ -38,6 +38,16 @@ def test_plain_tables_are_indexed_along_x_then_y(tmp_path: Path, name: str) -> N
     assert reading.pixel == (DX, DY)
 
 
+@pytest.mark.parametrize("name", ["a.csv", "a.asc", "a.txt"])
+def test_a_byte_order_mark_is_no_number(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    separator = "," if name.endswith("csv") else " "
+    rows = "\n".join(separator.join(f"{height:.17g}" for height in row) for row in ROUGH * 1e9)
+    path.write_text(rows + "\n", encoding="utf-8-sig")
+    reading = MeasuredSurface(path, unit="nm", pixel_size=(DX, DY)).reading
+    np.testing.assert_allclose(reading.heights, ROUGH, rtol=1e-15, atol=0)
+
+
 def test_x3p_keeps_its_oblong_pixels_and_its_axes(tmp_path: Path) -> None:
     surface = MeasuredSurface(write_x3p(tmp_path / "a.x3p", ROUGH))
     np.testing.assert_array_equal(surface.reading.heights, ROUGH)

@@ -155,6 +155,12 @@ def test_bad_studies_are_refused_by_name(field: str, change: dict[str, Any]) -> 
     assert refused.value.field == field
 
 
+def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text('scene = "hertz"\n[vary]\ngrid = [8]\n', encoding="utf-8-sig")
+    assert read_study(path).vary == {"grid": (8,)}
+
+
 def test_files_that_are_no_study(tmp_path: Path) -> None:
     bad = tmp_path / "bad.toml"
     bad.write_text("= 1")

@@ -130,7 +130,7 @@ def read_study(path: str | Path) -> Study:
     if path.stat().st_size > _MAX_BYTES:
         raise InputError("study", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
         raise InputError("study", str(path), f"valid TOML ({error})") from error
     study = study_from_dict(table, path.parent)
