@@ -221,6 +221,34 @@ def test_a_theta_on_the_face_is_inside(gamma: float) -> None:
     assert main([*WEDGE, "--gamma-deg", str(gamma), angles]) == 0
 
 
+@pytest.mark.parametrize("number", ["-1e-6", "-1E-06", "-.5e-6", "-0.000001"])
+def test_a_negative_number_is_a_value(number: str, capsys: Capture) -> None:
+    assert main(["solve", "rough-planes", "--grid", "16", "--approach", number, "--json", "-"]) == 0
+    assert json.loads(capsys.readouterr().out)["approach"] == pytest.approx(float(number), rel=1e-12)
+
+
+def test_a_list_that_starts_with_a_minus_sign_is_a_value(capsys: Capture) -> None:
+    wave = ["--slope-deg", "0.5", "--wavelength", "50", "--position", "0.25", "--nu", "0.3", "--json", "-"]
+    assert main(["appendix-a", "strip", *wave, "--offsets", "-3,3"]) == 0
+    assert json.loads(capsys.readouterr().out)["offsets"] == [-3.0, 3.0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["solve", "hertz", "--approach", "-inf"], "approach = -inf"),
+        (["solve", "hertz", "--accuracy", "-1e-3"], "accuracy = -0.001"),
+        (["solve", "hertz", "--grid", "-8"], "grid = -8"),
+        (["solve", "hertz", "--approach", "--budget"], "--approach"),
+        (["solve", "hertz", "-1e-6"], "-1e-6"),
+    ],
+)
+def test_what_follows_a_minus_sign_is_judged_by_its_option(
+    arguments: list[str], says: str, capsys: Capture
+) -> None:
+    assert says in refused(capsys, *arguments)
+
+
 def test_number_lists() -> None:
     assert numbers("-10,3") == [-10.0, 3.0]
     with pytest.raises(argparse.ArgumentTypeError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import errno
+import re
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -15,6 +16,8 @@ FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 OUTPUT_REFUSED = (
     errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO,
 )  # fmt: skip
+
+NEGATIVE = re.compile(r"-(\d|\.\d|inf|nan)", re.IGNORECASE)  # how no option begins
 
 EPILOG = """exit status: 0 success, 1 a check failed or the solve did not converge, 2 bad input
 
@@ -48,10 +51,27 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def joined(arguments: Sequence[str]) -> list[str]:
+    """Arguments with negative numbers, and lists that begin with one, joined to the option before them.
+
+    By itself, argparse (Python 3.11) takes "-1e-6" and "-3,3" for options, and misses a value.
+
+    >>> joined(["solve", "scene.toml", "--approach", "-1e-6", "--budget"])
+    ['solve', 'scene.toml', '--approach=-1e-6', '--budget']
+    """
+    found: list[str] = []
+    for argument in arguments:
+        if found and re.fullmatch("--[^=]+", found[-1]) and NEGATIVE.match(argument):
+            found[-1] += f"={argument}"
+        else:
+            found.append(argument)
+    return found
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status. Errors that nobody foresaw keep their traceback."""
     top = parser()
-    options = top.parse_args(arguments)
+    options = top.parse_args(joined(sys.argv[1:] if arguments is None else arguments))
     from appendix_a.errors import InputError as AppendixInputError  # here and not above: --help is quick
     from refimpl.errors import InputError
 

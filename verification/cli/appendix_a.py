@@ -30,7 +30,6 @@ EXAMPLES = {
     "fem": WAVE,
     "map": "--slopes-deg 2.5,6.5 --wavelengths 50 --positions 0 --json map.json",
 }
-MINUS = "A list that starts with a minus sign needs the equals sign: --offsets=-3,3"
 
 
 def add_parser(commands: Parsers) -> None:
@@ -136,7 +135,7 @@ def _epilog(*names: str) -> str:
         f"  rough-friction appendix-a {name} {EXAMPLES[name]}".replace(" --nu", " \\\n    --nu")
         for name in names
     ]
-    return "\n".join(["examples:", *lines, "", MINUS])
+    return "\n".join(["examples:", *lines])
 
 
 def strip(options: argparse.Namespace) -> int:
