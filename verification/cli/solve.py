@@ -132,6 +132,7 @@ def run(options: argparse.Namespace) -> int:
     from verification.cli import budget as budget_lines
     from verification.cli import explain, plot, vtk
 
+    _refuse_ignored(options)
     plot.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     scene = refimpl.read_scene(options.scene)
@@ -181,6 +182,18 @@ def run(options: argparse.Namespace) -> int:
             text = f"\n{budget_lines.table(budgets)}"
     emit(found, options.json, text)
     return 0 if solution.converged else 1  # a settled cycle is certified as well
+
+
+def _refuse_ignored(options: argparse.Namespace) -> None:
+    """Refuse an option that the others leave without a meaning, rather than ignore it."""
+    from refimpl.errors import InputError
+
+    if options.quantity is not None and options.accuracy is None:
+        raise InputError("--quantity", options.quantity, "none without --accuracy, which it is about")
+    for name in ("plot", "vtk", "budget") if options.explain else ():
+        if value := getattr(options, name):
+            shown = str(value) if isinstance(value, Path) else value
+            raise InputError(f"--{name}", shown, "none with --explain, which solves nothing")
 
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
