@@ -35,7 +35,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 def is_stream(path: Path) -> bool:
     """Whether writing there adds to what went before, as to a device or a pipe, and replaces nothing."""
-    return path.exists() and not path.is_file()
+    return os.path.exists(path) and not os.path.isfile(path)  # of any name, however long
 
 
 def try_out(path: Path) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from appendix_a.fem.coefficient_map import CoefficientMap
+from tests.reports import sample
 from verification import registry, runner
 from verification.case import Case, Measured, Metric, Status, Tier
 from verification.cli import main, parser
@@ -180,6 +181,20 @@ def test_report_refuses_what_is_not_a_result_file(text: str, tmp_path: Path, cap
     path.write_text(text)
     assert "--results" in refused(capsys, "report", "--results", str(path), "--output", str(tmp_path / "r"))
     assert not (tmp_path / "r").exists()
+
+
+def test_a_report_replaces_none_of_its_files(tmp_path: Path, capsys: Capture) -> None:
+    results = tmp_path / "results.json"
+    results.write_text(json.dumps(sample.results(sample.case("a/1"))))
+    before, output = results.read_text(), tmp_path / "report"
+    command = ["report", "--results", str(results), "--output", str(output), "--json"]
+    assert "--json" in refused(capsys, *command, str(results))
+    output.mkdir()
+    err = refused(capsys, *command, str(output / "report.html"))
+    assert "--json" in err
+    assert "--output" in err
+    assert results.read_text() == before
+    assert not list(output.iterdir())
 
 
 def test_fem_prints_the_four_keys_and_agrees_with_the_strip_on_a_gentle_slope(capsys: Capture) -> None:

@@ -294,6 +294,29 @@ def test_a_picture_is_no_input(tmp_path: Path, capsys: Capture) -> None:
         assert path.read_text() == SCENE
 
 
+def test_no_two_outputs_are_one_file(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("sub").mkdir()
+    Path("old.vtu").write_text("old")
+    Path("link.json").symlink_to("old.vtu")
+    Path("hard.json").hardlink_to("old.vtu")
+    for first, second in [("a.vtu", "a.vtu"), ("a.vtu", "sub/../a.vtu"), ("a.vtu", str(tmp_path / "a.vtu")),
+                          ("old.vtu", "link.json"), ("old.vtu", "hard.json")]:  # fmt: skip
+        err = refused(capsys, "solve", "hertz", "--grid", "8", "--vtk", first, "--json", second)
+        assert "--vtk" in err
+        assert "--json" in err
+    assert Path("old.vtu").read_text() == "old"
+    assert not Path("a.vtu").exists()
+    assert main(["solve", "hertz", "--grid", "8", "--vtk", "old.vtu", "--json", "/dev/null"]) == 0
+
+
+@pytest.mark.parametrize("option", ["--plot", "--vtk"])
+def test_only_text_goes_to_standard_output(option: str, capsys: Capture) -> None:
+    assert option in refused(capsys, "solve", "hertz", "--grid", "8", option, "-")
+
+
 def test_maps_and_profiles_have_x_to_the_right(scene: str) -> None:
     solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
     pressure = np.zeros((8, 8))

@@ -72,6 +72,50 @@ def test_the_default_store_is_no_input(
     assert "--store = 'study.sqlite'" in capsys.readouterr().err
 
 
+def test_no_two_outputs_are_one_file(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [8]\n')
+    outputs = [
+        (["--store", "keep.sqlite", "--csv", "keep.sqlite"], ("--store", "--csv")),
+        (["--csv", "study.sqlite"], ("--store", "--csv")),  # the default store
+        (["--csv", "x.csv", "--json", "x.csv"], ("--csv", "--json")),
+        (["--csv", "x.csv", "--json", "./x.csv"], ("--csv", "--json")),
+        (["--csv", "-", "--json", "-"], ("--csv", "--json")),
+        (["--store", "s.db", "--json", "s.db-wal"], ("--store", "--json")),
+        (["--store", "s.db", "--csv", "s.db.lock"], ("--store", "--csv")),
+        (["--store", "-"], ("--store",)),
+        (["--parquet", "-"], ("--parquet",)),
+        (["--parquet", "x.csv"], ("--parquet", ".csv")),
+        (["--csv", "x.parquet"], ("--csv", ".parquet")),
+        (["--json", "x.sqlite"], ("--json", ".sqlite")),
+    ]
+    for arguments, named in outputs:
+        try:
+            status = main(["sweep", "study.toml", *arguments])
+        except SystemExit as usage:
+            status = int(usage.code or 0)
+        err = capsys.readouterr().err
+        assert status == 2, arguments
+        assert all(name in err for name in named), err
+        assert err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+
+
+def test_csv_to_standard_output_is_all_that_is_there(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [8]\n')
+    command = ["sweep", "study.toml", "--workers", "1", "--csv"]
+    assert main([*command, "table.csv"]) == 0
+    capsys.readouterr()
+    assert main([*command, "-"]) == 0
+    assert capsys.readouterr().out == Path("table.csv").read_text()
+    assert not Path("-").exists()
+
+
 def test_results_and_a_failed_run(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     from verification.sweep import engine
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import os
 import sys
 import textwrap
@@ -27,7 +28,7 @@ def output_file(text: str) -> Path:
     """Argument type of a file to write: refused at once where it could not be written in the end."""
     path = Path(text)
     if text == "-":
-        return path
+        raise argparse.ArgumentTypeError("'-' is no file, and this is no text for standard output")
     if os.path.isdir(path):  # of any name, however long
         raise argparse.ArgumentTypeError(f"{text!r} is a directory, not a file")
     try:
@@ -37,14 +38,37 @@ def output_file(text: str) -> Path:
     return path
 
 
-def refuse_inputs(inputs: Iterable[Path], **outputs: Path | None) -> None:
-    """Raise InputError for an output, by its option's name, that would replace a file that is read."""
+def output_text(text: str) -> Path:
+    """Argument type of a text to write: a file, or '-' for standard output."""
+    return Path(text) if text == "-" else output_file(text)
+
+
+def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | None) -> None:
+    """Raise InputError for an output, by its option's name, that would replace a file that is read, or be
+    replaced by another option's. Devices and pipes replace nothing, but standard output has room for one.
+    """
     from refimpl.errors import InputError
 
     read = [path for path in inputs if os.path.isfile(path)]  # no shipped scene's name, however long
-    for option, output in outputs.items():
-        if output is not None and output.is_file() and any(map(output.samefile, read)):
-            raise InputError(f"--{option}", str(output), "another file than the inputs")
+    written = [
+        (option, path)
+        for option, paths in outputs.items()
+        for path in ([paths] if isinstance(paths, Path) else paths or ())
+        if not is_stream(path)
+    ]
+    for option, path in written:
+        if any(_one_file(path, other) for other in read):
+            raise InputError(f"--{option}", str(path), "another file than the inputs")
+    for (first, path), (option, again) in itertools.combinations(written, 2):
+        if option != first and _one_file(path, again):
+            raise InputError(f"--{option}", str(again), f"another file than that of --{first}")
+
+
+def _one_file(path: Path, other: Path) -> bool:
+    """Whether both names lead to one file, or would; links and hard links do."""
+    if os.path.realpath(path) == os.path.realpath(other):
+        return True
+    return os.path.isfile(path) and os.path.isfile(other) and os.path.samefile(path, other)
 
 
 def files_of(scene: Scene) -> list[Path]:
@@ -60,7 +84,7 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json",
         metavar="FILE",
-        type=output_file,
+        type=output_text,
         help="write the result as JSON ('-' for standard output)",
     )
 

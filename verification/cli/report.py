@@ -11,7 +11,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from verification.cli.output import Parsers, add_json, columns, emit
+from verification.cli.output import Parsers, add_json, check_outputs, columns, emit
 
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
@@ -66,7 +66,11 @@ def run(options: argparse.Namespace) -> int:
     folder = options.committed or Path(str(resources.files("reports").joinpath("results")))
     if not folder.is_dir():
         raise InputError("--committed", str(folder), "a folder of result files")
-    committed = {path.stem: _read("--committed", path) for path in sorted(folder.glob("*.json"))}
+    files = sorted(folder.glob("*.json"))
+    committed = {path.stem: _read("--committed", path) for path in files}
+    path = options.output / "report.html"
+    read = [options.results, *([] if options.against is None else [options.against]), *files]
+    check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
     try:
         page = render(results, committed, against)
     except ResultFileError as alien:
@@ -75,7 +79,6 @@ def run(options: argparse.Namespace) -> int:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
         raise InputError("--output", str(options.output), "a folder that can be written to") from refused
-    path = options.output / "report.html"
     write_text(page, path)
     written = [path]
     if options.pdf:

@@ -12,12 +12,12 @@ from verification.cli.output import (
     Parsers,
     StatusLine,
     add_json,
+    check_outputs,
     columns,
     emit,
     emit_early,
     files_of,
     output_file,
-    refuse_inputs,
     wrapped,
 )
 
@@ -137,7 +137,7 @@ def run(options: argparse.Namespace) -> int:
     vtk.check_suffix(options.vtk)
     scene = refimpl.read_scene(options.scene)
     inputs = [Path(options.scene), *files_of(scene)]
-    refuse_inputs(inputs, json=options.json, plot=options.plot, vtk=options.vtk)
+    check_outputs(inputs, json=options.json, plot=options.plot, vtk=options.vtk)
     request = Request(
         scene=scene,
         grid=DEFAULT_GRID if options.grid is None and options.accuracy is None else options.grid,

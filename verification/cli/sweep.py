@@ -8,12 +8,22 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import Parsers, add_json, columns, emit, output_file, refuse_inputs
+from verification.cli.output import (
+    Parsers,
+    add_json,
+    check_outputs,
+    columns,
+    emit,
+    output_file,
+    output_text,
+)
 
 if TYPE_CHECKING:
     from verification.multilevel.ensemble import Ensemble
     from verification.sweep.engine import Progress, Sweep
     from verification.sweep.study import Study
+
+SUFFIXES = {"store": ".sqlite", "csv": ".csv", "parquet": ".parquet", "json": ".json"}
 
 EPILOG = """examples:
   rough-friction sweep table3 --store table3.sqlite --workers 4 --csv table3.csv
@@ -63,7 +73,7 @@ def add_parser(commands: Parsers) -> None:
         metavar="ADDRESS",
         help="use the workers of this dask.distributed scheduler instead",
     )
-    add("--csv", metavar="FILE", type=output_file, help="export the study's rows as CSV")
+    add("--csv", metavar="FILE", type=output_text, help="export the study's rows as CSV ('-': to stdout)")
     add("--parquet", metavar="FILE", type=output_file, help="export the study's rows as Parquet")
     add(
         "--target-error",
@@ -79,6 +89,7 @@ def run(options: argparse.Namespace) -> int:
     """Run what is missing and export; status 1 when a run failed or a worker was lost."""
     from refimpl.errors import InputError
     from verification.sweep import engine, export
+    from verification.sweep.store import files_of
     from verification.sweep.study import read_study
 
     if options.workers < 1:
@@ -88,7 +99,8 @@ def run(options: argparse.Namespace) -> int:
     store = options.store or Path(Path(options.study).stem + ".sqlite")
     study = read_study(options.study)
     written = {name: getattr(options, name) for name in ("csv", "parquet", "json")}
-    refuse_inputs(study.files, store=store, **written)
+    check_outputs(study.files, store=files_of(store), **written)
+    _check_suffixes(store=options.store, **written)
     if options.target_error is not None:
         return _ensemble(options, study, store)
     line = _Line()
@@ -105,12 +117,35 @@ def run(options: argparse.Namespace) -> int:
         return 1
     finally:
         line.close()
-    if options.csv is not None:
+    _export(options, done, store)
+    return 1 if done.failures else 0
+
+
+def _check_suffixes(**written: Path | None) -> None:
+    """Refuse a file whose name says that it is what another option writes."""
+    from refimpl.errors import InputError
+
+    for option, path in written.items():
+        for other, suffix in SUFFIXES.items():
+            if path is not None and other != option and path.suffix.lower() == suffix:
+                allowed = f"no name that ends in {suffix}, as that of --{other} does"
+                raise InputError(f"--{option}", str(path), allowed)
+
+
+def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
+    """Write and show what was asked for; the rows take the table's place on standard output."""
+    from verification.sweep import export
+
+    table = _table(done, store)
+    if options.csv == Path("-"):
+        if done.failures:
+            print(table, file=sys.stderr)
+        table = export.to_csv(done.rows).rstrip("\n")
+    elif options.csv is not None:
         export.write_csv(done.rows, options.csv)
     if options.parquet is not None:
         export.write_parquet(done.rows, options.parquet)
-    emit(_document(done, store), options.json, _table(done, store))
-    return 1 if done.failures else 0
+    emit(_document(done, store), options.json, table)
 
 
 def _share(text: str) -> float:

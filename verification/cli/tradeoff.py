@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from verification.cli.output import Parsers, add_json, columns, emit, files_of, refuse_inputs
+from verification.cli.output import Parsers, add_json, check_outputs, columns, emit, files_of
 
 EPILOG = """examples:
   rough-friction tradeoff table1-smooth --grids 32,64,128,256 --reference 1024
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     if options.repeats < 1:
         raise InputError("--repeats", options.repeats, "at least one")
     scene = read_scene(options.scene)
-    refuse_inputs([Path(options.scene), *files_of(scene)], json=options.json)
+    check_outputs([Path(options.scene), *files_of(scene)], json=options.json)
     progress = Progress(len(settings(options.grids, TOLERANCES, inapplicable(scene))))
     try:
         found = study(scene, options.scene, options.grids, options.reference, options.repeats, progress.tick)

@@ -61,6 +61,11 @@ class Store:
             )
 
 
+def files_of(store: Path) -> tuple[Path, ...]:
+    """The store, and what SQLite and the lock keep beside it."""
+    return tuple(store.with_name(store.name + end) for end in ("", "-wal", "-shm", "-journal", ".lock"))
+
+
 @contextmanager
 def open_store(path: Path) -> Iterator[Store]:
     """Open or create a store for one sweep.
