@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from refimpl.errors import InputError
 from reports.studies.multilevel import build
 from verification.cli import main
 from verification.multilevel.__main__ import document
-from verification.multilevel.ensemble import Ensemble, ensemble
+from verification.multilevel.ensemble import _BLOCK, Ensemble, ensemble
 from verification.multilevel.estimator import Estimate, allocation, estimate
-from verification.sweep.study import study_from_dict
+from verification.sweep import engine
+from verification.sweep.study import Study, study_from_dict
 
 TABLE = {"scene": "table1-rough", "vary": {"grid": [16, 32]}, "solve": {"tolerance": 1e-3}}
 
@@ -80,6 +82,32 @@ def test_a_study_that_is_no_ensemble_is_refused(tmp_path: Path, change: dict, fi
     with pytest.raises(InputError) as refused:
         ensemble(study_from_dict(TABLE | change), tmp_path / "a.sqlite", 0.05)
     assert refused.value.field == field
+
+
+@pytest.mark.parametrize("broken", [0, 3])
+def test_no_mean_is_taken_of_what_did_not_converge(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], broken: int
+) -> None:
+    sweep = engine.sweep
+
+    def spoilt(study: Study, *args: Any, **options: Any) -> engine.Sweep:
+        done = sweep(study, *args, **options | {"workers": 0})
+        if study.vary["grid"] == (16, 32):
+            done.rows[2 * broken + 1]["status"] = done.rows[-1]["status"] = "stagnated"
+        return done
+
+    monkeypatch.setattr(engine, "sweep", spoilt)
+    found = ensemble(study_from_dict(TABLE), tmp_path / "a.sqlite", 0.05, workers=0)
+    assert not found.met
+    assert not found.means
+    (told,) = found.failures.values()
+    seeds = 1 + _BLOCK + 2 * broken
+    assert "2 of 16 runs did not converge" in told
+    assert f"seeds {seeds} and {seeds + 1} on 32 elements a side, stagnated" in told
+    (tmp_path / "e.toml").write_text('scene = "table1-rough"\n[vary]\ngrid = [16, 32]\n')
+    command = ["sweep", str(tmp_path / "e.toml"), "--store", str(tmp_path / "s.sqlite")]
+    assert main([*command, "--target-error", "5%"]) == 1
+    assert "2 of 16 runs did not converge" in capsys.readouterr().out
 
 
 def test_a_scene_without_scatter_is_refused(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -12,7 +13,7 @@ import pytest
 import refimpl as rf
 from verification.cli import main
 from verification.cli.sweep import _Line
-from verification.sweep.engine import Progress
+from verification.sweep.engine import Progress, Sweep
 
 Capture = pytest.CaptureFixture[str]
 
@@ -134,6 +135,33 @@ def test_results_and_a_failed_run(tmp_path: Path, capsys: Capture, monkeypatch: 
     monkeypatch.setattr(engine, "execute", breaks)
     assert main([*arguments[:-4], "--store", str(tmp_path / "other.sqlite")]) == 1
     assert "failed: ValueError: no luck" in capsys.readouterr().out
+
+
+LIMITED = 'scene = "table1-rough"\nrealisations = 2\n[vary]\ngrid = [12]\n[solve]\ntolerance = 1e-30\n'
+
+
+def test_what_did_not_converge_is_no_success(tmp_path: Path, capsys: Capture) -> None:
+    """No arithmetic meets 1e-30."""
+    (tmp_path / "study.toml").write_text(LIMITED)
+    store, table = tmp_path / "s.sqlite", tmp_path / "t.csv"
+    command = ["sweep", str(tmp_path / "study.toml"), "--store", str(store), "--workers", "1"]
+    for _ in range(2):  # solved now, and found in the store
+        assert main([*command, "--csv", str(table)]) == 1
+        printed = capsys.readouterr().out
+        assert re.search(r"^  iteration limit +2$", printed, flags=re.M)
+        assert "2 of 2 runs did not converge" in printed
+    assert table.read_text().count(",iteration limit,") == 2
+    assert main([*command, "--json", "-"]) == 1
+    assert json.loads(capsys.readouterr().out)["statuses"] == {"iteration limit": 2}
+    assert main([*command, "--csv", "-"]) == 1
+    assert "2 of 2 runs did not converge" in capsys.readouterr().err
+
+
+def test_a_settled_cycle_is_a_success(capsys: Capture) -> None:
+    rows = [{"status": status} for status in ("converged", "cycled", "converged")]
+    done = Sweep(3, 0, {}, rows, [1.0] * 3, 1.0)
+    assert not done.unconverged
+    assert done.statuses == {"converged": 2, "cycled": 1}
 
 
 def test_progress_is_for_terminals(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -32,8 +32,8 @@ EPILOG = """examples:
   rough-friction sweep ensemble.toml --target-error 0.5%
 
 A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on
-where it was; runs that the store has are not done again. Exit status 1 when a run failed; its
-message is shown.
+where it was; runs that the store has are not done again. Exit status 1 when a run failed, and its
+message is shown, or did not converge: then its row says so by its status.
 
   scene = "table1-rough"      # a shipped scene, or a scene file relative to this file
   realisations = 75           # of every Gaussian roughness; seeds from first_seed (default 1).
@@ -46,7 +46,8 @@ message is shown.
 
 With --target-error the study is an ensemble that varies the grid alone, each grid twice the one
 before, and realisations are as many as it takes: mean mu and A on the finest grid, each with a
-standard error of at most that share, by multilevel Monte Carlo.
+standard error of at most that share, by multilevel Monte Carlo. Where a realisation does not
+converge, there is no mean: without it the mean would be that of the easier surfaces.
 """
 
 
@@ -86,7 +87,7 @@ def add_parser(commands: Parsers) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run what is missing and export; status 1 when a run failed or a worker was lost."""
+    """Run what is missing and export; status 1 when a run failed or did not converge, or a worker was lost."""
     from refimpl.errors import InputError
     from verification.sweep import engine, export
     from verification.sweep.store import files_of
@@ -118,7 +119,7 @@ def run(options: argparse.Namespace) -> int:
     finally:
         line.close()
     _export(options, done, store)
-    return 1 if done.failures else 0
+    return 1 if done.failures or done.unconverged else 0
 
 
 def _check_suffixes(**written: Path | None) -> None:
@@ -138,7 +139,7 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
 
     table = _table(done, store)
     if options.csv == Path("-"):
-        if done.failures:
+        if done.failures or done.unconverged:
             print(table, file=sys.stderr)
         table = export.to_csv(done.rows).rstrip("\n")
     elif options.csv is not None:
@@ -216,6 +217,7 @@ def _document(done: Sweep, store: Path) -> dict[str, object]:
         "found": done.found,
         "finished": done.finished,
         "failures": done.failures,
+        "statuses": done.statuses,
         "seconds": round(done.seconds, 3),
         "rows": plain(done.rows),
         "provenance": provenance(),
@@ -227,10 +229,12 @@ def _table(done: Sweep, store: Path) -> str:
         ["found in the store", str(done.found)],
         ["finished now", str(done.finished)],
         ["failed", str(len(done.failures))],
+        *([status, str(number)] for status, number in sorted(done.statuses.items())),
     ]
-    messages = sorted(set(done.failures.values()))
-    parts = [f"{store}, {done.seconds:.0f} s", columns(rows), *(f"failed: {text}" for text in messages)]
-    return "\n\n".join(parts)
+    messages = [f"failed: {text}" for text in sorted(set(done.failures.values()))]
+    if bad := done.unconverged:
+        messages.append(f"{len(bad)} of {len(done.rows)} runs did not converge: their rows are no solutions")
+    return "\n\n".join([f"{store}, {done.seconds:.0f} s", columns(rows), *messages])
 
 
 class _Line:

@@ -56,7 +56,9 @@ def ensemble(
     """Mean mu and A on the study's finest grid, each to the relative standard error ``target``.
 
     The study varies the grid alone, over two or more grids, each twice the one before. Runs are kept in the
-    store, so an interrupted ensemble goes on. Raises InputError, and what `engine.sweep` raises.
+    store, so an interrupted ensemble goes on. Where a run fails or does not converge there are no means but
+    `Ensemble.failures`: without the hard surfaces they would be means of the easy ones. Raises InputError,
+    and what `engine.sweep` raises.
     """
     grids = _checked(study, target)
     if "tolerance" not in study.settings:
@@ -102,14 +104,25 @@ def _solved(
         study, realisations=number, first_seed=study.first_seed + term * _BLOCK, vary={"grid": tuple(pair)}
     )
     done = engine.sweep(part, store, workers=workers, scheduler=scheduler, tick=tick)
-    if done.failures:
+    if failures := {**done.failures, **_unconverged(part, done)}:
         none = np.empty((0, len(QUANTITIES)))
-        return _Term(none, none, np.nan, np.nan, done.failures)
+        return _Term(none, none, np.nan, np.nan, failures)
     values = np.array([[row[name] for name in QUANTITIES] for row in done.rows], dtype=float)
     by_grid = values.reshape(number, len(pair), len(QUANTITIES))
     samples = by_grid[:, -1] - by_grid[:, 0] if term else by_grid[:, 0]
     seconds = np.array(done.solve_seconds).reshape(number, len(pair)).mean(axis=0)
     return _Term(samples, by_grid[:, -1], float(seconds.sum()), float(seconds[-1]), {})
+
+
+def _unconverged(part: Study, done: engine.Sweep) -> dict[str, str]:
+    """How many runs of a term are no solutions, under the key of the first; nothing where there is none."""
+    if not done.unconverged:
+        return {}
+    first = done.unconverged[0]
+    seed = part.first_seed + 2 * first["realisation"]
+    number = f"{len(done.unconverged)} of {len(done.rows)} runs did not converge"
+    which = f"seeds {seed} and {seed + 1} on {first['grid']} elements a side, {first['status']}"
+    return {first["key"]: f"{number}; the first: {which}, residual {first['residual']:.2g}"}
 
 
 def _gathered(grids: Sequence[int], terms: Sequence[_Term], target: float) -> Ensemble:

@@ -12,13 +12,11 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import t as student
 
-from refimpl.outcome import Status
 from verification.sweep.engine import sweep
-from verification.sweep.run import Row
+from verification.sweep.run import CERTIFIED, Row
 from verification.sweep.study import Study, read_study
 
 FOLDER = "ROUGH_FRICTION_SWEEPS"  # environment variable: keep stores there; they outlive a killed run
-CERTIFIED = (Status.CONVERGED.value, Status.CYCLED.value)
 CONFIDENCE = 0.95
 
 

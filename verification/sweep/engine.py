@@ -11,6 +11,7 @@ import multiprocessing.connection
 import os
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -27,7 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
-from verification.sweep.run import Row, Run, execute
+from verification.sweep.run import CERTIFIED, Row, Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study
 from verification.threads import one_thread
@@ -60,6 +61,16 @@ class Sweep:
     rows: list[Row]
     solve_seconds: list[float]
     seconds: float
+
+    @property
+    def statuses(self) -> dict[str, int]:
+        """How many rows ended how, by `refimpl.Status`."""
+        return dict(Counter(row["status"] for row in self.rows))
+
+    @property
+    def unconverged(self) -> list[Row]:
+        """The rows whose numbers are no solution; they are kept: solved again, they would end the same."""
+        return [row for row in self.rows if row["status"] not in CERTIFIED]
 
 
 class WorkersLost(RuntimeError):

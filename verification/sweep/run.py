@@ -32,6 +32,9 @@ that is not local friction; ``residual`` the certificate's largest; ``..._cycle`
 tau's support reached; ``border_elements`` the elements in contact on the domain's border.
 """
 
+CERTIFIED = (rf.Status.CONVERGED.value, rf.Status.CYCLED.value)
+"""Statuses of rows whose numbers are solutions, as `refimpl.Solution.converged` has it."""
+
 Row = dict[str, Any]
 
 
