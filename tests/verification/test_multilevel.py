@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,14 @@ from refimpl.errors import InputError
 from reports.studies.multilevel import build
 from verification.cli import main
 from verification.multilevel.__main__ import document
-from verification.multilevel.ensemble import _BLOCK, Ensemble, ensemble
-from verification.multilevel.estimator import Estimate, allocation, estimate
+from verification.multilevel.ensemble import _BLOCK, PILOT, QUANTITIES, Ensemble, ensemble
+from verification.multilevel.estimator import (
+    Estimate,
+    allocation,
+    cheapest_start,
+    costs_by_start,
+    estimate,
+)
 from verification.sweep import engine
 from verification.sweep.study import Study, study_from_dict
 
@@ -57,6 +64,76 @@ def test_several_quantities_all_meet_theirs() -> None:
     target = np.array([0.1, 0.05])
     numbers = allocation(variances, np.array([1.0, 4.0]), target)
     assert np.all((variances / numbers[:, None]).sum(axis=0) <= target**2 + 1e-12)
+
+
+def test_costs_by_start_are_those_of_giles() -> None:
+    """Three terms: (sum of sqrt(V C))^2 / target^2, the first V and C those of plain solves on its grid."""
+    corrections = np.array([[np.nan], [0.04], [0.01]])  # the first term has no coarser grid
+    alone, pairs, target = np.array([1.0, 4.0, 16.0]), np.array([1.0, 5.0, 20.0]), np.array([0.001])
+    found = costs_by_start(np.array([1.0]), corrections, alone, pairs, target)
+    root = np.sqrt
+    expected = [(1.0 + root(0.04 * 5) + root(0.01 * 20)) ** 2, (2.0 + root(0.01 * 20)) ** 2, 16.0]
+    np.testing.assert_allclose(found, np.array(expected) / 1e-6, rtol=1e-5)  # whole numbers of samples
+
+
+@pytest.mark.parametrize(
+    ("costs", "expected"),
+    [
+        ([1.0, 1.5, 3.0, 9.0], 0),  # pays
+        ([1.9, 1.0, 3.0, 9.0], 0),  # not clearly dearer: no better known from a pilot
+        ([2.1, 1.0, 3.0, 9.0], 1),
+        ([1.9, 1.5, 1.2, 1.0], 3),  # whatever is dearer than plain sampling goes
+        ([30.0, 4.0, 1.0], 2),
+    ],
+)
+def test_levels_that_do_not_pay_are_dropped(costs: list[float], expected: int) -> None:
+    assert cheapest_start(np.array(costs)) == expected
+
+
+def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What grids of 8 and 16 elements say has nothing to do with the finest: plain sampling is cheapest."""
+    study = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}})
+    kept = spied(monkeypatch, scatter=(9.0, 4.0, 1.0))
+    found = ensemble(study, tmp_path / "a.sqlite", 0.002, workers=0)
+    assert found.met
+    assert found.grids == (8, 16, 32)
+    assert found.samples[:2] == (0, 0)
+    assert found.samples[2] == len(found.finest["contact_area"]) > PILOT[2]
+    assert found.cost == pytest.approx(sum(kept.values()))  # the pilot's solves are paid for
+    assert min(found.cost / plain for plain in found.plain.values()) < 1.5
+    assert ensemble(study, tmp_path / "a.sqlite", 0.002, workers=0) == found
+
+
+def spied(monkeypatch: pytest.MonkeyPatch, scatter: tuple[float, ...]) -> dict[str, float]:
+    """Sweeps solve nothing, but draw: independent numbers of that scatter by grid (8, 16, ...).
+
+    Returns the seconds of every run by its key.
+    """
+    seconds: dict[str, float] = {}
+
+    def drawn(study: Study, *_: Any, **__: Any) -> engine.Sweep:
+        rows, spent = [], []
+        for run in study.runs():
+            level = int(np.log2(run.inputs["grid"] / 8))
+            value = 100 + scatter[level] * np.random.default_rng(int(run.key, 16)).standard_normal()
+            rows.append(dict.fromkeys(QUANTITIES, value) | {"status": "converged", "key": run.key})
+            spent.append(seconds.setdefault(run.key, 4.0**level))
+        return engine.Sweep(0, len(rows), {}, rows, spent, 0.0)
+
+    monkeypatch.setattr(engine, "sweep", drawn)
+    return seconds
+
+
+@pytest.mark.parametrize("target", [1e-6, 1e-30, 1e-300])
+def test_a_target_out_of_reach_is_refused_after_the_pilot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, target: float
+) -> None:
+    solved = spied(monkeypatch, scatter=(1.0, 1.0, 1.0))
+    study = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}})
+    with pytest.raises(InputError, match=f"--target-error = {target:g}: .*realisations.*1000000") as refused:
+        ensemble(study, tmp_path / "a.sqlite", target)
+    assert len(solved) == 16 + 2 * 8 + 2 * 4
+    assert re.search("takes ([1-9].*|inf) realisations", refused.value.allowed)
 
 
 def test_an_ensemble_resumes_and_repeats(tmp_path: Path) -> None:

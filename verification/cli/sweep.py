@@ -46,8 +46,9 @@ message is shown, or did not converge: then its row says so by its status.
 
 With --target-error the study is an ensemble that varies the grid alone, each grid twice the one
 before, and realisations are as many as it takes: mean mu and A on the finest grid, each with a
-standard error of at most that share, by multilevel Monte Carlo. Where a realisation does not
-converge, there is no mean: without it the mean would be that of the easier surfaces.
+standard error of at most that share, by multilevel Monte Carlo from the grid on that a pilot
+finds to pay; plain sampling on the finest where none does. Where a realisation does not converge,
+there is no mean: without it the mean would be that of the easier surfaces.
 """
 
 
@@ -87,7 +88,7 @@ def add_parser(commands: Parsers) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run what is missing and export; status 1 when a run failed or did not converge, or a worker was lost."""
+    """Run what is missing and export; status 1 when a run failed, did not converge, or a worker was lost."""
     from refimpl.errors import InputError
     from verification.sweep import engine, export
     from verification.sweep.store import files_of
@@ -203,8 +204,9 @@ def _ensemble_table(found: Ensemble) -> str:
         rows.append([name, f"{e.mean:.6g}", f"{e.standard_error / abs(e.mean):.2%}", interval, share])
     terms = [["grid", "realisations", "processor time of one (s)"]]
     for grid, number, seconds in zip(found.grids, found.samples, found.seconds, strict=True):
-        terms.append([str(grid), str(number), f"{seconds:.3g}"])
-    end = "" if found.met else "\nthe target was not met"
+        terms.append([str(grid), str(number), f"{seconds:.3g}"] if number else [str(grid), "dropped", "-"])
+    end = f"\nfinding out what to drop took {found.dropped:.3g} s" if found.dropped else ""
+    end += "" if found.met else "\nthe target was not met"
     return f"{columns(rows)}\n\n{columns(terms)}{end}"
 
 

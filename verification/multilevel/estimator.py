@@ -16,6 +16,7 @@ from scipy.stats import t
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
+CLEARLY = 2.0  # times dearer: variances of a pilot's four samples do not tell less
 
 
 @dataclass(frozen=True)
@@ -43,14 +44,47 @@ def estimate(levels: Sequence[Array]) -> Estimate:
     return Estimate(mean, error, quantile * error, float(freedom))
 
 
-def allocation(variances: Array, costs: Array, target: Array) -> NDArray[np.int_]:
-    """Sample numbers ``(L,)`` that reach every quantity's target standard error at the least cost.
+def demand(variances: Array, costs: Array, target: Array) -> Array:
+    """Sample numbers ``(L,)``, not yet whole, that reach every quantity's target standard error cheapest.
 
     ``variances`` of the terms, ``(L, quantities)``; ``costs`` of one sample, ``(L,)``; ``target``,
     ``(quantities,)``. For one quantity ``N_l = sqrt(V_l / C_l) sum_k sqrt(V_k C_k) / target^2`` (Giles 2008);
-    of several, the largest number.
+    of several, the largest number; what does not scatter asks for none.
     """
     work = np.sqrt(variances * costs[:, None]).sum(axis=0)
-    numbers = np.sqrt(variances / costs[:, None]) * work / target**2
-    found: NDArray[np.int_] = np.ceil(numbers.max(axis=1) - 1e-9).astype(np.int_)
+    asks = work > 0
+    numbers = np.sqrt(variances / costs[:, None])[:, asks] * work[asks] / target[asks] ** 2
+    return np.asarray(numbers.max(axis=1, initial=0.0))
+
+
+def allocation(variances: Array, costs: Array, target: Array) -> NDArray[np.int_]:
+    """`demand` in whole samples."""
+    found: NDArray[np.int_] = np.ceil(demand(variances, costs, target) - 1e-9).astype(np.int_)
     return found
+
+
+def costs_by_start(scatter: Array, corrections: Array, alone: Array, pairs: Array, target: Array) -> Array:
+    """Cost ``(L,)`` of reaching the target when the sum of terms starts on each of the grids; last: on the
+    finest alone, which is plain sampling.
+
+    The least ``sum N_l C_l`` at ``sum V_l / N_l = target^2`` has ``N_l`` proportional to ``sqrt(V_l / C_l)``,
+    and is ``(sum sqrt(V_l C_l))^2 / target^2`` (Giles 2008; 2015, Acta Numerica 24, 259). Starting on grid s,
+    the first term is a plain solve there, ``scatter`` its variance ``(quantities,)`` and ``alone[s]`` its
+    cost, and the others remain: ``corrections`` their variances ``(L, quantities)``, ``pairs`` their costs
+    ``(L,)``, the first of both unused. So a coarser grid pays where the square root of what its term costs
+    is less than what a cheaper first term saves.
+    """
+    found = []
+    for s in range(len(alone)):
+        costs = np.append(alone[s], pairs[s + 1 :])
+        found.append(demand(np.vstack([scatter, corrections[s + 1 :]]), costs, target) @ costs)
+    return np.array(found)
+
+
+def cheapest_start(costs: Array) -> int:
+    """The coarsest start not `CLEARLY` dearer than the cheapest, and no dearer than plain sampling.
+
+    >>> cheapest_start(np.array([1.5, 1.0, 2.0])), cheapest_start(np.array([5.0, 4.0, 1.0]))
+    (0, 2)
+    """
+    return int(np.flatnonzero(costs <= min(CLEARLY * costs.min(), costs[-1]))[0])
