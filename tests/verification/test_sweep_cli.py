@@ -53,7 +53,7 @@ def test_an_output_is_no_input(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     np.save("heights.npy", np.random.default_rng(1).standard_normal((8, 8)) * 1e-9)
-    surface = '[[lower.surface]]\nkind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 2e-4\n'
+    surface = '[[lower.surface]]\nkind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 2.1e-4\n'
     text = rf.scene_to_toml(rf.read_scene("table1-rough"))
     Path("scene.toml").write_text(text + surface)
     Path("study.toml").write_text('scene = "scene.toml"\n[vary]\ngrid = [8, 16]\n')
@@ -135,6 +135,26 @@ def test_results_and_a_failed_run(tmp_path: Path, capsys: Capture, monkeypatch: 
     monkeypatch.setattr(engine, "execute", breaks)
     assert main([*arguments[:-4], "--store", str(tmp_path / "other.sqlite")]) == 1
     assert "failed: ValueError: no luck" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("target", [[], ["--target-error", "5%"]])
+@pytest.mark.parametrize(
+    ("axes", "named"),
+    [
+        ("grid = [500000, 1000000]", "GB"),
+        ("grid = [8, 16]\ncorrelation_length = [1e-4, 1e-9]", "correlation_length"),
+        ("grid = [8, 16]\nlower_rms = [0.5, 1e-6]", "wrong unit"),
+        ("grid = [8, 16]\nload = [1.0, 1e30]", "load = 1e+30"),
+    ],
+)
+def test_what_no_run_could_pose_is_refused_before_there_is_a_store(
+    axes: str, named: str, target: list[str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(f'scene = "table1-rough"\n[vary]\n{axes}\n')
+    assert main(["sweep", "study.toml", *target]) == 2
+    assert named in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 
 LIMITED = 'scene = "table1-rough"\nrealisations = 2\n[vary]\ngrid = [12]\n[solve]\ntolerance = 1e-30\n'

@@ -12,6 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.scene_file import scene_from_dict
+from refimpl.surfaces import measured
 from verification.sweep import study as study_module
 from verification.sweep.run import COORDINATES, OUTCOMES, execute
 from verification.sweep.study import Study, read_study, shipped_studies, study_from_dict
@@ -144,6 +145,17 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("solve.oblique", {"solve": {"oblique": "yes"}}),
     ("oblique", {"solve": {"oblique": False, "slope_correction": True}}),
     ("solve.slope_correction", {"solve": {"slope_correction": 1}}),
+    ("load", {"vary": {"grid": [16], "load": [70.0, 1e30]}}),
+    ("friction.tau", {"vary": {"grid": [16], "tau": [1e6, 1e20]}}),
+    ("lower.surface", {"vary": {"grid": [16], "lower_rms": [0.5, 1e-6]}}),
+    ("lower.surface[0].correlation_length", {"vary": {"grid": [8, 16], "correlation_length": [1e-9, 1e-4]}}),
+    (
+        "upper.surface[1].normalise",
+        {
+            "normalise": True,
+            "vary": {"grid": [16], "lower_rms": [0], "correlation_length": [1e-4, 1e-2, 1e-3]},
+        },
+    ),
     ("vary", {"realisations": 10**6, "vary": {"grid": [16], "load": [1, 2]}}),
 ]
 
@@ -153,6 +165,62 @@ def test_bad_studies_are_refused_by_name(field: str, change: dict[str, Any]) -> 
     with pytest.raises(InputError) as refused:
         study_from_dict(BASE | change)
     assert refused.value.field == field
+
+
+@pytest.fixture
+def reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """A scene of 8 um on a surface of which 16 um were measured; how often its file was read."""
+    np.save(tmp_path / "heights.npy", 1e-9 * np.random.default_rng(1).standard_normal((16, 16)))
+    (tmp_path / "scene.toml").write_text(
+        "load = 1e-3\nside = 8e-6\n[upper.material]\nE = 1e9\nnu = 0.3\n"
+        "[upper.surface]\nkind='sphere'\nradius=1e-4\n[lower.material]\nE = 1e9\nnu = 0.3\n"
+        "[lower.surface]\nkind = 'measured'\npath = 'heights.npy'\nunit = 'm'\npixel_size = 1e-6\n"
+    )
+    counted: list[object] = []
+    read = measured.read
+    monkeypatch.setattr(measured, "read", lambda *a: (counted.append(a), read(*a))[1])
+    return counted
+
+
+TURNS = {"grid": [8], "sliding_direction": [0.0, 1.5707963267948966, 0.5]}
+
+
+@pytest.mark.parametrize("offsets", [[0.0, 5e-6, 1e-6], [-5e-6], [-5e-6, 1e-6]])
+def test_a_slide_off_a_measured_surface_is_refused_at_once(
+    tmp_path: Path, offsets: list[float], reads: list[object]
+) -> None:
+    with pytest.raises(InputError) as refused:
+        study_from_dict({"scene": "scene.toml", "vary": TURNS | {"sliding_offset": offsets}}, tmp_path)
+    assert (refused.value.field, refused.value.value) == ("sliding_offset", max(offsets, key=abs))
+
+
+def test_a_slide_within_it_is_good_and_the_file_is_read_once(tmp_path: Path, reads: list[object]) -> None:
+    axes = TURNS | {"sliding_offset": [-4e-6, 0.0, 4e-6]}
+    assert len(study_from_dict({"scene": "scene.toml", "vary": axes}, tmp_path)) == 9
+    assert len(reads) == 1
+
+
+def test_only_what_differs_in_its_limits_is_sampled(monkeypatch: pytest.MonkeyPatch) -> None:
+    sampled: list[tuple[float, int]] = []
+    heights = rf.Scene.heights
+
+    def counted(scene: rf.Scene, grid: rf.Grid) -> object:
+        sampled.append((scene.sliding_offset, grid.M))
+        return heights(scene, grid)
+
+    monkeypatch.setattr(rf.Scene, "heights", counted)
+    axes = {
+        "grid": [16, 4096],
+        "load": [10.0, 20.0, 30.0],
+        "lower_rms": [1e-6, 2e-6],
+        "sliding_direction": [0.0, 0.5, 1.0],
+        "correlation_length": [1e-4, 2e-4, 3e-4],
+    }
+    study_from_dict(BASE | {"realisations": 100, "vary": axes})
+    assert sampled == [(0.0, 256)] * 2  # the shortest and the longest correlation
+    sampled.clear()
+    study_from_dict(BASE | {"vary": {"grid": [16], "sliding_offset": [0.0, 2e-6, -1e-6], "load": [1.0, 2.0]}})
+    assert sampled == [(-1e-6, 16), (2e-6, 16)]
 
 
 def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run what is missing and export; status 1 when a run failed, did not converge, or a worker was lost."""
     from refimpl.errors import InputError
-    from verification.sweep import engine, export
+    from verification.sweep import engine, export, posable
     from verification.sweep.store import files_of
     from verification.sweep.study import read_study
 
@@ -103,6 +103,8 @@ def run(options: argparse.Namespace) -> int:
     written = {name: getattr(options, name) for name in ("csv", "parquet", "json")}
     check_outputs(study.files, store=files_of(store), **written)
     _check_suffixes(store=options.store, **written)
+    if options.scheduler is None:  # a cluster's memory is not this machine's
+        posable.check_memory(study)
     if options.target_error is not None:
         return _ensemble(options, study, store)
     line = _Line()

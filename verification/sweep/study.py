@@ -16,7 +16,8 @@ from refimpl import read_scene
 from refimpl.errors import InputError, require_number
 from refimpl.plan import METHODS
 from refimpl.planning.choice import Forced
-from refimpl.scene_file import scene_from_dict, scene_to_dict
+from refimpl.scene_file import scene_to_dict
+from verification.sweep import posable
 from verification.sweep.run import COORDINATES, Run, code_digest, file_digest
 
 SCENE_AXES = ("load", "sliding_direction", "sliding_offset")
@@ -148,7 +149,7 @@ def shipped_studies() -> tuple[str, ...]:
 
 
 def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
-    """The study of a parsed TOML table; every scene that will be solved is built once, and so checked."""
+    """The study of a parsed TOML table, with all that its runs would be refused for refused (`posable`)."""
     _refuse_unknown("study", table, KEYS)
     name = table.get("scene")
     if not isinstance(name, str) or not name:
@@ -199,10 +200,8 @@ def _check(study: Study) -> None:
         _whole("vary.grid", M, at_least=1)
     if study.scene["periodic"] and study.settings.get("method") == "paper":
         raise InputError("solve.method", "paper", "dense or fft for a periodic scene")
-    last = study.first_seed + 2 * study.realisations
     _whole("first_seed", study.first_seed, at_least=0, below=2**63 - 2 * study.realisations)
-    for run in Study(study.scene, 1, last, study.normalise, study.vary, study.settings).runs():
-        scene_from_dict(run.inputs["scene"], Path())
+    posable.check(study)
 
 
 def _check_settings(settings: Mapping[str, Any]) -> None:

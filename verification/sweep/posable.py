@@ -1,0 +1,67 @@
+"""What posing a run would refuse, found before any run: each limit where the study comes closest to it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from refimpl.grid import Grid
+from refimpl.plan import memory_of
+from refimpl.request import Request
+from refimpl.scene import Scene
+from refimpl.scene_file import scene_from_dict
+from refimpl.surfaces import SurfaceWarning
+
+if TYPE_CHECKING:
+    from verification.sweep.study import Study
+
+FINEST = 256  # elements a side that heights are sampled on: 0.01 s, and 0.4 % from where the domain ends
+_SMALL, _LARGE, _BOTH = (min,), (max,), (min, max)
+_CLOSEST = {"upper_rms": _LARGE, "lower_rms": _LARGE, "correlation_length": _BOTH, "sliding_offset": _BOTH}
+
+
+def check(study: Study) -> None:
+    """Raise InputError, naming the field, for what `refimpl.solve` would refuse of any run but its memory.
+
+    Requests are made of every point of one realisation (0.1 ms each). Heights are sampled, of the first
+    realisation, only where a limit may be met, 8 times at most: the largest roughness (peak-to-valley), the
+    shortest and the longest correlation (noise nodes; period), the farthest slides either way in the
+    directions nearest to the axes (measured area). What remains for the runs: other realisations' peaks,
+    and windows on the way of a slide that miss too many points.
+    """
+    for run in replace(study, realisations=1).runs():
+        scene = scene_from_dict(run.inputs["scene"], Path())
+        Request(scene=scene, grid=run.inputs["grid"], **run.inputs["solve"])
+    for scene in _closest(study):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SurfaceWarning)
+            scene.heights(Grid(scene.side, min(FINEST, int(max(study.vary["grid"])))))
+
+
+def check_memory(study: Study) -> None:
+    """Raise InputError where the finest grid does not fit into this machine's free memory."""
+    memory_of(study.settings.get("method", "fft"), int(max(study.vary["grid"])))
+
+
+def _closest(study: Study) -> Iterator[Scene]:
+    """The scenes that come closest to a limit of their heights; slides of one scene share its surfaces."""
+    turns = study.vary.get("sliding_direction", (study.scene["sliding_direction"],))
+    nearest = (max(turns, key=lambda phi: abs(component(phi))) for component in (math.cos, math.sin))
+    directions = tuple(dict.fromkeys(nearest))
+    offsets = _ends("sliding_offset", study.vary.get("sliding_offset", (study.scene["sliding_offset"],)))
+    axes = {axis: _ends(axis, values) for axis, values in study.vary.items()}
+    axes |= {"sliding_direction": directions[:1], "sliding_offset": offsets[:1]}
+    for run in replace(study, realisations=1, vary=axes).runs():
+        scene = scene_from_dict(run.inputs["scene"], Path())
+        for direction, offset in itertools.product(directions if any(offsets) else directions[:1], offsets):
+            yield replace(scene, sliding_direction=direction, sliding_offset=offset)
+
+
+def _ends(axis: str, values: Sequence[float]) -> tuple[float, ...]:
+    """The values of an axis that come closest to a limit; one of those that heights do not depend on."""
+    return tuple(dict.fromkeys(end(values) for end in _CLOSEST.get(axis, _SMALL)))
