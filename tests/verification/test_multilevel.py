@@ -66,6 +66,13 @@ def test_several_quantities_all_meet_theirs() -> None:
     assert np.all((variances / numbers[:, None]).sum(axis=0) <= target**2 + 1e-12)
 
 
+def test_what_does_not_scatter_asks_for_no_samples() -> None:
+    """The friction of a frictionless scene: its mean is 0, and so is the target."""
+    variances, costs = np.array([[0.0, 1.0], [0.0, 0.04]]), np.array([1.0, 16.0])
+    assert allocation(variances, costs, np.array([0.0, 0.1])).tolist() == [180, 9]
+    assert allocation(variances[:, :1], costs, np.array([0.0])).tolist() == [0, 0]
+
+
 def test_costs_by_start_are_those_of_giles() -> None:
     """Three terms: (sum of sqrt(V C))^2 / target^2, the first V and C those of plain solves on its grid."""
     corrections = np.array([[np.nan], [0.04], [0.01]])  # the first term has no coarser grid

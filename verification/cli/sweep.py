@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from verification.cli import ensemble
 from verification.cli.output import (
     Parsers,
     add_json,
@@ -19,9 +19,7 @@ from verification.cli.output import (
 )
 
 if TYPE_CHECKING:
-    from verification.multilevel.ensemble import Ensemble
     from verification.sweep.engine import Progress, Sweep
-    from verification.sweep.study import Study
 
 SUFFIXES = {"store": ".sqlite", "csv": ".csv", "parquet": ".parquet", "json": ".json"}
 
@@ -106,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
     if options.scheduler is None:  # a cluster's memory is not this machine's
         posable.check_memory(study)
     if options.target_error is not None:
-        return _ensemble(options, study, store)
+        return ensemble.run(options, study, store, _Line())
     line = _Line()
     try:
         done = engine.sweep(
@@ -162,54 +160,6 @@ def _share(text: str) -> float:
         return float(text[:-1]) / 100 if text.endswith("%") else float(text)
     except ValueError as alien:
         raise argparse.ArgumentTypeError(f"{text!r} is no share like 0.5% or 0.005") from alien
-
-
-def _ensemble(options: argparse.Namespace, study: Study, store: Path) -> int:
-    """Run an ensemble to its target; status 1 when a run failed or the target was not met."""
-    from refimpl.errors import InputError
-    from verification.multilevel.ensemble import ensemble
-    from verification.provenance import provenance
-    from verification.sweep import engine
-
-    if options.csv is not None or options.parquet is not None:
-        raise InputError(
-            "--target-error", options.target_error, "no --csv or --parquet beside it: use --json"
-        )
-    line = _Line()
-    try:
-        found = ensemble(
-            study,
-            store,
-            options.target_error,
-            workers=options.workers,
-            scheduler=options.scheduler,
-            tick=line.show,
-        )
-    except engine.WorkersLost as lost:
-        print(f"rough-friction sweep: {lost}", file=sys.stderr)
-        return 1
-    finally:
-        line.close()
-    document = {**asdict(found), "cost": found.cost if found.means else None, "provenance": provenance()}
-    emit(document, options.json, _ensemble_table(found))
-    return 0 if found.met else 1
-
-
-def _ensemble_table(found: Ensemble) -> str:
-    failed = [f"failed: {text}" for text in sorted(set(found.failures.values()))]
-    if not found.means:
-        return "\n".join(failed)
-    rows = [["mean", "value", "standard error", "95 % interval", "cost over plain sampling"]]
-    for name, e in found.means.items():
-        interval = f"+- {e.half_width / abs(e.mean):.2%}"
-        share = f"{found.cost / found.plain[name]:.0%}"
-        rows.append([name, f"{e.mean:.6g}", f"{e.standard_error / abs(e.mean):.2%}", interval, share])
-    terms = [["grid", "realisations", "processor time of one (s)"]]
-    for grid, number, seconds in zip(found.grids, found.samples, found.seconds, strict=True):
-        terms.append([str(grid), str(number), f"{seconds:.3g}"] if number else [str(grid), "dropped", "-"])
-    end = f"\nfinding out what to drop took {found.dropped:.3g} s" if found.dropped else ""
-    end += "" if found.met else "\nthe target was not met"
-    return f"{columns(rows)}\n\n{columns(terms)}{end}"
 
 
 def _document(done: Sweep, store: Path) -> dict[str, object]:

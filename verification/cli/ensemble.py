@@ -1,0 +1,72 @@
+"""`rough-friction sweep --target-error`: an ensemble's means, as a table and as JSON."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from verification.cli.output import columns, emit
+
+if TYPE_CHECKING:
+    from verification.multilevel.ensemble import Ensemble
+    from verification.sweep.engine import Progress
+    from verification.sweep.study import Study
+
+
+class Line(Protocol):
+    """Where progress is shown."""
+
+    def show(self, progress: Progress) -> None: ...
+
+    def close(self) -> None: ...
+
+
+def run(options: argparse.Namespace, study: Study, store: Path, line: Line) -> int:
+    """Run an ensemble to its target; status 1 when a run failed or the target was not met."""
+    from refimpl.errors import InputError
+    from verification.multilevel.ensemble import ensemble
+    from verification.provenance import provenance
+    from verification.sweep import engine
+
+    if options.csv is not None or options.parquet is not None:
+        raise InputError(
+            "--target-error", options.target_error, "no --csv or --parquet beside it: use --json"
+        )
+    try:
+        found = ensemble(
+            study,
+            store,
+            options.target_error,
+            workers=options.workers,
+            scheduler=options.scheduler,
+            tick=line.show,
+        )
+    except engine.WorkersLost as lost:
+        print(f"rough-friction sweep: {lost}", file=sys.stderr)
+        return 1
+    finally:
+        line.close()
+    document = {**asdict(found), "cost": found.cost if found.means else None, "provenance": provenance()}
+    emit(document, options.json, table(found))
+    return 0 if found.met else 1
+
+
+def table(found: Ensemble) -> str:
+    """Means with their errors, what was solved on each grid; or why there is none."""
+    failed = [f"failed: {text}" for text in sorted(set(found.failures.values()))]
+    if not found.means:
+        return "\n".join(failed)
+    rows = [["mean", "value", "standard error", "95 % interval", "cost over plain sampling"]]
+    for name, e in found.means.items():
+        interval = f"+- {e.half_width / abs(e.mean):.2%}"
+        share = f"{found.cost / found.plain[name]:.0%}"
+        rows.append([name, f"{e.mean:.6g}", f"{e.standard_error / abs(e.mean):.2%}", interval, share])
+    terms = [["grid", "realisations", "processor time of one (s)"]]
+    for grid, number, seconds in zip(found.grids, found.samples, found.seconds, strict=True):
+        terms.append([str(grid), str(number), f"{seconds:.3g}"] if number else [str(grid), "dropped", "-"])
+    end = f"\nfinding out what to drop took {found.dropped:.3g} s" if found.dropped else ""
+    end += "" if found.met else "\nthe target was not met"
+    return f"{columns(rows)}\n\n{columns(terms)}{end}"
