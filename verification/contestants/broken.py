@@ -1,7 +1,7 @@
 """Solvers that are wrong on purpose, each in one way, and all of them sure of themselves.
 
 The suite's own test: every one of them must fail in each case whose description names its fault
-(`verification.contestants.self_test`).
+(`verification.cases.contestants`).
 """
 
 from __future__ import annotations
@@ -23,8 +23,22 @@ from refimpl.operators.periodic import PeriodicInfluence
 from verification.contestants import own, referee
 from verification.contestants.check import Fault
 from verification.contestants.protocol import Answer, ContactProblem, Contestant
-
-Change = Callable[[ContactProblem], ContactProblem]
+from verification.contestants.wrong import (
+    asked,
+    one_off,
+    other_sign,
+    padded,
+    right,
+    tau_along_x,
+    tau_everywhere,
+    tau_on,
+    uncoupled_at_approach,
+    unsigned,
+    well_loaded,
+    where_periodic,
+    with_gap,
+    without_tau,
+)
 
 
 @dataclass(frozen=True)
@@ -37,21 +51,6 @@ class Wrong:
     def __call__(self, problem: ContactProblem) -> Answer:
         """What the faulty solver found, as if it were right."""
         return Answer(self.solver(problem), True)
-
-
-def right(problem: ContactProblem) -> Array:
-    """The pressures of our own solver, without its verdict."""
-    return np.asarray(own.solve(problem).pressure, dtype=np.float64)
-
-
-def asked(change: Change) -> Callable[[ContactProblem], Array]:
-    """Solves another problem than it was asked."""
-    return lambda problem: right(change(problem))
-
-
-def with_gap(problem: ContactProblem, gap: Array) -> ContactProblem:
-    """The problem with another gap, shifted to first touch."""
-    return replace(problem, gap=gap - gap.min())
 
 
 @contextmanager
@@ -72,31 +71,6 @@ def inside(*patches: tuple[Any, str, Any]) -> Callable[[ContactProblem], Array]:
             return right(problem)
 
     return solver
-
-
-def other_sign(problem: ContactProblem) -> ContactProblem:
-    """c as upper minus lower."""
-    if problem.coupling is None:
-        return problem
-    c = problem.coupling
-    return replace(problem, coupling=replace(c, shear_compliance=-c.shear_compliance))
-
-
-def without_tau(problem: ContactProblem) -> ContactProblem:
-    """Friction by beta alone."""
-    if problem.coupling is None:
-        return problem
-    return replace(problem, coupling=replace(problem.coupling, tau=0.0))
-
-
-def tau_everywhere(problem: ContactProblem) -> ContactProblem:
-    """Shear tau on the whole square: its displacement is known beforehand, and belongs to the gap."""
-    if problem.coupling is None:
-        return problem
-    one = np.ones_like(problem.gap)
-    sheared = replace(problem, coupling=replace(problem.coupling, beta=0.0))
-    moved = referee.displacement(sheared, one) - referee.by_pressure(problem, one)
-    return with_gap(without_tau(problem), problem.gap + moved)
 
 
 def periodic(problem: ContactProblem) -> ContactProblem:
@@ -161,16 +135,31 @@ def off_on_odd_grids(problem: ContactProblem) -> Array:
     return 1.1 * pressure if problem.M % 2 and problem.coupling is None else pressure
 
 
-class Remembering:
-    """Keeps the spacing of the first problem of each size."""
+def corner_left_out(problem: ContactProblem) -> Array:
+    """No pressure on the last element of the first row of a free square."""
+    pressure = right(problem)
+    if not problem.periodic:
+        pressure[0, -1] = 0.0
+    return pressure
 
-    def __init__(self) -> None:
-        self._spacing: dict[int, float] = {}
+
+class Remembering:
+    """Keeps one parameter of the first problem of each size, or of the first one that slides."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._kept: dict[int, Any] = {}
 
     def __call__(self, problem: ContactProblem) -> Array:
-        """Solve on the remembered grid."""
-        kept = self._spacing.setdefault(problem.M, problem.spacing)
-        return right(replace(problem, spacing=kept))
+        """Solve with what is remembered."""
+        slides = self._name in ("shear_compliance", "sliding_direction")
+        posed = problem.coupling if slides else problem
+        if posed is None:
+            return right(problem)
+        kept = {self._name: self._kept.setdefault(problem.M, getattr(posed, self._name))}
+        if problem.coupling is not None and slides:
+            return right(replace(problem, coupling=replace(problem.coupling, **kept)))
+        return right(replace(problem, **kept))
 
 
 def _coarse_coefficients(rows: int, columns: int, edge: float, *, known: Array | None) -> Array:
@@ -208,9 +197,21 @@ BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.MEAN_PRESSURE_LOST: lambda: Wrong(asked(mean_pressure_lost)),
     Fault.NEAR_FIELD: lambda: Wrong(inside(_POINT_FORCES)),
     Fault.TENSION: lambda: Wrong(pulling),
-    Fault.STATE_KEPT: lambda: Wrong(Remembering()),
+    Fault.SPACING_KEPT: lambda: Wrong(Remembering("spacing")),
+    Fault.MODULUS_KEPT: lambda: Wrong(Remembering("reduced_modulus")),
+    Fault.C0_KEPT: lambda: Wrong(Remembering("shear_compliance")),
+    Fault.DIRECTION_KEPT: lambda: Wrong(Remembering("sliding_direction")),
+    Fault.BORDERS_KEPT: lambda: Wrong(Remembering("periodic")),
     Fault.ABSOLUTE_THRESHOLD: lambda: Wrong(clipped),
     Fault.TAU_EVERYWHERE: lambda: Wrong(asked(tau_everywhere)),
+    Fault.TAU_NOT_ON_ALL: lambda: Wrong(tau_on(well_loaded)),
+    Fault.TAU_BESIDE: lambda: Wrong(where_periodic(tau_on(one_off))),
+    Fault.TAU_ALONG_X: lambda: Wrong(where_periodic(tau_along_x)),
+    Fault.SIGN_OF_C_LOST: lambda: Wrong(where_periodic(asked(unsigned))),
+    Fault.UNCOUPLED_AT_APPROACH: lambda: Wrong(asked(uncoupled_at_approach)),
     Fault.ODD_GRIDS: lambda: Wrong(off_on_odd_grids),
+    Fault.CORNER_LEFT_OUT: lambda: Wrong(corner_left_out),
+    Fault.PADDING_SHORT: lambda: Wrong(padded(lambda M: 2 * M - 2)),
+    Fault.PADDING_CAPPED: lambda: Wrong(padded(lambda M: min(2 * M, 256))),
 }
 """A fresh solver with each fault."""

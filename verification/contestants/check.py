@@ -18,6 +18,9 @@ MODULUS = 2e9
 COMPLIANCE = 0.3 / (np.pi * MODULUS)
 """c0 (1/Pa) where friction couples: Dundurs' constant 0.3, as of nu = 2/7 against a rigid body."""
 
+CLAIMS = "claims"
+"""Unit of a residual, or of a squared relative error in the energy norm: what the solver claims to reach."""
+
 
 class Fault(StrEnum):
     """What can be wrong with a solver: a case names what it is meant to catch, and is tried on just that."""
@@ -37,10 +40,22 @@ class Fault(StrEnum):
     MEAN_PRESSURE_LOST = "lost mean of the pressure"
     NEAR_FIELD = "wrong near-field coefficients"
     TENSION = "contact that pulls"
-    STATE_KEPT = "state kept from an earlier problem"
+    SPACING_KEPT = "spacing kept from an earlier problem"
+    MODULUS_KEPT = "modulus kept from an earlier problem"
+    C0_KEPT = "c0 kept from an earlier problem"
+    DIRECTION_KEPT = "direction kept from an earlier problem"
+    BORDERS_KEPT = "borders kept from an earlier problem"
     ABSOLUTE_THRESHOLD = "absolute threshold"
     TAU_EVERYWHERE = "tau outside the contact"
+    TAU_NOT_ON_ALL = "tau on well loaded elements only"
+    TAU_BESIDE = "tau one element off where periodic"
+    TAU_ALONG_X = "tau along x where periodic"
+    SIGN_OF_C_LOST = "c0 without its sign where periodic"
+    UNCOUPLED_AT_APPROACH = "no coupling at a prescribed approach"
     ODD_GRIDS = "odd number of elements"
+    CORNER_LEFT_OUT = "corner element left out"
+    PADDING_SHORT = "padding short by one element"
+    PADDING_CAPPED = "padding capped at 256 points"
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +116,30 @@ class Entrant:
         """Squared energy-norm error against exact pressures, in units of the claim."""
         return referee.misfit(pressed.problem, pressed.pressure, exact) / self.claim
 
+    def against(self, *answers: tuple[Pressed, Array]) -> Measured:
+        """The worst misfit of answers against exact pressures; the note tells where that answer is off."""
+        misfits = [self.misfit(pressed, exact) for pressed, exact in answers]
+        worst = int(np.argmax(misfits))
+        which = f"problem {worst + 1} of {len(answers)}: " if len(answers) > 1 else ""
+        note = which + difference(answers[worst][0].pressure, answers[worst][1])
+        return Measured(misfits[worst], unit=CLAIMS, note=note)
+
     def residual(self, pressed: Pressed) -> float:
         """The worst of the recomputed residuals, in units of the claim."""
         return referee.residual(pressed.problem, pressed.pressure).worst / self.claim
+
+
+def difference(found: Array, exact: Array) -> str:
+    """In words: the load that is carried, and the element that is farthest off.
+
+    >>> difference(np.array([[1.0, 2.0]]), np.array([[1.0, 4.0]]))
+    'carries 0.6 of the right load; farthest off is element [0, 1] with 2 Pa for 4 Pa'
+    """
+    i, j = np.unravel_index(np.argmax(abs(found - exact)), exact.shape)
+    return (
+        f"carries {found.sum() / exact.sum():.6g} of the right load; farthest off is element [{i}, {j}] "
+        f"with {found[i, j]:.5g} Pa for {exact[i, j]:.5g} Pa"
+    )
 
 
 Judge = Callable[[Entrant], Measured]

@@ -1,8 +1,8 @@
 """What the suite computes itself, to judge an answer: displacements, residuals, and solutions by elimination.
 
 None of it is shared with the solvers of `refimpl`. A half-space uses dense matrices of the textbook's corner
-differences, so squares here have at most `LARGEST` elements a side; a periodic problem uses the exact symbols
-of `verification.exact.fourier`.
+differences up to `LARGEST` elements a side; beyond, for pressure, the same numbers by scipy's convolution.
+A periodic problem uses the exact symbols of `verification.exact.fourier`.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import fftconvolve
 
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from verification.contestants.protocol import ContactProblem
 from verification.exact.fourier import symbol_at
-from verification.properties.textbook import normal_matrix, shear_matrix
+from verification.properties.textbook import normal_matrix, normal_offsets, shear_matrix
 
 LARGEST = 32
 
@@ -50,6 +51,8 @@ def by_pressure(problem: ContactProblem, pressure: Array) -> Array:
     if problem.periodic:
         return _filtered(pressure, symbol_at(*_waves(problem), problem.reduced_modulus))
     scale = problem.spacing / (np.pi * problem.reduced_modulus)
+    if problem.M > LARGEST:
+        return np.asarray(scale * fftconvolve(normal_offsets(problem.M), pressure, mode="valid"))
     return scale * np.asarray(_unit_matrix(problem.M, None) @ pressure.ravel()).reshape(pressure.shape)
 
 

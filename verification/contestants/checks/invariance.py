@@ -1,4 +1,4 @@
-"""What a solver must not notice: orientation, place, units, surroundings, and what it was asked before.
+"""What a solver must not notice: orientation, place, units and surroundings.
 
 Two answers of one claim differ by at most four claims: twice the error in the energy norm, squared.
 """
@@ -74,26 +74,6 @@ def units(entrant: Entrant) -> Measured:
     first = entrant.press(bump(44), 1.0, load=LOAD)
     second = entrant.press(small * bump(44), small, load=soft * small**2 * LOAD, modulus=soft * MODULUS)
     return Measured(entrant.misfit(second, soft * first.pressure))
-
-
-@check(
-    "memory",
-    title="Problems in turn",
-    claim="A grid of the same size but other spacing and modulus, then another size, then the first again: "
-    "nothing of one problem gets into the next",
-    source="a solver is a function",
-    metric="at_most",
-    tolerance=4.1,
-    tolerance_reason=TWICE,
-    catches=(Fault.STATE_KEPT,),
-)
-def memory(entrant: Entrant) -> Measured:
-    first = entrant.press(bump(45), 1.0, load=LOAD)
-    second = entrant.press(2 * bump(45), 2.0, load=12 * LOAD, modulus=3 * MODULUS)
-    entrant.press(rough_bump(24, 45), 1.0, load=LOAD)
-    third = entrant.press(bump(45), 1.0, load=LOAD)
-    worst = max(entrant.misfit(second, 3 * first.pressure), entrant.misfit(third, first.pressure))
-    return Measured(worst)
 
 
 @check(

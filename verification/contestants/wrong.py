@@ -1,0 +1,166 @@
+"""Faults of friction, and what all faults are made of: see `verification.contestants.broken`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.signal import fftconvolve
+
+from refimpl.friction import Mask
+from refimpl.grid import Array
+from verification.contestants import own, referee
+from verification.contestants.protocol import ContactProblem
+from verification.properties.textbook import normal_offsets, shear_offsets
+
+Solver = Callable[[ContactProblem], Array]
+Change = Callable[[ContactProblem], ContactProblem]
+
+ROUNDS = 20
+"""Most times that a wrong support of tau is brought up to date."""
+FEW_ROUNDS = 5
+"""Times that displacements from afar, a hundredth of all, are brought up to date."""
+
+
+def right(problem: ContactProblem) -> Array:
+    """The pressures of our own solver, without its verdict."""
+    return np.array(own.solve(problem).pressure, dtype=np.float64)
+
+
+def asked(change: Change) -> Solver:
+    """Solves another problem than it was asked."""
+    return lambda problem: right(change(problem))
+
+
+def where_periodic(wrong: Solver) -> Solver:
+    """Wrong only in periodic problems."""
+    return lambda problem: (wrong if problem.periodic else right)(problem)
+
+
+def with_gap(problem: ContactProblem, gap: Array) -> ContactProblem:
+    """The problem with another gap, shifted to first touch."""
+    return replace(problem, gap=gap - gap.min())
+
+
+def other_sign(problem: ContactProblem) -> ContactProblem:
+    """c as upper minus lower."""
+    if problem.coupling is None:
+        return problem
+    c = problem.coupling
+    return replace(problem, coupling=replace(c, shear_compliance=-c.shear_compliance))
+
+
+def unsigned(problem: ContactProblem) -> ContactProblem:
+    """c as if the lower body were always the more compliant one."""
+    if problem.coupling is None:
+        return problem
+    c = problem.coupling
+    return replace(problem, coupling=replace(c, shear_compliance=abs(c.shear_compliance)))
+
+
+def uncoupled_at_approach(problem: ContactProblem) -> ContactProblem:
+    """Friction forgotten where the approach is prescribed."""
+    return problem if problem.approach is None else replace(problem, coupling=None)
+
+
+def without_tau(problem: ContactProblem) -> ContactProblem:
+    """Friction by beta alone."""
+    if problem.coupling is None:
+        return problem
+    return replace(problem, coupling=replace(problem.coupling, tau=0.0))
+
+
+def lifted(problem: ContactProblem, moved: Array) -> ContactProblem:
+    """The same bodies with what a solver has falsely added to their displacements (m) in the gap."""
+    gap = problem.gap + moved
+    # an approach from first touch counts from what is touched first now; one from the mean planes does not
+    if problem.approach is not None and not problem.periodic:
+        problem = replace(problem, approach=problem.approach - float(gap.min()))
+    return with_gap(problem, gap)
+
+
+def sheared(problem: ContactProblem, where: Mask) -> ContactProblem:
+    """The problem without tau over a gap that tau on some elements has moved beforehand."""
+    assert problem.coupling is not None
+    alone = replace(problem, coupling=replace(problem.coupling, beta=0.0))
+    one = where.astype(np.float64)
+    moved = referee.displacement(alone, one) - referee.by_pressure(problem, one)
+    return lifted(without_tau(problem), moved)
+
+
+def tau_everywhere(problem: ContactProblem) -> ContactProblem:
+    """Shear tau on the whole square: its displacement is known beforehand, and belongs to the gap."""
+    return problem if problem.coupling is None else sheared(problem, np.ones(problem.gap.shape, bool))
+
+
+def tau_on(support: Callable[[Array], Mask]) -> Solver:
+    """Shear tau on elements that depend on the pressures, by repetition until they stay the same."""
+
+    def solver(problem: ContactProblem) -> Array:
+        pressure = right(problem)
+        if problem.coupling is None or problem.coupling.tau == 0:
+            return pressure
+        for _ in range(ROUNDS):
+            before = support(pressure)
+            pressure = right(sheared(problem, before))
+            if np.array_equal(support(pressure), before):
+                break
+        return pressure
+
+    return solver
+
+
+def well_loaded(pressure: Array) -> Mask:
+    """Elements above a hundredth of the peak."""
+    return np.asarray(pressure > 0.01 * pressure.max())
+
+
+def one_off(pressure: Array) -> Mask:
+    """The contact, moved by one element along x."""
+    return np.roll(pressure > 0, 1, axis=0)
+
+
+def tau_along_x(problem: ContactProblem) -> Array:
+    """tau along x whatever the sliding direction; beta along that."""
+    if problem.coupling is None:
+        return right(problem)
+    along_x = replace(problem.coupling, sliding_direction=0.0)
+    pressure = right(problem)
+    for _ in range(ROUNDS):
+        moved = sheared(replace(problem, coupling=along_x), pressure > 0)
+        before, pressure = pressure, right(replace(moved, coupling=without_tau(problem).coupling))
+        if np.array_equal(before > 0, pressure > 0):
+            break
+    return pressure
+
+
+def padded(points: Callable[[int], int]) -> Solver:
+    """Convolutions on circles of so many points for ``M`` elements: too few alias the farthest offsets."""
+
+    def solver(problem: ContactProblem) -> Array:
+        pressure, enough = right(problem), 2 * problem.M - 1
+        if problem.periodic or points(problem.M) >= enough:
+            return pressure
+        for _ in range(FEW_ROUNDS):
+            pressure = right(lifted(problem, aliased(problem, pressure, points(problem.M))))
+        return pressure
+
+    return solver
+
+
+def aliased(problem: ContactProblem, pressure: Array, points: int) -> Array:
+    """What a circle that is too short adds to the displacement (m)."""
+    M, coupling = problem.M, problem.coupling
+    offsets = np.arange(1 - M, M)
+    taken = (offsets + points // 2) % points - points // 2 + M - 1
+    tables = [normal_offsets(M) / (np.pi * problem.reduced_modulus)]
+    tractions = [pressure]
+    if coupling is not None:
+        tables.append(shear_offsets(M, coupling.sliding_direction) * coupling.shear_compliance)
+        tractions.append(coupling.tau * (pressure > 0) + coupling.beta * pressure)
+    wrong = (
+        fftconvolve(table[np.ix_(taken, taken)] - table, traction, mode="valid")
+        for table, traction in zip(tables, tractions, strict=True)
+    )
+    return np.asarray(problem.spacing * sum(wrong))
