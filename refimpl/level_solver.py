@@ -150,9 +150,8 @@ class LevelSolver:
         lags = self.held.lags
         self._updates, self.stuck = Updates(self.residual, lags=lags, strong=self.strong), False
         for _ in range(_UPDATES):
-            if (
-                lags and self.residual <= self._tolerance
-            ):  # of what the pressure asked for before it met the load
+            # the residual is of what the pressure asked for before it met the load
+            if lags and self.residual <= self._tolerance:
                 self.residual = self.held.update(self.cg_iterations)
             if self.residual <= self._tolerance or self._leads_on():
                 return self.residual <= self._tolerance
