@@ -206,6 +206,15 @@ def test_a_program_that_answers_wrongly_fails() -> None:
     assert (result.status, result.note) == ("fail", "")
 
 
+def test_the_command_line_states_units_and_where_an_answer_is_off(rival: Path, capfd: Capture) -> None:
+    able = ["--able", "approach,aperiodic", "--only", "contestant/pins", "--only", "contestant/hertz-load"]
+    assert main(["verify", "--solver", "rival_solver:twice", *able]) == 1
+    printed = " ".join(capfd.readouterr().out.split())
+    assert "1e+08 > 2 claims" in printed
+    assert "1 > 0.001 relative" in printed
+    assert "Found: carries 2 of the right load; farthest off is element [" in printed
+
+
 def test_a_command_is_checked() -> None:
     (missing,) = run(Command(("./not-there",), Abilities(), 1.0), ["contestant/one-element"])
     assert (missing.status, "cannot run ./not-there" in missing.note) == ("error", True)
@@ -232,6 +241,9 @@ def solve(problem):
     if problem.M == 24:
         time.sleep(60)
     return own.solve(problem)
+
+def twice(problem):
+    return 2 * own.solve(problem).pressure
 
 number = 3
 """
@@ -286,6 +298,7 @@ def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
     assert "error" in printed
     assert "not offer: periodic: westergaard-load" in printed
     assert "0 pass, 0 fail, 1 error, 1 unavailable" in printed
+    assert "exit status 1: nothing said" in printed
     assert (
         main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "contestant/one-element"]) == 1
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -59,8 +60,21 @@ def test_our_own_solver_passes_every_case() -> None:
         posed.clear()
         result = check.case(contestant).run()
         assert result.status == "pass", result
+        assert result.unit, f"{check.slug}: a number without its unit"
         assert 1 <= len(posed) <= MOST_PROBLEMS
         assert max(problem.M for problem in posed) <= 160
+
+
+def test_a_periodic_mean_that_is_off_is_an_error_under_a_load() -> None:
+    """It stores no energy, so nothing but the load shows it."""
+
+    def lifted(asked: ContactProblem) -> np.ndarray:
+        pressure = np.array(own.solve(asked).pressure)
+        return pressure + 1e-3 * pressure.mean() if asked.periodic else pressure
+
+    (result,) = run(Limited(lifted, own.solve.abilities), ["contestant/periodic-elimination"])
+    assert result.error == pytest.approx(1e-6 / 1e-8, rel=1e-3)
+    assert result.status == "fail"
 
 
 def test_the_dense_reference_passes_what_is_small_enough() -> None:
@@ -186,13 +200,29 @@ def test_pressures_without_energy_cannot_be_judged() -> None:
     assert statuses["contestant/no-tension"] == "error"
 
 
-def test_pressures_beyond_all_numbers_pass_nothing() -> None:
-    """Energies overflow: infinity over infinity is no proof that two answers agree."""
-    huge: Contestant = Limited(lambda p: np.full_like(p.gap, 1e308), own.solve.abilities)
-    with np.errstate(all="ignore"):  # as outside of these tests, where a warning is no exception
-        results = run(huge)
-    assert {r.id for r in results if r.status == "pass"} == set()
-    assert {r.status for r in results} == {"fail", "error"}
+SYMMETRIC = {"no-tension", "mirrors", "transposition", "periodic-shift", "periodic-tiling"}
+SYMMETRIC |= {"sliding-reversed", "identical-materials"}
+"""What a uniform pressure has of a right answer."""
+NONSENSE = {
+    "huge": lambda p: np.full_like(p.gap, 1e308),
+    "infinite both ways": lambda p: np.where(np.indices(p.gap.shape).sum(axis=0) % 2, 1e308, -1e308),
+    "large": lambda p: np.full_like(p.gap, 1e58),
+    "tiny": lambda p: np.full_like(p.gap, 5e-324),
+    "nothing": lambda p: np.zeros_like(p.gap),
+    "cancelling": lambda p: np.where(np.indices(p.gap.shape).sum(axis=0) % 2, 1.0, -1.0),
+    "pulling": lambda p: -np.ones_like(p.gap),
+}
+
+
+@pytest.mark.parametrize("answer", NONSENSE.values(), ids=NONSENSE)
+def test_nonsense_passes_nothing_but_symmetries_and_warns_of_nothing(answer: Contestant) -> None:
+    """Energies and sums overflow or vanish: infinity over infinity is no proof that two answers agree."""
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        results = run(Limited(answer, own.solve.abilities))
+    passed = {r.id.partition("/")[2] for r in results if r.status == "pass"}
+    assert passed <= SYMMETRIC
+    assert [str(w.message) for w in warned] == []
 
 
 def test_what_the_suite_counts_at_an_approach_is_at_most_three_times_our_certificates() -> None:

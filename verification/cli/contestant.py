@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from verification.cli.output import columns, emit, judgement, wrapped
 
 if TYPE_CHECKING:
+    from verification.case import Result
     from verification.contestants.isolated import Source
     from verification.contestants.protocol import Abilities
     from verification.runner import Run
@@ -128,11 +129,24 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, Abilities | None]
 def table(name: str, done: Run) -> str:
     """Verdicts, reasons of failure, what was not run and why, and the counts."""
     ran = [r for r in done.results if r.status != "unavailable"]
-    rows = [[r.status, r.id, judgement(r), f"{r.seconds:.1f} s"] for r in ran]
-    reasons = [[r.id, r.note or r.claim] for r in ran if r.status != "pass"]
+    rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
+    reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
     parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
     return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
+
+
+def with_unit(result: Result) -> str:
+    """The judgement in its unit; a relative error has none but that word."""
+    unit = "relative" if result.metric == "relative" else result.unit
+    return f"{judgement(result)} {unit}" if judgement(result) else ""
+
+
+def reason(result: Result) -> str:
+    """Why there is no verdict; or what was claimed, and what is known of the failure."""
+    if result.status == "error":
+        return result.note
+    return f"{result.claim}. Found: {result.note}" if result.note else result.claim
 
 
 def _not_applicable(done: Run) -> list[str]:

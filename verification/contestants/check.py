@@ -113,8 +113,14 @@ class Entrant:
         return Pressed(problem, ask(self.contestant, problem))
 
     def misfit(self, pressed: Pressed, exact: Array) -> float:
-        """Squared energy-norm error against exact pressures, in units of the claim."""
-        return referee.misfit(pressed.problem, pressed.pressure, exact) / self.claim
+        """Squared energy-norm error against exact pressures, in units of the claim.
+
+        The mean of a periodic pressure stores no energy: under a load its error counts as squared as well.
+        """
+        problem, error = pressed.problem, referee.misfit(pressed.problem, pressed.pressure, exact)
+        if problem.periodic and problem.load is not None:
+            error += (pressed.load / problem.load - 1) ** 2
+        return error / self.claim
 
     def against(self, *answers: tuple[Pressed, Array]) -> Measured:
         """The worst misfit of answers against exact pressures; the note tells where that answer is off."""
@@ -136,10 +142,8 @@ def difference(found: Array, exact: Array) -> str:
     'carries 0.6 of the right load; farthest off is element [0, 1] with 2 Pa for 4 Pa'
     """
     i, j = np.unravel_index(np.argmax(abs(found - exact)), exact.shape)
-    return (
-        f"carries {found.sum() / exact.sum():.6g} of the right load; farthest off is element [{i}, {j}] "
-        f"with {found[i, j]:.5g} Pa for {exact[i, j]:.5g} Pa"
-    )
+    share = f"carries {found.sum() / exact.sum():.6g} of the right load; " if exact.sum() > 0 else ""
+    return share + f"farthest off is element [{i}, {j}] with {found[i, j]:.5g} Pa for {exact[i, j]:.5g} Pa"
 
 
 Judge = Callable[[Entrant], Measured]

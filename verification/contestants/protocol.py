@@ -32,6 +32,9 @@ LARGEST_PRECISION = 1e-6
 """No contestant may claim less. A relative gap g allows pressure errors of sqrt(g) in the energy norm, here
 0.1 %, a tenth of the smallest fault that must be seen; single precision reaches it."""
 
+HIGHEST = 1e50
+"""Pressures (over E*) from which an answer is nonsense: sums and energies of what is below stay finite."""
+
 
 class Unsupported(Unavailable):
     """Raised by a contestant that cannot pose a problem: the case is not applicable, and no pass."""
@@ -240,4 +243,6 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Array:
     pressure = np.array(answer, dtype=np.float64)
     if not np.isfinite(pressure).all():
         raise BadAnswer(f"{int(np.count_nonzero(~np.isfinite(pressure)))} pressures are not finite")
+    if not np.abs(pressure).max() < HIGHEST * problem.reduced_modulus:
+        raise BadAnswer(f"pressures up to {np.abs(pressure).max():.3g} Pa, beyond {HIGHEST:g} E*")
     return pressure

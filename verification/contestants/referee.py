@@ -131,7 +131,12 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
 
 def approach_of(problem: ContactProblem, pressure: Array) -> float:
-    """The approach (m) at which pressures solve the problem, as the problem counts it: mean of v over f."""
+    """The approach (m) at which pressures solve the problem, as the problem counts it: mean of v over f.
+
+    Raises ValueError where there is no load to carry it.
+    """
+    if not pressure.sum() > 0:
+        raise ValueError("the pressures carry no load: no approach")
     v = displacement(problem, pressure) + problem.gap
     touch = float(np.vdot(pressure, v) / pressure.sum())
     return touch - (float(problem.gap.mean()) if problem.periodic else 0.0)

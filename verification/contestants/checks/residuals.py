@@ -7,7 +7,7 @@ import numpy as np
 from refimpl.grid import Array
 from verification.case import Measured
 from verification.contestants import referee
-from verification.contestants.check import COMPLIANCE, MODULUS, Entrant, Fault, Pressed, check
+from verification.contestants.check import CLAIMS, COMPLIANCE, MODULUS, Entrant, Fault, Pressed, check
 from verification.contestants.gaps import rough_bump, waves
 from verification.contestants.protocol import Coupling
 
@@ -30,7 +30,7 @@ def judged(entrant: Entrant, pressed: Pressed) -> Measured:
     """The worst residual in claims, with all three in the note."""
     parts = referee.residual(pressed.problem, pressed.pressure)
     note = f"gap {parts.gap:.1e}, balance {parts.balance:.1e}, tension {parts.tension:.1e}"
-    return Measured(entrant.residual(pressed), note=note)
+    return Measured(entrant.residual(pressed), unit=CLAIMS, note=note)
 
 
 def wavy(M: int, seed: int) -> Array:
@@ -107,7 +107,7 @@ def rough_residual_approach(entrant: Entrant) -> Measured:
 )
 def rough_elimination(entrant: Entrant) -> Measured:
     pressed = entrant.press(rough_bump(21, seed=6), 1.0, load=0.05 * MODULUS)
-    return Measured(entrant.misfit(pressed, referee.eliminated(pressed.problem)))
+    return entrant.against((pressed, referee.eliminated(pressed.problem)))
 
 
 @check(
@@ -121,11 +121,10 @@ def rough_elimination(entrant: Entrant) -> Measured:
     catches=(Fault.MEAN_PRESSURE_LOST,),
 )
 def load_balance(entrant: Entrant) -> Measured:
-    worst = 0.0
-    for share in LOADS:
-        pressed = entrant.press(rough_bump(24, seed=7), 1.0, load=share * MODULUS)
-        worst = max(worst, abs(pressed.load / (share * MODULUS) - 1))
-    return Measured(worst / entrant.claim)
+    gap, loads = rough_bump(24, seed=7), [share * MODULUS for share in LOADS]
+    found = [entrant.press(gap, 1.0, load=load).load for load in loads]
+    worst = max(abs(carried / load - 1) for carried, load in zip(found, loads, strict=True))
+    return Measured(worst / entrant.claim, unit=CLAIMS, data={"asked": loads, "carried": found})
 
 
 @check(
@@ -140,7 +139,8 @@ def load_balance(entrant: Entrant) -> Measured:
 )
 def no_tension(entrant: Entrant) -> Measured:
     pressed = entrant.press(rough_bump(24, seed=8), 1.0, load=0.02 * MODULUS)
-    return Measured(referee.residual(pressed.problem, pressed.pressure).tension / entrant.claim)
+    tension = referee.residual(pressed.problem, pressed.pressure).tension
+    return Measured(tension / entrant.claim, unit=CLAIMS)
 
 
 @check(
@@ -170,7 +170,7 @@ def periodic_residual(entrant: Entrant) -> Measured:
 )
 def periodic_elimination(entrant: Entrant) -> Measured:
     pressed = entrant.press(wavy(16, seed=10), 1.0, load=0.02 * MODULUS, periodic=True)
-    return Measured(entrant.misfit(pressed, referee.eliminated(pressed.problem)))
+    return entrant.against((pressed, referee.eliminated(pressed.problem)))
 
 
 @check(
@@ -186,7 +186,7 @@ def periodic_elimination(entrant: Entrant) -> Measured:
 def periodic_approach(entrant: Entrant) -> Measured:
     gap = wavy(17, seed=11)
     pressed = entrant.press(gap, 1.0, approach=-0.6 * float(gap.mean()), periodic=True)
-    return Measured(entrant.misfit(pressed, referee.eliminated(pressed.problem)))
+    return entrant.against((pressed, referee.eliminated(pressed.problem)))
 
 
 @check(
@@ -218,7 +218,7 @@ def sliding_residual(entrant: Entrant) -> Measured:
 def sliding_elimination(entrant: Entrant) -> Measured:
     coupling = Coupling(tau=0.0, beta=0.5, shear_compliance=-COMPLIANCE, sliding_direction=2.2)
     pressed = entrant.press(rough_bump(20, seed=13), 1.0, load=0.05 * MODULUS, coupling=coupling)
-    return Measured(entrant.misfit(pressed, referee.eliminated(pressed.problem)))
+    return entrant.against((pressed, referee.eliminated(pressed.problem)))
 
 
 @check(

@@ -10,7 +10,7 @@ from verification.case import Measured
 from verification.contestants.check import COMPLIANCE, MODULUS, Entrant, Fault, Pressed, check
 from verification.contestants.checks.invariance import TWICE
 from verification.contestants.checks.periodic import AMPLITUDE, STAR, ridge
-from verification.contestants.checks.smooth import SPHERE, relative_l2, sphere
+from verification.contestants.checks.smooth import SPHERE, apart, sphere
 from verification.contestants.gaps import centres, rough_bump, waves
 from verification.contestants.protocol import Coupling
 from verification.exact import fourier
@@ -23,7 +23,9 @@ M = 32
 
 
 def centroid(pressed: Pressed, x: Array) -> float:
-    """Pressure-weighted mean of ``x`` (m)."""
+    """Pressure-weighted mean of ``x`` (m). Raises ValueError where there is no load to carry it."""
+    if not pressed.load > 0:
+        raise ValueError(f"the pressures carry {pressed.load:.3g} N: no centroid")
     return float(np.sum(pressed.pressure * x) / pressed.pressure.sum())
 
 
@@ -67,7 +69,7 @@ def coupled_indentation(entrant: Entrant) -> Measured:
     coupling = Coupling(state.tau, state.beta, COMPLIANCE, direction)
     gap = state.gap(cos * x + sin * y, cos * y - sin * x)
     pressed = entrant.press(gap, side, load=1.0, coupling=coupling)
-    return Measured(relative_l2(pressed.pressure, SPHERE.pressure(np.hypot(x, y))))
+    return apart(pressed.pressure, SPHERE.pressure(np.hypot(x, y)))
 
 
 @check(
@@ -107,7 +109,7 @@ def full_contact_sliding(entrant: Entrant) -> Measured:
     exact = fourier.FullContact(gap, 1.0, MODULUS, mean, D, beta, direction).pressure
     coupling = Coupling(0.01 * STAR, beta, COMPLIANCE, direction)
     pressed = entrant.press(gap, 1.0, load=mean, periodic=True, coupling=coupling)
-    return Measured(entrant.misfit(pressed, exact))
+    return entrant.against((pressed, exact))
 
 
 @check(
@@ -128,8 +130,7 @@ def sliding_reversed(entrant: Entrant) -> Measured:
     first = entrant.press(gap, 1.0, load=load, coupling=ahead)
     mirrored = entrant.press(gap[::-1], 1.0, load=load, coupling=back)
     same = entrant.press(gap, 1.0, load=load, coupling=exchanged)
-    worst = max(entrant.misfit(mirrored, first.pressure[::-1]), entrant.misfit(same, first.pressure))
-    return Measured(worst)
+    return entrant.against((mirrored, first.pressure[::-1]), (same, first.pressure))
 
 
 @check(
@@ -146,4 +147,4 @@ def identical_materials(entrant: Entrant) -> Measured:
     gap, load = rough_bump(20, 63), 0.05 * MODULUS
     still = entrant.press(gap, 1.0, load=load)
     rubbed = entrant.press(gap, 1.0, load=load, coupling=Coupling(0.1 * load, 0.5, 0.0, 1.0))
-    return Measured(entrant.misfit(rubbed, still.pressure))
+    return entrant.against((rubbed, still.pressure))

@@ -7,7 +7,7 @@ import numpy as np
 from refimpl.friction import Mask
 from refimpl.grid import Array
 from verification.case import Measured
-from verification.contestants.check import MODULUS, Entrant, Fault, Pressed, check
+from verification.contestants.check import MODULUS, Entrant, Fault, Pressed, check, difference
 from verification.contestants.gaps import centres
 from verification.exact.hertz import UNCERTAINTY, Ellipse, Sphere
 from verification.exact.power_law import Cone, PowerLaw
@@ -25,6 +25,11 @@ BOTH_MODULI = (Fault.MODULUS_OFF, Fault.MODULUS_DOUBLED)
 def relative_l2(found: Array, exact: Array) -> float:
     """Euclidean norm of the difference over that of the exact array."""
     return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
+
+
+def apart(found: Array, exact: Array) -> Measured:
+    """`relative_l2` as a verdict's number, with a note on where it comes from."""
+    return Measured(relative_l2(found, exact), unit="relative L2", note=difference(found, exact))
 
 
 def sphere(side: float, n: int) -> Array:
@@ -83,7 +88,7 @@ def hertz_off_centre(entrant: Entrant) -> Measured:
     x, y = centres(side, M)
     x, y = x - 5.5 * side / M, y + 3.5 * side / M
     pressed = entrant.press((x**2 + y**2) / (2 * SPHERE.radius), side, load=1.0)
-    return Measured(relative_l2(pressed.pressure, SPHERE.pressure(np.hypot(x, y))))
+    return apart(pressed.pressure, SPHERE.pressure(np.hypot(x, y)))
 
 
 @check(
@@ -101,7 +106,7 @@ def hertz_ellipse(entrant: Entrant) -> Measured:
     side = WIDE * ELLIPSE.semi_axes[0]
     x, y = centres(side, M)
     pressed = entrant.press(ELLIPSE.curvature_x / 2 * x**2 + ELLIPSE.curvature_y / 2 * y**2, side, load=1.0)
-    return Measured(relative_l2(pressed.pressure, ELLIPSE.pressure(x, y)))
+    return apart(pressed.pressure, ELLIPSE.pressure(x, y))
 
 
 @check(
@@ -119,7 +124,7 @@ def cone(entrant: Entrant) -> Measured:
     side = WIDE * CONE.contact_radius
     r = np.hypot(*centres(side, M))
     pressed = entrant.press(CONE.slope * r, side, load=1.0)
-    return Measured(relative_l2(pressed.pressure, CONE.pressure(r)))
+    return apart(pressed.pressure, CONE.pressure(r))
 
 
 @check(
@@ -145,9 +150,9 @@ def load_doubling(entrant: Entrant) -> Measured:
             entrant.press(0.05 * r**n, side, load=law.load).pressure[core].sum() for law in (light, heavy)
         ]
         exact = [law.pressure(r[core]).sum() for law in (light, heavy)]
-        ratios.append(found[1] / found[0])
+        ratios.append(found[1] / found[0] if found[0] else None)
         worst = max(worst, *(abs(f / e - 1) for f, e in zip(found, exact, strict=True)))
-    return Measured(worst, data={"exponent": [1.0, 2.0, 4.0], "core load ratio": ratios})
+    return Measured(worst, unit="relative", data={"exponent": [1.0, 2.0, 4.0], "core load ratio": ratios})
 
 
 def punch(entrant: Entrant, inside: Mask, side: float) -> Pressed:
