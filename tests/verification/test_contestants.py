@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +12,9 @@ import pytest
 
 from refimpl.errors import InputError
 from verification.cli import main
+from verification.cli.contestant import _source, add_options
 from verification.contestants import command, isolated, own
+from verification.contestants.asking import ask
 from verification.contestants.check import Entrant, Fault
 from verification.contestants.command import Command, read_answer, write_problem
 from verification.contestants.isolated import Named
@@ -22,7 +26,6 @@ from verification.contestants.protocol import (
     Coupling,
     Unsupported,
     abilities_of,
-    ask,
 )
 from verification.contestants.suite import run
 
@@ -76,16 +79,17 @@ def test_an_approach_counts_from_the_mean_planes_only_where_it_is_periodic() -> 
         (np.ones((2, 3)), "shape"),
         (np.array([[1.0, np.nan], [1.0, 1.0]]), "1 pressures are not finite"),
         (np.array([[1.0, -np.inf], [1.0, 1.0]]), "finite"),
-        (1j * FINE, "real numbers"),
-        (FINE > 0, "real numbers"),
-        (None, "no array"),
-        ([[1.0, 1.0], [1.0, 1.0]], "no array"),
-        (Answer(FINE, False), "converged = False"),
-        (Answer(FINE, np.False_), "converged = .*False"),
-        (Answer(FINE, 1), "converged = 1"),
-        (Answer(FINE, np.array([True])), "converged = array"),
-        (Answer(FINE, "yes"), "converged = 'yes'"),
-        (Answer(None, True), "real numbers"),
+        (1j * FINE, "returned an array of complex128: .* array of real numbers"),
+        (FINE > 0, "returned an array of bool"),
+        (None, "returned None"),
+        ([[1.0, 1.0], [1.0, 1.0]], "returned a list"),
+        ((FINE, True), r"returned a tuple: .* Answer\(pressure, converged\)"),
+        (Answer(FINE, False), "the solver says that it did not converge"),
+        (Answer(FINE, np.False_), "the solver says that it did not converge"),
+        (Answer(FINE, 1), "converged = 1: expected true or false"),
+        (Answer(FINE, np.array([True])), "converged = array.*: expected true or false"),
+        (Answer(FINE, "yes"), "converged = 'yes': expected true or false"),
+        (Answer(None, True), "returned an array of object"),
         (Answer([[1.0], [1.0, 1.0]], True), "inhomogeneous"),
     ],
 )
@@ -188,7 +192,11 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
         ("cp $0/gap.csv $0/pressure.csv; cp $0/problem.npz $0/answer.npz", "both"),
         (
             "cp $0/gap.csv $0/pressure.csv; echo '{\"converged\": false}' > $0/answer.json",
-            "converged = False",
+            "says that it did not converge",
+        ),
+        (
+            "cp $0/gap.csv $0/pressure.csv; echo '{\"converged\": 1}' > $0/answer.json",
+            "converged = 1: expected true or false",
         ),
         ("cp $0/gap.csv $0/pressure.csv; echo '{}' > $0/answer.json", "unreadable"),
         ("sleep 30 & sleep 30", "no answer within 0.2 s"),
@@ -221,13 +229,13 @@ def test_a_command_is_checked() -> None:
     for line, timeout, said in (
         ("", 1.0, "--exec = '': expected a command"),
         ("solve 'it", 1.0, '--exec = "solve \'it": expected a command (No closing quotation)'),
-        *(("solve", wrong, f"--timeout = {wrong}: expected seconds") for wrong in (0.0, -1.0, np.inf)),
+        *(("sh", wrong, f"--timeout = {wrong}: expected seconds") for wrong in (0.0, -1.0, np.inf)),
     ):
         with pytest.raises(InputError) as refused:
             Command.of(line, Abilities(), timeout)
         assert str(refused.value).startswith(said)
         assert str(refused.value).count("expected") == 1
-    assert Command.of("solve 'a b' -q", Abilities(), 1.0).words == ("solve", "a b", "-q")
+    assert Command.of("sh 'a b' -q", Abilities(), 1.0).words == ("sh", "a b", "-q")
 
 
 RIVAL = """
@@ -246,6 +254,16 @@ def twice(problem):
     return 2 * own.solve(problem).pressure
 
 number = 3
+"""
+
+ABLE = """
+from verification.contestants import own
+from verification.contestants.protocol import Abilities
+
+def solve(problem):
+    return own.solve(problem)
+
+solve.abilities = Abilities(periodic=False, load=False, largest=12, precision=1e-7)
 """
 
 IMPORTS = {
@@ -290,6 +308,43 @@ def test_the_command_line_runs_a_solver(rival: Path, capfd: Capture) -> None:
     assert {"value", "tolerance_reason", "claim", "seconds"} <= set(document["cases"][0])
 
 
+STATED = Abilities(periodic=False, load=False, largest=12, precision=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ([], STATED),
+        (["--largest", "8"], replace(STATED, largest=8)),
+        (["--precision", "1e-6"], replace(STATED, precision=1e-6)),
+        (["--able", "aperiodic,load"], replace(STATED, load=True, approach=False)),
+        (
+            ["--able", "aperiodic,load", "--largest", "9"],
+            replace(STATED, load=True, approach=False, largest=9),
+        ),
+    ],
+)
+def test_an_option_replaces_only_its_own_part_of_a_solvers_abilities(
+    rival: Path, options: list[str], expected: Abilities
+) -> None:
+    (rival / "able_solver.py").write_text(ABLE)
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    _, source, _ = _source(parser.parse_args(["--solver", "able_solver:solve", *options]))
+    assert abilities_of(source()) == expected
+
+
+def test_abilities_of_a_function_outlast_an_option(rival: Path, capfd: Capture) -> None:
+    (rival / "able_solver.py").write_text(ABLE)
+    only = ["--only", "contestant/one-element", "--only", "contestant/westergaard-load"]
+    assert main(["verify", "--solver", "able_solver:solve", "--largest", "64", *only, "--json", "-"]) == 0
+    document = json.loads(capfd.readouterr().out)
+    assert document["contestant"]["not_applicable"] == {
+        "contestant/westergaard-load": "the solver does not offer: periodic"
+    }
+    assert document["contestant"]["abilities"] == {"largest": 64}
+
+
 def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
     only = ["--only", "contestant/one-element", "--only", "contestant/westergaard-load"]
     status = main(["verify", "--exec", "false", "--able", "aperiodic,approach", *only])
@@ -323,6 +378,10 @@ def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
         (["--solver", "rival_solver:solve", "--only", "hertz/*"], "no case of the suite matches"),
         (["--exec", "'"], "--exec"),
         (["--exec", ""], "--exec = '': expected a command\n"),
+        (["--exec", "./missing --fast"], "--exec = './missing --fast': expected a command whose first word"),
+        (["--exec", "no-such-program"], "'no-such-program': expected a command whose first word"),
+        (["--exec", "./rival_solver.py"], "is a program that can be run"),
+        (["--exec", "."], "is a program that can be run"),
         (["--exec", "true", "--timeout", "0"], "--timeout = 0.0: expected seconds for one problem, above 0"),
         (["--exec", "true", "--timeout", "-1"], ": --timeout = -1.0"),
         *(

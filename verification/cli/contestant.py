@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import argparse
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from verification.cli.output import columns, emit, judgement, wrapped
 
 if TYPE_CHECKING:
     from verification.case import Result
     from verification.contestants.isolated import Source
-    from verification.contestants.protocol import Abilities
     from verification.runner import Run
 
 ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout")
@@ -22,7 +21,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group(
         "bring your own solver",
         "Run the suite of verification.contestants with it, one case after the other whatever --tier\n"
-        "and --jobs say: the cases that are within its abilities; the others are named.",
+        "and --jobs say: the cases that are within its abilities; the others are named. Of the abilities\n"
+        "that a Python function carries, --able, --largest and --precision replace only what they state.",
     )
     who = group.add_mutually_exclusive_group()
     who.add_argument(
@@ -37,7 +37,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--able",
         metavar="LIST",
-        help="of aperiodic,periodic,load,approach,coupling (default all but coupling, or the solver's own)",
+        help="of aperiodic,periodic,load,approach,coupling (default all but coupling)",
     )
     group.add_argument(
         "--largest", metavar="M", type=int, help="most elements a side that it should be given"
@@ -67,8 +67,6 @@ def chosen(options: argparse.Namespace) -> bool:
 
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
-    from dataclasses import asdict
-
     from refimpl.errors import InputError
     from verification.case import Tier
     from verification.contestants import isolated, suite
@@ -83,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
         listed = [{"id": c.id, "title": c.title, "claim": c.description} for c in checks]
         emit(listed, options.json, columns([[c.id, c.title] for c in checks], indent=""))
         return 0
-    name, source, abilities = _source(options)
+    name, source, stated = _source(options)
     start, progress = time.perf_counter(), Progress(len(checks))
     results = isolated.run(
         source,
@@ -97,7 +95,7 @@ def run(options: argparse.Namespace) -> int:
     document = done.document() | {
         "contestant": {
             "name": name,
-            "abilities": None if abilities is None else asdict(abilities),
+            "abilities": stated or None,
             "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
         }
     }
@@ -109,21 +107,24 @@ def _timeout(options: argparse.Namespace) -> float:
     return 60.0 if options.timeout is None else float(options.timeout)
 
 
-def _source(options: argparse.Namespace) -> tuple[str, Source, Abilities | None]:
-    """Name, source and stated abilities of the solver; None where it speaks for itself."""
+def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
+    """Name and source of the solver, and the abilities that are stated here: a program has no other."""
+    from dataclasses import asdict, replace
+
     from verification.contestants.command import Command
     from verification.contestants.isolated import Named
     from verification.contestants.protocol import Abilities
 
-    precision = 1e-8 if options.precision is None else options.precision
-    stated = any(getattr(options, name) is not None for name in ("able", "largest", "precision"))
-    able = "aperiodic,periodic,load,approach" if options.able is None else options.able
-    abilities = Abilities.named(able, largest=options.largest, precision=precision)
+    limits = {name: getattr(options, name) for name in ("largest", "precision")}
+    stated = {name: value for name, value in limits.items() if value is not None}
+    if options.able is not None:
+        listed = asdict(Abilities.named(options.able))
+        stated = {name: able for name, able in listed.items() if name not in limits} | stated
+    abilities = replace(Abilities(), **stated)  # refuses what cannot be, before anything is imported
     if options.solver is not None:
-        given = abilities if stated else None
-        return options.solver, Named(options.solver, given).contestant, given
+        return options.solver, Named(options.solver, stated).contestant, stated
     command = Command.of(options.exec, abilities, _timeout(options))
-    return options.exec, command.contestant, abilities
+    return options.exec, command.contestant, asdict(abilities)
 
 
 def table(name: str, done: Run) -> str:

@@ -11,7 +11,8 @@ import numpy as np
 from refimpl.grid import Array
 from verification.case import Case, Measured, Metric
 from verification.contestants import referee
-from verification.contestants.protocol import ContactProblem, Contestant, Coupling, abilities_of, ask
+from verification.contestants.asking import ask
+from verification.contestants.protocol import ContactProblem, Contestant, Coupling, abilities_of
 
 MODULUS = 2e9
 """Reduced modulus E* (Pa) of the suite's problems."""

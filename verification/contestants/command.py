@@ -19,6 +19,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -61,11 +62,16 @@ class Command:
 
     @classmethod
     def of(cls, line: str, abilities: Abilities, timeout: float) -> Command:
-        """From a command line, split like a shell does; no shell runs it."""
+        """From a command line, split like a shell does; no shell runs it.
+
+        Raises `InputError` also where its first word is no program.
+        """
         try:
             words = tuple(shlex.split(line))
         except ValueError as unbalanced:
             raise InputError("--exec", line, f"a command ({unbalanced})") from unbalanced
+        if words and shutil.which(words[0]) is None:
+            raise InputError("--exec", line, "a command whose first word is a program that can be run")
         return cls(words, abilities, timeout)
 
     def contestant(self) -> Command:

@@ -8,9 +8,9 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -34,11 +34,11 @@ START = 120.0
 class Named:
     """A contestant by the name of a Python object, ``package.module:function``.
 
-    ``abilities``, if given, replace those that the object carries.
+    ``stated`` are fields of `Abilities` that replace those that the object carries; the others stay.
     """
 
     name: str
-    abilities: Abilities | None = None
+    stated: Mapping[str, Any] = field(default_factory=dict)
 
     def contestant(self) -> Contestant:
         """Import the object. Raises `InputError` where that fails, and where it cannot be called."""
@@ -56,8 +56,8 @@ class Named:
             raise InputError("--solver", self.name, f"{allowed} ({reason})") from broken
         if not callable(found):
             raise InputError("--solver", self.name, allowed)
-        abilities_of(found)
-        return Limited(found, self.abilities) if self.abilities else found
+        carried = abilities_of(found)
+        return Limited(found, replace(carried, **self.stated)) if self.stated else found
 
 
 @dataclass(frozen=True)

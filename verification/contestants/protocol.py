@@ -1,25 +1,37 @@
 """What a contact solver is asked and what it must answer: the whole interface of a contestant.
 
-The discrete problem, for square elements of uniform pressure f (Pa) whose displacement is taken at their
-centres, in arrays ``[i, j]`` along x, y with centres at ``(i + 1/2) spacing``:
+Heights count upwards, and the gap is ``z_upper - z_lower``. The elements are squares of uniform pressure f
+(Pa); displacements are taken at their centres, in arrays ``[i, j]`` along x, y with centres at ``(i + 1/2)
+spacing``:
 
     u(x) = 1/(pi E*) sum f I[1/rho] + c0 sum r I[s/rho^2],      r = tau [f > 0] + beta f
     u + gap >= approach,   f >= 0,   f (u + gap - approach) = 0,
 
-``I`` integrates over one element, rho is the distance and s the offset along the sliding direction, from
-source to field point (SPEC 1). Displacements and the approach count positive where the bodies come together.
-Without coupling the second sum is absent. A periodic problem repeats the square in both directions; its
-fields are the band-limited interpolants of the element values, with the symbols ``2/(E* q)`` for pressure and
-``-2 pi i c0 q_s/q^2`` for shear. There the mean pressure displaces nothing, so ``approach`` counts from the
-mean planes: the last line holds with ``approach + mean(gap)`` on its right, and an approach is negative as
-long as contact is partial. Residuals are those of SPEC 1: the complementarity gap ``sum f (v - min v)`` with
-``v = u + gap`` over the elastic energy ``1/2 sum f (a f)``, and ``|N - P| / P``.
+``I`` integrates over one element; rho is the distance from source to field point, and s the offset from
+source to field point along the sliding direction ``(cos phi, sin phi)``, in which the upper body slides.
+Friction drags the lower body along it and the upper one against it; the second sum is what that moves the
+surfaces normally, with ``c0`` of the lower body minus that of the upper. A rigid ball on a softer flat has
+``c0 > 0``, and its pressure shifts towards ``-(cos phi, sin phi)``, the trailing edge. Identical materials
+do not couple: ``c0 = 0``, as without coupling. u is what both bodies give way, so displacements and the
+approach count positive where they come together.
+
+A periodic problem repeats the square in both directions; its fields are the band-limited interpolants of the
+element values, with the symbols ``2/(E* q)`` for pressure and ``-2 pi i c0 q_s/q^2`` for shear, where q is
+the wave vector's length and ``q_s`` its part along the sliding direction, for waves ``exp(i q x)``. There
+the mean pressure displaces nothing, so ``approach`` counts from the mean planes: the conditions hold with
+``approach + mean(gap)`` in the place of ``approach``, and an approach is negative as long as contact is
+partial.
+
+Residuals are the complementarity gap ``sum f (v - min v)`` with ``v = u + gap``, over the elastic energy
+``1/2 sum f (a f)`` with ``a f`` the first sum; the load balance ``|N - P| / P``, with N the load that the
+pressures carry and P the one asked for; and the largest tension over the largest pressure. At a prescribed
+approach the first is ``|sum f (v - approach)| + max(0, approach - min v) sum |f|``, over the same energy.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,9 +44,6 @@ LARGEST_PRECISION = 1e-6
 """No contestant may claim less. A relative gap g allows pressure errors of sqrt(g) in the energy norm, here
 0.1 %, a tenth of the smallest fault that must be seen; single precision reaches it."""
 
-HIGHEST = 1e50
-"""Pressures (over E*) from which an answer is nonsense: sums and energies of what is below stay finite."""
-
 
 class Unsupported(Unavailable):
     """Raised by a contestant that cannot pose a problem: the case is not applicable, and no pass."""
@@ -46,7 +55,7 @@ class BadAnswer(Exception):
 
 @dataclass(frozen=True)
 class Coupling:
-    """Friction whose shear moves the surfaces normally, without slopes (SPEC 1).
+    """Friction whose shear moves the surfaces normally, without slopes.
 
     tau : shear strength of the contact (Pa)
     beta : friction coefficient proper
@@ -220,29 +229,3 @@ def abilities_of(contestant: Contestant) -> Abilities:
     if not isinstance(found, Abilities):
         raise InputError("abilities", found, "verification.contestants.protocol.Abilities")
     return found
-
-
-def ask(contestant: Contestant, problem: ContactProblem) -> Array:
-    """The pressures ``(M, M)`` (Pa) that a contestant claims to be right, checked for shape and finiteness.
-
-    The contestant gets a copy of the problem. Raises `Unsupported` where its abilities do not reach,
-    `BadAnswer` for an answer that cannot be judged or admits failure, and whatever the contestant raises.
-    """
-    lacking = abilities_of(contestant).lacking(problem)
-    if lacking:
-        raise Unsupported(f"the solver does not offer: {lacking}")
-    answer = contestant(replace(problem, gap=problem.gap))
-    if isinstance(answer, Answer):
-        if not (isinstance(answer.converged, bool | np.bool_) and answer.converged):
-            raise BadAnswer(f"the solver says converged = {answer.converged!r}")
-        answer = np.asarray(answer.pressure)
-    if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
-        raise BadAnswer("the solver returned no array of real numbers")
-    if answer.shape != problem.gap.shape:
-        raise BadAnswer(f"pressures of shape {answer.shape} for a gap of shape {problem.gap.shape}")
-    pressure = np.array(answer, dtype=np.float64)
-    if not np.isfinite(pressure).all():
-        raise BadAnswer(f"{int(np.count_nonzero(~np.isfinite(pressure)))} pressures are not finite")
-    if not np.abs(pressure).max() < HIGHEST * problem.reduced_modulus:
-        raise BadAnswer(f"pressures up to {np.abs(pressure).max():.3g} Pa, beyond {HIGHEST:g} E*")
-    return pressure

@@ -1,0 +1,58 @@
+"""Posing a problem to a contestant: nothing but a checked answer that claims success comes back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from refimpl.grid import Array
+from verification.contestants.protocol import (
+    Answer,
+    BadAnswer,
+    ContactProblem,
+    Contestant,
+    Unsupported,
+    abilities_of,
+)
+
+HIGHEST = 1e50
+"""Pressures (over E*) from which an answer is nonsense: sums and energies of what is below stay finite."""
+EXPECTED = "expected an array of real numbers, or Answer(pressure, converged) with one"
+
+
+def _named(answer: object) -> str:
+    """What kind of thing an answer is."""
+    if answer is None:
+        return "None"
+    if isinstance(answer, np.ndarray):
+        return f"an array of {answer.dtype}"
+    return f"a {type(answer).__name__}"
+
+
+def ask(contestant: Contestant, problem: ContactProblem) -> Array:
+    """The pressures ``(M, M)`` (Pa) that a contestant claims to be right, checked for shape and finiteness.
+
+    The contestant gets a copy of the problem. Raises `Unsupported` where its abilities do not reach,
+    `BadAnswer` for an answer that cannot be judged or admits failure, and whatever the contestant raises.
+    """
+    lacking = abilities_of(contestant).lacking(problem)
+    if lacking:
+        raise Unsupported(f"the solver does not offer: {lacking}")
+    answer = contestant(replace(problem, gap=problem.gap))
+    if isinstance(answer, Answer):
+        if not isinstance(answer.converged, bool | np.bool_):
+            raise BadAnswer(f"the solver says converged = {answer.converged!r}: expected true or false")
+        if not answer.converged:
+            raise BadAnswer("the solver says that it did not converge")
+        answer = np.asarray(answer.pressure)
+    if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
+        raise BadAnswer(f"the solver returned {_named(answer)}: {EXPECTED}")
+    if answer.shape != problem.gap.shape:
+        raise BadAnswer(f"pressures of shape {answer.shape} for a gap of shape {problem.gap.shape}")
+    pressure = np.array(answer, dtype=np.float64)
+    if not np.isfinite(pressure).all():
+        raise BadAnswer(f"{int(np.count_nonzero(~np.isfinite(pressure)))} pressures are not finite")
+    if not np.abs(pressure).max() < HIGHEST * problem.reduced_modulus:
+        raise BadAnswer(f"pressures up to {np.abs(pressure).max():.3g} Pa, beyond {HIGHEST:g} E*")
+    return pressure
