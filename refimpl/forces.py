@@ -27,7 +27,7 @@ def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: f
 
     ``N = sum (f cos theta_x - r sin theta_x) cos theta_y dA``, Eq. (2);
     ``F = sum (f sin theta_x + r cos theta_x) cos theta_y dA``, Eq. (3);
-    ``Q = sum (f cos theta_x - r sin theta_x) sin theta_y dA`` (SPEC 1; the paper plots it undefined).
+    ``Q = sum (f cos theta_x - r sin theta_x) sin theta_y dA`` (the paper plots it undefined).
     """
     if slopes.is_flat:
         return Forces(float(np.sum(pressure)) * element_area, float(np.sum(traction)) * element_area, 0.0)
@@ -43,7 +43,7 @@ def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: f
 def facet_resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: float) -> Forces:
     """The same sums with the exact tractions of a facet per projected area.
 
-    Down ``f - r tan theta_x``, along ``r + f tan theta_x``, across ``f tan theta_y`` (SPEC 1). They
+    Down ``f - r tan theta_x``, along ``r + f tan theta_x``, across ``f tan theta_y``. They
     differ from the printed ones at second order in the slope. The binormal sum has the printed one's
     sign: a pressure on a surface that rises across the sliding direction counts positive.
     """

@@ -1,4 +1,4 @@
-"""The square grid of traction elements; element centres at (i + 1/2) side / M (SPEC 1)."""
+"""The square grid of traction elements; element centres at (i + 1/2) side / M."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Elastic materials and what a pair of them contributes to the influence coefficients (SPEC 1)."""
+"""Elastic materials and what a pair of them contributes to the influence coefficients."""
 
 from __future__ import annotations
 

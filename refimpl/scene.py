@@ -1,4 +1,4 @@
-"""The scene: two bodies, their friction, the load and the frame (SPEC 1 and 2)."""
+"""The scene: two bodies, their friction, the load and the frame."""
 
 from __future__ import annotations
 

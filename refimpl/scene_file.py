@@ -24,7 +24,7 @@ _SCENE_KEYS = ("load", "side", "upper", "lower", "friction", "tolerances", *_OPT
 
 
 def read_scene(path: str | Path) -> Scene:
-    """The scene of a TOML file (SPEC 3), or a shipped scene by its name (see `shipped_scenes`).
+    """The scene of a TOML file, or a shipped scene by its name (see `shipped_scenes`).
 
     Paths of measured surfaces are relative to the file. Raises `InputError` naming the field.
     """

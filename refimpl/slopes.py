@@ -1,4 +1,4 @@
-"""Slopes of the deformed common surface along and across the sliding direction (SPEC 1)."""
+"""Slopes of the deformed common surface along and across the sliding direction."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def solve(
         "contact_area_corrected" or "max_pressure"
     approach : prescribe the approach (m) instead of the scene's load
     oblique : False drops every slope term; None lets the scene decide
-    slope_correction : exact facet tractions in Eq. (7) (SPEC 2)
+    slope_correction : exact facet tractions in Eq. (7): `refimpl.forces`
     coupled, tilted : force in or out what shear does to the gap, and to the slopes of the common surface;
         None lets the scene decide
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default

@@ -85,3 +85,11 @@ def test_a_page_that_lies_is_found_out(page: str, tmp_path: Path) -> None:
 
 def test_blocks_know_their_files() -> None:
     assert blocks("```toml a.toml\nx = 1\n```\n") == [Block("toml", "a.toml", "x = 1\n")]
+
+
+def test_texts_name_what_they_mean_not_a_document_that_is_not_there() -> None:
+    """A source like "SPEC 1" leads a reader nowhere."""
+    packages = ("refimpl", "appendix_a", "verification", "reports", "docs")
+    files = [f for name in packages for kind in ("*.py", "*.md") for f in (ROOT / name).rglob(kind)]
+    assert len(files) > 200
+    assert [f for f in files if re.search(r"\bSPEC\b", f.read_text(encoding="utf-8"))] == []

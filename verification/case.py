@@ -65,7 +65,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Result:
-    """A judged case, ready for JSON: strings, finite numbers, lists and None only (SPEC 3)."""
+    """A judged case, ready for JSON: strings, finite numbers, lists and None only."""
 
     id: str
     title: str

@@ -39,7 +39,7 @@ class Run:
         return 0 if not bad and self.counts[Status.PASS] else 1
 
     def document(self) -> dict[str, object]:
-        """The result file (SPEC 3): the cases, and errata and provenance beside them."""
+        """The result file: the cases, and errata and provenance beside them."""
         return {
             "format": FORMAT,
             "tier": self.tier.value,

@@ -1,4 +1,4 @@
-"""How well a state satisfies the problem, recomputed from its pressure and traction alone (SPEC 1)."""
+"""How well a state satisfies the problem, recomputed from its pressure and traction alone."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Influence integrals of a rectangular element, to rounding at any distance: the only home of these formulas.
 
-``normal_integral`` is I[1/rho] (Love) and ``tangential_integral`` is I[s/rho^2] (Cerruti), SPEC section 1:
+``normal_integral`` is I[1/rho] (Love) and ``tangential_integral`` is I[s/rho^2] (Cerruti):
 times ``(1-nu^2)/(pi E)`` and ``(1+nu)(1-2nu)/(2 pi E)`` they are the normal displacement of one elastic
 half-space under unit normal pressure and under unit traction along x. Lengths are in m (any unit will do),
 results in the same unit.

@@ -21,7 +21,7 @@ class SurfaceWarning(UserWarning):
 
 
 class Surface(ABC):
-    """The shape of one body's surface: heights in m, positive upwards (SPEC 1).
+    """The shape of one body's surface: heights in m, positive upwards.
 
     Immutable. Surfaces and arrays of heights add up: ``Sphere(0.14) + GaussianRoughness(...) + array``.
     """

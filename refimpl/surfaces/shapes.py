@@ -24,7 +24,7 @@ class Flat(Surface):
 
 @dataclass(frozen=True)
 class Sphere(Surface):
-    """The paraboloid ``(x^2 + y^2) / (2 radius)`` about the scene's centre (SPEC 2).
+    """The paraboloid ``(x^2 + y^2) / (2 radius)`` about the scene's centre.
 
     A positive ``radius`` (m) bulges downwards: a ball as the upper body, its lowest point, at height 0, over
     the centre of the square. A ball as the lower body has a negative one. Periodic: the paraboloid of the

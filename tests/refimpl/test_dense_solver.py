@@ -121,7 +121,7 @@ def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
 def test_slopes_end_at_a_change_of_1e_13_of_the_peak(
     changes: tuple[float, ...], passes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """SPEC's bound; above it they go on, even where a change exceeds the one before."""
+    """The loop's bound; above it they go on, even where a change exceeds the one before."""
     problem, operator = sliding_spike()
     solver = dense_solver._DenseSolver(problem, operator)
     solver.pressure = 1e6 * np.eye(M)

@@ -16,7 +16,7 @@ from verification.contestants.protocol import ContactProblem
 
 @dataclass(frozen=True)
 class Judgement:
-    """Relative residuals (SPEC 1) and the numbers that all codes must agree on.
+    """Relative residuals and the numbers that all codes must agree on.
 
     gap : ``sum f (v - min v) dA`` over the elastic energy
     balance : ``|N - P| / P``

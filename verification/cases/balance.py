@@ -151,7 +151,7 @@ def reciprocity() -> Measured:
     "balance/skew-coupling",
     title="Shear does no work on the pressure it goes with",
     claim="f . (C f) = 0 in any sliding direction, for random tractions on 200 x 200 elements",
-    source="SPEC 1: c is odd",
+    source="c is odd in the offset, so its matrix is skew",
     metric="at_most",
     tolerance=1e-14,
     tolerance_reason="over |f| |C f|: an FFT of n points is accurate to eps log2(n) = 4e-15 in that norm",
@@ -210,7 +210,7 @@ def plasticity_threshold() -> Measured:
     title="Resultants of facets, added as vectors",
     claim="N, F and Q of tilted facets are the sums of pressure times the facet's area vector (the cross "
     "product of its edges) and of friction times its edge along the sliding direction",
-    source="SPEC 1, exact tractions of a facet; statics",
+    source="exact tractions of a facet per projected area (refimpl.forces); statics",
     metric="at_most",
     tolerance=4e-15,
     tolerance_reason="over the sum of magnitudes: 400 terms in numpy's blocks of 128 meet 18 roundings at "

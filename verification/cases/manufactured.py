@@ -12,7 +12,7 @@ from verification.case import Measured
 from verification.manufactured import Manufactured, manufacture
 from verification.registry import case
 
-SOURCE = "method of manufactured solutions (Roache 2002); sums of 50-digit integrals, SPEC 1"
+SOURCE = "method of manufactured solutions (Roache 2002); sums of 50-digit integrals"
 M, SEEDS, ANGLE = 12, (1, 2, 3), 0.7
 METHODS: tuple[Method, ...] = ("dense", "fft")
 ROUNDING = (
@@ -74,7 +74,7 @@ def oblique() -> Measured:
 @row(
     "manufactured/slope-correction",
     title="Manufactured states with exact facet tractions",
-    claim="both solvers return the chosen state with the facet tractions of SPEC 2 in Eq. (7)",
+    claim="both solvers return the chosen state with exact facet tractions in Eq. (7)",
 )
 def slope_correction() -> Measured:
     return _worst(oblique=True, slope_correction=True)

@@ -149,7 +149,7 @@ def direction() -> Measured:
     "sliding/identical-materials",
     title="Identical materials do not couple",
     claim="without slopes, friction between two bodies of one material changes no pressure",
-    source="SPEC 1: c is lower minus upper; Johnson 1985, section 5.4",
+    source="c is the lower body's minus the upper body's; Johnson 1985, section 5.4",
     metric="at_most",
     tolerance=1e-14,
     tolerance_reason="c is exactly zero, so both solves do the same arithmetic; over the peak",
@@ -169,7 +169,7 @@ def identical_materials() -> Measured:
     title="Where two equal balls meet when one has slid",
     claim="after the upper of two equal balls has slid by s, the contact lies s/2 behind its lowest point: "
     "the lower ball has stayed where it was",
-    source="SPEC 2: the lower surface is sampled at x + offset; symmetry",
+    source="the frame rides with the upper body: the lower surface is sampled at x + offset; symmetry",
     metric="at_most",
     tolerance=1e-9,
     tolerance_reason="in elements: the offset is 8 by 6 elements, so the grid is symmetric about the exact "

@@ -1,7 +1,7 @@
 """Influence matrices of the unit grid in many digits, from the textbook formulas alone (mpmath).
 
 Nothing is taken from `refimpl`: half-space coefficients are the corner sums of `exact.kernel_reference`,
-periodic ones the sum of the Fourier modes; slopes are the differences of SPEC 1 written out.
+periodic ones the sum of the Fourier modes; slopes are central differences, one-sided at the border.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ def displacement(sample: Sample, solution: rf.Solution) -> Array:
 
 
 def compliances(scene: rf.Scene) -> tuple[float, float]:
-    """Factors of ``I[1/rho]`` and ``I[s/rho^2]`` of the pair (1/Pa), written out anew from SPEC 1."""
+    """Factors of ``I[1/rho]`` and ``I[s/rho^2]`` of the pair (1/Pa), anew; c is lower minus upper."""
     lower, upper = scene.lower.material, scene.upper.material
     a = (1 - lower.nu**2) / (math.pi * lower.E) + (1 - upper.nu**2) / (math.pi * upper.E)
     c_lower = (1 + lower.nu) * (1 - 2 * lower.nu) / (2 * math.pi * lower.E)

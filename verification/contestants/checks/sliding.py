@@ -137,7 +137,7 @@ def sliding_reversed(entrant: Entrant) -> Measured:
     "identical-materials",
     title="Identical materials do not couple",
     claim="With c0 = 0, friction changes no pressure",
-    source="SPEC 1: c is lower minus upper; Johnson 1985, section 5.4",
+    source="c is lower minus upper (verification.contestants.protocol); Johnson 1985, section 5.4",
     metric="at_most",
     tolerance=4.1,
     tolerance_reason=TWICE,
