@@ -180,7 +180,7 @@ class LevelSolver:
         while residual > goal and since < _CG_PATIENCE and self.cg_iterations < self._budget:
             if (
                 not self.strong and self._leads_on()
-            ):  # a mixed state solves no frozen problem: its contact proves nothing
+            ):  # a mixed state solves no problem: its contact tells nothing
                 break
             self.cg.iterate()
             self.cg_iterations += 1

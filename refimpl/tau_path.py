@@ -15,9 +15,7 @@ from refimpl.outcome import Visited
 
 _SUPPORT_ITERATIONS = 200
 _STUCK = 3  # states in a row that cannot be settled: their contacts are no longer the rule's
-_TOLD = (
-    1e-6  # residual at which a cycle's state may be reported: mu is off by no larger share (see the tests)
-)
+_TOLD = 1e-6  # residual at which a cycle's state is reported: mu is off by no larger share (see the tests)
 
 
 class Settling(Protocol):

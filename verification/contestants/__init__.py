@@ -1,5 +1,6 @@
 """Contact solvers of any origin, run through one suite: bring your own.
 
-`protocol` says what a contestant is given and must return, `problems` and the `suite_*` modules hold the
-suite, `command` lets a program in any language take part, `broken` holds solvers that must not pass.
+`protocol` says what a contestant is given and must return, and `asking` takes nothing else. `checks` holds
+the suite's cases, `beds` problems whose pressures are chosen beforehand, `referee` the judge. A program
+in any language takes part by `command`; `broken` holds solvers that must not pass, `wrong` their parts.
 """
