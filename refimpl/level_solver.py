@@ -178,9 +178,8 @@ class LevelSolver:
         residual = best = max(self.cg.residuals())
         since = 0
         while residual > goal and since < _CG_PATIENCE and self.cg_iterations < self._budget:
-            if (
-                not self.strong and self._leads_on()
-            ):  # a mixed state solves no problem: its contact tells nothing
+            # a mixed state solves no frozen problem: its contact tells nothing
+            if not self.strong and self._leads_on():
                 break
             self.cg.iterate()
             self.cg_iterations += 1
