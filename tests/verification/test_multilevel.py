@@ -107,7 +107,7 @@ def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytes
     assert found.samples[:2] == (0, 0)
     assert found.samples[2] == len(found.finest["contact_area"]) > PILOT[2]
     assert found.cost == pytest.approx(sum(kept.values()))  # the pilot's solves are paid for
-    # 136 units for the pilot beside 400 solves of 16; as many as the scatter found asks for, a tenth about that
+    # 136 units for the pilot beside 400 solves of 16, give or take a tenth by the scatter found
     assert min(found.cost / plain for plain in found.plain.values()) < 1.25
     assert ensemble(study, tmp_path / "a.sqlite", 0.0005, workers=0) == found
 
