@@ -12,7 +12,7 @@ from scipy import ndimage
 from refimpl.coefficient_error import SlopeError, slope_error
 from refimpl.materials import Pair
 from refimpl.operators.window import Window
-from refimpl.scene import Scene
+from refimpl.scene import Body, Scene
 from refimpl.slopes import Slopes
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
@@ -77,7 +77,7 @@ def cautions(solution: Solution, scene: Scene) -> tuple[Caution, ...]:
         _plasticity(solution, scene),
         _hardness(solution),
         *_slopes(solution),
-        _border(solution),
+        _border(solution, scene),
         _correlation(solution),
         _data(solution, scene),
         _radius(solution),
@@ -159,14 +159,23 @@ def _slope(limit: Limit, slope: float, error: float | None) -> Caution | None:
     return Caution(limit, math.inf if error is None else error, _COEFFICIENT_ERROR, text)
 
 
-def _border(solution: Solution) -> Caution | None:
+def _border(solution: Solution, scene: Scene) -> Caution | None:
     if solution.problem.periodic or solution.grid.M <= 2:
         return None
     border = solution.contact.copy()
     border[1:-1, 1:-1] = False
     touching = int(np.count_nonzero(border))
-    text = f"contact reaches the border of the domain on {touching} elements: enlarge the side"
+    bowls = [name for name, sign in (("lower", 1), ("upper", -1)) if _is_bowl(getattr(scene, name), sign)]
+    advice = (
+        f"the {' and '.join(bowls)} body is a bowl (sign of its radius?)" if bowls else "enlarge the side"
+    )
+    text = f"contact reaches the border of the domain on {touching} elements: {advice}"
     return Caution(Limit.BORDER, touching, 0, text) if touching else None
+
+
+def _is_bowl(body: Body, sign: int) -> bool:
+    """Whether its paraboloids together bend away around their middle: positive radii below, negative above."""
+    return sign * sum(1 / part.radius for part in body.surface.parts if isinstance(part, Sphere)) > 0
 
 
 def _correlation(solution: Solution) -> Caution | None:

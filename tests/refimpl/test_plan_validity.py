@@ -93,12 +93,25 @@ def test_slopes_beyond_the_table() -> None:
     assert "beyond" in warned[Limit.MAX_SLOPE]
 
 
+def test_a_ball_of_the_wrong_sign_is_a_bowl() -> None:
+    """A radius is positive for a ball above and negative for one below: else contact is at the border."""
+    ball, flat = SMOOTH.upper, rf.Body(SMOOTH.lower.material, rf.Flat())
+    for scene, which in (
+        (replace(SMOOTH, upper=flat, lower=rf.Body(ball.material, rf.Sphere(0.14))), "lower body is a bowl"),
+        (replace(SMOOTH, upper=rf.Body(ball.material, rf.Sphere(-0.14)), lower=flat), "upper body is a bowl"),
+    ):
+        assert which in str(named(rf.solve(scene, 32))[Limit.BORDER])
+    below = rf.solve(replace(SMOOTH, upper=flat, lower=rf.Body(ball.material, rf.Sphere(-0.14))), 32)
+    assert Limit.BORDER not in named(below)
+
+
 def test_contact_at_the_border() -> None:
     s = rf.solve(replace(SMOOTH, side=0.6e-3), 32)
     warned = named(s)[Limit.BORDER]
     border = s.contact.copy()
     border[1:-1, 1:-1] = False
     assert warned.number == border.sum() > 0
+    assert "enlarge the side" in str(warned)
     assert Limit.BORDER not in named(rf.solve(SMOOTH, 32))
     assert Limit.BORDER not in named(rf.solve(replace(SMOOTH, side=0.6e-3, periodic=True), 32))
 

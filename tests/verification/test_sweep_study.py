@@ -202,13 +202,13 @@ def test_a_slide_within_it_is_good_and_the_file_is_read_once(tmp_path: Path, rea
 
 def test_only_what_differs_in_its_limits_is_sampled(monkeypatch: pytest.MonkeyPatch) -> None:
     sampled: list[tuple[float, int]] = []
-    heights = rf.Scene.heights
+    heights = rf.Scene.sampled
 
     def counted(scene: rf.Scene, grid: rf.Grid) -> object:
         sampled.append((scene.sliding_offset, grid.M))
         return heights(scene, grid)
 
-    monkeypatch.setattr(rf.Scene, "heights", counted)
+    monkeypatch.setattr(rf.Scene, "sampled", counted)
     axes = {
         "grid": [16, 4096],
         "load": [10.0, 20.0, 30.0],

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,6 @@ from refimpl.plan import memory_of
 from refimpl.request import Request
 from refimpl.scene import Scene
 from refimpl.scene_file import scene_from_dict
-from refimpl.surfaces import SurfaceWarning
 
 if TYPE_CHECKING:
     from verification.sweep.study import Study
@@ -38,9 +36,7 @@ def check(study: Study) -> None:
         scene = scene_from_dict(run.inputs["scene"], Path())
         Request(scene=scene, grid=run.inputs["grid"], **run.inputs["solve"])
     for scene in _closest(study):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SurfaceWarning)
-            scene.heights(Grid(scene.side, min(FINEST, int(max(study.vary["grid"])))))
+        scene.sampled(Grid(scene.side, min(FINEST, int(max(study.vary["grid"])))))
 
 
 def check_memory(study: Study) -> None:
