@@ -174,7 +174,7 @@ def _border(solution: Solution, scene: Scene) -> Caution | None:
 
 
 def _is_bowl(body: Body, sign: int) -> bool:
-    """Whether its paraboloids together bend away around their middle: positive radii below, negative above."""
+    """Whether its paraboloids together are hollow: a positive radius below, a negative one above."""
     return sign * sum(1 / part.radius for part in body.surface.parts if isinstance(part, Sphere)) > 0
 
 
