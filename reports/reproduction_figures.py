@@ -127,7 +127,7 @@ def _fig8(canvas: Canvas, data: Data) -> None:
         middle = data["sigma_e of rates (um)"]
         rates.plot(middle, data[f"rate of mu, {load}"], color=COLOURS[k], label=f"$\\mu$, P = {load}")
         ring: dict[str, Any] = {"markerfacecolor": "none", "markersize": 7, "color": INK}
-        rates.plot(middle, data[f"rate of A, {load}"], "", marker=MARKERS[k], label=f"A, P = {load}", **ring)
+        rates.plot(middle, data[f"rate of A, {load}"], MARKERS[k], label=f"A, P = {load}", **ring)
     _label(friction, "$\\sigma_e$ (µm)", "friction coefficient", "(a)")
     _label(area, "$\\sigma_e$ (µm)", "contact area (mm²)", "(b)")
     _label(rates, "$\\sigma_e$ (µm)", "rate of change / its first", "(c)")
@@ -136,9 +136,9 @@ def _fig8(canvas: Canvas, data: Data) -> None:
         above = axes.secondary_xaxis("top", (lambda s: s * per_micron, lambda p: p / per_micron))
         above.set_xlabel("$\\psi$, Eq. (12) with the correlation length")
     key.set_axis_off()
-    for panel, height in ((friction, 0.95), (rates, 0.55)):
-        handles = panel.get_legend_handles_labels()
-        key.add_artist(key.legend(*handles, loc="upper left", bbox_to_anchor=(0.05, height), fontsize=10))
+    loads, curves = (panel.get_legend_handles_labels() for panel in (friction, rates))
+    key.add_artist(key.legend(*loads, loc="upper left", bbox_to_anchor=(0.05, 0.95)))
+    key.legend(*curves, loc="upper left", bbox_to_anchor=(0.05, 0.55))
 
 
 def _fig9(canvas: Canvas, data: Data) -> None:
