@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+import refimpl as rf
 from refimpl.errors import InputError
 from reports.studies.multilevel import build
 from verification.cli import main
@@ -110,6 +112,15 @@ def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytes
     # 136 units for the pilot beside 400 solves of 16, give or take a tenth by the scatter found
     assert min(found.cost / plain for plain in found.plain.values()) < 1.25
     assert ensemble(study, tmp_path / "a.sqlite", 0.0005, workers=0) == found
+
+
+def test_without_friction_there_is_no_mean_of_mu(tmp_path: Path) -> None:
+    scene = rf.read_scene("table1-rough")
+    (tmp_path / "dry.toml").write_text(rf.scene_to_toml(replace(scene, friction=rf.Friction())), "utf-8")
+    study = study_from_dict(TABLE | {"scene": "dry.toml", "vary": {"grid": [8, 16]}}, tmp_path)
+    found = ensemble(study, tmp_path / "a.sqlite", 0.3, workers=0)
+    assert found.met
+    assert set(found.means) == set(found.plain) == set(found.finest) == {"contact_area"}
 
 
 def spied(monkeypatch: pytest.MonkeyPatch, scatter: tuple[float, ...]) -> dict[str, float]:

@@ -63,7 +63,7 @@ def ensemble(
     scheduler: str | None = None,
     tick: Callable[[engine.Progress], None] = lambda _: None,
 ) -> Ensemble:
-    """Mean mu and A on the study's finest grid, each to the relative standard error ``target``.
+    """Mean mu (with friction) and A on the finest grid, each to the relative standard error ``target``.
 
     The study varies the grid alone, over two or more grids, each twice the one before. Runs are kept in the
     store, so an interrupted ensemble goes on. Where a run fails or does not converge there are no means but
@@ -73,7 +73,7 @@ def ensemble(
     pay by `costs_by_start` are dropped, down to plain sampling on the finest. Raises InputError, also for a
     target that is seen to take more than `MAX_RUNS` realisations, and what `engine.sweep` raises.
     """
-    grids = _checked(study, target)
+    grids, names = _checked(study, target), _judged(study)
     if "tolerance" not in study.settings:
         study = replace(study, settings={**study.settings, "tolerance": TOLERANCE})
     sweep = partial(engine.sweep, store=store, workers=workers, scheduler=scheduler, tick=tick)
@@ -81,10 +81,10 @@ def ensemble(
     start, dropped = 0, 0.0
     for _ in range(_ROUNDS):
         terms = [
-            _solved(study, sweep, term, grids[max(term - 1, start) : term + 1], number)
+            _solved(study, names, sweep, term, grids[max(term - 1, start) : term + 1], number)
             for term, number in enumerate(numbers, start)
         ]
-        found = _gathered(grids, terms, dropped, target)
+        found = _gathered(grids, names, terms, dropped, target)
         if found.met or found.failures:
             return found
         sizes = _sizes(found)
@@ -116,8 +116,19 @@ class _Term:
         return replace(self, samples=self.finer, seconds=self.finer_seconds)
 
 
+def _judged(study: Study) -> tuple[str, ...]:
+    """Without friction mu has a mean of zero, which no error is a share of."""
+    friction = study.scene["friction"]
+    return QUANTITIES if friction["tau"] or friction["beta"] else ("contact_area",)
+
+
 def _solved(
-    study: Study, sweep: Callable[[Study], engine.Sweep], term: int, grids: Sequence[int], number: int
+    study: Study,
+    names: Sequence[str],
+    sweep: Callable[[Study], engine.Sweep],
+    term: int,
+    grids: Sequence[int],
+    number: int,
 ) -> _Term:
     """A term's samples on one grid, or from one to the next: the same realisations either way."""
     part = replace(
@@ -125,10 +136,10 @@ def _solved(
     )
     done = sweep(part)
     if failures := {**done.failures, **_unconverged(part, done)}:
-        none = np.empty((0, len(QUANTITIES)))
+        none = np.empty((0, len(names)))
         return _Term(none, none, np.nan, np.nan, failures)
-    values = np.array([[row[name] for name in QUANTITIES] for row in done.rows], dtype=float)
-    by_grid = values.reshape(number, len(grids), len(QUANTITIES))
+    values = np.array([[row[name] for name in names] for row in done.rows], dtype=float)
+    by_grid = values.reshape(number, len(grids), len(names))
     finer = by_grid[:, -1]
     samples = finer - by_grid[:, 0] if len(grids) > 1 else finer
     seconds = np.array(done.solve_seconds).reshape(number, len(grids)).mean(axis=0)
@@ -137,7 +148,7 @@ def _solved(
 
 def _sizes(found: Ensemble) -> Array:
     """What the target is a share of, by quantity, a little smaller: scatter is seen to be larger later."""
-    return 0.97 * np.array([abs(found.means[name].mean) for name in QUANTITIES])
+    return 0.97 * np.array([abs(mean.mean) for mean in found.means.values()])
 
 
 def _paying(terms: Sequence[_Term], sizes: Array) -> int:
@@ -179,17 +190,19 @@ def _unconverged(part: Study, done: engine.Sweep) -> dict[str, str]:
     return {first["key"]: f"{number}; the first: {which}, residual {first['residual']:.2g}"}
 
 
-def _gathered(grids: Sequence[int], terms: Sequence[_Term], dropped: float, target: float) -> Ensemble:
+def _gathered(
+    grids: Sequence[int], names: Sequence[str], terms: Sequence[_Term], dropped: float, target: float
+) -> Ensemble:
     failures = {key: text for term in terms for key, text in term.failures.items()}
     if failures:
         return Ensemble(tuple(grids), {}, (), (), {}, {}, False, failures)
-    means = {name: estimate([term.samples[:, k] for term in terms]) for k, name in enumerate(QUANTITIES)}
+    means = {name: estimate([term.samples[:, k] for term in terms]) for k, name in enumerate(names)}
     plain = {
         # the scatter of one realisation hardly depends on a grid that pays, and the coarsest knows it best
         name: terms[-1].finer_seconds
         * float(terms[0].samples[:, k].var(ddof=1))
         / means[name].standard_error ** 2
-        for k, name in enumerate(QUANTITIES)
+        for k, name in enumerate(names)
     }
     none = (0,) * (len(grids) - len(terms))
     return Ensemble(
@@ -198,7 +211,7 @@ def _gathered(grids: Sequence[int], terms: Sequence[_Term], dropped: float, targ
         samples=none + tuple(len(term.samples) for term in terms),
         seconds=none + tuple(term.seconds for term in terms),
         plain=plain,
-        finest={name: tuple(terms[-1].finer[:, k].tolist()) for k, name in enumerate(QUANTITIES)},
+        finest={name: tuple(terms[-1].finer[:, k].tolist()) for k, name in enumerate(names)},
         met=all(e.standard_error <= target * abs(e.mean) for e in means.values()),
         failures={},
         dropped=dropped,
