@@ -147,10 +147,13 @@ def test_no_pressure_at_all_is_sheared_by_nothing() -> None:
         assert np.isfinite(left.tan_x).all()
 
 
-def test_both_kernels_in_one_product_cost_one() -> None:
+@pytest.mark.parametrize("influence", [FFTInfluence, PeriodicInfluence])
+def test_both_kernels_in_one_product_cost_one(
+    influence: type[FFTInfluence] | type[PeriodicInfluence],
+) -> None:
     problem = turned(0.2)
     grid, counter = problem.grid, Counter()
-    operator = FFTInfluence(grid, problem.direction, counter=counter)
+    operator = influence(grid, problem.direction, counter=counter)
     product = operator.coupled(0.5)
     before, pressure = counter.point_logs, pressed(4)
     found = product(pressure)
