@@ -51,8 +51,9 @@ def _misplaced(solution: Solution) -> float:
 
     Those with half of the highest pressure; at edges separations are off by more, and no peak is there.
     """
-    high = solution.contact & (solution.pressure >= 0.5 * solution.max_pressure)
-    off = float(np.abs(solution.clearance[high]).max(initial=0.0))
+    if solution.max_pressure == 0:
+        return 0.0
+    off = float(np.abs(solution.clearance[solution.pressure >= 0.5 * solution.max_pressure]).max())
     return 0.5 * off / (solution.problem.pair.normal_compliance * solution.grid.spacing)
 
 
