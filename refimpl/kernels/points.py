@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_number
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.far_field import NEAR, Kernel, across, shells
 from refimpl.kernels.love import LOVE
@@ -47,17 +47,28 @@ def tangential_integral(x: ArrayLike, y: ArrayLike, dx: float, dy: float) -> Arr
 def scale(dx: float, dy: float) -> float:
     """The power of two above the larger edge. Raises ``InputError`` unless both are positive and finite."""
     for name, edge in (("dx", dx), ("dy", dy)):
-        if not (np.ndim(edge) == 0 and np.isfinite(edge) and edge > 0):
-            raise InputError(name, edge, "a positive finite length, one number")
-    return float(np.ldexp(1.0, np.frexp(max(dx, dy))[1]))
+        one = edge.item() if isinstance(edge, np.ndarray) and edge.ndim == 0 else edge
+        require_number(name, one, "a positive finite length, one number", above=0)
+    return float(np.ldexp(1.0, np.frexp(float(max(dx, dy)))[1]))
 
 
 def _points(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-    x, y = np.broadcast_arrays(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64))
-    for name, offset in (("x", x), ("y", y)):
-        if not np.isfinite(offset).all():
-            raise InputError(name, offset[~np.isfinite(offset)][0], "finite lengths")
+    x, y = _lengths("x", x), _lengths("y", y)
+    try:
+        x, y = np.broadcast_arrays(x, y)
+    except ValueError as refused:
+        raise InputError("y", np.shape(y), f"a shape that goes with that of x, {np.shape(x)}") from refused
     return x, y
+
+
+def _lengths(name: str, given: ArrayLike) -> Array:
+    try:
+        lengths = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError) as refused:
+        raise InputError(name, given, "finite lengths") from refused
+    if not np.isfinite(lengths).all():
+        raise InputError(name, lengths[~np.isfinite(lengths)][0], "finite lengths")
+    return lengths
 
 
 def _evaluate(kernel: Kernel, x: Array, y: Array, dx: float, dy: float) -> Array:

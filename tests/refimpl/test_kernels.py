@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -137,7 +138,7 @@ def test_orders_follow_the_bound():
 
 
 @pytest.mark.parametrize("kernel", [normal_integral, tangential_integral])
-@pytest.mark.parametrize("edge", [0.0, -1.0, np.nan, np.inf, [1.0, 2.0]])
+@pytest.mark.parametrize("edge", [0.0, -1.0, np.nan, np.inf, [1.0, 2.0], "a", None, 1j, [1.0]])
 def test_refuses_edges(kernel, edge):
     with pytest.raises(InputError, match=r"^dx = "):
         kernel(1.0, 1.0, edge, 1.0)
@@ -146,7 +147,7 @@ def test_refuses_edges(kernel, edge):
 
 
 @pytest.mark.parametrize("kernel", [normal_integral, tangential_integral])
-@pytest.mark.parametrize("offset", [np.nan, np.inf, [0.0, -np.inf]])
+@pytest.mark.parametrize("offset", [np.nan, np.inf, [0.0, -np.inf], "a", 1j, None])
 def test_refuses_offsets(kernel, offset):
     with pytest.raises(InputError, match=r"^x = "):
         kernel(offset, 1.0, 1.0, 1.0)
@@ -163,6 +164,17 @@ def test_refuses_counts(table, count):
         table(4, count, 1.0)
     with pytest.raises(InputError, match=r"^dx = "):
         table(4, 4, -1.0)
+
+
+def test_refuses_shapes_that_do_not_go_together():
+    with pytest.raises(InputError, match=r"^y = \(2,\): expected a shape that goes with that of x, \(3,\)"):
+        normal_integral([0.0, 1.0, 2.0], [0.0, 1.0], 1.0, 1.0)
+
+
+def test_takes_edges_of_any_width():
+    expected = normal_integral(1.0, 1.0, 2.0, 2.0)
+    for edge in (np.array(2.0), np.float32(2.0), Fraction(2), 2):
+        assert normal_integral(1.0, 1.0, edge, edge) == expected
 
 
 def test_the_first_offset_that_is_refused_is_named():
