@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.contact.projected_cg import relative_gap
+from refimpl.contact.gap import relative_gap
 from refimpl.forces import Forces, resultants
 from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array, inner

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from refimpl.contact.cut import cut_at_zero, room
+from refimpl.contact.gap import relative_gap
 from refimpl.contact.support import Support
 from refimpl.friction import Mask
 from refimpl.grid import Array, inner
@@ -29,13 +30,6 @@ _SHORTER = 0.8  # trial over last best length: a trial too long would leave cut 
 _NOTHING = 1e-12  # of a pressure: what a step that makes it vanish may leave
 _DOUBT = 2.0  # times the worst misfit; 1 is enough for all of tau's states on random scenes (see the tests)
 _TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its length before it cuts
-
-
-def relative_gap(duality: float, energy: float) -> float:
-    """Complementarity gap over elastic energy; an exact state without energy has none."""
-    if duality == 0:
-        return 0.0
-    return duality / energy if energy > 0 else np.inf
 
 
 class _Seen(NamedTuple):

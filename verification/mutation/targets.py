@@ -80,6 +80,7 @@ TARGETS = (
     Target("contact", "refimpl/contact/extension.py", ("tests/refimpl/test_extension.py",)),
     Target("contact", "refimpl/contact/projected_cg.py",
            _tests("projected_cg", "projected_cg_steps", "solve")),
+    Target("contact", "refimpl/contact/gap.py", _tests("projected_cg")),
     Target("contact", "refimpl/contact/cut.py", _tests("cut", "projected_cg", "projected_cg_steps")),
     Target("contact", "refimpl/contact/support.py", _tests("support", "projected_cg", "projected_cg_steps")),
     Target("equilibrium", "refimpl/grid.py", _tests("nesting", "input", "projected_cg", "solve")),
