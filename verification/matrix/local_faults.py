@@ -73,7 +73,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     "border-slopes": ("slopes zero at the border", lambda: ((slopes, "_difference", wrong.flat_border),)),
     "slide-sign": (
         "the lower surface slides backwards",
-        lambda: _method(Scene, "heights", wrong.slid_backwards),
+        lambda: _method(Scene, "sampled", wrong.slid_backwards),
     ),
     "small-pressures-dropped": (
         "the dense reference drops pressures below 1e-8 of the peak",

@@ -26,7 +26,7 @@ _fft_across, _dense_along = FFTInfluence.shear_across, DenseInfluence._along
 _tractions, _problem_slopes = Problem.tractions, Problem.slopes
 _spread_by_support = gathered._spread_by_support
 _iterate, _gathered, _difference = paper._Scheme._iterate, gathered.gathered, slopes._difference
-_complementarity, _scene_heights = active_set.complementarity, Scene.heights
+_complementarity, _scene_sampled = active_set.complementarity, Scene.sampled
 _perimeter, _departure = forces.perimeter_corrected_area, coefficient_error._departure
 _white_noise, _order_for, _bar = noise.white_noise, far_field.order_for, Estimate.bar
 
@@ -70,7 +70,7 @@ def flat_border(heights: Array, axis: int, periodic: bool) -> Array:
 
 
 def slid_backwards(self: Scene, grid: Grid) -> Any:
-    return _scene_heights(replace(self, sliding_offset=-self.sliding_offset), grid)
+    return _scene_sampled(replace(self, sliding_offset=-self.sliding_offset), grid)
 
 
 def from_first_touch(posed: Problem, *args: Any) -> Any:
