@@ -59,7 +59,7 @@ class Held:
         self.entered, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
             self.entered, change = self.slopes, slopes.distance(self.slopes, pressure > 0)
-        within = np.abs(shear).max() < _FARTHEST * problem.grid.side
+        within = max(shear.max(), -shear.min()) < _FARTHEST * problem.grid.side
         self.ran_off = not (slopes.obliqueness.min() > _STEEPEST and within)
         if not self.ran_off:
             self.slopes = slopes

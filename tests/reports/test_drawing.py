@@ -36,6 +36,20 @@ def test_lines_hold_the_series() -> None:
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (mm)", "MPa")
 
 
+@pytest.mark.parametrize(
+    ("x", "labels"),
+    [
+        ([48, 64, 128, 130, 512], ["48", "64", "128", "512"]),  # 130 would stand on 128
+        ([1, 10, 1000], None),  # decades have labels of their own
+    ],
+)
+def test_few_points_of_a_logarithmic_axis_are_its_ticks(x: list[int], labels: list[str] | None) -> None:
+    draw = lines("x", {"y": "y"}, xlabel="x", ylabel="y", log="x")
+    axes = drawn(draw, {"x": x, "y": x}).axes[0]
+    shown = [tick.get_text() for tick in axes.get_xticklabels()]
+    assert (shown == labels) is (labels is not None)
+
+
 def test_dots_say_zero_and_missing_in_words() -> None:
     axes = drawn(dots("e", xlabel="error", limit=1e-9), {"e": {"a": 1e-12, "b": 0.0, "c": None}}).axes[0]
     assert [t.get_text() for t in axes.texts] == ["1.0e-12", " exactly 0", " not available"]
