@@ -109,8 +109,8 @@ def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytes
     assert found.samples[:2] == (0, 0)
     assert found.samples[2] == len(found.finest["contact_area"]) > PILOT[2]
     assert found.cost == pytest.approx(sum(kept.values()))  # the pilot's solves are paid for
-    # 136 units for the pilot beside 400 solves of 16, give or take a tenth by the scatter found
-    assert min(found.cost / plain for plain in found.plain.values()) < 1.25
+    # 400 solves do, and the pilot's four may take the variance for 2.6 times as large (chi-square, 95 %)
+    assert min(found.cost / plain for plain in found.plain.values()) < 2.6
     assert ensemble(study, tmp_path / "a.sqlite", 0.0005, workers=0) == found
 
 
@@ -134,7 +134,10 @@ def spied(monkeypatch: pytest.MonkeyPatch, scatter: tuple[float, ...]) -> dict[s
         rows, spent = [], []
         for run in study.runs():
             level = int(np.log2(run.inputs["grid"] / 8))
-            value = 100 + scatter[level] * np.random.default_rng(int(run.key, 16)).standard_normal()
+            seed = study.first_seed + 2 * int(
+                run.coordinates["realisation"]
+            )  # a key knows the code's version
+            value = 100 + scatter[level] * np.random.default_rng([seed, level]).standard_normal()
             rows.append(dict.fromkeys(QUANTITIES, value) | {"status": "converged", "key": run.key})
             spent.append(seconds.setdefault(run.key, 4.0**level))
         return engine.Sweep(0, len(rows), {}, rows, spent, 0.0)
