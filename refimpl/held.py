@@ -15,9 +15,7 @@ from refimpl.problem import Problem
 from refimpl.slopes import Slopes
 
 _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
-_FARTHEST = (
-    1e30  # sides; shear displacements beyond have run off: they, and products of them, still fit a double
-)
+_FARTHEST = 1e30  # sides; shear displacements beyond have run off, while their squares still fit a double
 
 
 class Held:

@@ -14,6 +14,7 @@ from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.sinusoid import departures, setup_for
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.leading_order import facet_prediction, first_order, plane_slope
+from appendix_a.wedge_tip import relative_difference
 from verification.case import Measured
 from verification.cases.appendix_fem import NEIGHBOURS, POINTS, POINTS_REASON, percent
 from verification.registry import case
@@ -21,6 +22,7 @@ from verification.verdict import Verdict, judged
 
 Array = NDArray[np.float64]
 CURVE = np.array([x for x in np.linspace(-12.0, 12.0, 49) if x != 0.0])
+TIP = np.array([2.0, 3.0, 6.0, 12.0])  # offsets at which a tip is told
 
 
 def odd(values: Array) -> Array:
@@ -191,10 +193,12 @@ def confined() -> Measured:
         "antisymmetric, p a / E": {f"{x:g} a": d for x, d in zip(NEIGHBOURS, odd(difference), strict=True)},
     }
     uphill = np.abs(percent(difference, 0.3, NEIGHBOURS))
+    tip = 100 * relative_difference(TIP, np.radians(6.5), 0.3, half_base=16.0, datum=0)
+    data["tip, by wedge theory: percent"] = {f"{x:g} a": d for x, d in zip(TIP, tip, strict=True)}
     sentence = (
         f"on a flank of 6.5 degrees it is {uphill[4]:.1f} % at 2 a and {uphill[0]:.1f} % at 20 a; in p a / E "
-        "its antisymmetric part does not fall at all. On a tip, which the paper draws, it does "
-        "(fig13-wedge-tip)"
+        "its antisymmetric part does not fall at all. On a tip, which the paper draws, it is "
+        f"{', '.join(f'{d:.1f} % at {x:g} a' for x, d in zip(TIP, tip, strict=True))}, counted from the apex"
     )
     far_over_near = float(abs(odd(difference)[-1] / odd(difference)[5]))
     return judged(Verdict.CONDITIONAL, sentence, far_over_near, data=data)

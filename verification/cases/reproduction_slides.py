@@ -97,9 +97,10 @@ def anisotropy(tier: str) -> Measured:
     source="paper sections 8 and 9, Figs 10 and 11",
     metric="at_most",
     tolerance=0.05,
-    tolerance_reason="share of the elastic part's variance over directions that its first harmonic leaves: "
-    "the pressure-weighted mean slope, a vector, gives that harmonic and nothing else. Coupling and tau's "
-    "edge move the contact with the direction by 0.7 % of the Hertz radius, 3 % of a correlation length",
+    tolerance_reason="share of the elastic part's variance over directions that its first harmonic leaves. "
+    "On one contact there is no other: a sum over slopes is a vector's component. What is measured is how "
+    "far the contact depends on the direction: coupling and tau's edge move it by 0.7 % of the Hertz radius, "
+    "3 % of a correlation length",
     tags=("fig10", "fig11"),
 )
 def cause(tier: str) -> Measured:
@@ -107,11 +108,12 @@ def cause(tier: str) -> Measured:
     left = [slides.beyond_mean_slope(c.direction, c.elastic) for c in curves]
     alike = [slides.beyond_mean_slope(c.direction, c.anisotropy) for c in curves]
     sentence = (
-        "the mean slope of the loaded elements, two numbers, gives all but "
+        "the pressure-weighted mean slope, two numbers, gives all but "
         f"{', '.join(f'{v:.2%}' for v in left)} of the variance of the elastic part over directions "
         f"({', '.join(f'{c.flat_rms * 1e6:g}' for c in curves)} um), and all but "
         f"{', '.join(f'{v:.2%}' for v in alike)} of friction's: a first moment, which finitely many contacts "
-        "leave whatever their distribution. Slopes in contact are Gaussian within sampling (fig11-slopes)"
+        "leave whatever the shape of their distribution. Slopes alone enter these sums, and in contact they "
+        "are Gaussian within sampling (fig11-slopes); heights are not (fig11-heights)"
     )
     data = {"flat rms (um)": [c.flat_rms * 1e6 for c in curves], "left of the elastic part": left}
     return judged(Verdict.REFUTED, sentence, max(left), data=data | {"left of friction": alike})

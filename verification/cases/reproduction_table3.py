@@ -202,18 +202,22 @@ def digits() -> Measured:
     """Of the printed numbers alone."""
     data: dict[str, object] = {"flat rms (um)": [found.flat_rms * 1e6 for found in TABLE3]}
     shown, largest = [], 0.0
+    within: dict[bool, list[str]] = {True: [], False: []}
     for quantity, (_, name) in NAMES.items():
         medium, fine = np.array([getattr(found, quantity)[1:] for found in TABLE3]).T
         decimals = np.abs(fine - medium) / DECIMAL[quantity]
         change = np.abs(fine / medium - 1)
         data |= {f"{name}: second decimals": decimals, f"{name}: relative change": change}
         shown.append(f"{name} {decimals.max():.1f} ({change.max():.1%})")
+        within[bool(decimals.max() < 1)].append(name)
         largest = max(largest, float(decimals.max()))
     sentence = (
         "printed from 256 to 512 elements, in units of the second decimal (and relative), at most: "
-        f"{', '.join(shown)}. mu and A in mm^2 stay within it, f_max in GPa does not"
+        f"{', '.join(shown)}. Within it, in mm^2 and GPa: {', '.join(within[True]) or 'none'}; beyond: "
+        f"{', '.join(within[False]) or 'none'}"
     )
-    return judged(Verdict.CONDITIONAL, sentence, largest, data=data)
+    verdict = Verdict.CONDITIONAL if within[True] else Verdict.REFUTED
+    return judged(verdict, sentence, largest, data=data)
 
 
 REALISATIONS, MESH, ROUGHER_BALL = 25, 256, 0.252e-6

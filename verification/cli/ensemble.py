@@ -3,52 +3,33 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any
 
 from verification.cli.output import columns, emit
 
 if TYPE_CHECKING:
     from verification.multilevel.ensemble import Ensemble
-    from verification.sweep.engine import Progress
     from verification.sweep.study import Study
 
 
-class Line(Protocol):
-    """Where progress is shown."""
-
-    def show(self, progress: Progress) -> None: ...
-
-    def close(self) -> None: ...
-
-
-def run(options: argparse.Namespace, study: Study, store: Path, line: Line) -> int:
-    """Run an ensemble to its target; status 1 when a run failed or the target was not met."""
+def found(options: argparse.Namespace, study: Study, store: Path, **sweep: Any) -> Ensemble:
+    """Run an ensemble to its target; ``sweep`` are options of `verification.sweep.engine.sweep`."""
     from refimpl.errors import InputError
     from verification.multilevel.ensemble import ensemble
-    from verification.provenance import provenance
-    from verification.sweep import engine
 
     if options.csv is not None or options.parquet is not None:
         raise InputError(
             "--target-error", options.target_error, "no --csv or --parquet beside it: use --json"
         )
-    try:
-        found = ensemble(
-            study,
-            store,
-            options.target_error,
-            workers=options.workers,
-            scheduler=options.scheduler,
-            tick=line.show,
-        )
-    except engine.WorkersLost as lost:
-        print(f"rough-friction sweep: {lost}", file=sys.stderr)
-        return 1
-    finally:
-        line.close()
+    return ensemble(study, store, options.target_error, **sweep)
+
+
+def told(options: argparse.Namespace, found: Ensemble) -> int:
+    """Print and write what was found; status 1 when a run failed or the target was not met."""
+    from verification.provenance import provenance
+
     document = {**asdict(found), "cost": found.cost if found.means else None, "provenance": provenance()}
     emit(document, options.json, table(found))
     return 0 if found.met else 1

@@ -103,22 +103,19 @@ def run(options: argparse.Namespace) -> int:
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
         posable.check_memory(study)
-    if options.target_error is not None:
-        return ensemble.run(options, study, store, _Line())
-    line = _Line()
+    line, where = _Line(), {"workers": options.workers, "scheduler": options.scheduler}
     try:
-        done = engine.sweep(
-            study,
-            store,
-            workers=options.workers,
-            scheduler=options.scheduler,
-            tick=line.show,
-        )
+        if options.target_error is not None:
+            found = ensemble.found(options, study, store, **where, tick=line.show)
+        else:
+            done = engine.sweep(study, store, **where, tick=line.show)
     except engine.WorkersLost as lost:
         print(f"rough-friction sweep: {lost}", file=sys.stderr)
         return 1
     finally:
         line.close()
+    if options.target_error is not None:
+        return ensemble.told(options, found)
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
 

@@ -18,7 +18,7 @@ INVARIANTS = tuple(
 )  # fmt: skip
 """Invariants that recompute a state by other means, or turn it: all 25 would take three times as long."""
 KERNELS = tuple(f"tests/refimpl/test_{name}.py" for name in ("kernels_properties", "kernels", "multipole"))
-OPERATORS = ("tests/refimpl/test_operators.py", *INVARIANTS)
+OPERATORS = ("tests/refimpl/test_operators.py", "tests/refimpl/test_flexibility.py", *INVARIANTS)
 WEDGE = ("tests/appendix_a/test_wedge.py", "tests/appendix_a/test_wedge_enclosure.py")
 STRIP = ("tests/appendix_a/test_strip.py",)
 
@@ -83,7 +83,7 @@ TARGETS = (
     Target("contact", "refimpl/contact/gap.py", _tests("projected_cg")),
     Target("contact", "refimpl/contact/cut.py", _tests("cut", "projected_cg", "projected_cg_steps")),
     Target("contact", "refimpl/contact/support.py", _tests("support", "projected_cg", "projected_cg_steps")),
-    Target("equilibrium", "refimpl/grid.py", _tests("nesting", "input", "projected_cg", "solve")),
+    Target("equilibrium", "refimpl/grid.py", _tests("grid", "nesting", "input", "projected_cg", "solve")),
     Target("equilibrium", "refimpl/nesting.py", _tests("nesting", "start", "solve")),
     Target("equilibrium", "refimpl/flexibility.py", _tests("flexibility", "level_updates")),
     Target("equilibrium", "refimpl/tau_path.py", _tests("tau_path", "tau_cycle")),
@@ -107,10 +107,10 @@ TARGETS = (
     Target("bounds", "refimpl/contact/bounds.py", _alone("bounds_derivation", "bounds")),
     Target("bounds", "refimpl/contact/energy_norm.py",
            _alone("energy_norm", "bounds_derivation", "bounds", "preconditioner")),
-    Target("sensitivity", "refimpl/fixed_set.py", _alone("fixed_set", "sensitivity")),
-    Target("sensitivity", "refimpl/sensitivity.py", _alone("sensitivity")),
+    Target("sensitivity", "refimpl/fixed_set.py", _alone("fixed_set", "sensitivity", "sensitivity_refusals")),
+    Target("sensitivity", "refimpl/sensitivity.py", _alone("sensitivity", "sensitivity_refusals")),
     Target("sensitivity", "refimpl/parameters.py", _alone("sensitivity")),
-    Target("sensitivity", "refimpl/budget.py", _alone("sensitivity_budget")),
+    Target("sensitivity", "refimpl/budget.py", _alone("sensitivity_budget", "sensitivity_refusals")),
     *(Target("surfaces", f"refimpl/surfaces/{name}.py", SURFACES)
       for name in ("bicubic", "gaps", "gaussian", "levelling", "measured", "noise", "shapes", "statistics",
                    "window")),

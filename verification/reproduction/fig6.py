@@ -48,6 +48,11 @@ class Profile:
         return self._rms(self.hertz - self.greenwood_tripp)
 
     @property
+    def misfit_of_half(self) -> float:
+        """The misfit of half of Greenwood and Tripp's pressure from theirs, which should not pass."""
+        return self._rms(self.greenwood_tripp / 2)
+
+    @property
     def noise(self) -> float:
         """What sampling alone adds to a misfit: the rms standard error, weighted and scaled alike."""
         return self._rms(self.half_width / 2)
