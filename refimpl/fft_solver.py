@@ -58,9 +58,8 @@ def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
     operator, precondition = _operators(problem, window, counter)
     loaded = problem.load is not None
     pressure = sharpened(pressure, misfit, contact, precondition, loaded=loaded)
-    if (
-        loaded and not pressure.any()
-    ):  # contact is likely where the other grid had none: nothing to go on from
+    # contact is likely where the other grid had none: there is nothing to go on from
+    if loaded and not pressure.any():
         return _unprepared(problem, counter)
     precondition = extended(precondition, pressure > 0)
     return LevelSolver(problem, operator, precondition, pressure, strong=start.strong)
