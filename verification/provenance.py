@@ -49,8 +49,11 @@ def machine() -> dict[str, str | int | None]:
 
 
 def command() -> str:
-    """The command line as it could be typed again: the program's name without its directory."""
-    return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
+    """The command line as it could be typed again: `python -m MODULE`, or a program without its directory."""
+    module = sys.modules["__main__"].__spec__  # None of scripts, such as pip's for an entry point
+    if module is None:
+        return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
+    return shlex.join(["python", "-m", module.name.removesuffix(".__main__"), *sys.argv[1:]])
 
 
 def provenance() -> dict[str, object]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import sys
 from collections.abc import Callable
@@ -139,8 +140,20 @@ def test_a_commit_is_that_of_our_own_checkout(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_the_command_names_no_directory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
     monkeypatch.setattr(sys, "argv", ["/some/where/rough-friction", "verify", "--only", "hertz/*"])
     assert provenance.command() == "rough-friction verify --only 'hertz/*'"
+
+
+@pytest.mark.parametrize("module", ["verification.matrix", "verification.coverage.priors"])
+def test_the_command_of_a_module_can_be_typed(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
+    found = importlib.util.find_spec(module)
+    assert found is not None
+    if found.submodule_search_locations is not None:  # a package: Python runs this of it
+        found = importlib.util.find_spec(f"{module}.__main__")
+    monkeypatch.setattr(sys.modules["__main__"], "__spec__", found)
+    monkeypatch.setattr(sys, "argv", ["/some/where/__main__.py", "--cheap", "0.3"])
+    assert provenance.command() == f"python -m {module} --cheap 0.3"
 
 
 def test_errata_are_the_cases_that_record_them() -> None:
