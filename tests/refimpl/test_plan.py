@@ -251,6 +251,18 @@ def test_who_asks_for_mu_without_friction_asks_for_slopes() -> None:
     assert sum(s.uncertainty["friction_coefficient"].values()) <= 0.1 * abs(s.friction_coefficient)
 
 
+def test_the_slope_correction_moves_mu_on_a_flat_body_without_friction() -> None:
+    """What acts along the facets of a rough ball works too, so that <t> need not be the flat body's."""
+    ball = rf.Sphere(0.14) + rf.GaussianRoughness(0.5e-6, 104e-6, seed=2)
+    scene = replace(FRICTIONLESS, upper=rf.Body(STEEL, ball))
+    printed, corrected = (rf.solve(scene, 64, slope_correction=on) for on in (False, True))
+    change = abs(corrected.friction_coefficient - printed.friction_coefficient)
+    estimate = corrected.plan.term("slope correction").effect
+    assert 1e-7 < change <= estimate.bare < 1e-3
+    smooth = make_plan(FRICTIONLESS, 64, "fft")
+    assert smooth.term("slope correction").effect.bare == 0.0
+
+
 def test_a_mu_that_is_exactly_zero_needs_no_finer_grid() -> None:
     s = rf.solve(rf.read_scene("hertz"), accuracy=0.01, quantity="friction_coefficient")
     assert s.converged

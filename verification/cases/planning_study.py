@@ -8,20 +8,25 @@ from functools import cache
 import numpy as np
 
 from verification.case import Measured
-from verification.planning import Trial, trials
+from verification.planning import CORRECTION, Trial, trials
 from verification.registry import case
 
 SOURCE = (
     "difference of two solves, with the term and without, on one grid of 256 x 256 (the grid of decision)"
 )
-SEED = 2001  # constants of the estimates were set on the seeds 1, 2, 11, 12 and 21
+SEED = 2001  # constants of the estimates were set on the seeds 1, 2, 11, 12, 21 and 22
 SCENES, M, ACCURACY = 100, 256, 0.01
 
 
 @cache
-def studied() -> list[Trial]:
-    """All terms of all scenes that are not exactly zero."""
+def scenes() -> list[Trial]:
+    """All terms of all scenes that are not exactly zero, and the slope correction."""
     return trials(SEED, SCENES, M, ACCURACY)
+
+
+def studied() -> list[Trial]:
+    """The terms that a plan chooses."""
+    return [trial for trial in scenes() if trial.term != CORRECTION]
 
 
 def left_out() -> list[Trial]:
@@ -39,16 +44,12 @@ def series(found: list[Trial]) -> dict[str, object]:
             "effect mu": [t.effect.friction for t in found if t.term == term],
             "estimate A": [t.estimate.area for t in found if t.term == term],
             "effect A": [t.effect.area for t in found if t.term == term],
+            "estimate mu, no friction": [t.estimate.bare for t in found if t.term == term],
+            "effect mu, no friction": [t.effect.bare for t in found if t.term == term],
             "left out": [int(t.left_out) for t in found if t.term == term],
         }
         for term in terms
     }
-
-
-def bounded(trial: Trial) -> bool:
-    """Whether both estimates hold."""
-    mu = trial.effect.friction <= trial.estimate.friction
-    return mu and trial.effect.area <= trial.estimate.area
 
 
 def ratio(trial: Trial) -> float:
@@ -70,12 +71,31 @@ def ratio(trial: Trial) -> float:
 )
 def estimates_bound() -> Measured:
     out = left_out()
-    share = float(np.mean([bounded(trial) for trial in out]))
-    whole = float(np.mean([bounded(trial) for trial in studied()]))
-    missed = [f"{t.term} of scene {t.scene}" for t in out if not bounded(t)]
+    share = float(np.mean([trial.bounded for trial in out]))
+    whole = float(np.mean([trial.bounded for trial in studied()]))
+    missed = [f"{t.term} of scene {t.scene}" for t in out if not t.bounded]
     all_terms = f"of all {len(studied())} terms {whole:.3f}"
     note = f"{len(out)} left out; {all_terms}; missed: {', '.join(missed) or 'none'}"
     return Measured(share, data=series(studied()), note=note)
+
+
+@case(
+    "planning/correction-bound",
+    title="Estimate of the slope correction",
+    claim="in 95 % of 100 random scenes the slope correction changes mu and A by no more than the plan says",
+    source="difference of two solves, with exact facet tractions and with the printed ones, on 256 x 256",
+    metric="at_least",
+    tolerance=0.95,
+    tolerance_reason="asked of all estimates alike",
+    tier="full",
+    tags=("planning",),
+)
+def correction_bound() -> Measured:
+    found = [trial for trial in scenes() if trial.term == CORRECTION]
+    missed = [t.scene for t in found if not t.bounded]
+    tight = float(np.median([ratio(t) for t in found]))
+    note = f"{len(found)} scenes; missed: {missed or 'none'}; median estimate {tight:.2g} times the effect"
+    return Measured(1 - len(missed) / len(found), data=series(found), note=note)
 
 
 @case(
