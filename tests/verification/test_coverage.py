@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,12 @@ import pytest
 import refimpl as rf
 from refimpl.discretisation import EDGE_SHARE
 from refimpl.grid_result import GridResult
+from refimpl.refine import OPENING
 from refimpl.solution import REPORTED
 from refimpl.summit import LEVEL, Summit
 from reports.drawing import svg
 from reports.studies import exhibit
+from verification.coverage import beside, document
 from verification.coverage.document import grids_of, reference_check, solves
 from verification.coverage.judge import moved, summary, verdicts
 from verification.coverage.scenes import CLASSES, SIDE, random_scene
@@ -139,8 +142,54 @@ def test_periodic_scenes_end_at_a_coarser_reference() -> None:
     assert {kind for kind, end in ends.items() if end == 512} == {"periodic waves", "periodic rough"}
 
 
+def test_numbers_beside_are_judged_where_the_climb_for_mu_ends() -> None:
+    ladder = {3: [rung(M) for M in GRIDS]}
+    found = verdicts(ladder, 0.02)
+    approach, binormal = beside.where_climbs_end(ladder, found)
+    assert (approach.number, binormal.number) == beside.BESIDE
+    assert approach.grid == binormal.grid == found[0].grids[-1]
+    assert beside.summary([approach])["covered"] == 1.0
+    fine = ladder[3][-1]
+    for number in beside.BESIDE:
+        off = replace(fine.result, numbers={**fine.result.numbers, number: 1.5})
+        wrong = beside.where_climbs_end({3: [*ladder[3][:-1], replace(fine, result=off)]}, found)
+        bar = wrong[beside.BESIDE.index(number)]
+        assert bar.error == pytest.approx(0.5)
+        assert bar.reference_bound == pytest.approx(0.5)
+        assert beside.summary([bar])["covered"] == 0.0
+
+
+def test_approaches_are_judged_from_where_surfaces_touch() -> None:
+    ladder = [rung(M) for M in GRIDS]
+    summit = replace(LEVEL, height=0.25)
+    ladder[-1] = replace(ladder[-1], result=replace(ladder[-1].result, touch=summit))
+    approach, binormal = beside.where_climbs_end({3: ladder}, verdicts({3: ladder}, 0.02))
+    assert approach.error == pytest.approx(0.25)
+    assert binormal.error == 0.0
+
+
+def test_scenes_are_judged_at_an_approach_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On grids small enough for a test; the store beside the study's lets it go on where it was."""
+    monkeypatch.setattr(document, "BARS", (64, 96))
+    monkeypatch.setattr(beside, "GRIDS", (64, 96))
+    monkeypatch.setattr(document, "grids_of", lambda _: (*OPENING, 96, 192))
+    store = tmp_path / "study.jsonl"
+    climb(store, [0, 80], [*OPENING, 96])
+    found = document.approaches(ladders(store), store)
+    assert set(found) == set(beside.AT_APPROACH)
+    force = found["normal_force"]
+    assert [force[M]["scenes"] for M in ("64", "96")] == [1, 1]
+    assert force["96"]["covered"] == 1.0
+    before = tmp_path.joinpath("study-approach.jsonl").read_bytes()
+    assert document.approaches(ladders(store), store) == found
+    assert tmp_path.joinpath("study-approach.jsonl").read_bytes() == before
+    assert len(before.splitlines()) == 4
+
+
 def test_the_report_shows_the_study() -> None:
-    found = verdicts({3: [rung(M) for M in GRIDS]}, 0.02)
+    ladder = {3: [rung(M) for M in GRIDS]}
+    found = verdicts(ladder, 0.02)
+    bars = beside.where_climbs_end(ladder, found)
     columns = ("seed", "class", "grid", "met", "bar", "error", "cost")
     judged = {
         "accuracy": 0.02,
@@ -152,15 +201,23 @@ def test_the_report_shows_the_study() -> None:
             )
             for v in found
         },
+        "beside": {number: beside.summary(bars[k::2]) for k, number in enumerate(beside.BESIDE)},
     }
-    document = {
+    study = {
         "seeds": [3, 3],
         "solves": {"count": 7, "seconds": 1.0, "worst_residual": 1e-8, "worst_apart": 1e-9},
         "reference_check": {"grid": 1024, "seeds": [3], "worst_over_bound": 0.5},
         "accuracies": [judged],
+        "at_approach": {"normal_force": {"128": beside.summary(bars[:1]), "256": beside.summary([])}},
     }
-    shown = exhibit("coverage", document)
+    shown = exhibit("coverage", study)
     assert shown.tables[0].rows[0][:5] == ("mu", 0.02, 1, 100.0, 100.0)
+    assert [row[:4] for row in shown.tables[-1].rows] == [
+        ("approach, mu to 0.02", None, 1, 100.0),
+        ("Q, mu to 0.02", None, 1, 100.0),
+        ("normal force, at an approach", 128, 1, 100.0),
+        ("normal force, at an approach", 256, 0, None),
+    ]
     ((figure, data),) = shown.figures
     drawn = svg(figure, data)
     assert drawn is not None

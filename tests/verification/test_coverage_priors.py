@@ -10,6 +10,7 @@ import pytest
 
 from refimpl.discretisation import (
     AREA,
+    BINORMAL,
     BULK,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
@@ -78,7 +79,7 @@ def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
     assert found["area"]["adopted"]["edge_size"] == EDGE_SIZE
     assert found["area"]["adopted"]["edge_size_spread"] == EDGE_SIZE_SPREAD
     assert found["area"]["adopted"]["scatter"] == AREA.scatter
-    for part in ("area", "friction_without_tau", "peak", "approach"):
+    for part in ("area", "friction_without_tau", "binormal", "peak", "approach"):
         assert found[part]["given_away"] >= 0
         assert all(value >= 0 for value in found[part]["likeliest"].values())
     assert found["provenance"]
@@ -103,6 +104,10 @@ def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
     assert 0.5 * PEAK.scatter < peak["likeliest"]["scatter"] < PEAK.scatter
     assert list(approach["adopted"].values()) == [OTHER.scatter, TOUCH, OTHER.weight]
     assert all(approach["likeliest"][name] < approach["adopted"][name] for name in ("other", "touch"))
+    binormal = found["binormal"]
+    assert list(binormal["adopted"].values()) == [BINORMAL.scatter, 1.0, BINORMAL.weight]
+    assert all(binormal["likeliest"][name] < binormal["adopted"][name] for name in ("binormal", "unevenness"))
+    assert binormal["likeliest"]["weight"] == pytest.approx(BINORMAL.weight, rel=0.2)
     assert found["scenes"] == 200
 
 

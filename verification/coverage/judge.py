@@ -67,7 +67,7 @@ def _numbers(seed: int) -> tuple[str, ...]:
 
 def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> Verdict:
     """A grid is asked for only if the reference is at least twice as fine."""
-    reference, bound = _reference(rungs, number)
+    reference, bound = reference_of(rungs, number)
     usable = {rung.result.M: rung for rung in rungs if 2 * rung.result.M <= rungs[-1].result.M}
     ladder = [M for M in usable if M not in OPENING]
     climbed = climb(lambda M: usable[M].result, accuracy, number, ladder)
@@ -93,7 +93,7 @@ def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> V
     )
 
 
-def _reference(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
+def reference_of(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
     """The finest grid's number, without its edge's mean share, and a bound of what is left.
 
     What is smooth - the peak of the parabola through the highest elements, friction without tau's share - is
@@ -116,7 +116,7 @@ def moved(rungs: Sequence[Rung]) -> float:
     """How far the reference moves on one more grid, the ladder's last, over both stated bounds; the worst."""
     shares = []
     for number in _numbers(rungs[0].seed):
-        (coarse, loose), (fine, tight) = _reference(rungs[:-1], number), _reference(rungs, number)
+        (coarse, loose), (fine, tight) = reference_of(rungs[:-1], number), reference_of(rungs, number)
         scale = np.finfo(float).eps * abs(fine)
         shares.append(abs(fine - coarse) / max(loose + tight, scale))
     return max(shares)
@@ -139,21 +139,21 @@ def summary(found: Iterable[Verdict]) -> dict[str, float | int | None]:
         "covered": sum(verdict.covered for verdict in found) / len(found),
         "covered_at_worst": sum(verdict.covered_at_worst for verdict in found) / len(found),
         "covered_where_met": sum(verdict.covered for verdict in met) / len(met) if met else None,
-        "median_bar_over_error": _bounded(np.median([_ratio(v.bar, v.error) for v in found])),
+        "median_bar_over_error": bounded(np.median([ratio_of(v.bar, v.error) for v in found])),
         "median_cost": float(np.median(costs)) if costs else None,
         "cost_at_most_2": sum(cost <= 2 for cost in costs) / len(costs) if costs else None,
-        "median_bar": _bounded(np.median([verdict.bar for verdict in found])),
+        "median_bar": bounded(np.median([verdict.bar for verdict in found])),
         "median_reference_bound_over_bar": float(
-            np.median([_ratio(v.reference_bound, v.bar) for v in found])
+            np.median([ratio_of(v.reference_bound, v.bar) for v in found])
         ),
     }
 
 
-def _bounded(median: np.floating[Any]) -> float | None:
+def bounded(median: np.floating[Any]) -> float | None:
     """None where half of the bars have no end."""
     return float(median) if np.isfinite(median) else None
 
 
-def _ratio(over: float, under: float) -> float:
+def ratio_of(over: float, under: float) -> float:
     """Finite, for a median: errors below rounding count as rounding."""
     return over / max(under, np.finfo(float).eps)

@@ -19,6 +19,7 @@ from scipy import optimize, special
 from refimpl import discretisation
 from refimpl.discretisation import (
     AREA,
+    BINORMAL,
     BULK,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
@@ -37,6 +38,10 @@ from verification.provenance import provenance
 
 SOLVED = 1e-7
 """Scatter that solves to a certificate of 1e-6 leave, over the number."""
+QUIET = 1e-9
+"""The same of Q, over the load: Newton's third law cancels most of it."""
+OBLIQUE = 1e-5
+"""Of Q over the load, from where on a scene counts: mirror images have none, and their grids scatter less."""
 _NODES, _SHARES = np.polynomial.hermite_e.hermegauss(15)
 
 
@@ -70,6 +75,17 @@ def rests(results: Sequence[GridResult], bulk: float, unevenness: float) -> Numb
     return Numbers(mu - slip * area, weights, np.zeros_like(mu))
 
 
+def binormals(results: Sequence[GridResult], binormal: float, unevenness: float) -> Numbers:
+    """Binormal forces over the load, for a scatter of one: both parts of its size are given."""
+    forces, loads = np.transpose(
+        [(result.numbers["binormal_force"], result.numbers["normal_force"]) for result in results]
+    )
+    thin, uneven = discretisation.thinness(results), discretisation.unevenness(results)
+    size = np.hypot.reduce([binormal * thin, unevenness * uneven, np.full(thin.shape, QUIET)])
+    weights = np.maximum.accumulate(size[::-1])[::-1]
+    return Numbers(forces / loads[-1], weights, np.zeros_like(forces))
+
+
 def peaks(results: Sequence[GridResult]) -> Numbers:
     """Heights of the pressure's summits over the finest grid's scatter; their drops for edges."""
     sizes = np.array([result.peak.widened(result.peak.drop) for result in results])
@@ -92,6 +108,10 @@ def approaches(results: Sequence[GridResult], other: float, touch: float) -> Num
 def bounded(results: Sequence[GridResult]) -> list[GridResult]:
     """The grids on which neither the peak nor the first touch is open to any height."""
     return [result for result in results if np.isfinite(result.peak.openness * result.touch.openness)]
+
+
+def _over_load(result: GridResult) -> float:
+    return abs(result.numbers["binormal_force"]) / result.numbers["normal_force"]
 
 
 def log_likelihood(
@@ -132,6 +152,7 @@ def document(store: Path) -> dict[str, object]:
     """All fits, on the scenes of a store; of summits on those that have two grids that know of them."""
     results = [[rung.result for rung in rungs] for rungs in ladders(store).values()]
     sheared = [grids for grids in results if grids[-1].numbers["friction_coefficient"] > 0]
+    across = [grids for grids in results if _over_load(grids[-1]) > OBLIQUE]
     summits = [grids for grids in map(bounded, results) if len(grids) > 1]
 
     def of_area(p: Array) -> float:
@@ -141,6 +162,11 @@ def document(store: Path) -> dict[str, object]:
     def of_rest(p: Array) -> float:
         bulk, unevenness, weight = p
         return log_likelihood([rests(grids, bulk, unevenness) for grids in sheared], 0.0, 0.0, 1.0, weight)
+
+    def of_binormal(p: Array) -> float:
+        binormal, unevenness, weight = p
+        found = [binormals(grids, binormal, unevenness) for grids in across]
+        return log_likelihood(found, 0.0, 0.0, 1.0, weight)
 
     def of_peak(p: Array) -> float:
         size, spread, scatter, weight = p
@@ -159,6 +185,7 @@ def document(store: Path) -> dict[str, object]:
         "singles": SINGLES,
     }
     adopted_rest = {"bulk": BULK.scatter, "unevenness": 1.0, "weight": BULK.weight}
+    adopted_binormal = {"binormal": BINORMAL.scatter, "unevenness": 1.0, "weight": BINORMAL.weight}
     adopted_peak = {
         "summit": SUMMIT,
         "summit_spread": SUMMIT_SPREAD,
@@ -171,6 +198,7 @@ def document(store: Path) -> dict[str, object]:
         "scenes": len(results),
         "area": fitted(of_area, adopted_area),
         "friction_without_tau": fitted(of_rest, adopted_rest),
+        "binormal": fitted(of_binormal, adopted_binormal),
         "peak": fitted(of_peak, adopted_peak),
         "approach": fitted(of_approach, adopted_approach),
         "provenance": provenance(),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -41,8 +41,11 @@ class Rung:
     apart: float | None = None
 
 
-def climb(path: Path, seeds: Iterable[int], grids: Iterable[int]) -> None:
-    """Solve what the store has not yet; each finished solve is appended at once."""
+def climb(
+    path: Path, seeds: Iterable[int], grids: Iterable[int], solve: Callable[[int, int], Rung] | None = None
+) -> None:
+    """Solve what the store has not yet, by ``solve(seed, M)``; each finished solve is appended at once."""
+    solve = solve or _solved
     seeds, grids = list(seeds), list(grids)
     known = {(rung.seed, rung.result.M) for rung in rungs(path)}
     todo = [(seed, M) for seed in seeds for M in grids if (seed, M) not in known]
@@ -52,7 +55,7 @@ def climb(path: Path, seeds: Iterable[int], grids: Iterable[int]) -> None:
         if cut:  # by a kill: what follows must not join it
             lines.write("\n")
         for seed, M in todo:
-            lines.write(json.dumps(asdict(_solved(seed, M)), allow_nan=False) + "\n")
+            lines.write(json.dumps(asdict(solve(seed, M)), allow_nan=False) + "\n")
             lines.flush()
             progress.tick(f"scene {seed} on {M} x {M}")
     progress.close()
@@ -96,6 +99,20 @@ def _solved(seed: int, M: int) -> Rung:
         seconds=seconds,
         carried=begun.cost.point_logs if begun else None,
         apart=_apart(begun, solution) if begun else None,
+    )
+
+
+def solved_at(approach: float, seed: int, M: int) -> Rung:
+    """The scene at a prescribed approach (m) in place of its load."""
+    started = time.process_time()
+    solution = rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE, approach=approach)
+    return Rung(
+        seed=seed,
+        result=GridResult.of(solution),
+        status=solution.status.value,
+        worst=solution.certificate.worst,
+        point_logs=solution.cost.point_logs,
+        seconds=time.process_time() - started,
     )
 
 
