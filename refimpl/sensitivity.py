@@ -6,10 +6,8 @@ fixed set it is constant, and on a grid it is a count. It is found in two ways, 
 to friction.
 
 - Load, moduli and friction leave the surfaces alone, and the edges of the contact move by what the
-  linear answer grows like there: pressure falls off as ``k sqrt(d)`` at a distance d from an edge, so an
-  edge that moves by V changes it by ``k V / (2 sqrt d)``, and the relative change of the outermost
-  elements, ``df / f = V / (2 d)``, beyond that of the elements inside, measures V up to one factor.
-  It is taken from the load, for which the area is differenced over two full solves.
+  linear answer grows like there (`refimpl.edge_motion`), up to one factor. That is taken from the load, for
+  which the area is differenced over two full solves.
 - Shapes and roughness bring contact to new places, which no fixed set foresees: the area is differenced
   over two full solves for each.
 
@@ -25,9 +23,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import binary_erosion, uniform_filter
 
 from refimpl.discretisation import AREA
+from refimpl.edge_motion import EdgeMotion
 from refimpl.errors import LEAST, InputError
 from refimpl.fixed_set import FixedSet
 from refimpl.forces import EDGE_SHARE
@@ -35,7 +33,7 @@ from refimpl.grid import Array
 from refimpl.grid_result import alike
 from refimpl.materials import RIGID
 from refimpl.parameters import moving, parameters, with_parameter
-from refimpl.problem import Problem, pose
+from refimpl.problem import Problem, Terms, pose
 from refimpl.scene import Scene
 from refimpl.solution import Solution
 from refimpl.solve import solve
@@ -45,7 +43,6 @@ NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_for
 _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
 _STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
-_WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
 _RANGES = {".nu": (math.nextafter(-1, 0), 0.5), ".E": (LEAST, RIGID)}  # that steps may not leave
 _TIED = 1e-9  # of the highest pressure, within which others are as high: symmetric scenes, to rounding
 _SOLVED = 1e-3  # of a linear solve's right side, at most, may be left: a derivative's digits
@@ -91,7 +88,7 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     linear or full solve does not converge.
     """
     _check(scene, solution)
-    base = solution.problem
+    base = replace(solution.problem, terms=_terms(solution))
     support = solution.contact & ~solution.withheld
     fixed = FixedSet(base, solution.pressure, support, solution.slopes)
     values = moving(scene)
@@ -105,7 +102,7 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
         name: (derivatives["contact_area"], _scatter(scene, solution, name, values[name]))
         for name, derivatives in solved.items()
     }
-    edge = _Edge(fixed, counted["load"], answers["load"].pressure)
+    edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
     areas = {
         name: counted[name] if ".surface" in name else edge.derivative(answers[name].pressure)
         for name in values
@@ -131,6 +128,16 @@ def _check(scene: Scene, solution: Solution) -> None:
     own = scene.materials, scene.friction, scene.sliding_direction, scene.side, scene.periodic
     if found != own:
         raise InputError("solution", "another scene's", "the scene's own")
+
+
+def _terms(solution: Solution) -> Terms:
+    """The solution's, with all that shear moves unless the user forces it out.
+
+    Where two bodies' compliances cancel it is left out of the solve, and comes in with the first change.
+    """
+    forced = solution.plan.forced
+    coupled, tilted = (choice is not False for choice in (forced.coupled, forced.tilted))
+    return replace(solution.problem.terms, coupled=coupled, tilted=tilted)
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,44 +222,6 @@ def _scatter(scene: Scene, solution: Solution, name: str, value: float) -> float
     count = max(edge_excess(solution), 0.0) / (EDGE_SHARE * element)
     scatter = AREA.scatter * math.sqrt(2 * count * alike(solution.contact)) * element
     return scatter / (_stride(scene, name, value) * abs(value))
-
-
-class _Edge:
-    """Motion of the contact's edge, calibrated by the load: the area's derivative from a pressure's."""
-
-    def __init__(self, fixed: FixedSet, over_load: tuple[float, float], loaded: Array) -> None:
-        self.fixed = fixed
-        wrapped = np.pad(fixed.contact, 1, mode="wrap" if fixed.problem.periodic else "constant")
-        self.elements = (wrapped & ~binary_erosion(wrapped, border_value=1))[1:-1, 1:-1]
-        derivative, counted = over_load
-        self.everywhere = np.ones(fixed.contact.shape)
-        self.factors = [
-            derivative / growth if (growth := self._growth(loaded, size)) else 0.0 for size in _WIDTHS
-        ]
-        self.counted = counted / abs(derivative) if derivative else 0.0
-
-    def derivative(self, pressure: Array) -> tuple[float, float]:
-        """``dA/dp`` (m^2 a unit) and its scatter for a derivative of the pressures."""
-        near, far = (
-            factor * self._growth(pressure, size) for factor, size in zip(self.factors, _WIDTHS, strict=True)
-        )
-        return near, math.hypot(self.counted * near, near - far)
-
-    def _growth(self, pressure: Array, size: int) -> float:
-        """Sum over the edge of the relative change there, less that of all ``size x size`` elements around.
-
-        The difference is blind to pressures that scale as they are, which moves no edge.
-        """
-        mode = "wrap" if self.fixed.problem.periodic else "constant"
-
-        def ratio(where: Array, width: int) -> Array:
-            change, level = (
-                uniform_filter(where * field, width, mode=mode)[self.elements]
-                for field in (pressure, self.fixed.pressure)
-            )
-            return np.asarray(change / level)
-
-        return float(np.sum(ratio(self.elements.astype(np.float64), 3) - ratio(self.everywhere, size)))
 
 
 def _gathered(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -11,12 +10,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.discretisation import AREA, area_scatter
-from refimpl.fixed_set import FixedSet
-from refimpl.friction import Mask
-from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 from refimpl.parameters import check_tolerances, parameters, with_parameter
-from refimpl.sensitivity import _STRIDE, NUMBERS, Sensitivity, _Edge, sensitivity
+from refimpl.sensitivity import _STRIDE, NUMBERS, Sensitivity, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 M, TIGHT = 48, 1e-11
@@ -64,6 +60,49 @@ def test_correlation_length_agrees_where_the_set_stays() -> None:
     found = sensitivity(scene, rf.solve(scene, M, tolerance=TIGHT))
     expected = differences(scene, name, 1e-6)
     assert found.derivatives["max_pressure"][name] == pytest.approx(expected["max_pressure"], rel=1e-3)
+
+
+@pytest.mark.parametrize("material", [POLYMER, rf.Material(E=2.5e9, nu=0.5)], ids=["twins", "incompressible"])
+def test_coupling_that_cancels_comes_back_with_a_change(material: rf.Material) -> None:
+    """Of twins shear moves neither body towards the other, until one of them is another material."""
+    scene = sliding()
+    twins = replace(
+        scene, upper=rf.Body(material, scene.upper.surface), lower=rf.Body(material, scene.lower.surface)
+    )
+    found = sensitivity(twins, rf.solve(twins, M, tolerance=TIGHT))
+    for name in ("upper.material.E", "lower.material.E", "upper.material.nu", "lower.material.nu"):
+        if name.endswith("nu") and material.nu == 0.5:
+            expected = one_sided(twins, name, 1e-5)
+        else:
+            expected = differences(twins, name, 1e-5)
+        for number in ("friction_coefficient", "max_pressure", "binormal_force"):
+            scale = max(abs(expected[number]), abs(found.found[number] / found.parameters[name]))
+            assert abs(found.derivatives[number][name] - expected[number]) <= 1e-4 * scale, (name, number)
+
+
+def one_sided(scene: rf.Scene, name: str, step: float) -> dict[str, float]:
+    """Differences to second order from below, where a parameter ends."""
+    value = parameters(scene)[name]
+    here, near, far = (
+        rf.solve(with_parameter(scene, name, value * (1 - k * step)), M, tolerance=TIGHT) for k in (0, 1, 2)
+    )
+    return {
+        number: (3 * getattr(here, number) - 4 * getattr(near, number) + getattr(far, number))
+        / (2 * step * value)
+        for number in NUMBERS
+    }
+
+
+def test_coupling_forced_out_stays_out() -> None:
+    scene = sliding()
+    twins = replace(scene, lower=rf.Body(STEEL, scene.lower.surface))
+    kept, out = (
+        sensitivity(twins, rf.solve(twins, M, tolerance=TIGHT, coupled=coupled)) for coupled in (None, False)
+    )
+    for body in ("upper", "lower"):
+        assert out.derivatives["max_pressure"][f"{body}.material.E"] == pytest.approx(
+            sum(kept.derivatives["max_pressure"][f"{b}.material.E"] for b in ("upper", "lower")) / 2, rel=1e-4
+        )
 
 
 @pytest.fixture(scope="module")
@@ -180,99 +219,6 @@ def test_tolerances_are_relative_and_of_what_moves() -> None:
     for name, tolerance in (("load", -1e-9), ("load", 1.0), ("friction.tau", 0.1), ("colour", 0.1)):
         with pytest.raises(rf.InputError, match=name):
             check_tolerances(scene, {name: tolerance})
-
-
-def fixed_set(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedSet:
-    """A fixed set with another contact in it."""
-    scene = sliding(periodic=periodic)
-    s = rf.solve(scene, 16)
-    fixed = copy(FixedSet(s.problem, s.pressure, s.contact, s.slopes))
-    fixed.contact, fixed.pressure = contact, np.where(contact, pressure, 0.0)
-    return fixed
-
-
-def hertz_disc(x: float = 0.0, y: float = 0.0) -> tuple[Array, Array]:
-    """Squared distances from a point over the squared radius, 15.2 elements; Hertz's pressure there."""
-    i, j = np.indices((41, 37))
-    inside = ((i - 20 - x) ** 2 + (j - 18 - y) ** 2) / 15.2**2
-    return inside, np.sqrt(np.maximum(1 - inside, 0.0))
-
-
-def test_the_edge_of_a_disc_moves_as_its_pressure_says() -> None:
-    """d sqrt(1 - (x/a)^2 - (y/b)^2) by both axes for the load, then by one alone: half the area's growth."""
-    inside, pressure = hertz_disc()
-    contact = inside < 1
-    slope = np.divide(1, pressure, where=contact, out=np.zeros_like(pressure)) / 15.2
-    edge = _Edge(fixed_set(contact, pressure), (2 * np.pi * 15.2, 3.0), slope * inside)
-    along = slope * ((np.indices(inside.shape)[0] - 20) / 15.2) ** 2
-    growth, scatter = edge.derivative(along)
-    assert growth == pytest.approx(np.pi * 15.2, rel=0.03)
-    assert scatter == pytest.approx(1.5, rel=0.2)  # half the load's, and what 9 x 9 elements find otherwise
-    assert edge.derivative(pressure) == pytest.approx((0.0, 0.0), abs=1e-10)  # as they are, only more
-    assert edge.derivative(slope * inside) == pytest.approx((2 * np.pi * 15.2, 3.0))
-
-
-def test_an_edge_moves_alike_however_the_square_is_turned() -> None:
-    inside, pressure = hertz_disc(0.3, -0.4)
-    contact = inside < 1
-    contact[18:21, 20] = False
-    moved = np.where(contact, np.random.default_rng(3).random(contact.shape), 0.0)
-    loaded = contact / np.maximum(pressure, 0.1)
-    found = [
-        _Edge(fixed_set(turn(contact), turn(pressure)), (5.0, 0.1), turn(loaded)).derivative(turn(moved))
-        for turn in (np.array, np.flipud, np.fliplr, np.transpose)
-    ]
-    for turned in found[1:]:
-        assert turned == pytest.approx(found[0], rel=1e-9)
-
-
-def test_an_edge_moves_alike_wherever_a_periodic_square_begins() -> None:
-    inside, pressure = hertz_disc()
-    inside, pressure = inside[:37], pressure[:37]
-    moved = np.where(inside < 1, np.random.default_rng(3).random(inside.shape), 0.0)
-    found = []
-    for shift in (0, 9, 20):
-        contact, level, change = (np.roll(a, (shift, -shift), (0, 1)) for a in (inside < 1, pressure, moved))
-        fixed = fixed_set(contact, level, periodic=True)
-        found.append(_Edge(fixed, (5.0, 0.1), contact / np.maximum(level, 0.1)).derivative(change))
-    assert found[1] == pytest.approx(found[0], rel=1e-9)
-    assert found[2] == pytest.approx(found[0], rel=1e-9)
-
-
-def test_a_load_that_moves_no_edge_foretells_none() -> None:
-    inside, pressure = hertz_disc()
-    edge = _Edge(fixed_set(inside < 1, pressure), (5.0, 0.1), np.zeros_like(pressure))
-    assert edge.derivative(inside) == (0.0, 0.0)
-
-
-def test_scatter_is_what_other_neighbourhoods_find(monkeypatch: pytest.MonkeyPatch) -> None:
-    """5 x 5 elements against 9 x 9, where counting leaves nothing uncertain."""
-    inside, pressure = hertz_disc()
-    contact = inside < 1
-    moved = np.where(contact, np.random.default_rng(4).random(contact.shape), 0.0)
-    found = []
-    for widths in ((5, 9), (5, 5), (9, 9)):
-        monkeypatch.setitem(_Edge.derivative.__globals__, "_WIDTHS", widths)
-        edge = _Edge(fixed_set(contact, pressure), (5.0, 0.0), contact / np.maximum(pressure, 0.1))
-        found.append(edge.derivative(moved))
-    (near, scatter), (five, none), (nine, _) = found
-    assert near == five != nine
-    assert none == 0
-    assert scatter == pytest.approx(abs(five - nine))
-
-
-@pytest.mark.parametrize("periodic", [False, True])
-def test_the_edge_is_where_a_neighbour_is_open(periodic: bool) -> None:
-    """Outside a free square all is open; a periodic one has neighbours all round."""
-    contact = np.ones((5, 5), dtype=bool)
-    contact[0, 2] = False
-    expected = (
-        ["xx.xx", "x.x.x", "x...x", "x...x", "xxxxx"]
-        if not periodic
-        else [".x.x.", "..x..", *["....."] * 2, "..x.."]
-    )
-    edge = _Edge(fixed_set(contact, np.ones((5, 5)), periodic=periodic), (1.0, 0.0), np.ones((5, 5)))
-    assert ["".join(".x"[mark] for mark in row) for row in edge.elements.astype(int)] == expected
 
 
 def test_what_has_no_sensitivity_is_refused() -> None:

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from importlib import import_module
 from typing import Any
 
 from refimpl import coefficient_error, discretisation, forces, gathered, paper, slopes, summit
+from refimpl.budget import Budget
 from refimpl.contact import active_set, bounds, certificate, energy_norm
 from refimpl.estimate import Estimate
 from refimpl.kernels import far_field, points, tables
@@ -158,6 +160,14 @@ IN_REFIMPL: dict[str, LocalFault] = {
     "edge-not-expected": (
         "error bars that know of no edge's excess",
         lambda: ((discretisation, "EDGE_SIZE", 0.0),),
+    ),
+    "coupling-gone": (
+        "derivatives without the coupling that cancels in the scene itself",
+        lambda: ((import_module("refimpl.sensitivity"), "_terms", lambda solution: solution.problem.terms),),
+    ),
+    "inputs-added": (
+        "tolerances of inputs added as they are, not in squares",
+        lambda: _method(Budget, "input", property(lambda budget: sum(budget.inputs.values()))),
     ),
     "error-table": (
         "Appendix A's table read 10 % too low",

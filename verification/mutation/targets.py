@@ -108,6 +108,7 @@ TARGETS = (
     Target("bounds", "refimpl/contact/energy_norm.py",
            _alone("energy_norm", "bounds_derivation", "bounds", "preconditioner")),
     Target("sensitivity", "refimpl/fixed_set.py", _alone("fixed_set", "sensitivity", "sensitivity_refusals")),
+    Target("sensitivity", "refimpl/edge_motion.py", _alone("edge_motion", "sensitivity")),
     Target("sensitivity", "refimpl/sensitivity.py", _alone("sensitivity", "sensitivity_refusals")),
     Target("sensitivity", "refimpl/parameters.py", _alone("sensitivity")),
     Target("sensitivity", "refimpl/budget.py", _alone("sensitivity_budget", "sensitivity_refusals")),

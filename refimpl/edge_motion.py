@@ -1,0 +1,56 @@
+"""How a contact's edge moves when its pressures change, told from the pressures alone.
+
+Pressure falls off as ``k sqrt(d)`` at a distance d from an edge, so an edge that moves by V changes it by
+``k V / (2 sqrt d)``, and the relative change of the outermost elements, ``df / f = V / (2 d)``, beyond that
+of the elements inside, measures V up to one factor, which a change whose area is known gives.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.ndimage import binary_erosion, uniform_filter
+
+from refimpl.fixed_set import FixedSet
+from refimpl.grid import Array
+
+_WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
+
+
+class EdgeMotion:
+    """Motion of the contact's edge, calibrated by the load: the area's derivative from a pressure's."""
+
+    def __init__(self, fixed: FixedSet, over_load: tuple[float, float], loaded: Array) -> None:
+        self.fixed = fixed
+        wrapped = np.pad(fixed.contact, 1, mode="wrap" if fixed.problem.periodic else "constant")
+        self.elements = (wrapped & ~binary_erosion(wrapped, border_value=1))[1:-1, 1:-1]
+        derivative, counted = over_load
+        self.everywhere = np.ones(fixed.contact.shape)
+        self.factors = [
+            derivative / growth if (growth := self._growth(loaded, size)) else 0.0 for size in _WIDTHS
+        ]
+        self.counted = counted / abs(derivative) if derivative else 0.0
+
+    def derivative(self, pressure: Array) -> tuple[float, float]:
+        """``dA/dp`` (m^2 a unit) and its scatter for a derivative of the pressures."""
+        near, far = (
+            factor * self._growth(pressure, size) for factor, size in zip(self.factors, _WIDTHS, strict=True)
+        )
+        return near, math.hypot(self.counted * near, near - far)
+
+    def _growth(self, pressure: Array, size: int) -> float:
+        """Sum over the edge of the relative change there, less that of all ``size x size`` elements around.
+
+        The difference is blind to pressures that scale as they are, which moves no edge.
+        """
+        mode = "wrap" if self.fixed.problem.periodic else "constant"
+
+        def ratio(where: Array, width: int) -> Array:
+            change, level = (
+                uniform_filter(where * field, width, mode=mode)[self.elements]
+                for field in (pressure, self.fixed.pressure)
+            )
+            return np.asarray(change / level)
+
+        return float(np.sum(ratio(self.elements.astype(np.float64), 3) - ratio(self.everywhere, size)))
