@@ -44,7 +44,7 @@ _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient 
 _STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
 _RANGES = {".nu": (math.nextafter(-1, 0), 0.5), ".E": (LEAST, RIGID)}  # that steps may not leave
-_TIED = 1e-9  # of the highest pressure, within which others are as high: symmetric scenes, to rounding
+_TIED = 1e-6  # of the highest pressure, within which others are as high: symmetric scenes, but for slopes
 _SOLVED = 1e-3  # of a linear solve's right side, at most, may be left: a derivative's digits
 
 
@@ -196,7 +196,7 @@ def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> d
             solution.grid.M,
             oblique=terms.oblique,
             slope_correction=terms.slope_correction,
-            coupled=terms.coupled,
+            coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
             tilted=terms.tilted,
             tolerance=solution.tolerance,
         )

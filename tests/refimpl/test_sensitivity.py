@@ -80,6 +80,17 @@ def test_coupling_that_cancels_comes_back_with_a_change(material: rf.Material) -
             assert abs(found.derivatives[number][name] - expected[number]) <= 1e-4 * scale, (name, number)
 
 
+def test_facets_of_twins_have_derivatives() -> None:
+    """Facet tractions include shear, which for twins nothing else asks for."""
+    scene = sliding()
+    twins = replace(scene, upper=rf.Body(POLYMER, scene.upper.surface))
+    found = sensitivity(twins, rf.solve(twins, M, tolerance=TIGHT, slope_correction=True))
+    expected = differences(twins, "upper.material.E", 1e-5, slope_correction=True)
+    assert found.derivatives["max_pressure"]["upper.material.E"] == pytest.approx(
+        expected["max_pressure"], rel=1e-4
+    )
+
+
 def one_sided(scene: rf.Scene, name: str, step: float) -> dict[str, float]:
     """Differences to second order from below, where a parameter ends."""
     value = parameters(scene)[name]

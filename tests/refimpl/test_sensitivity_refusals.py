@@ -134,6 +134,21 @@ def test_of_peaks_that_tie_the_middle_answers() -> None:
     assert 0 < torn < 1.01 * abs(expected - middle) < 1.03 * torn  # from below the lowest of the answers
 
 
+def test_peaks_that_tie_but_for_slopes_tie() -> None:
+    """Twins' four highest elements differ by a few 1e-9, and any change of one body's modulus swaps them."""
+    scene = replace(ROUGH, upper=rf.Body(COPPER, rf.Sphere(0.14)), lower=rf.Body(COPPER, rf.Flat()))
+    at = rf.solve(scene, 40, tolerance=1e-12)
+    assert 1e-9 < 1 - np.sort(at.pressure, axis=None)[-4] / at.max_pressure < 1e-6
+    found, name, step = sensitivity(scene, at), "upper.material.E", 1e-4
+    low, high = (
+        rf.solve(with_parameter(scene, name, COPPER.E * s), 40, tolerance=1e-12) for s in (1 - step, 1 + step)
+    )
+    expected = (high.max_pressure - low.max_pressure) / (2 * step * COPPER.E)
+    middle, torn = (part["max_pressure"][name] for part in (found.derivatives, found.scatter))
+    assert middle == pytest.approx(expected, rel=1e-3)
+    assert torn > 1e-3 * abs(middle)
+
+
 @pytest.mark.parametrize(("E", "nu"), [(1e100, 0.3), (5e9, -0.99995), (5e9, 0.5)])
 def test_steps_stay_within_what_a_material_may_be(E: float, nu: float) -> None:
     scene = replace(ROUGH, lower=rf.Body(rf.Material(E, nu), rf.Flat()))
