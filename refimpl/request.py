@@ -89,8 +89,8 @@ class Request:
             found = f"{start.grid.M} x {start.grid.M} elements on {start.grid.side} m"
             allowed = f"a solution on at most {self.grid} x {self.grid} elements on {self.scene.side} m"
             raise InputError("start", found, allowed)
-        if not start.converged:
-            raise InputError("start", start.status.value, "a solution that has converged")
+        if not start.certified:
+            raise InputError("start", start.status.value, "a solution whose certificate holds")
 
     @property
     def judged(self) -> Quantity:

@@ -84,7 +84,7 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, and two
     solves on the solution's grid for the load and for each number of a surface. Raises `InputError`
-    for a solution that is not in contact, has not converged or is another scene's, `ArithmeticError` where a
+    for a solution that is not in contact, not certified or another scene's, `ArithmeticError` where a
     linear or full solve does not converge.
     """
     _check(scene, solution)
@@ -117,8 +117,8 @@ def _check(scene: Scene, solution: Solution) -> None:
         raise InputError("solution", solution, "a Solution")
     if not solution.contact.any():
         raise InputError("solution", solution.status.value, "a solution in contact")
-    if not solution.converged:
-        raise InputError("solution", solution.status.value, "a solution that has converged")
+    if not solution.certified:
+        raise InputError("solution", solution.status.value, "a solution whose certificate holds")
     problem = solution.problem
     if problem.periodic and not problem.gap.any():
         raise InputError("solution", "two flats that repeat", "one whose approach is not zero")

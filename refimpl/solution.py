@@ -99,6 +99,11 @@ class Solution:
         """Whether the loops ended well and the certificate holds; a settled cycle of tau is certified too."""
         return self.status in (Status.CONVERGED, Status.CYCLED)
 
+    @property
+    def certified(self) -> bool:
+        """Whether the certificate holds; so it may where an accuracy asked for was not reached."""
+        return self.certificate.meets(self.tolerance)
+
     @cached_property
     def bounds(self) -> Bounds:
         """Proven bounds at the state's slopes and support of tau; computed when first asked for."""

@@ -69,7 +69,7 @@ def solve(
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, what that deserves), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
-    start : a converged solution on a grid of the same side that is not finer, for "fft" to start from: nested
+    start : a certified solution on a grid of the same side that is not finer, for "fft" to start from: nested
         grids no finer are passed over, and the answer is the same. Best this scene's own on a coarser grid;
         after another load the nested grids get there sooner
     progress : is called with a line of text at every step of the work

@@ -55,9 +55,19 @@ def test_a_prescribed_approach_has_no_load_to_balance(solution: rf.Solution) -> 
         sensitivity(ROUGH, rf.solve(ROUGH, 32, approach=solution.approach))
 
 
-def test_a_state_that_has_not_converged_has_no_derivatives(solution: rf.Solution) -> None:
-    with pytest.raises(rf.InputError, match="converged"):
-        sensitivity(ROUGH, replace(solution, status=rf.Status.ITERATION_LIMIT))
+def test_a_state_that_is_not_certified_has_no_derivatives(solution: rf.Solution) -> None:
+    with pytest.raises(rf.InputError, match="certificate"):
+        sensitivity(ROUGH, replace(solution, tolerance=1e-300))
+
+
+def test_an_accuracy_that_was_not_reached_leaves_derivatives(solution: rf.Solution) -> None:
+    """The state is as good as its certificate says, and what makes it uncertain is asked for all the more."""
+    reached = replace(solution, status=rf.Status.ITERATION_LIMIT)
+    assert not reached.converged
+    assert reached.certified
+    assert sensitivity(ROUGH, reached).derivatives == sensitivity(ROUGH, solution).derivatives
+    again = rf.solve(ROUGH, 48, start=reached)
+    assert again.converged
 
 
 def test_solves_that_do_not_converge_are_not_compared(

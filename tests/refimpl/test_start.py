@@ -114,7 +114,7 @@ def test_a_start_may_have_another_load_or_approach(approach: float) -> None:
         ({"grid": 24}, {"grid": 16}, "16 x 16"),
         ({"grid": 16}, {"grid": 16, "method": "dense"}, "method fft"),
         ({"grid": 16}, {"accuracy": 0.1}, "method fft on a grid"),
-        ({"grid": 16, "tolerance": 1e-17}, {"grid": 32}, "has converged"),
+        ({"grid": 16, "tolerance": 1e-17}, {"grid": 32}, "certificate holds"),
     ],
 )
 def test_what_is_no_start_is_refused(start: dict[str, float], asked: dict[str, object], said: str) -> None:

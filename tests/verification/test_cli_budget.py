@@ -93,8 +93,8 @@ def test_a_pipe_is_given_one_document(tmp_path: Path) -> None:
     [
         (["--approach", "3e-6"], 0, "at a prescribed approach"),
         (["--approach", "0"], 1, "at a prescribed approach"),
-        (["--tolerance", "1e-300"], 1, "has not converged"),
-        (["--tolerance", "1e-300", "--budget"], 1, "has not converged"),
+        (["--tolerance", "1e-300"], 1, "does not hold"),
+        (["--tolerance", "1e-300", "--budget"], 1, "does not hold"),
     ],
 )
 def test_a_result_that_can_have_no_budget_says_why(

@@ -25,7 +25,7 @@ def hindrance(solution: Solution, approach: float | None) -> str:
     """Why a solve can have no budget, in words; empty where it can. ``approach`` (m): as prescribed."""
     if approach is not None:
         return "it is about the scene's load, and this is at a prescribed approach"
-    return "" if solution.converged else "the solution has not converged"
+    return "" if solution.certified else "the solution's certificate does not hold"
 
 
 def made(scene: Scene, solution: Solution, tolerances: Mapping[str, float]) -> Budgets:
