@@ -301,6 +301,22 @@ def test_printed_panels_follow_the_shortest_scale(
     found = printed.stresses(r, 0.1, gamma)
     left = np.subtract(astuple(found)[:3], astuple(exact)[:3])
     assert np.abs(left).max() <= 0.05 * found.error  # 0.035 at most; a third fewer panels: 0.29
+    if r == 0.5:  # where both are as they are from afar
+        assert np.abs(left).max() >= 0.002 * found.error  # 0.004 at least; a first rule half as fine: 0.0005
+
+
+def test_laurent_sums_take_every_node_of_a_short_line() -> None:
+    rng = np.random.default_rng(7)
+    line = fast.Line(0.3, 0.2, 5)
+    upper = rng.normal(size=(2, 6)) + 1j * rng.normal(size=(2, 6))
+    upper[:, 0] = upper[:, 0].real
+    log_zeta = rng.normal(size=3) + 1j * rng.normal(size=3)
+    k = np.arange(-5, 6)
+    g = np.where(k < 0, np.conj(upper[:, abs(k)]), upper[:, abs(k)])
+    powers = np.exp(-(0.3 + 0.2j * k[:, None]) * log_zeta)
+    np.testing.assert_allclose(
+        fast.laurent_sums(line, upper, log_zeta), 0.2 / (2 * np.pi) * g @ powers, 1e-13
+    )
 
 
 def test_of_several_angles_beyond_the_faces_the_first_is_named() -> None:

@@ -48,6 +48,16 @@ def test_a_remainder_is_relative_to_the_least_that_the_whole_can_be():
 
 
 @pytest.mark.parametrize("terms", range(1, multipole.MOST + 1))
+def test_bounds_are_tails_of_their_terms_bounds(terms):
+    """At u = 0.1 they close the geometric series that is above the tail by a few per cent."""
+    n, u = range(terms, terms + 12), 0.1
+    love = sum(float(multipole.moment(2 * k)) * u**k for k in n)
+    cerruti = sum((4 * k + 1) * float(multipole.moment(4 * k)) * u ** (2 * k) for k in n)
+    assert love <= multipole.LOVE.lacking(terms, u) <= 1.03 * love
+    assert cerruti <= multipole.CERRUTI.lacking(terms, u) <= 1.005 * cerruti
+
+
+@pytest.mark.parametrize("terms", range(1, multipole.MOST + 1))
 def test_bounds_are_as_tight_as_their_terms(terms):
     """From afar one term counts: ``|P_n| <= 1``, and ``|cos((4j + 1) phi)| <= (4j + 1) |cos(phi)|``."""
     u = 1e-6
