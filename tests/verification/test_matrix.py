@@ -121,7 +121,7 @@ def test_patches_reach_every_module_that_holds_the_function() -> None:
 
 
 @pytest.mark.usefixtures("few")
-def test_dear_checks_are_added_to_a_file(tmp_path: Path) -> None:
+def test_dear_checks_are_added_to_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main, path = import_module("verification.matrix.__main__").main, tmp_path / "matrix.json"
     assert main(["--json", str(path), "--skip", "some/*"]) == 1
     first = json.loads(path.read_text(encoding="utf-8"))
@@ -132,8 +132,15 @@ def test_dear_checks_are_added_to_a_file(tmp_path: Path) -> None:
     assert both["faults"][0]["caught_by"] == ["some/check"]
     assert [check["alone"] for check in both["checks"]] == [[], ["no-kernel"]]
     assert len(both["added"]) == 1
+    assert main(["--json", str(path), "--only", "some/*", "--add"]) == 1
+    assert json.loads(path.read_text(encoding="utf-8")) == both
+    assert capsys.readouterr().err == "no check is left to try\n"
+
+
+def test_a_check_is_not_added_twice() -> None:
+    document = {"format": "1", "faults": [], "checks": [{"id": "some/check"}], "excluded": {}}
     with pytest.raises(ValueError, match="tried before: some/check"):
-        main(["--json", str(path), "--only", "some/*", "--add"])
+        merged(document, document)
 
 
 def test_an_added_part_brings_the_faults_description_up_to_date() -> None:

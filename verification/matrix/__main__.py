@@ -28,18 +28,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--only", metavar="GLOB", action="append", help="checks to take (repeat; all)")
     parser.add_argument("--against", metavar="GLOB", action="append", help="faults to try (repeat; all)")
-    parser.add_argument("--add", action="store_true", help="add to what the file holds")
+    parser.add_argument("--add", action="store_true", help="add other checks to what the file holds")
     asked = parser.parse_args(arguments)
     known = {}
     if asked.times is not None:
         cases = json.loads(asked.times.read_text(encoding="utf-8"))["cases"]
         known = {case["id"]: case["seconds"] for case in cases}
     old = json.loads(asked.json.read_text(encoding="utf-8")) if asked.add else None
+    tried = [check["id"] for check in old["checks"]] if old is not None else []
+    skip = [*asked.skip, *tried]
     matrix: Matrix | None = None
-    for matrix in measure(asked.cheap, known, asked.skip, asked.only or ("*",), asked.against or ("*",)):
+    for matrix in measure(asked.cheap, known, skip, asked.only or ("*",), asked.against or ("*",)):
         found = matrix.document()
         write_text(to_json(found if old is None else merged(old, found)), asked.json)
     if matrix is None:
+        print("no check is left to try", file=sys.stderr)
         return 1
     missed = [name for name, seen in matrix.caught_by.items() if not seen]
     print(

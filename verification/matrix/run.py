@@ -87,7 +87,7 @@ def measure(
     only: Iterable[str] = ("*",),
     against: Iterable[str] = ("*",),
 ) -> Iterator[Matrix]:
-    """Try every cheap check against every fault that it could see; yields the matrix after each fault.
+    """Try every cheap check, if any, against every fault that it could see; yields the matrix after each.
 
     ``known`` holds seconds of an earlier run: what took longer than ``cheap`` then is not even timed.
     ``skip`` are globs of checks to leave out, ``only`` of those to take, ``against`` of the faults.
@@ -103,6 +103,8 @@ def measure(
     slow = {id: t for id, t in (known or {}).items() if id in checks and t > cheap}
     excluded |= {id: f"takes {t:.1f} s" for id, t in slow.items()}
     sound = _cheap(checks, cheap, excluded)
+    if not sound:
+        return
     progress.tick("without a fault")
     reach = _forked(lambda: {id: {_key(code) for code in traced(checks[id])} for id in sound})
     progress.tick("traced")
