@@ -111,11 +111,14 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
 
     either_way = np.array([centres, -centres])
 
-    def beyond(bound: float) -> float:
-        tails = special.stdtr(freedom, (either_way - bound) / scales)
+    def beyond(share: float) -> float:
+        tails = special.stdtr(freedom, (either_way - share * widest) / scales)
         return float((tails @ shares).sum()) - 0.05
 
-    return float(optimize.brentq(beyond, 0.0, widest, rtol=1e-4)) if beyond(widest) < 0 else widest
+    if not beyond(1.0) < 0:
+        return widest
+    # of a share, which knows no unit: the root is sought to an absolute bound as well
+    return widest * float(optimize.brentq(beyond, 0.0, 1.0, xtol=1e-6, rtol=1e-4))
 
 
 @cache

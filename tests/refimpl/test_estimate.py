@@ -105,6 +105,16 @@ def test_nine_nodes_do_for_the_factors_integral() -> None:
     assert np.max(off) < 0.15
 
 
+@pytest.mark.parametrize("power", [-80, -30, 40])
+def test_bounds_know_no_unit(power: int) -> None:
+    """Areas of a nanometre's scene in m^2 are far below what a root is sought to, if it has a unit."""
+    unit = 2.0**power
+    values, weights, edge = np.array([1.2, 1.07, 1.03]), np.array([8.0, 2.8, 1.0]), np.array([0.4, 0.2, 0.1])
+    one = line(values, weights, Prior(0.01, 6.0), Bias(edge, 0.78, 0.07))
+    other = line(unit * values, weights, Prior(unit * 0.01, 6.0), Bias(unit * edge, 0.78, 0.07))
+    assert other == (unit * one.value, unit * one.spread, one.orders)
+
+
 def test_zeros_are_exact() -> None:
     assert line(np.zeros(3), np.ones(3), Prior(0.1, 2.0)) == Estimate(0.0, 0.0)
 
