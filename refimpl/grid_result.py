@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.fft as sfft
 
 from refimpl.friction import Mask
 from refimpl.grid import Array, inner
@@ -57,10 +58,10 @@ class GridResult:
             spacing=solution.grid.spacing,
             numbers={name: float(getattr(solution, name)) for name in REPORTED},
             edge=edge_excess(solution),
-            alike=alike(solution.contact),
+            alike=alike(solution.contact, periodic=problem.periodic),
             peak=highest(solution.pressure, periodic=problem.periodic),
             touch=LEVEL if problem.periodic else deepest(problem.gap),
-            unevenness=unevenness(solution.pressure, solution.slopes),
+            unevenness=unevenness(solution.pressure, solution.slopes, periodic=problem.periodic),
             slip=adhesive_share(solution),
             parts=merged(iteration_parts(solution), _own(solution)),
             loaded=problem.load is not None,
@@ -68,27 +69,53 @@ class GridResult:
         )
 
 
-def alike(contact: Mask) -> float:
+def alike(contact: Mask, *, periodic: bool = False) -> float:
     """How many edge elements are one another's images: 8 for a square's symmetries, 1 for none.
 
     A sum over the mirrorings and turns of the contact's bounding box, each by the share of the edge
-    that it leaves as it is.
+    that it leaves as it is. Contact that repeats is mirrored where its rows and columns match best.
 
     >>> disc = np.hypot(*np.mgrid[-7.5:8, -7.5:8]) < 6
     >>> alike(disc), alike(disc | (np.indices((16, 16)).sum(axis=0) < 4))
     (8.0, 2.0)
+    >>> alike(np.roll(disc, (5, 9), (0, 1)), periodic=True)
+    8.0
     """
     if not contact.any():
         return 1.0
     rows, columns = np.flatnonzero(contact.any(axis=1)), np.flatnonzero(contact.any(axis=0))
-    box = contact[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    if periodic:
+        box, lines = contact, rows.size + columns.size
+    else:
+        box = contact[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        lines = sum(box.shape)
     flips = [image[::i, ::j] for image in (box, box.T) for i in (1, -1) for j in (1, -1)]
-    edge = sum(np.count_nonzero(np.diff(box, axis=axis)) for axis in (0, 1)) + 2 * sum(box.shape)
+    if periodic:
+        flips = [_matched(box, image) for image in flips]
+    edge = sum(_steps(box, axis, periodic) for axis in (0, 1)) + 2 * lines
     misfits = [np.count_nonzero(image != box) for image in flips if image.shape == box.shape]
     return float(sum(max(0.0, 1 - 4 * misfit / edge) for misfit in misfits))
 
 
-def unevenness(pressure: Array, slopes: Slopes) -> float:
+def _steps(contact: Mask, axis: int, periodic: bool) -> int:
+    """How often contact begins or ends along an axis."""
+    if periodic:
+        return int(np.count_nonzero(contact != np.roll(contact, 1, axis)))
+    return int(np.count_nonzero(np.diff(contact, axis=axis)))
+
+
+def _matched(contact: Mask, image: Mask) -> Mask:
+    """An image of contact that repeats, moved to where its rows and its columns match the contact's best."""
+    shifts = []
+    for axis in (1, 0):
+        counts, found = (sfft.rfft(np.count_nonzero(m, axis=axis)) for m in (contact, image))
+        overlaps = np.rint(sfft.irfft(counts * np.conj(found), len(contact)))
+        shifts.append(int(np.argmax(overlaps)))
+    moved: Mask = np.roll(image, shifts, (0, 1))
+    return moved
+
+
+def unevenness(pressure: Array, slopes: Slopes, *, periodic: bool = False) -> float:
     """Standard error of mu, or of Q/N, if each element's slope were known to its bend only.
 
     That is ``sqrt(sum (f s)^2) / sum f`` with ``s^2 = (b_x^2 + b_y^2) / 6`` for a tangent that differs by
@@ -103,9 +130,14 @@ def unevenness(pressure: Array, slopes: Slopes) -> float:
     total = float(pressure.sum())
     if slopes.is_flat or not total > 0:
         return 0.0
-    box = Window.around(pressure > 0, margin=1)
-    near = slopes.windowed(box)
-    loads = [pressure[box.slices] * _bend(tan, axis) for tan in (near.tan_x, near.tan_y) for axis in (0, 1)]
+    tans: tuple[Array, Array] = slopes.tan_x, slopes.tan_y
+    if periodic:
+        tans, pressure = (
+            (np.pad(tans[0], 1, mode="wrap"), np.pad(tans[1], 1, mode="wrap")),
+            np.pad(pressure, 1),
+        )
+    box = Window.around(pressure > 0, margin=1).slices
+    loads = [pressure[box] * _bend(tan[box], axis) for tan in tans for axis in (0, 1)]
     return math.sqrt(sum(inner(load, load) for load in loads) / 12) / total
 
 

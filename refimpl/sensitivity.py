@@ -220,7 +220,8 @@ def _scatter(scene: Scene, solution: Solution, name: str, value: float) -> float
     """95 % bound of what counting elements twice does to ``dA/dp``."""
     element = solution.grid.element_area
     count = max(edge_excess(solution), 0.0) / (EDGE_SHARE * element)
-    scatter = AREA.scatter * math.sqrt(2 * count * alike(solution.contact)) * element
+    images = alike(solution.contact, periodic=solution.problem.periodic)
+    scatter = AREA.scatter * math.sqrt(2 * count * images) * element
     return scatter / (_stride(scene, name, value) * abs(value))
 
 

@@ -142,7 +142,7 @@ def test_an_areas_scatter_by_the_load_is_that_of_two_counts() -> None:
     solution = rf.solve(scene, M, tolerance=TIGHT)
     one = AREA.scatter * float(area_scatter([GridResult.of(solution)])[0])
     found = sensitivity(scene, solution).scatter["contact_area"]["load"]
-    assert found == pytest.approx(math.sqrt(2) * one / (_STRIDE * scene.load), rel=0.02)
+    assert found == pytest.approx(math.sqrt(2) * one / (_STRIDE * scene.load), rel=0.05)
 
 
 def test_the_area_agrees_with_wide_differences_within_its_scatter(adhesive: Sensitivity) -> None:

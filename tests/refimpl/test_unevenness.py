@@ -99,3 +99,25 @@ def test_a_grids_result_keeps_what_the_solution_states_beside_its_discretisation
     kept = GridResult.of(found).parts["friction_coefficient"]
     assert set(kept) == {"iteration", "tau support"}
     assert kept["tau support"] == found.uncertainty["friction_coefficient"]["tau support"]
+
+
+@pytest.mark.parametrize("seed", [14, 15])
+def test_where_contact_repeats_a_bar_knows_no_beginning(seed: int) -> None:
+    """Contact across the border is bent as anywhere, and has the images that it has elsewhere."""
+    s = rf.solve(random_scene(seed).scene, 24)
+    assert s.problem.periodic
+    found = []
+    for shift in ((0, 0), (7, 0), (0, 13), (11, 5)):
+        pressure, *tans = (np.roll(a, shift, (0, 1)) for a in (s.pressure, s.slopes.tan_x, s.slopes.tan_y))
+        found.append((alike(pressure > 0, periodic=True), unevenness(pressure, Slopes(*tans), periodic=True)))
+    assert found == [pytest.approx(found[0], rel=1e-12)] * 4
+    assert (found[0][0] > 1) == (seed == 14)  # waves have images, roughness has none
+
+
+def test_contact_that_repeats_has_its_own_images() -> None:
+    square = np.zeros((12, 12), dtype=bool)
+    square[3:7, 5:9] = True
+    for shift in ((0, 0), (-5, 0), (5, -7)):
+        assert alike(np.roll(square, shift, (0, 1)), periodic=True) == 8.0
+    assert alike(np.roll(square, (-5, 0), (0, 1))) < 8.0
+    assert alike(np.ones((3, 3), dtype=bool), periodic=True) == 8.0
