@@ -7,13 +7,13 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import ndimage
 
 from refimpl.coefficient_error import SlopeError, slope_error
 from refimpl.materials import Pair
 from refimpl.operators.window import Window
 from refimpl.scene import Body, Scene
 from refimpl.slopes import Slopes
+from refimpl.spots import spot_sizes
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
 from refimpl.surfaces.window import ROUNDING
@@ -205,8 +205,9 @@ def _radius(solution: Solution) -> Caution | None:
     """Of a mean circle; full contact has no edge to resolve."""
     if solution.contact.all():
         return None
-    box = Window.around(solution.contact, margin=0)
-    _, spots = ndimage.label(solution.contact[box.slices], np.ones((3, 3)))
+    periodic = solution.problem.periodic
+    box = Window.full(solution.grid.M) if periodic else Window.around(solution.contact, margin=0)
+    spots = spot_sizes(solution.contact[box.slices], periodic=periodic).size
     radius = math.sqrt(np.count_nonzero(solution.contact) / (math.pi * spots))
     text = (
         f"spots of contact have a mean radius of {radius:.2g} elements: below 3 areas are coarse, and bars "

@@ -22,7 +22,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from refimpl.forces import EDGE_SHARE
 from refimpl.friction import Mask
@@ -30,6 +29,7 @@ from refimpl.grid import Array, Grid, resampled
 from refimpl.operators.window import Window
 from refimpl.problem import Problem
 from refimpl.slopes import Slopes
+from refimpl.spots import spot_sizes
 
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
@@ -176,7 +176,7 @@ def _described(
     border = int(np.count_nonzero(contact)) - int(np.count_nonzero(contact[1:-1, 1:-1]))
     return Outlook(
         elements=elements,
-        spots=_spots(where),
+        spots=_spots(where, problem.periodic),
         mean_pressure=mean_pressure,
         pressure=pressure,
         slope_squared=float(np.sum(weights * (along**2 + across**2))),
@@ -206,10 +206,9 @@ def _slopes(problem: Problem, heights: Array) -> Slopes:
     return Slopes.of_surface(heights, problem.grid.spacing, problem.direction, periodic=problem.periodic)
 
 
-def _spots(contact: Mask) -> float:
+def _spots(contact: Mask, periodic: bool) -> float:
     """How many spots of equal size weigh as much: ``(sum n)^2 / sum n^2`` over the connected ones."""
-    labels, _ = ndimage.label(contact, np.ones((3, 3)))
-    sizes = np.bincount(labels.ravel())[1:].astype(np.float64)
+    sizes = spot_sizes(contact, periodic=periodic).astype(np.float64)
     return float(sizes.sum() ** 2 / np.sum(sizes**2))
 
 
