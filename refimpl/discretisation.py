@@ -38,7 +38,7 @@ _ROUNDING = 1e-6  # instead of zero
 _SLOPES, _AREAS = 2, 8  # powers of what spots that are not single elements let grids know of either
 _UNKNOWN = 0.15  # of an area, at most, as sigma: with its edge's share a bar then reaches down to none
 
-AREA = Prior(0.2, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
+AREA = Prior(0.18, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit of this and the last: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the summit's drop
 BINORMAL = Prior(0.0002, 1.0)  # unit: normal force, else as the next
