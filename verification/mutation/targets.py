@@ -98,6 +98,7 @@ TARGETS = (
     Target("error bars", "refimpl/estimate.py", _alone(*BARS)),
     Target("error bars", "refimpl/discretisation.py", (PRIORS, *_alone(*BARS))),
     Target("error bars", "refimpl/grid_result.py", _alone("summit", *BARS)),
+    Target("error bars", "refimpl/spots.py", _alone("spots")),
     Target("error bars", "refimpl/summit.py", _alone("summit", *BARS)),
     Target("error bars", "refimpl/first_touch.py", _alone("first_touch", *BARS)),
     Target("error bars", "refimpl/uncertainty.py", _alone("accuracy", *BARS)),
