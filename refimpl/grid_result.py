@@ -130,12 +130,9 @@ def unevenness(pressure: Array, slopes: Slopes, *, periodic: bool = False) -> fl
     total = float(pressure.sum())
     if slopes.is_flat or not total > 0:
         return 0.0
-    tans: tuple[Array, Array] = slopes.tan_x, slopes.tan_y
+    tans = [slopes.tan_x, slopes.tan_y]
     if periodic:
-        tans, pressure = (
-            (np.pad(tans[0], 1, mode="wrap"), np.pad(tans[1], 1, mode="wrap")),
-            np.pad(pressure, 1),
-        )
+        tans, pressure = [np.pad(tan, 1, mode="wrap") for tan in tans], np.pad(pressure, 1)
     box = Window.around(pressure > 0, margin=1).slices
     loads = [pressure[box] * _bend(tan[box], axis) for tan in tans for axis in (0, 1)]
     return math.sqrt(sum(inner(load, load) for load in loads) / 12) / total

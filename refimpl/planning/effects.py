@@ -134,9 +134,7 @@ def slope_correction(scales: Scales) -> Effect:
     outlook, pair = scales.outlook, scales.pair
     slope = math.sqrt(outlook.slope_squared)
     local = _FACETS * (abs(pair.shear_compliance) / pair.normal_compliance + scales.mu) * slope
-    if scales.friction.is_zero and outlook.symmetric:
-        return scales.effect(
-            0.0, local, local
-        )  # no force along the sliding direction, whatever the tractions
+    if scales.friction.is_zero and outlook.symmetric:  # no force along the surface, whatever the tractions
+        return scales.effect(0.0, local, local)
     stretch = (abs(pair.lower.shear_compliance) + abs(pair.upper.shear_compliance)) / pair.normal_compliance
     return scales.effect((scales.mu + _STRETCH * stretch) * outlook.slope_squared, local, local)
