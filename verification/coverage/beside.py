@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.refine import OPENING, uncertainty
-from verification.coverage.judge import Verdict, bounded, ratio_of, reference_of
+from verification.coverage.judge import Held, Verdict, bounded, ratio_of, reference_of
 from verification.coverage.scenes import random_scene
 from verification.coverage.store import NUMBERS, Rung
 
@@ -20,27 +20,14 @@ AT_APPROACH = ("normal_force", "friction_coefficient", "contact_area", "max_pres
 GRIDS = (64, 128, 256)  # on which bars at an approach are judged
 
 
-@dataclass(frozen=True)
-class Bar:
+@dataclass(frozen=True, kw_only=True)
+class Bar(Held):
     """One number of one scene on a grid; all three lengths are over the value, of Q over the load."""
 
     seed: int
     kind: str
     number: str
     grid: int
-    bar: float
-    error: float
-    reference_bound: float
-
-    @property
-    def covered(self) -> bool:
-        """Whether the true error lies inside the bar."""
-        return self.error <= self.bar
-
-    @property
-    def covered_at_worst(self) -> bool:
-        """The same if the reference were off by its whole bound, in the direction that hurts."""
-        return self.error + self.reference_bound <= self.bar
 
 
 def where_climbs_end(ladders: Mapping[int, Sequence[Rung]], verdicts: Sequence[Verdict]) -> list[Bar]:

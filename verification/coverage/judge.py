@@ -18,27 +18,13 @@ their mean from 512 to 1024, 0.80 +- 0.01 (measured by hand); and its scatter. A
 ``accuracy/edge-size``)."""
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """One number of one scene at one accuracy.
+@dataclass(frozen=True, kw_only=True)
+class Held:
+    """A bar, the true error, and what the reference of that may be wrong by, all in one unit."""
 
-    ``error`` and ``bar`` are relative to the reference and to the value; ``reference_bound`` is what the
-    reference itself may be wrong by. ``cheapest`` is the coarsest grid from which on every grid's error is
-    within the accuracy, ``cost`` the transforms' ``n log n`` of all grids solved, each from the last one's
-    answer, over that of the cheapest, solved afresh. (A third grid is counted as from the opening.)
-    """
-
-    seed: int
-    kind: str
-    number: str
-    accuracy: float
-    grids: tuple[int, ...]
-    met: bool
     bar: float
     error: float
     reference_bound: float
-    cheapest: int | None
-    cost: float | None
 
     @property
     def covered(self) -> bool:
@@ -49,6 +35,25 @@ class Verdict:
     def covered_at_worst(self) -> bool:
         """The same if the reference were off by its whole bound, in the direction that hurts."""
         return self.error + self.reference_bound <= self.bar
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict(Held):
+    """One number of one scene at one accuracy; lengths are over the value.
+
+    ``cheapest`` is the coarsest grid from which on every grid's error is
+    within the accuracy, ``cost`` the transforms' ``n log n`` of all grids solved, each from the last one's
+    answer, over that of the cheapest, solved afresh. (A third grid is counted as from the opening.)
+    """
+
+    seed: int
+    kind: str
+    number: str
+    accuracy: float
+    grids: tuple[int, ...]
+    met: bool
+    cheapest: int | None
+    cost: float | None
 
 
 def verdicts(ladders: Mapping[int, Sequence[Rung]], accuracy: float) -> list[Verdict]:
