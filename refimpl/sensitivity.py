@@ -24,20 +24,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.discretisation import AREA
+from refimpl.discretisation import AREA, area_scatter
 from refimpl.edge_motion import EdgeMotion
 from refimpl.errors import LEAST, InputError
 from refimpl.fixed_set import FixedSet
-from refimpl.forces import EDGE_SHARE
 from refimpl.grid import Array
-from refimpl.grid_result import alike
+from refimpl.grid_result import GridResult
 from refimpl.materials import RIGID
 from refimpl.parameters import moving, parameters, with_parameter
 from refimpl.problem import Problem, Terms, pose
 from refimpl.scene import Scene
 from refimpl.solution import Solution
 from refimpl.solve import solve
-from refimpl.uncertainty import edge_excess
 
 NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")
 _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
@@ -217,12 +215,9 @@ def _stride(scene: Scene, name: str, value: float) -> float:
 
 
 def _scatter(scene: Scene, solution: Solution, name: str, value: float) -> float:
-    """95 % bound of what counting elements twice does to ``dA/dp``."""
-    element = solution.grid.element_area
-    count = max(edge_excess(solution), 0.0) / (EDGE_SHARE * element)
-    images = alike(solution.contact, periodic=solution.problem.periodic)
-    scatter = AREA.scatter * math.sqrt(2 * count * images) * element
-    return scatter / (_stride(scene, name, value) * abs(value))
+    """95 % bound of what counting elements twice does to ``dA/dp``: as the error bars have it of one grid."""
+    one = AREA.scatter * float(area_scatter([GridResult.of(solution)])[0])
+    return math.sqrt(2) * one / (_stride(scene, name, value) * abs(value))
 
 
 def _gathered(

@@ -131,7 +131,7 @@ def _trials_of(number: int, problem: Problem, plan: Plan) -> list[Trial]:
     result = []
     for name, terms in {**WITHOUT, **WITH}.items():
         estimate = ESTIMATES[name](scales)
-        if estimate == effects.NONE:
+        if estimate == effects.NONE and name in WITHOUT:  # no choice of the plan's: nothing is left out
             continue
         mu, area = _mu_and_area(replace(problem, terms=terms))
         change, larger = abs(mu - whole[0]), abs(area - whole[1]) / whole[1]
