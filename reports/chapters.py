@@ -86,7 +86,7 @@ CHAPTERS = (
         "Speed for accuracy",
         "What an error costs: error bars and whether they hold, benchmarks beside published codes, prices.",
         ("accuracy", "sensitivity", "tradeoff", "multilevel", "benchmarks"),
-        ("benchmarks", "coverage", "tradeoff", "multilevel"),
+        ("benchmarks", "coverage", "coverage_fresh", "tradeoff", "multilevel"),
     ),
     Chapter(
         "extremes",

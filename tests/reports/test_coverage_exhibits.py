@@ -1,0 +1,32 @@
+"""The committed studies of error bars: scenes apart, and rows only where something was judged."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from reports.studies import exhibit
+
+RESULTS = Path(__file__).parents[2] / "reports" / "results"
+TRAINED = range(1000, 1200)
+
+
+def committed(name: str) -> dict:
+    return json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def test_the_scenes_never_looked_at_are_no_others() -> None:
+    (seen, last), (first, end) = committed("coverage")["seeds"], committed("coverage_fresh")["seeds"]
+    assert seen == 0
+    assert last < first < end < TRAINED.start
+
+
+@pytest.mark.parametrize("name", ["coverage", "coverage_fresh"])
+def test_no_row_without_scenes(name: str) -> None:
+    built = exhibit(name, committed(name))
+    by_number, *_, beside = built.tables
+    assert len(by_number.rows) == 8
+    assert all(row[2] for row in beside.rows)
+    assert any("at an approach" in row[0] for row in beside.rows) == (name == "coverage")
