@@ -102,13 +102,12 @@ def _beside(document: Document) -> Table:
         (f"{BESIDE[number]}, mu to {judged['accuracy']:g}", None, *_columns(found))
         for judged in document["accuracies"]
         for number, found in judged["beside"].items()
-        if found["scenes"]
     ]
     rows += [
         (f"{BESIDE[number]}, at an approach", int(grid), *_columns(found))
         for number, grids in document["at_approach"].items()
+        if any(found["scenes"] for found in grids.values())
         for grid, found in grids.items()
-        if found["scenes"]
     ]
     head = (
         "number",
@@ -129,6 +128,8 @@ def _beside(document: Document) -> Table:
 
 
 def _columns(found: dict[str, Any]) -> tuple[float | None, ...]:
+    if not found["scenes"]:
+        return (0, None, None, None, None)
     return (
         found["scenes"],
         _percent(found["covered"]),

@@ -1,4 +1,4 @@
-"""The committed studies of error bars: scenes apart, and rows only where something was judged."""
+"""The committed studies of error bars: other scenes, and only numbers that were judged."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_the_scenes_never_looked_at_are_no_others() -> None:
 
 
 @pytest.mark.parametrize("name", ["coverage", "coverage_fresh"])
-def test_no_row_without_scenes(name: str) -> None:
+def test_no_number_that_nothing_judges_is_shown(name: str) -> None:
     built = exhibit(name, committed(name))
     by_number, *_, beside = built.tables
     assert len(by_number.rows) == 8
