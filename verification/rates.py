@@ -22,10 +22,7 @@ Array = NDArray[np.float64]
 
 CREDIBLE_WITHIN = 0.5
 TRUSTED_FACTOR, CAUTIOUS_FACTOR = 1.25, 3.0
-ORDER_RANGE = (
-    0.05,
-    10.0,
-)  # an unknown limit's order is sought here; outside, no discretisation is meant
+ORDER_RANGE = (0.05, 10.0)  # an unknown limit's order is sought here; outside, no discretisation is meant
 
 
 @dataclass(frozen=True)

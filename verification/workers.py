@@ -7,7 +7,7 @@ import itertools
 import multiprocessing
 import queue
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
@@ -38,12 +38,11 @@ class Worker:
         self._pool.shutdown()
 
 
-def run_all(cases: Iterable[Case], jobs: int, tick: Callable[[Result], None]) -> list[Result]:
+def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) -> list[Result]:
     """Results in the order of `cases`, from `jobs` workers; `tick` sees each as it is finished.
 
     A worker takes the cases of a whole module, in their order, since those may share a cached solution.
     """
-    cases = list(cases)
     lines: queue.SimpleQueue[list[Case]] = queue.SimpleQueue()
     for _, line in itertools.groupby(cases, key=lambda c: c.module):
         lines.put(list(line))

@@ -55,6 +55,9 @@ def test_metrics(
         ("relative", Measured(value=0.0, reference=0.0)),
         ("relative", Measured(value=1.0)),
         ("relative", Measured(value=1.0, reference=1.0, reference_uncertainty=0.11)),
+        ("relative", Measured(value=1e-6, reference=1e-6, reference_uncertainty=1.1e-7)),
+        ("relative", Measured(value=-1e-6, reference=-1e-6, reference_uncertainty=1.1e-7)),
+        ("absolute", Measured(value=5.0, reference=5.0, reference_uncertainty=0.11)),
         ("relative", Measured(value=1.0, reference=1.0, reference_uncertainty=math.nan)),
         ("relative", Measured(value=1.0, reference=1.0, reference_uncertainty=-0.01)),
         ("absolute", Measured(value=1e308, reference=-1e308)),
@@ -76,6 +79,17 @@ def test_numbers_that_cannot_be_judged_are_errors(metric: str, measured: Any) ->
     assert result.status == Status.ERROR
     assert result.error is None
     assert result.note
+
+
+@pytest.mark.parametrize(
+    ("metric", "reference", "uncertainty"),
+    [("relative", 1e6, 9e4), ("relative", 1e-6, 9e-8), ("absolute", 1e-6, 0.09), ("absolute", 1e6, 0.1)],
+)
+def test_a_reference_may_be_as_uncertain_as_the_tolerance(
+    metric: str, reference: float, uncertainty: float
+) -> None:
+    measured = Measured(value=reference, reference=reference, reference_uncertainty=uncertainty)
+    assert declare(lambda: measured, metric, 0.1).run().status == Status.PASS
 
 
 @pytest.mark.parametrize("raised", [RuntimeError("broken"), SystemExit(0), AssertionError(), MemoryError()])

@@ -31,6 +31,8 @@ def test_the_order_is_the_least_squares_one() -> None:
     assert found.order == pytest.approx(0.5, abs=1e-14)
     assert found.constant == pytest.approx(2 ** (1 / 6), rel=1e-14)
     assert found.local == pytest.approx([0.0, 1.0], abs=1e-14)
+    assert found.scatter == pytest.approx(np.log(2) * np.sqrt(1 / 18), rel=1e-13)  # of -1/6, 1/3, -1/6
+    assert found.credible(0.5)  # the local ones lie at the very ends
     assert not found.credible(1.0)
 
 
@@ -82,6 +84,17 @@ def test_an_order_that_is_not_credible_costs_a_factor_of_three(values: list[floa
     assert not found.credible, why
     assert found.safety_factor == 3.0
     assert found.uncertainty >= 3.0 * np.ptp(values)
+
+
+def test_grids_that_hardly_differ_are_doubted_by_all_of_the_correction() -> None:
+    # What three close grids range over says little of how far the limit is.
+    h, values = [1.2, 1.1, 1.0], [1.3, 1.1, 1.0]
+    factor, _ = np.polyfit(np.square(h), values, 1)
+    assert factor * h[-1] ** 2 > 2 * np.ptp(values)
+    for scale in (1.0, 0.1):
+        found = extrapolate([scale * s for s in h], values, expected_order=2.0)
+        assert not found.credible
+        assert found.uncertainty == pytest.approx(3.0 * factor, rel=1e-9)
 
 
 def test_the_misfit_is_part_of_the_uncertainty() -> None:

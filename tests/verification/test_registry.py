@@ -46,6 +46,13 @@ def test_an_id_declared_twice_is_refused(make_package: Make, modules: dict[str, 
         registry.load(package)
 
 
+def test_an_id_declared_twice_is_refused_whichever_module_came_first(make_package: Make) -> None:
+    package = make_package(alpha=source("a/1"), beta=source("a/1"))
+    importlib.import_module(f"{package}.beta")
+    with pytest.raises(ValueError, match="declared twice"):
+        registry.load(package)
+
+
 def test_a_module_imported_anew_is_not_a_second_case(make_package: Make) -> None:
     package = make_package(alpha=source("a/1"))
     first = registry.load(package)
