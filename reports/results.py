@@ -51,6 +51,9 @@ def check(results: object) -> Mapping[str, Any]:
         _require(case, CASE_KEYS, f"case {number}")
         if case["status"] not in STATUSES:
             raise ResultFileError(f"case {case['id']!r} has the unknown status {case['status']!r}")
+    ids = [case["id"] for case in results["cases"]]
+    if len(set(ids)) < len(ids):
+        raise ResultFileError(f"case {max(ids, key=ids.count)!r} is there twice")
     counted = {status: sum(c["status"] == status for c in results["cases"]) for status in STATUSES}
     if counted != results["counts"]:
         raise ResultFileError(f"counts {results['counts']} are not those of the cases, {counted}")

@@ -33,6 +33,18 @@ def test_the_run_outweighs_committed_runs_and_the_newest_judged_of_those_counts(
     assert list(found.studies) == ["study"]
 
 
+def test_errata_of_committed_runs_count_the_newest_of_each() -> None:
+    def with_erratum(date: str, **named: str) -> dict:
+        return dated(date, case(f"{date}/1"), errata=[{**ERRATUM, **named}])
+
+    run = with_erratum("2000-01-01", equation="A1", printed="in this run")
+    older = with_erratum("2001-01-01", equation="A4", printed="older")
+    newer = with_erratum("2002-01-01", equation="A4", printed="newer")
+    again = with_erratum("2003-01-01", equation="A1", printed="in another run")
+    found = gathered(run, {"older": older, "newer": newer, "again": again})
+    assert {e["equation"]: e["printed"] for e in found.errata} == {"A1": "in this run", "A4": "newer"}
+
+
 def test_a_broken_committed_run_is_refused() -> None:
     with pytest.raises(ResultFileError):
         gathered(results(case("a/1")), {"x": {"format": results()["format"]}})
@@ -74,6 +86,24 @@ def test_changes_beyond_uncertainty_only() -> None:
     page = render(new, {}, old)
     assert "Changes against the older run" in page
     assert "No case changed" in render(new, {}, new)
+
+
+def test_a_long_case_that_did_not_pass_stands_beside_the_quick_one() -> None:
+    for status in ("fail", "error", "unavailable"):
+        found = traced([case("reproduction/eq11"), case("reproduction/eq11-full", status)], [])
+        row = next(row for row in found if row.item.label == "Eq. (11)")
+        assert [c["id"] for c in row.cases] == ["reproduction/eq11", "reproduction/eq11-full"]
+        assert row.status == status
+        assert row.verdict == "not established"
+
+
+def test_without_a_verdict_an_erratum_corrects_and_no_more() -> None:
+    (row,) = (
+        r
+        for r in traced([case("reproduction/eq11")], [{**ERRATUM, "equation": "(11)"}])
+        if r.item.label == "Eq. (11)"
+    )
+    assert row.verdict == "corrected"
 
 
 def test_an_unknown_study_is_shown_by_its_numbers() -> None:

@@ -9,7 +9,9 @@ from html.parser import HTMLParser
 
 import pytest
 
-from reports.generator import render
+from reports.drawing import Figure, lines
+from reports.evidence import gathered
+from reports.generator import LEADING, facts, judgement, leading, pictures, render
 from reports.results import ResultFileError, check
 from tests.reports.sample import ERRATUM, TEXTBOOK, UNJUDGED, case, results
 
@@ -161,6 +163,39 @@ def test_unjudged_numbers_are_not_zero() -> None:
     assert "n/a" in page.text
 
 
+@pytest.mark.parametrize(
+    ("metric", "status", "said"),
+    [
+        ("relative", "pass", "0.0123 ≤ 0.457"),
+        ("relative", "fail", "0.0123 > 0.457"),
+        ("absolute", "pass", "0.0123 ≤ 0.457"),
+        ("at_most", "fail", "0.0123 > 0.457"),
+        ("at_least", "pass", "0.0123 ≥ 0.457"),
+        ("at_least", "fail", "0.0123 < 0.457"),
+        ("equal", "pass", "0.0123 ≤ 0.457"),
+    ],
+)
+def test_a_judgement_says_which_way_it_went(metric: str, status: str, said: str) -> None:
+    # to three digits, and whichever numbers: the status decides
+    judged = case("a/1", status, metric=metric, error=0.012346, tolerance=0.45678)
+    assert judgement(judged) == said
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        ({"table": {}}, []),
+        ({"table": {str(k): k for k in range(12)}}, ["table"]),
+        ({"table": {str(k): k for k in range(13)}}, []),
+        ({"table": {"deep": [1]}}, []),
+        ({"word": "so", "truth": True, "nothing": None, "share": 0.123456}, ["so", "True", "n/a", "0.1235"]),
+    ],
+)
+def test_of_what_a_case_recorded_single_entries_are_printed(data: dict[str, object], said: list[str]) -> None:
+    found = facts(data)
+    assert [name if name == "table" else text for name, text in found] == said
+
+
 def test_texts_are_escaped() -> None:
     bad = "<script>alert(1)</script>"
     page = render(
@@ -202,6 +237,9 @@ def test_the_same_results_make_the_same_page() -> None:
         results({k: v for k, v in case("a/1").items() if k != "tolerance_reason"}),
         results(case("a/1", "passed")),
         results(case("a/1"), errata=[{"equation": "A4"}]),
+        results(case("a/1"), errata={}),
+        results() | {"cases": {}},
+        results(case("a/1", "fail"), case("a/1")),
         results(case("a/1"), provenance={}),
         results(case("a/1", "fail"), counts={"pass": 1, "fail": 0, "error": 0, "unavailable": 0}),
     ],
@@ -216,3 +254,30 @@ def test_a_quick_case_leaves_its_figure_to_its_long_twin() -> None:
     quick, long = case("new/1", data=data), case("new/1-full", data=data)
     assert len(Page(render(results(quick, long))).images) == 1
     assert len(Page(render(results(quick, {**long, "status": "fail"}))).images) == 2
+
+
+@pytest.mark.parametrize("other", ["new/0-full", "new/2-full", "new/1-fuller", "zzz/1-full"])
+def test_nobody_else_is_its_twin(other: str) -> None:
+    data = {"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}
+    quick = case("new/1", data=data)
+    assert len(pictures(quick, gathered(results(quick, case(other)), {}))) == 1
+
+
+def test_the_first_page_has_the_first_figure_of_the_best_case_that_has_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    first, second = (
+        Figure("*", ("M", name), lines("M", {name: name}, xlabel="M", ylabel=name), name)
+        for name in ("error", "time")
+    )
+    monkeypatch.setattr("reports.figures.figures_of", lambda *_: [first, second])
+    series = {"M": [32, 64, 128], "error": [4.0, 2.0, 1.0], "time": [1.0, 2.0, 3.0]}
+    (best, quick), (empty, stand_in, other), (last,) = LEADING
+    present = [case(id, data=series) for id in (other, stand_in, quick, last)]
+    present.append(case(empty, data={"M": []}))
+    shown = leading(gathered(results(*present), {}))
+    assert [(c["id"], picture["caption"]) for c, picture in shown] == [
+        (quick, "error"), (stand_in, "error"), (last, "error"),
+    ]  # fmt: skip
+    shown = leading(gathered(results(*present, case(best, data=series)), {}))
+    assert [c["id"] for c, _ in shown] == [best, stand_in, last]
