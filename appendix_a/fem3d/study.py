@@ -93,6 +93,7 @@ def points() -> list[Point]:
         *grid((10.0, 30.0), 50.0, 0.0),
         *grid((10.0, 30.0), 50.0, 0.45),
         *grid(SLOPES, 100.0, 0.3),
+        *grid((30.0,), 50.0, 0.45, (FLANK,), quality="full"),
     ]
     return list(dict.fromkeys(first + rest))
 

@@ -114,7 +114,7 @@ def test_only_projected_ridges_of_the_standard_length_count(
     """Wherever egg-boxes, facets and longer waves stand in the file."""
     monkeypatch.setattr(json, "loads", lambda _: TABLE | {"points": points})
     slopes, ratios, errors = _table.__wrapped__()
-    assert slopes.tolist() == [2.5, 6.5, 10.0, 15.0, 30.0]
+    assert slopes.tolist() == [2.5, 6.5, 10.0, 15.0, 20.0, 30.0]
     assert ratios.tolist() == [0.0, 0.3, 0.45]
     expected = [[[row(d, nu, at) for d in slopes] for at in (0.0, 0.25, 0.5)] for nu in ratios]
     np.testing.assert_array_equal(errors, expected)
