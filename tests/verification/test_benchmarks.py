@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from refimpl.errors import InputError
-from verification.benchmarks import child, rounds
+from verification.benchmarks import child, rounds, run
 from verification.benchmarks.__main__ import known, main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.judge import judged, padded_box
@@ -61,6 +62,24 @@ def test_judge_agrees_with_the_dense_referee(kind: str) -> None:
     assert ours.area == pytest.approx((pressure > 0).sum() * posed.element_area)
 
 
+def test_judge_finds_penetration_and_tension_where_they_are() -> None:
+    posed = problem("smooth", 24, 1e-8)
+    pressure = np.array(own.solve(posed).pressure)
+    peak = pressure.max()
+    exact = judged(posed, pressure)
+    assert exact.tension == 0.0
+    assert exact.penetration < 1e-8
+    rim = np.unravel_index(np.argmin(np.where(pressure > 0, pressure, np.inf)), pressure.shape)
+    pressure[rim] = -0.01 * peak
+    found = judged(posed, pressure)
+    v = referee.displacement(posed, pressure) + posed.gap
+    approach = np.average(v, weights=pressure)
+    assert found.tension == pytest.approx(0.01, rel=1e-12)
+    assert found.peak == peak
+    assert found.penetration == pytest.approx((approach - v.min()) / approach, rel=1e-9)
+    assert found.penetration > 1e-3
+
+
 def test_judge_refuses_what_it_cannot_judge() -> None:
     posed = problem("smooth", 8, 1e-8)
     periodic = type(posed)(posed.gap, posed.spacing, 1e9, load=1.0, periodic=True)
@@ -93,6 +112,59 @@ def test_tuning_never_loosens_ours_and_gives_up_aloud() -> None:
     assert tuned(lambda t: found(1.0, gap=3 * t), 1e-8, loosen=False)[0] < 1e-8
     with pytest.raises(Failed, match="8 tries"):
         tuned(lambda t: found(1.0, gap=1e-6), 1e-8, loosen=True)
+
+
+def test_a_solve_that_takes_long_is_not_loosened() -> None:
+    tried: list[float] = []
+
+    def solve(seconds: float, tolerance: float) -> dict[str, Any]:
+        tried.append(tolerance)
+        return found(seconds, gap=tolerance / 100)
+
+    assert tuned(partial(solve, 21.0), 1e-8, loosen=True)[0] == 1e-8
+    assert tried == [1e-8]
+    assert tuned(partial(solve, 19.0), 1e-8, loosen=True)[0] > 4e-7
+
+
+def test_what_fails_within_a_factor_of_two_ends_the_search() -> None:
+    tried: list[float] = []
+
+    def solve(tolerance: float) -> dict[str, Any]:
+        tried.append(tolerance)
+        return found(1.0, gap=0.8e-8 if tolerance < 1.5e-7 else 1e-6)
+
+    assert tuned(solve, 1e-7, loosen=True)[0] == 1e-7
+    assert tried == [1e-7, 2e-7]
+
+
+def test_peers_are_loosened_and_ours_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run, "solved", lambda _c, _k, _m, tolerance, *_: found(1.0, gap=tolerance / 100))
+    for name in (OWN, ALONE, SHEARED, SLOPED):
+        assert run._tuned(name, "smooth", 64, None, 1, 60.0).tolerance == rounds.CERTIFIED
+    first = run._tuned("peer", "smooth", 64, None, 1, 60.0)
+    assert 5e-7 <= first.tolerance <= 1e-6
+    # on the next grid a peer goes on from there
+    tried: list[float] = []
+    monkeypatch.setattr(
+        run, "solved", lambda _c, _k, _m, tolerance, *_: tried.append(tolerance) or found(30.0)
+    )
+    first.rounds = [found(7.0), found(1.0)]
+    assert not run._tuned("peer", "smooth", 128, first, 1, 60.0).failure
+    assert tried == [first.tolerance]
+
+
+def test_who_cannot_make_it_is_left_out_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    def never(*_: object) -> dict[str, Any]:
+        raise Failed("out of memory")
+
+    monkeypatch.setattr(run, "solved", never)
+    broke = run._tuned("peer", "smooth", 64, None, 1, 60.0)
+    assert broke.failure == "out of memory"
+    assert "after 64 x 64: out of memory" in run._tuned("peer", "smooth", 128, broke, 1, 60.0).failure
+    slow = turns("peer", 9.0, 1.5)  # times eight for twice the grid, of the quicker round
+    assert run._tuned("peer", "smooth", 128, slow, 1, 11.9).failure == "left out: 12 s expected"
+    assert run._tuned("peer", "smooth", 256, slow, 1, 95.0).failure == "left out: 96 s expected"
+    assert run._tuned("peer", "smooth", 128, slow, 1, 12.1).failure == "out of memory"
 
 
 def test_a_coupled_result_is_judged_by_its_certificate() -> None:
@@ -160,6 +232,7 @@ def test_lines_show_ratios_and_who_was_left_out() -> None:
     ]
     assert shown[3] == ["smooth 64", "absent", "", "", "", "", "left out: 900 s expected"]
     assert "left out" in columns(shown)
+    assert shown[1][-1] == "300 MB"
 
 
 def test_names_are_checked() -> None:
@@ -201,11 +274,11 @@ def test_peak_memory_is_of_this_process() -> None:
 def test_a_run_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "record.json"
     main(["--grids", "32", "--codes", OWN, "--kinds", "smooth", "--rounds", "1", "--json", str(file)])
-    (run,) = json.loads(file.read_text())["runs"]
-    (entry,) = run["rows"]
+    (recorded,) = json.loads(file.read_text())["runs"]
+    (entry,) = recorded["rows"]
     assert entry["meets the target"]
     assert entry["seconds"]["median"] > 0
     assert "smooth 32" in capsys.readouterr().out
-    assert run["conditions"]["versions"] == {OWN: codes()[OWN].version}
+    assert recorded["conditions"]["versions"] == {OWN: codes()[OWN].version}
     with pytest.raises(Failed, match="KeyError"):
         solved("no such code", "smooth", 32, 1e-8, threads=1, limit=60)
