@@ -14,6 +14,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.contact.certificate import certify
+from refimpl.grid import Array
 from refimpl.operators.dense import DenseInfluence
 from refimpl.problem import Terms, pose
 from refimpl.slopes import Slopes
@@ -176,6 +177,14 @@ def test_elimination_agrees_with_our_dense_reference() -> None:
         np.testing.assert_allclose(referee.eliminated(posed), found.pressure, atol=1e-9 * found.max_pressure)
 
 
+@pytest.mark.parametrize("length", [1.0, 1e-7])
+def test_elimination_takes_back_what_it_dropped_too_much(length: float) -> None:
+    # On this plane two rounds of it are needed: without them elements would penetrate.
+    gap = np.random.default_rng(0).uniform(0, length, (8, 8))
+    posed = ContactProblem(gap - gap.min(), 0.2, MODULUS, approach=-0.02 * length, periodic=True)
+    assert referee.residual(posed, referee.eliminated(posed)).worst < 1e-13
+
+
 def test_an_element_left_out_is_seen_by_its_penetration() -> None:
     for posed in (problem(), replace(problem(), load=None, approach=0.08)):
         exact = referee.eliminated(posed)
@@ -198,6 +207,40 @@ def test_pressures_without_energy_cannot_be_judged() -> None:
     statuses = {r.id: r.status for r in run(nothing)}
     assert "pass" not in {s for name, s in statuses.items() if name != "contestant/no-tension"}
     assert statuses["contestant/no-tension"] == "error"
+
+
+RESIDUALS = ("one-element", "rough-residual", "rough-residual-light", "load-balance", "sliding-residual")
+ERRORS = (
+    "wide-pins",
+    "chequered",
+    "square-patch",
+    "rough-elimination",
+    "sliding-elimination",
+    "sheared-pins",
+)
+PERIODIC_ERRORS = ("periodic-elimination", "full-contact", "full-contact-sliding")  # there twice as much
+
+
+@pytest.mark.parametrize(
+    ("names", "power", "kept", "missed"),
+    [(RESIDUALS, 1.0, 0.9, 1.5), (ERRORS, 0.5, 1.0, 1.2), (PERIODIC_ERRORS, 0.5, 0.95, 1.1)],
+    ids=["residuals", "errors", "periodic errors"],
+)
+def test_a_claim_missed_by_little_fails_what_counts_in_claims(
+    names: tuple[str, ...], power: float, kept: float, missed: float
+) -> None:
+    """Pressures too high by a share of the claim, or of its root: the energy of that error is its square."""
+
+    def statuses(claims: float) -> set[str]:
+        def too_high(posed: ContactProblem) -> Array:
+            exact = own.solve(replace(posed, tolerance=1e-13 if posed.coupling is None else 1e-12))
+            return np.asarray(exact.pressure) * (1 + (claims * posed.tolerance) ** power)
+
+        found = run(Limited(too_high, own.solve.abilities), [f"contestant/{name}" for name in names])
+        return {result.status for result in found}
+
+    assert statuses(kept) == {"pass"}
+    assert statuses(missed) == {"fail"}
 
 
 SYMMETRIC = {"no-tension", "mirrors", "transposition", "periodic-shift", "periodic-tiling"}
