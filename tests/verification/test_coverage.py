@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,15 @@ from reports.drawing import svg
 from reports.studies import exhibit
 from verification.coverage import beside, document
 from verification.coverage.document import grids_of, reference_check, solves
-from verification.coverage.judge import moved, summary, verdicts
+from verification.coverage.judge import (
+    EDGE_SIZE,
+    EDGE_SIZE_BOUND,
+    Held,
+    moved,
+    reference_of,
+    summary,
+    verdicts,
+)
 from verification.coverage.scenes import CLASSES, SIDE, random_scene
 from verification.coverage.shapes import measured_like
 from verification.coverage.store import NUMBERS, Rung, climb, ladders, rungs
@@ -85,6 +94,70 @@ def test_a_reference_that_moves_is_seen() -> None:
     assert moved([rung(M, wrong=0.1) for M in GRIDS]) > 1
 
 
+def test_references_by_hand() -> None:
+    before, finest = rung(256), rung(512)
+    area, edge = finest.result.numbers["contact_area"], finest.result.edge
+    both = [rung(128), before, finest]
+    assert reference_of(both, "contact_area") == (area - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge)
+    assert reference_of(both, "contact_area_corrected") == reference_of(both, "contact_area")
+    mu, bound = reference_of(both, "friction_coefficient")
+    assert mu == pytest.approx(0.1 + 1e5 * (area - EDGE_SIZE * edge), rel=1e-14)
+    assert bound == pytest.approx(1e5 * EDGE_SIZE_BOUND * edge, rel=1e-9)  # without tau's share mu is 0.1
+    higher = replace(finest, result=replace(finest.result, peak=Summit(1.25, 1e-3, 0.0)))
+    assert reference_of([before, higher], "max_pressure") == (1.25, 0.25)
+    rubbing = {**finest.result.numbers, "friction_coefficient": 0.3 + 1e5 * area}
+    moved_on = [before, replace(finest, result=replace(finest.result, numbers=rubbing))]
+    assert reference_of(moved_on, "friction_coefficient")[1] == pytest.approx(bound + 0.2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("error", "bound", "bar", "covered", "at_worst"),
+    [
+        (0.25, 0.25, 0.5, True, True),
+        (0.25, 0.26, 0.5, True, False),
+        (0.5, 0.0, 0.5, True, True),
+        (0.51, 0.0, 0.5, False, False),
+        (1e-9, 1e-9, 0.0, False, False),
+        (0.25, 0.25, np.inf, True, True),
+    ],
+)
+def test_a_bar_holds_up_to_its_end(
+    error: float, bound: float, bar: float, covered: bool, at_worst: bool
+) -> None:
+    found = Held(bar=bar, error=error, reference_bound=bound)
+    assert (found.covered, found.covered_at_worst) == (covered, at_worst)
+
+
+def test_a_summary_by_hand() -> None:
+    one = verdicts({3: [rung(M) for M in GRIDS]}, 0.02)[0]
+    made = [
+        replace(one, met=met, cost=cost, bar=bar, error=error, reference_bound=0.5)
+        for met, cost, bar, error in (
+            (True, 1.5, 1.0, 0.25),
+            (True, 2.0, 1.0, 0.5),
+            (True, 3.0, 1.0, 2.0),
+            (False, None, np.inf, 1.0),
+            (False, None, 8.0, 1.0),
+        )
+    ]
+    assert summary(made) == {
+        "scenes": 5,
+        "met": 0.6,
+        "covered": 0.8,
+        "covered_at_worst": 0.8,
+        "covered_where_met": 2 / 3,
+        "median_bar_over_error": 4.0,
+        "median_cost": 2.0,
+        "cost_at_most_2": 2 / 3,
+        "median_bar": 1.0,
+        "median_reference_bound_over_bar": 0.5,
+    }
+    never = summary(made[3:4])
+    assert [never[name] for name in ("covered_where_met", "median_cost", "cost_at_most_2")] == [None] * 3
+    assert never["median_bar"] is None
+    assert never["median_bar_over_error"] is None
+
+
 def test_frictionless_scenes_have_no_friction_to_judge() -> None:
     seed = next(seed for seed in range(99) if random_scene(seed).scene.friction.is_zero)
     found = verdicts({seed: [rung(M, seed=seed) for M in GRIDS]}, 0.02)
@@ -140,6 +213,9 @@ def test_the_reference_is_checked_on_one_more_grid(tmp_path: Path, monkeypatch: 
 def test_periodic_scenes_end_at_a_coarser_reference() -> None:
     ends = {kind: grids_of(seed)[-1] for seed, kind in enumerate(CLASSES)}
     assert {kind for kind, end in ends.items() if end == 512} == {"periodic waves", "periodic rough"}
+    to_256 = (32, 64, 80, 96, 112, 128, 160, 192, 224, 256)
+    assert grids_of(0) == (*to_256, 320, 384, 448, 512, 1024)
+    assert grids_of(list(CLASSES).index("periodic waves")) == (*to_256, 512)
 
 
 def test_numbers_beside_are_judged_where_the_climb_for_mu_ends() -> None:
@@ -157,6 +233,19 @@ def test_numbers_beside_are_judged_where_the_climb_for_mu_ends() -> None:
         assert bar.error == pytest.approx(0.5)
         assert bar.reference_bound == pytest.approx(0.5)
         assert beside.summary([bar])["covered"] == 0.0
+
+
+def test_numbers_beside_go_by_the_area_where_nothing_rubs() -> None:
+    seed = next(seed for seed in range(99) if random_scene(seed).scene.friction.is_zero)
+    ladders_of = {s: [rung(M, seed=s) for M in GRIDS] for s in (3, seed)}
+    # beside tau's share mu has 0.1, so that it is known better than the area
+    found = verdicts(ladders_of, 0.005)
+    ends = {(v.seed, v.number): v.grids[-1] for v in found}
+    assert ends[3, "friction_coefficient"] != ends[3, "contact_area"]
+    bars = beside.where_climbs_end(ladders_of, found)
+    expected = {3: ends[3, "friction_coefficient"], seed: ends[seed, "contact_area"]}
+    assert {bar.seed: bar.grid for bar in bars} == expected
+    assert {bar.kind for bar in bars} == {random_scene(s).kind for s in expected}
 
 
 def test_approaches_are_judged_from_where_surfaces_touch() -> None:
@@ -177,6 +266,8 @@ def test_scenes_are_judged_at_an_approach_too(tmp_path: Path, monkeypatch: pytes
     climb(store, [0, 80], [*OPENING, 96])
     found = document.approaches(ladders(store), store)
     assert set(found) == set(beside.AT_APPROACH)
+    sticky = [not random_scene(seed).scene.friction.is_zero for seed in (0, 80)]
+    assert found["friction_coefficient"]["96"]["scenes"] == sum(sticky[:1])
     force = found["normal_force"]
     assert [force[M]["scenes"] for M in ("64", "96")] == [1, 1]
     assert force["96"]["covered"] == 1.0
@@ -184,6 +275,35 @@ def test_scenes_are_judged_at_an_approach_too(tmp_path: Path, monkeypatch: pytes
     assert document.approaches(ladders(store), store) == found
     assert tmp_path.joinpath("study-approach.jsonl").read_bytes() == before
     assert len(before.splitlines()) == 4
+
+
+def test_the_document_solves_what_is_wanting_and_judges_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(document, "BARS", (64,))
+    monkeypatch.setattr(beside, "GRIDS", (64,))
+    monkeypatch.setattr(document, "grids_of", lambda _: (*OPENING, 128, 256))
+    frictionless = next(seed for seed in range(99) if random_scene(seed).scene.friction.is_zero)
+    store, seeds = tmp_path / "study.jsonl", [0, frictionless]
+    climb(store, [5], [*OPENING])  # of another study
+    found: dict[str, Any] = document.document([0.05], seeds, store)
+    assert found["solves"]["count"] == 8
+    (judged,) = found["accuracies"]
+    scenes = {number: judged["numbers"][number]["scenes"] for number in NUMBERS}
+    assert scenes == {name: 1 if name == "friction_coefficient" else 2 for name in NUMBERS}
+    assert {number: verdicts["seed"] for number, verdicts in judged["verdicts"].items()} == {
+        name: [0] if name == "friction_coefficient" else seeds for name in NUMBERS
+    }
+    for number in beside.BESIDE:
+        assert judged["beside"][number]["scenes"] == 2
+        assert judged["beside"][number]["bars"]["seed"] == seeds
+    assert judged["beside"]["approach"]["bars"]["bar"] != judged["beside"]["binormal_force"]["bars"]["bar"]
+    by_class = [judged["classes"][kind]["contact_area"]["scenes"] for kind in CLASSES]
+    assert sum(by_class) == 2
+    at_approach = found["at_approach"]
+    assert {n: grids["64"]["scenes"] for n, grids in at_approach.items()} == {
+        name: 1 if name == "friction_coefficient" else 2 for name in beside.AT_APPROACH
+    }
 
 
 def test_the_report_shows_the_study() -> None:
