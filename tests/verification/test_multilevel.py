@@ -111,6 +111,8 @@ def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytes
     assert found.cost == pytest.approx(sum(kept.values()))  # the pilot's solves are paid for
     # 400 solves do, and the pilot's four may take the variance for 2.6 times as large (chi-square, 95 %)
     assert min(found.cost / plain for plain in found.plain.values()) < 2.6
+    for mean in found.means.values():  # asked for 3 % less, rounds of more samples can overshoot a little
+        assert 0.85 < mean.standard_error / (0.0005 * mean.mean) <= 1
     assert ensemble(study, tmp_path / "a.sqlite", 0.0005, workers=0) == found
 
 
@@ -121,6 +123,21 @@ def test_without_friction_there_is_no_mean_of_mu(tmp_path: Path) -> None:
     found = ensemble(study, tmp_path / "a.sqlite", 0.3, workers=0)
     assert found.met
     assert set(found.means) == set(found.plain) == set(found.finest) == {"contact_area"}
+
+
+@pytest.mark.parametrize("friction", [rf.Friction(tau=15e6), rf.Friction(beta=0.1)])
+def test_either_friction_has_a_mean_of_mu(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, friction: rf.Friction
+) -> None:
+    spied(monkeypatch, scatter=(1.0, 1.0, 1.0, 1.0))
+    scene = replace(rf.read_scene("table1-rough"), friction=friction)
+    (tmp_path / "one.toml").write_text(rf.scene_to_toml(scene), "utf-8")
+    # on more grids than the pilot has numbers for, whose last holds for all that follow
+    study = study_from_dict(TABLE | {"scene": "one.toml", "vary": {"grid": [8, 16, 32, 64]}}, tmp_path)
+    found = ensemble(study, tmp_path / "a.sqlite", 0.05, workers=0)
+    assert found.met
+    assert set(found.means) == set(QUANTITIES)
+    assert found.samples == (*PILOT, PILOT[-1])
 
 
 def spied(monkeypatch: pytest.MonkeyPatch, scatter: tuple[float, ...]) -> dict[str, float]:
@@ -156,6 +173,22 @@ def test_a_target_out_of_reach_is_refused_after_the_pilot(
         ensemble(study, tmp_path / "a.sqlite", target)
     assert len(solved) == 16 + 2 * 8 + 2 * 4
     assert re.search("takes ([1-9].*|inf) realisations", refused.value.allowed)
+
+
+def test_how_far_out_of_reach_goes_by_the_inverse_square(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spied(monkeypatch, scatter=(1.0, 1.0, 1.0))
+    study, numbers = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}}), []
+    for target in (1e-6, 1e-7):
+        with pytest.raises(InputError) as refused:
+            ensemble(study, tmp_path / "a.sqlite", target)
+        told = re.search(r"takes (\S+) realisations", refused.value.allowed)
+        assert told is not None
+        numbers.append(float(told[1]))
+    # scatter of 1 in 100, hence 1e8 plain samples of it, within what a pilot of four may be off
+    assert 1e7 < numbers[0] < 1e9
+    assert numbers[1] == pytest.approx(100 * numbers[0], rel=0.1)
 
 
 def test_an_ensemble_resumes_and_repeats(tmp_path: Path) -> None:
