@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from refimpl import discretisation
 from refimpl.discretisation import (
     AREA,
     BINORMAL,
@@ -20,6 +21,7 @@ from refimpl.discretisation import (
     SUMMIT,
     SUMMIT_SPREAD,
 )
+from refimpl.estimate import Bias, Estimate, Prior, line
 from refimpl.first_touch import TOUCH
 from refimpl.refine import OPENING
 from tests.documents import ROOT
@@ -68,6 +70,42 @@ def test_the_likelihood_is_that_of_differences_by_hand() -> None:
     scale = scatter * np.sqrt(10.0)
     ratio = ((1 + (2.0 / scale) ** 2 / weight) / (1 + (0.5 / scale) ** 2 / weight)) ** (-(weight + 1) / 2)
     assert far - near == pytest.approx(np.log(ratio))
+
+
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_the_model_fitted_is_the_one_that_bars_are_made_of(
+    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the error bars hand to their lines, values, sizes and edges, is what priors are fitted to."""
+    lines: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+
+    def spied(values: np.ndarray, weights: np.ndarray, prior: Prior, bias: Bias | None = None) -> Estimate:
+        edge = np.zeros_like(values) if bias is None else bias.sizes
+        lines.append((values, weights * prior.scatter, edge))
+        return line(values, weights, prior, bias)
+
+    store = tmp_path / "store.jsonl"
+    climb(store, [seed], [*OPENING, 96])
+    results = [rung.result for rung in ladders(store)[seed]]
+    monkeypatch.setattr(discretisation, "line", spied)
+    discretisation.estimates(results)
+    area, mu, force, peak, across, approach = lines
+    load = results[-1].numbers["normal_force"]
+    np.testing.assert_allclose(force[0], load * mu[0], rtol=1e-9)  # both of friction, of which one is fitted
+    area_unit, peak_unit = (
+        size[-1] / scatter for (_, size, _), scatter in ((area, AREA.scatter), (peak, PEAK.scatter))
+    )
+    for (values, size, edge), fitted_to, unit, scatter in (
+        (area, priors.areas(results, SINGLES), area_unit, AREA.scatter),
+        (mu, priors.rests(results, BULK.scatter, 1.0), 1.0, 1.0),
+        (across, priors.binormals(results, BINORMAL.scatter, 1.0), load, 1.0),
+        (peak, priors.peaks(results), peak_unit, PEAK.scatter),
+        (approach, priors.approaches(results, OTHER.scatter, TOUCH), 1.0, 1.0),
+    ):
+        np.testing.assert_allclose(unit * fitted_to.values, values, rtol=1e-9)
+        np.testing.assert_allclose(unit * fitted_to.edge, edge, rtol=1e-9)
+        # to what solves leave beside them, which only the fit counts
+        np.testing.assert_allclose(unit * scatter * fitted_to.weights, size, rtol=1e-3)
 
 
 def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
