@@ -78,6 +78,27 @@ def test_the_oracle_satisfies_the_contact_conditions_wherever_it_starts() -> Non
     assert min(found[0].pressure) >= 0
 
 
+@pytest.mark.parametrize("periodic", [False, True], ids=["free", "periodic"])
+@pytest.mark.parametrize(("friction", "tolerance"), [((0.0, 0.3), 1e-13), ((1e5, 0.3), 1e-12)])
+@pytest.mark.parametrize("prescribed", [False, True], ids=["load", "approach"])
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
+def test_the_oracle_with_facet_tractions_is_the_dense_solver(
+    periodic: bool, friction: tuple[float, float], tolerance: float, prescribed: bool
+) -> None:
+    """On steep slopes: all signs of all terms of G, g and of the slopes themselves."""
+    heights = np.random.default_rng(3).uniform(0, 4e-4 / 5, (5, 5))
+    flat = pressed(
+        lower=POLYMER, radius=None, rms=None, side=4e-4, load=30.0, direction=0.7, periodic=periodic
+    )
+    scene = replace(flat, lower=rf.Body(POLYMER, heights), friction=rf.Friction(*friction))
+    loaded = rf.solve(scene, 5, method="dense", slope_correction=True, tolerance=tolerance)
+    assert 4 < loaded.contact.sum() < 25
+    assert np.degrees(np.arctan(np.hypot(loaded.slopes.tan_x, loaded.slopes.tan_y))).max() > 8
+    approach = loaded.approach if prescribed else None
+    error, note = judge.exact_error(scene, loaded, approach=approach, slope_correction=True)
+    assert error < 1e-9, note
+
+
 def test_exact_periodic_operators_are_the_symbols_eigenfunctions() -> None:
     """A cosine of q under 2 pi / q, and under -2 pi i q_x / q^2."""
     M = 5
