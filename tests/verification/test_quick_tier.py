@@ -1,0 +1,20 @@
+"""Every quick case: what `make report` would fail on, `make test` fails on."""
+
+from __future__ import annotations
+
+from itertools import groupby
+
+import pytest
+
+from verification import registry
+from verification.case import Case, Status, Tier
+
+QUICK = registry.select(registry.load(), Tier.QUICK)
+BY_MODULE = {name: list(cases) for name, cases in groupby(QUICK, key=lambda case: case.module)}
+
+
+@pytest.mark.parametrize("cases", BY_MODULE.values(), ids=[name.rpartition(".")[2] for name in BY_MODULE])
+def test_the_cases_of_a_module_pass(cases: list[Case]) -> None:
+    """In one process and in their order, for they share solutions; all of them, whichever fails."""
+    results = [case.run() for case in cases]
+    assert {r.id: r.note for r in results if r.status not in (Status.PASS, Status.UNAVAILABLE)} == {}
