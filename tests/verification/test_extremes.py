@@ -14,9 +14,11 @@ import pytest
 import refimpl as rf
 import verification.extremes.axes  # noqa: F401  # registers the axes
 from appendix_a import wedge
+from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from verification.cases.extremes import told
 from verification.extremes import (
+    conditioning,
     exact_operators,
     judge,
     limits,
@@ -135,6 +137,27 @@ def test_a_flipped_coupling_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     transformed = FFTInfluence._tangential_hat
     monkeypatch.setattr(FFTInfluence, "_tangential_hat", lambda self, angle: -transformed(self, angle))
     assert judge.by_oracle(BALL, 4, oblique=False).verdict is Verdict.WRONG
+
+
+def test_conditions_by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four elements: eigenvalues a + 2b + c, a - c twice, a - 2b + c of self, beside, across the corner."""
+    a, b, c = DenseInfluence(rf.Grid(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
+    solve = np.linalg.solve
+    monkeypatch.setattr(np.linalg, "solve", lambda *system: solve(*system) * (1 + 1e-10))
+    found = conditioning.measure(2)
+    assert found["largest"] == pytest.approx(a + 2 * b + c, rel=1e-14)
+    assert found["least"] == pytest.approx(min(a - c, a - 2 * b + c), rel=1e-13)
+    assert found["condition"] == pytest.approx(found["largest"] / found["least"], rel=1e-14)
+    assert found["digits lost by a direct solve"] == pytest.approx(np.log10(1e-10 / 2.0**-52), abs=1e-4)
+    assert found["CG iterations"] == 3
+
+
+@pytest.mark.parametrize("values", [[1.0], [1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [1.0, 1.0 + 1e-12]])
+def test_conjugate_gradients_take_a_step_for_each_eigenvalue(values: list[float]) -> None:
+    # but for those that the tolerance, 1e-10, cannot tell apart
+    many = np.repeat(values, 5)
+    expected = 1 if values[-1] < 1.1 else len(values)
+    assert conditioning.conjugate_gradients(np.diag(many), np.arange(1.0, 1 + len(many))) == expected
 
 
 def test_verdicts() -> None:
