@@ -40,7 +40,7 @@ CHAPTERS = (
             "golden",
             "bounds",
         ),
-        ("fault_matrix", "mutation", "mutation_fresh", "hypothesis", "random_order"),
+        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "hypothesis", "random_order"),
     ),
     Chapter(
         "solvers",

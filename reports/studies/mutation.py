@@ -20,7 +20,7 @@ def build(document: Document) -> Exhibit:
         for s in document["survivors"]
     ]
     return Exhibit(
-        "Mutants of the numerics",
+        f"Mutants of the {document.get('of', 'numerics')}",
         (
             f"A stratified sample of {document['tried']} of {document['candidates']} small faults "
             "(operators, numbers, comparisons, removed statements), seed "

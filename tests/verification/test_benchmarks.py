@@ -110,7 +110,7 @@ def test_tuning_finds_the_loosest_tolerance_within_two(slack: float) -> None:
 def test_tuning_never_loosens_ours_and_gives_up_aloud() -> None:
     assert tuned(lambda t: found(1.0, gap=t / 100), 1e-8, loosen=False)[0] == 1e-8
     assert tuned(lambda t: found(1.0, gap=3 * t), 1e-8, loosen=False)[0] < 1e-8
-    with pytest.raises(Failed, match="8 tries"):
+    with pytest.raises(Failed, match=r"relative gap 1.0e-06 at tolerance .* 8 tries"):
         tuned(lambda t: found(1.0, gap=1e-6), 1e-8, loosen=True)
 
 
@@ -123,7 +123,18 @@ def test_a_solve_that_takes_long_is_not_loosened() -> None:
 
     assert tuned(partial(solve, 21.0), 1e-8, loosen=True)[0] == 1e-8
     assert tried == [1e-8]
-    assert tuned(partial(solve, 19.0), 1e-8, loosen=True)[0] > 4e-7
+    assert tuned(partial(solve, 19.9), 1e-8, loosen=True)[0] > 4e-7
+
+
+def test_a_start_that_misses_is_tightened_by_as_much_and_loosened_again() -> None:
+    tried: list[float] = []
+
+    def solve(tolerance: float) -> dict[str, Any]:
+        tried.append(tolerance)
+        return found(1.0, gap=rounds.TARGET * (tolerance / 5e-8) ** 3)
+
+    assert 2.5e-8 <= tuned(solve, 1e-7, loosen=True)[0] <= 5e-8
+    assert tried[1] == pytest.approx(1e-7 / 8)
 
 
 def test_what_fails_within_a_factor_of_two_ends_the_search() -> None:

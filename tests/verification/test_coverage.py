@@ -82,6 +82,16 @@ def test_a_bar_that_misses_the_error_is_seen() -> None:
     assert summary(found)["covered"] == 0.25
 
 
+def test_the_cheapest_grid_is_one_that_no_finer_one_belies() -> None:
+    lawful = verdicts({3: [rung(M) for M in GRIDS]}, 0.05)[1]
+    lucky = verdicts({3: [rung(M, wrong=0.3 if M == 128 else 0.0) for M in GRIDS]}, 0.05)[1]
+    assert lawful.cheapest == 64  # off by 0.02
+    assert lucky.cheapest == 192
+    spoilt = verdicts({3: [rung(M, wrong=0.3 if M == 256 else 0.0) for M in GRIDS]}, 0.05)[1]
+    assert spoilt.cheapest is None
+    assert spoilt.cost is None
+
+
 def test_what_the_grids_cannot_give_is_not_met() -> None:
     area = verdicts({3: [rung(M) for M in GRIDS]}, 1e-4)[1]
     assert not area.met
@@ -225,6 +235,14 @@ def test_numbers_beside_are_judged_where_the_climb_for_mu_ends() -> None:
     assert (approach.number, binormal.number) == beside.BESIDE
     assert approach.grid == binormal.grid == found[0].grids[-1]
     assert beside.summary([approach])["covered"] == 1.0
+    made = [replace(approach, bar=bar, error=0.5, reference_bound=0.5) for bar in (0.25, 0.5, 1.0, 2.0)]
+    assert beside.summary(made) == {
+        "scenes": 4,
+        "covered": 0.75,
+        "covered_at_worst": 0.5,
+        "median_bar_over_error": 1.5,
+        "median_bar": 0.75,
+    }
     fine = ladder[3][-1]
     for number in beside.BESIDE:
         off = replace(fine.result, numbers={**fine.result.numbers, number: 1.5})

@@ -11,8 +11,10 @@ from typing import Any
 
 import pytest
 
+from reports.studies import exhibit
 from verification.mutation import mutants, score, session
 from verification.mutation.__main__ import main
+from verification.mutation.judging import JUDGES
 from verification.mutation.mutants import Candidate, mutant, without_statements
 from verification.mutation.targets import TARGETS
 
@@ -130,7 +132,7 @@ def test_explanations_name_lines_that_exist() -> None:
 
 
 def test_targets_exist() -> None:
-    for target in TARGETS:
+    for target in (*TARGETS, *JUDGES):
         assert all((ROOT / path).is_file() for path in (target.module, *target.files))
 
 
@@ -167,6 +169,28 @@ def test_verdicts_on_a_small_tree(tmp_path: Path) -> None:
     done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
     assert json.loads(done.stdout) == list(sources.values())
     assert (tmp_path / "half.py").read_text().endswith("x / 2\n")
+
+
+def test_what_the_parent_has_of_the_tree_is_forgotten(tmp_path: Path) -> None:
+    """A mutant of the judge's own package, which the parent runs, is seen by the child all the same."""
+    for package in ("refimpl", "verification"):
+        (tmp_path / package).mkdir()
+        (tmp_path / package / "__init__.py").write_text("")
+    (tmp_path / "verification/case.py").write_text("ONE = 1\n")
+    test = "from verification.case import ONE\ndef test_it(): assert ONE == 1\n"
+    (tmp_path / "test_half.py").write_text(test)
+    script = JUDGE.replace('"half.py"', '"verification/case.py"')
+    asked = [sys.executable, "-c", script, str(tmp_path), json.dumps(["ONE = 1.0\n", "ONE = 2\n"])]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+    assert json.loads(done.stdout) == [["survived", None], ["killed", "test_half.py::test_it"]]
+
+
+def test_a_summary_names_what_was_mutated() -> None:
+    judge = JUDGES[0]
+    found = score.summary([record("killed", module=judge.module)], 9, 2, of="judges", targets=JUDGES)
+    assert found["of"] == "judges"
+    assert list(found["by_subject"]) == [judge.subject]
+    assert exhibit("mutation_judges", {**found, "confidence": 0.95}).title == "Mutants of the judges"
 
 
 def test_verdicts_are_kept_and_survivors_tried_again_when_tests_change(

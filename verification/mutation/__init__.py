@@ -1,4 +1,4 @@
-"""Mutation testing of the numerics: small faults, one at a time, that some test must notice.
+"""Mutation testing of the numerics, and of what judges them: small faults that some test must notice.
 
 The faults are cosmic-ray's operators and removed statements (`mutants`), in a seeded and stratified order
 every beginning of which is a fair sample (`session`). Each is judged by its module's own fast tests, in a

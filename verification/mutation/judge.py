@@ -1,8 +1,8 @@
 """A mutant's trial: its kill-suite in a forked process whose import system serves the mutated source.
 
-The parent process imports what the suite needs from outside the tree, once, and nothing of the tree itself:
-a child starts in milliseconds, and everything it imports from the tree sees the mutant. Processor time is
-limited, so that an endless loop ends and a busy machine condemns nobody.
+The parent process imports what the suite needs from outside the tree, once: a child starts in milliseconds.
+The child forgets what it has of the tree itself, so that everything it imports from there sees the mutant.
+Processor time is limited, so that an endless loop ends and a busy machine condemns nobody.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import hypothesis
 import pytest
 
-OUR_PACKAGES = ("refimpl", "appendix_a")
+OUR_PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "tests")
 NO_SHRINKING = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
 
 
@@ -34,16 +34,10 @@ class Verdict(NamedTuple):
 
 
 class Suite:
-    """The kill-suite ``tests`` (arguments for pytest) of the tree at ``root``, where it is run from.
-
-    Raises RuntimeError when the tree's own packages were imported before: children would not see mutants.
-    """
+    """The kill-suite ``tests`` (arguments for pytest) of the tree at ``root``, where it is run from."""
 
     def __init__(self, root: Path, tests: Sequence[str]) -> None:
         self.root, self.tests = root, tests
-        begun = [name for name in sys.modules if name.split(".")[0] in OUR_PACKAGES]
-        if begun:
-            raise RuntimeError(f"already imported: {begun}")
 
     def baseline(self) -> float:
         """Processor seconds of the suite on the tree as it is, measured with everything foreign imported.
@@ -97,6 +91,7 @@ class Suite:
         os.dup2(quiet, 2)
         os.chdir(self.root)
         sys.path.insert(0, str(self.root))
+        _forget_the_tree()
         if module is not None:
             _serve(self.root / module, compile(source, module, "exec"))
         hypothesis.settings.register_profile(
@@ -110,6 +105,12 @@ class Suite:
         if module is None:
             report["foreign"] = _foreign(self.root)
         return report
+
+
+def _forget_the_tree() -> None:
+    """Import its packages anew from here on, this one among them: the child would not see mutants of them."""
+    for name in [name for name in sys.modules if name.split(".")[0] in OUR_PACKAGES]:
+        del sys.modules[name]
 
 
 class _FirstFailure:

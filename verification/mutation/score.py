@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from verification.mutation.session import Record
-from verification.mutation.targets import TARGETS
+from verification.mutation.targets import TARGETS, Target
 
 GOAL = 0.95
 CONFIDENCE = 0.95
@@ -43,18 +43,26 @@ def lower_bound(killed: int, tried: int) -> float:
     return float(beta.ppf(1 - CONFIDENCE, killed, tried - killed + 1)) if killed else 0.0
 
 
-def summary(records: Sequence[Record], population: int, seed: int) -> dict[str, Any]:
+def summary(
+    records: Sequence[Record],
+    population: int,
+    seed: int,
+    *,
+    of: str = "numerics",
+    targets: Sequence[Target] = TARGETS,
+) -> dict[str, Any]:
     """What is published: scores in all, by subject and by operator, and every survivor.
 
     A mutant that needs more than its processor time counts as killed (``timeout``); equivalent ones, each
     with its reason, count neither way in ``score``, and as survivors in ``score_raw``.
     """
-    subjects = {target.module: target.subject for target in TARGETS}
+    subjects = {target.module: target.subject for target in targets}
     reasons = explanations()
     tried = [record for record in records if record["outcome"] != "void"]
     survivors = [record for record in tried if record["outcome"] == "survived"]
     return {
         **_score(tried, reasons),
+        "of": of,
         "goal": GOAL,
         "confidence": CONFIDENCE,
         "candidates": population,
