@@ -137,6 +137,17 @@ def test_a_start_that_misses_is_tightened_by_as_much_and_loosened_again() -> Non
     assert tried[1] == pytest.approx(1e-7 / 8)
 
 
+def test_a_jump_too_far_is_taken_back_only_as_far_as_needed() -> None:
+    def solve(tolerance: float) -> dict[str, Any]:
+        return found(1.0, gap=rounds.TARGET * (tolerance / 8e-7) ** 4)
+
+    assert 4e-7 <= tuned(solve, 1e-7, loosen=True)[0] <= 8e-7
+
+
+def test_without_any_gap_tolerances_are_loosened_to_the_last_try() -> None:
+    assert tuned(lambda _: found(1.0, gap=0.0), 1e-10, loosen=True)[0] == pytest.approx(1e-3)
+
+
 def test_what_fails_within_a_factor_of_two_ends_the_search() -> None:
     tried: list[float] = []
 

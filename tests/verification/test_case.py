@@ -104,6 +104,17 @@ def test_whatever_a_case_raises_is_an_error(raised: BaseException) -> None:
     assert "/" not in result.note
 
 
+def test_an_error_names_the_line_that_raised_it() -> None:
+    def raising() -> Measured:
+        raise RuntimeError("broken")
+
+    def function() -> Measured:
+        return raising()
+
+    note = declare(function).run().note
+    assert f"test_case.py:{raising.__code__.co_firstlineno + 1}" in note
+
+
 def test_a_missing_dependency_is_unavailable_and_says_which() -> None:
     def function() -> Measured:
         raise Unavailable("needs tamaas")

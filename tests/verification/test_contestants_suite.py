@@ -209,6 +209,18 @@ def test_pressures_without_energy_cannot_be_judged() -> None:
     assert statuses["contestant/no-tension"] == "error"
 
 
+def test_the_worst_of_several_answers_is_named() -> None:
+    entrant = Entrant(Limited(lambda posed: referee.eliminated(posed), own.solve.abilities))
+    exact = entrant.press(rough_bump(5, seed=71), 1.0, load=0.05 * MODULUS)
+    off = replace(exact, pressure=exact.pressure * 1.001)
+    worse = replace(exact, pressure=exact.pressure * 1.002)
+    answers = [(pressed, exact.pressure) for pressed in (off, worse, exact)]
+    found = entrant.against(*answers)
+    assert found.value == pytest.approx(2 * 0.002**2 / 2 / entrant.claim, rel=1e-9)
+    assert found.note.startswith("problem 2 of 3: ")
+    assert "problem" not in entrant.against(answers[0]).note
+
+
 RESIDUALS = ("one-element", "rough-residual", "rough-residual-light", "load-balance", "sliding-residual")
 ERRORS = (
     "wide-pins",
