@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from reports.exhibit import Document, Exhibit
 from reports.studies import mutation
 
 
 def build(document: Document) -> Exhibit:
-    """The exhibit of `mutation` for other modules."""
-    return mutation.build(document)
+    """The exhibit of `mutation` for other modules, with what a survivor may be here."""
+    built = mutation.build(document)
+    posed = (
+        "Where a check poses a problem, another number often makes another problem, with an answer known as "
+        "well: most survivors of the contestants' checks are such, and none of them is explained away."
+    )
+    return replace(built, paragraphs=(*built.paragraphs, posed))

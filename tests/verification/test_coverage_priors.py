@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from refimpl import discretisation
 from refimpl.discretisation import (
@@ -70,6 +71,18 @@ def test_the_likelihood_is_that_of_differences_by_hand() -> None:
     scale = scatter * np.sqrt(10.0)
     ratio = ((1 + (2.0 / scale) ** 2 / weight) / (1 + (0.5 / scale) ** 2 / weight)) ** (-(weight + 1) / 2)
     assert far - near == pytest.approx(np.log(ratio))
+    # and of whatever weights and scatter, up to one constant
+    constants = [
+        log_likelihood([Numbers(np.array([7.0, 5.0]), np.array(w), np.zeros(2))], 0.0, 0.0, s, n)
+        - stats.t.logpdf(2.0, n, scale=s * np.hypot(*w))
+        for w, s, n in (
+            ([3.0, 1.0], 0.2, 6.0),
+            ([2.0, 0.5], 0.2, 6.0),
+            ([3.0, 1.0], 0.5, 6.0),
+            ([1.5, 1.0], 0.3, 2.0),
+        )
+    ]
+    np.testing.assert_allclose(constants, constants[0], atol=1e-12)
 
 
 @pytest.mark.parametrize("seed", [3, 4, 5])

@@ -139,6 +139,60 @@ def test_a_flipped_coupling_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     assert judge.by_oracle(BALL, 4, oblique=False).verdict is Verdict.WRONG
 
 
+def test_symmetric_parts_by_hand() -> None:
+    """Two by two elements without slope: the eigenvalues of the normal matrix, whatever c and beta are."""
+    a, b, c = DenseInfluence(rf.Grid(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
+    expected = sorted([a + 2 * b + c, a - c, a - c, a - 2 * b + c])
+    for beta in (0.0, 0.4, 1e3):
+        found = positive_definite.symmetric_part(2, beta, 0.3)
+        np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("over", "error"), [(-1e-9, 0.0), (0.0, 0.0), (1e-9, 1.0), (0.5, 1.0)])
+def test_no_contact_is_right_up_to_first_touch(over: float, error: float) -> None:
+    scene = on(np.zeros((4, 4)), 1.0)
+    apart = rf.solve(scene, 4, approach=-1e-9)
+    assert not apart.contact.any()
+    found, note = judge.exact_error(scene, apart, approach=over)
+    assert found == error
+    assert ("apart" in note) == (error == 0)
+    assert judge.exact_error(scene, apart)[0] == 1.0  # under a load
+
+
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
+def test_support_is_where_tau_acts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Elements of the contact that tau was withheld from have none in the exact state either."""
+    solution = rf.solve(BALL, 4)
+    withheld = np.zeros((4, 4), dtype=bool)
+    withheld[np.unravel_index(solution.pressure.argmax(), (4, 4))] = True
+    seen: list[np.ndarray] = []
+    solve = Oracle.solve
+    monkeypatch.setattr(Oracle, "solve", lambda self, f, chi: (seen.append(chi), solve(self, f, chi))[1])
+    beta_alone = np.where(withheld, BALL.friction.beta * solution.pressure, solution.traction)
+    judge.exact_error(BALL, replace(solution, traction=beta_alone))
+    assert np.array_equal(seen[0], solution.contact & ~withheld)
+    dry = replace(BALL, friction=rf.Friction(beta=0.3))
+    judge.exact_error(dry, rf.solve(dry, 4))
+    assert np.array_equal(seen[1], rf.solve(dry, 4).contact)
+
+
+def test_states_are_counted_for_both_orders_of_bodies(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[bool] = []
+    scene = uniqueness.scene
+    monkeypatch.setattr(
+        uniqueness,
+        "scene",
+        lambda seed, tau, *, soft_below=True: (
+            drawn.append(soft_below),
+            scene(seed, tau, soft_below=soft_below),
+        )[1],
+    )
+    found = uniqueness.count(0.0, scenes=4)
+    assert drawn == [True, False, True, False]
+    assert (found.none, found.one, found.several, found.most, found.wrong) == (0, 4, 0, 1, 0)
+    assert found.statuses == {"fft": {"converged": 4}, "dense": {"converged": 4}}
+
+
 def test_conditions_by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four elements: eigenvalues a + 2b + c, a - c twice, a - 2b + c of self, beside, across the corner."""
     a, b, c = DenseInfluence(rf.Grid(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
