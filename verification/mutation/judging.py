@@ -18,7 +18,7 @@ def _tests(folder: str, names: str) -> tuple[str, ...]:
 
 
 CONTESTANTS = _tests("verification", "contestants contestants_suite contestants_beds")
-COVERAGE = _tests("verification", "coverage coverage_priors")
+COVERAGE = _tests("verification", "coverage_judge coverage coverage_priors")
 REPORTS = _tests(
     "reports",
     "evidence generator comparison exhibit contestant fault_matrix drawing peer_exhibits coverage_exhibits",

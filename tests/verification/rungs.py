@@ -1,0 +1,38 @@
+"""A made-up ladder of grids, whose numbers and references are known."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refimpl.discretisation import EDGE_SHARE
+from refimpl.grid_result import GridResult
+from refimpl.solution import REPORTED
+from refimpl.summit import LEVEL, Summit
+from verification.coverage.scenes import SIDE
+from verification.coverage.store import Rung
+
+GRIDS = (32, 64, 96, 128, 192, 256, 512)
+
+
+def rung(M: int, *, size: float = 0.85, wrong: float = 0.0, seed: int = 3) -> Rung:
+    """A disc on a grid, with an area wrong by a share; the finest grid of `GRIDS` is never wrong."""
+    h, radius = SIDE / M, 0.2 * SIDE
+    edge, limit = EDGE_SHARE * 8 * radius * h, np.pi * radius**2
+    numbers = dict.fromkeys(REPORTED, 1.0)
+    area = (limit + size * edge) * (1 + (wrong if M in GRIDS[:-1] else 0.0))
+    numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
+    numbers["friction_coefficient"] = 0.1 + 1e5 * area
+    result = GridResult(
+        M=M,
+        spacing=h,
+        numbers=numbers,
+        edge=edge,
+        alike=1.0,
+        peak=Summit(1.0, 1e-3, 0.0),
+        touch=LEVEL,
+        unevenness=0.0,
+        slip=1e5,
+        parts={name: {"iteration": 0.0} for name in REPORTED},
+    )
+    carried = 0.75 * M**2 if GRIDS[0] < M else None
+    return Rung(seed, result, "converged", 1e-8, float(M**2), 0.1, carried)
