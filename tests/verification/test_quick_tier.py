@@ -17,4 +17,7 @@ BY_MODULE = {name: list(cases) for name, cases in groupby(QUICK, key=lambda case
 def test_the_cases_of_a_module_pass(cases: list[Case]) -> None:
     """In one process and in their order, for they share solutions; all of them, whichever fails."""
     results = [case.run() for case in cases]
-    assert {r.id: r.note for r in results if r.status not in (Status.PASS, Status.UNAVAILABLE)} == {}
+    unavailable = {r.id: r.note for r in results if r.status == Status.UNAVAILABLE}
+    assert {r.id: r.note for r in results if r.status != Status.PASS and r.id not in unavailable} == {}
+    if unavailable:
+        pytest.skip(f"{len(results) - len(unavailable)} passed, and not to be had here: {unavailable}")
