@@ -15,4 +15,7 @@ def build(document: Document) -> Exhibit:
         "Where a check poses a problem, another number often makes another problem, with an answer known as "
         "well: most survivors of the contestants' checks are such, and none of them is explained away."
     )
-    return replace(built, paragraphs=(*built.paragraphs, posed))
+    goal = f"The goal set for the numerics, {document['goal']:.2f}, is " + (
+        "met." if document["score"] >= document["goal"] else "not met."
+    )
+    return replace(built, paragraphs=(*built.paragraphs, posed, goal))

@@ -61,6 +61,20 @@ def test_the_likeliest_parameters_are_those_drawn_from() -> None:
     assert found["given_away"] > 20
 
 
+def test_nine_nodes_leave_bars_that_many_more_hardly_move(monkeypatch: pytest.MonkeyPatch) -> None:
+    prior, mean, spread = Prior(DRAWN["scatter"], DRAWN["weight"]), DRAWN["size"], DRAWN["spread"]
+
+    def bars() -> np.ndarray:
+        scenes = drawn(300, grids=3)
+        found = [line(s.values, s.weights, prior, Bias(s.edge, mean, spread)) for s in scenes]
+        return np.array([estimate.bar(s.values[-1]) for estimate, s in zip(found, scenes, strict=True)])
+
+    nine, (nodes, weights) = bars(), np.polynomial.hermite_e.hermegauss(41)
+    many = mean + spread * nodes, weights / weights.sum()
+    monkeypatch.setattr("refimpl.estimate._factors", lambda *_: many)
+    np.testing.assert_allclose(nine, bars(), rtol=0.015)
+
+
 def test_the_likelihood_is_that_of_differences_by_hand() -> None:
     """Two grids, no edge: the difference is Student's, with the prior's weight for its freedom."""
     weights, scatter, weight = np.array([3.0, 1.0]), 0.2, 6.0
