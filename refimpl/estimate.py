@@ -123,6 +123,6 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
 
 @cache
 def _factors(mean: float, spread: float) -> tuple[Array, Array]:
-    """Nodes and weights of the prior of ``c``: Gauss-Hermite, nine of which move bars by 1.5 % at most."""
+    """Nodes and weights of ``c``'s prior: Gauss-Hermite; nine give nine bars in ten to 1.5 % (a test)."""
     nodes, weights = np.polynomial.hermite_e.hermegauss(9)
     return mean + spread * nodes, weights / weights.sum()

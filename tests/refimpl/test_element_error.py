@@ -46,6 +46,28 @@ def test_tabulated_errors_are_met(nu: float, degrees: float) -> None:
     assert astuple(found) == pytest.approx(expected, rel=1e-9)
 
 
+def test_longer_ridges_and_egg_boxes_are_off_by_what_the_module_says() -> None:
+    def largest(nu: float, degrees: float, kind: str, wavelength: float) -> np.ndarray | None:
+        asked = {"nu": nu, "slope_deg": degrees, "kind": kind, "wavelength": wavelength, "width": "projected"}
+        found = [p for p in TABLE["points"] if all(p[k] == v for k, v in asked.items())]
+        errors = [np.abs(p["error"]) for p in found if p["position"] in (0.0, 0.25, 0.5)]
+        if not errors:
+            return None
+        worst = np.max(errors, axis=0)
+        return np.array([worst[0], worst[1:7].max(), worst[7:].max()])
+
+    ratios: dict[str, list[np.ndarray]] = {"ridge": [], "egg-box": []}
+    for nu, degrees in product((0.0, 0.3, 0.45), (2.5, 6.5, 10.0, 15.0, 30.0)):
+        shortest = largest(nu, degrees, "ridge", 20.0)
+        for kind, wavelength in (("ridge", 50.0), ("ridge", 100.0), ("egg-box", 20.0)):
+            other = largest(nu, degrees, kind, wavelength)
+            if other is not None:
+                ratios[kind].append(other / shortest)
+    assert 1.05 < np.max(ratios["ridge"]) < 1.06
+    across, in_line = np.max(ratios["egg-box"], axis=0)[[0, 2]], np.max(ratios["egg-box"], axis=0)[1]
+    assert in_line < 1 < np.min(across) <= np.max(across) < 2
+
+
 @pytest.mark.parametrize("degrees", [2.5, 6.5, 10.0, 15.0, 30.0])
 @pytest.mark.parametrize("shares", [(1, 1), (3, 1), (1, 2)])
 def test_tabulated_errors_of_two_bodies_add_by_their_compliance(

@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 
 from appendix_a.fem.coefficient_map import CoefficientMap
+from tests.documents import ROOT
 from tests.reports import sample
 from verification import registry, runner
 from verification.case import Case, Measured, Metric, Status, Tier
-from verification.cli import main, parser
+from verification.cli import main, parser, verify
 from verification.cli.appendix_a import numbers
 from verification.cli.output import WIDTH, StatusLine, columns
 
@@ -78,6 +79,16 @@ def test_every_help_has_examples_that_parse_and_fits_100_columns(
     for example in examples:
         assert callable(parser().parse_args(shlex.split(example)).run), example
     assert any(shlex.split(example)[: len(command)] == command for example in examples)
+
+
+def test_cases_that_examples_name_are_there() -> None:
+    """In the help of `verify`, and in the commands of committed results."""
+    said = [verify.EPILOG, (ROOT / "reports" / "results" / "README.md").read_text(encoding="utf-8")]
+    examples = re.findall(r"rough-friction (verify [^`\n]*--only[^`\n]*)", "\n".join(said))
+    assert len(examples) >= 10
+    for example in examples:
+        asked = parser().parse_args(shlex.split(example))
+        assert registry.select(registry.load(), Tier(asked.tier), asked.only), example
 
 
 def test_every_command_that_computes_takes_json(capsys: Capture) -> None:

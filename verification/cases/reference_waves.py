@@ -110,7 +110,7 @@ def westergaard_order() -> Measured:
     source="Johnson 1985, Eq. (13.5)",
     metric="at_most",
     tolerance=1e-12,
-    tolerance_reason="one FFT pair on 64 x 64 and the solver's last step; measured 6e-15",
+    tolerance_reason="one FFT pair on 64 x 64 and the solver's last step; measured 2e-14",
     tags=("reference", "periodic", "full-contact"),
 )
 def westergaard_full() -> Measured:

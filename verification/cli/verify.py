@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
-  rough-friction verify --tier full --only 'hertz/*' --only kernels/love
+  rough-friction verify --tier full --only 'hertz/*' --only 'kernels/love-*'
   rough-friction verify --list
   rough-friction verify --solver verification.contestants.own:solve
   rough-friction verify --exec './my-solver --quiet' --able aperiodic,load --largest 32
