@@ -17,7 +17,10 @@ NAMES = {"friction_coefficient": "mu", "contact_area": "A", "max_pressure": "f_m
 def _dense_reach(dense: Data) -> str:
     """Where the dense reference stops being affordable, if three of its grids say so."""
     if dense["M"] is None:
-        return "On how large a grid the dense reference is affordable takes three of its grids to say."
+        return (
+            "On how large a grid the dense reference is affordable takes three of its grids to say, "
+            "and seconds that grow."
+        )
     return f"The dense reference takes {dense['seconds']:.0f} s at about {dense['M']} elements a side."
 
 

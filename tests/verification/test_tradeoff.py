@@ -63,6 +63,13 @@ def test_growth_finds_the_exponents() -> None:
     assert prices.affordable([made(M, 1e-6 * M**3, 0.0) for M in (16, 32, 64)], row["way"], 1.0) == 100
 
 
+def test_seconds_that_do_not_grow_tell_no_affordable_grid() -> None:
+    """As on tiny grids beside other work: their exponent may be nothing, or below."""
+    for power in (-0.5, 0.0, 1e-3, 0.9):
+        runs = [made(M, 0.1 * M**power, 0.0) for M in (8, 12, 16)]
+        assert prices.affordable(runs, prices.growth(runs)[0]["way"], 60.0) is None
+
+
 def test_every_way_has_a_name_of_its_own() -> None:
     ways = settings([64], [1e-3, 1e-5])
     assert len({w.way for w in ways}) == len(ways) == 11

@@ -12,6 +12,7 @@ from verification.tradeoff.measure import Run
 
 DEMANDS = (0.1, 0.03, 0.01, 0.003, 0.001)
 SETTLED = ("converged", "cycled")
+_GROWING = 1.0  # exponent with the elements per side; below it seconds are those of calls, not of elements
 
 
 def relative(numbers: Mapping[str, float], reference: Mapping[str, float]) -> dict[str, float]:
@@ -72,14 +73,17 @@ def growth(runs: Sequence[Run]) -> list[dict[str, Any]]:
 
 
 def affordable(runs: Sequence[Run], way: str, seconds: float) -> int | None:
-    """The largest grid on which a way takes no more than the given time, by its fitted growth."""
+    """The largest grid on which a way takes no more than the given time, by its fitted growth.
+
+    None where fewer than three grids say so, or what they take is overhead that hardly grows.
+    """
     series = [run for run in runs if run.setting.way == way]
     if len(series) < 3:
         return None
     slope, offset = np.polyfit(
         np.log([run.setting.M for run in series]), np.log([run.seconds for run in series]), 1
     )
-    return round(math.exp((math.log(seconds) - offset) / slope))
+    return round(math.exp((math.log(seconds) - offset) / slope)) if slope >= _GROWING else None
 
 
 def _reliably(
