@@ -27,8 +27,9 @@ class GridResult:
     symmetry, ``peak`` the pressure's summit (Pa), ``touch`` that of the gap turned over (m), from which
     approaches count, ``unevenness`` how far slopes within elements leave mu open, ``slip`` is
     ``d mu / d A = tau / N`` (1/m^2), ``parts`` are the uncertainties that the grid's own solution states
-    (iteration, tau support). ``loaded`` tells a prescribed load, which knows no discretisation, from a
-    prescribed approach; ``periodic`` is the scene's.
+    (iteration, tau support). ``depth`` (m) is how deep tractions pressed the contact in, ``pull`` what tau on
+    all of it does to that, as a share. ``loaded`` tells a prescribed load, which knows no discretisation,
+    from a prescribed approach; ``periodic`` is the scene's.
     """
 
     M: int
@@ -41,6 +42,8 @@ class GridResult:
     unevenness: float
     slip: float
     parts: Mapping[str, Mapping[str, float]]
+    depth: float = 0.0
+    pull: float = 0.0
     loaded: bool = True
     periodic: bool = False
 
@@ -48,6 +51,17 @@ class GridResult:
     def touching(self) -> bool:
         """Whether anything is in contact."""
         return self.numbers["contact_area"] > 0
+
+    @property
+    def edge_share(self) -> float:
+        """How much of the contact whole elements add along its edge."""
+        area = self.numbers["contact_area"]
+        return max(self.edge, 0.0) / area if area > 0 else 1.0
+
+    @property
+    def pulled(self) -> float:
+        """What tau on that edge does to the depth, as a share of it."""
+        return self.pull * min(self.edge_share, 1.0)
 
     @classmethod
     def of(cls, solution: Solution) -> GridResult:
@@ -64,9 +78,30 @@ class GridResult:
             unevenness=unevenness(solution.pressure, solution.slopes, periodic=problem.periodic),
             slip=adhesive_share(solution),
             parts=merged(iteration_parts(solution), _own(solution)),
+            depth=depth(solution),
+            pull=pull(solution),
             loaded=problem.load is not None,
             periodic=problem.periodic,
         )
+
+
+def depth(solution: Solution) -> float:
+    """How deep tractions pressed the contact in (m): ``approach - h`` of Eq. (6), weighted by pressure."""
+    problem, pressure = solution.problem, solution.pressure
+    total = float(pressure.sum())
+    approach = solution.approach + (float(problem.gap.mean()) if problem.periodic else 0.0)
+    return approach - inner(pressure, problem.gap) / total if total > 0 else 0.0
+
+
+def pull(solution: Solution) -> float:
+    """``|c / a| tau A / N``: tau's displacement over the pressure's, where shear reaches the gap."""
+    problem = solution.problem
+    pair, terms = problem.pair, problem.terms
+    if not (terms.coupled or terms.slope_correction):
+        return 0.0
+    return (
+        abs(pair.shear_compliance / pair.normal_compliance) * adhesive_share(solution) * solution.contact_area
+    )
 
 
 def alike(contact: Mask, *, periodic: bool = False) -> float:
