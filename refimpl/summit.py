@@ -63,7 +63,8 @@ LEVEL = Summit(0.0, 0.0, 0.0)
 def highest(field: Array, *, periodic: bool = False) -> Summit:
     """The summit of a field ``(M, M)``, not negative; beyond its border it repeats itself or stays as it is.
 
-    A field without relief, or one that ran off to infinity, has `LEVEL`.
+    A field without relief, or one that ran off to infinity, has `LEVEL`. Fewer than three elements a side
+    know of no parabola: their roughness is 1.
     The roughness is the largest of all maxima that reach half of the highest: a summit that is resolved says
     nothing of one beside it that is not.
 
@@ -77,6 +78,8 @@ def highest(field: Array, *, periodic: bool = False) -> Summit:
     top = float(field.max())
     if not 0 < top < math.inf:
         return LEVEL
+    if len(field) < 3:
+        return Summit(top, 0.0, 1.0)
     high = field >= _RIVAL * top
     if not periodic:
         box = Window.around(high, margin=2).slices  # all that is looked at

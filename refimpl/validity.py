@@ -160,7 +160,7 @@ def _slope(limit: Limit, slope: float, error: float | None) -> Caution | None:
 
 
 def _border(solution: Solution, scene: Scene) -> Caution | None:
-    if solution.problem.periodic or solution.grid.M <= 2:
+    if solution.problem.periodic:
         return None
     border = solution.contact.copy()
     border[1:-1, 1:-1] = False
@@ -223,8 +223,11 @@ def _tau_support(solution: Solution) -> Caution | None:
 
 
 def _left_out(solution: Solution) -> list[Caution | None]:
-    """Terms left out as small whose estimate, made again from the solution, exceeds what was asked for."""
-    demand = solution.plan.demand
+    """Terms left out as small whose estimate, made again from the solution, exceeds what was asked for.
+
+    Without friction the plan may allow more than that: a share of what the grid leaves open.
+    """
+    demand = max(solution.plan.demand, solution.plan.budget)
     return [
         Caution(
             Limit.LEFT_OUT,

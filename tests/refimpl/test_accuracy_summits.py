@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+import refimpl as rf
 from refimpl import discretisation
 from refimpl.discretisation import OTHER, SUMMIT, SUMMIT_SPREAD, estimates
 from refimpl.summit import Summit
@@ -63,6 +64,17 @@ def test_a_grid_whose_peak_stands_alone_does_not_count_beside_finer_ones() -> No
     coarse = replace(made_up(64), peak=Summit(PEAK / 20, PEAK / 5, 1.0))
     with_it, without = (estimates(results)["max_pressure"] for results in ([coarse, *fine], fine))
     assert with_it.value == pytest.approx(without.value, rel=1e-9)
+
+
+@pytest.mark.parametrize("M", [1, 2])
+def test_fewer_than_three_elements_a_side_bound_neither_peak_nor_approach(M: int) -> None:
+    steel = rf.Material(E=200e9, nu=0.3)
+    scene = rf.Scene(
+        rf.Body(steel, rf.Sphere(0.14)), rf.Body(steel, rf.Flat()), rf.Friction(), load=70.0, side=1.61e-3
+    )
+    found = rf.solve(scene, grid=M)
+    for name in ("max_pressure", "approach"):
+        assert math.isinf(sum(found.uncertainty[name].values())), name
 
 
 def test_a_first_touch_that_is_not_resolved_leaves_the_approach_open() -> None:

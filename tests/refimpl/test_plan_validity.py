@@ -114,6 +114,7 @@ def test_contact_at_the_border() -> None:
     assert "enlarge the side" in str(warned)
     assert Limit.BORDER not in named(rf.solve(SMOOTH, 32))
     assert Limit.BORDER not in named(rf.solve(replace(SMOOTH, side=0.6e-3, periodic=True), 32))
+    assert named(rf.solve(SMOOTH, 1))[Limit.BORDER].number == 1
 
 
 def test_elements_per_correlation_length_told_once() -> None:
@@ -161,6 +162,16 @@ def test_a_term_left_out_that_matters() -> None:
     found = [c for c in cautions(mattered, SMOOTH) if c.limit is Limit.LEFT_OUT]
     assert [(c.number, c.allowed) for c in found] == [(1e-3, 1e-8)]
     assert "shear coupling" in found[0]
+
+
+def test_a_term_within_what_the_plan_allows_is_no_warning() -> None:
+    """Without friction that is more than the accuracy asked for: a share of what the grid leaves open."""
+    s = rf.solve(replace(SMOOTH, friction=rf.Friction()), 64)
+    assert s.plan.demand < s.left_out["obliqueness"].larger <= s.plan.budget
+    assert Limit.LEFT_OUT not in named(s)
+    mattered = replace(s, left_out={"obliqueness": Effect(0.0, 2 * s.plan.budget)})
+    (found,) = (c for c in cautions(mattered, SMOOTH) if c.limit is Limit.LEFT_OUT)
+    assert found.allowed == s.plan.budget
 
 
 def test_surfaces_apart_leave_no_limit() -> None:
