@@ -12,6 +12,7 @@ Polak-Ribiere quotient, which forgets the past by itself when S changes. ``a`` m
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -168,7 +169,7 @@ class ProjectedCG:
         direction = step
         if self._direction is not None and self._product > 0:
             quotient = (product - inner(self._residual, step)) / self._product
-            if quotient > 0:
+            if 0 < quotient < math.inf:  # numbers next to none have products next to none
                 direction = self._carried_over(quotient)
                 direction += step
         self._direction, self._residual, self._product = direction, residual, product

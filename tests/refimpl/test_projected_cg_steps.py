@@ -180,3 +180,13 @@ def test_without_contact_what_penetrates_comes_in() -> None:
     assert cg.pressure.tolist() == [[0.0, 0.0]]
     cg.iterate()
     np.testing.assert_allclose(cg.pressure, [[4.0, 0.0]], rtol=1e-15)
+
+
+def test_a_direction_forgets_a_past_of_next_to_no_product() -> None:
+    """Lengths of 1e-160 have products that doubles hardly hold, and quotients beyond them."""
+    cg = springs(4.0, [1.0, 1.0], [0.0, 0.0])
+    cg._exchange()
+    cg._direction, cg._residual, cg._product = np.array([[0.0, 7.0]]), np.array([[0.0, 0.0]]), 5e-324
+    cg._exchanged = True
+    step = np.array([[1.0, 2.0]])
+    np.testing.assert_array_equal(cg._conjugate(np.array([[1e10, 0.0]]), step), step)

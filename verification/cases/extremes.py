@@ -184,11 +184,12 @@ def condition() -> Measured:
     tags=("extremes", "certificate"),
 )
 def beyond_rounding() -> Measured:
-    scene, beyond = rf.read_scene("hertz"), 1e-18
+    # without symmetry: of sixteen elements that are four, residuals may be zero by luck
+    scene, beyond = rf.read_scene("table1-rough"), 1e-18
     found = {
-        "fft": rf.solve(scene, 8, method="fft", tolerance=beyond),
-        "dense": rf.solve(scene, 8, method="dense", tolerance=beyond),
-        "paper": rf.solve(scene, 8, method="paper", tolerance=beyond),
+        "fft": rf.solve(scene, 16, method="fft", tolerance=beyond),
+        "dense": rf.solve(scene, 16, method="dense", tolerance=beyond),
+        "paper": rf.solve(scene, 16, method="paper", tolerance=beyond),
     }
     claimed = sum(solution.status is rf.Status.CONVERGED for solution in found.values())
     return Measured(float(claimed), 0.0, data={"status": {m: s.status.value for m, s in found.items()}})
