@@ -89,6 +89,17 @@ def test_a_point_without_roughness_is_one_run_of_all_its_realisations(tmp_path: 
     assert [row["lower_rms"] for row in done.rows] == [0.0, 1e-6, 1e-6, 1e-6, 1e-6]
 
 
+def test_a_grid_of_one_element_takes_time_too(tmp_path: Path) -> None:
+    ticks: list[engine.Progress] = []
+    done = engine.sweep(small(1, (1, 2)), tmp_path / "s.sqlite", workers=0, tick=ticks.append)
+    assert (done.finished, done.failures) == (2, {})
+    before, first, last = (tick.seconds_left for tick in ticks)
+    assert before is None
+    assert first is not None
+    assert first > 0.0
+    assert last == 0.0
+
+
 def test_a_failed_run_is_told_not_kept_and_tried_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -63,7 +63,7 @@ class Run:
     def weight(self) -> float:
         """Expected work relative to other runs, for the time left: elements times their logarithm."""
         M = int(self.inputs["grid"])
-        return float(M * M * np.log2(M))
+        return float(M * M * max(np.log2(M), 1.0))  # one element has no logarithm, but is work
 
 
 @cache
