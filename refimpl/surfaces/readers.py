@@ -105,7 +105,8 @@ def _text(path: Path) -> Array:
 
 def _instrument(path: Path, unit: str | None, pixel_size: tuple[float, float] | None) -> Reading:
     library = _library(path)
-    broken = (*_BROKEN, library.Exceptions.ReadFileError)
+    own = library.Exceptions  # with no base in common
+    broken = (*_BROKEN, own.ReadFileError, own.UnknownFileFormat, own.CannotPerformAnalysisError)
 
     def load(name: str | None) -> Reading:
         with np.errstate(all="ignore"), library.open_topography(str(path), format=name) as reader:

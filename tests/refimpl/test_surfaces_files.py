@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import SurfaceTopography
+import SurfaceTopography.Exceptions
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
@@ -153,6 +155,29 @@ def test_broken_and_hostile_files_get_one_clear_line(tmp_path: Path) -> None:
         assert "\n" not in str(refusal.value), name
         assert len(str(refusal.value)) < 500, name
     assert not (tmp_path / "sprung").exists()
+
+
+@pytest.mark.parametrize("content", ["a,b,c,d\n1,2,3,4\n", "1 2 3 4\n5 6 7 8\n"])
+def test_points_of_four_columns_are_refused(tmp_path: Path, content: str) -> None:
+    (tmp_path / "a.xyz").write_text(content)
+    with pytest.raises(InputError, match="two or three columns"):
+        MeasuredSurface(tmp_path / "a.xyz", unit="m", pixel_size=DX).reading  # noqa: B018  # reading is what raises
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["UnknownFileFormat", "CannotPerformAnalysisError", "UndefinedDataError", "NoReliableDataError",
+     "ReentrantDataError", "ReadFileError"],
+)  # fmt: skip
+def test_whatever_the_library_raises_is_a_refusal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    def refuses(*_: object, **__: object) -> None:
+        raise getattr(SurfaceTopography.Exceptions, name)("not this file")
+
+    monkeypatch.setattr(SurfaceTopography, "open_topography", refuses)
+    with pytest.raises(InputError, match=f"{name}: not this file"):
+        MeasuredSurface(write_x3p(tmp_path / "a.x3p", ROUGH)).reading  # noqa: B018  # likewise
 
 
 def test_zip_bombs_are_not_unpacked(tmp_path: Path) -> None:
