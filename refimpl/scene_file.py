@@ -56,6 +56,8 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
         raise InputError("scene", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as refused:
+        raise InputError("scene", str(path), f"a file that can be read ({refused.strerror})") from refused
     except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
         raise InputError("scene", str(path), f"valid TOML ({error})") from error
     return table, path.parent

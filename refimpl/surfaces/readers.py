@@ -127,14 +127,18 @@ def _formats(library: ModuleType, path: Path) -> list[str | None]:
 
     Text readers take a minute to find out that 50 MB hold no numbers; the first MiB tells as much.
     """
-    with path.open("rb") as file:
-        head = file.read(2**20)
+    head = _guarded(path, _head, _BROKEN)
     binary = b"\0" in head
     if not binary and not any(_begins_with_numbers(line) for line in head.splitlines()):
         raise InputError("path", str(path), "rows of numbers, or the binary file of an instrument")
     known = [r.format() for r in library.IO.readers if path.suffix.lower()[1:] in r.file_extensions()]
     possible = [name for name in known if not (binary and name in TEXT_FORMATS)]
     return sorted(possible, key=lambda name: name in TEXT_FORMATS) or [None]  # the last one's error is shown
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(2**20)
 
 
 def _begins_with_numbers(line: bytes) -> bool:

@@ -7,6 +7,7 @@ error, a full disk by /dev/full, a limit on the size of files, or a tiny file sy
 from __future__ import annotations
 
 import errno
+import io
 import json
 import os
 import resource
@@ -19,6 +20,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import refimpl as rf
@@ -240,6 +242,60 @@ def test_fifty_megabytes_of_toml_are_refused_unread(
     for command in (["solve"], ["sweep"]):
         assert main([*command, str(path)]) == 2
         one_line(Ended(2, capsys.readouterr().err), "at most", 2)
+
+
+def opened_but_for(shut: Path) -> Callable[..., object]:
+    """Opens all files but one: a mode would not stop root."""
+    real = io.open
+
+    def opens(path: object, *args: object, **options: object) -> object:
+        if isinstance(path, Path) and path.name == shut.name:
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return real(path, *args, **options)  # type: ignore[call-overload]  # passed on as they are
+
+    return opens
+
+
+@pytest.mark.parametrize(
+    ("shut", "command"),
+    [
+        ("scene.toml", ["solve", "scene.toml", "--grid", "8"]),
+        ("scene.toml", ["tradeoff", "scene.toml"]),
+        ("scene.toml", ["sweep", "study.toml"]),
+        ("study.toml", ["sweep", "study.toml"]),
+        ("heights.dat", ["solve", "scene.toml", "--grid", "8"]),
+        ("heights.dat", ["sweep", "study.toml"]),
+        ("r.json", ["report", "--results", "r.json"]),
+        ("old.json", ["report", "--results", "r.json", "--against", "old.json"]),
+        ("long.json", ["report", "--results", "r.json", "--committed", "kept"]),
+    ],
+)
+def test_an_input_that_may_not_be_read_is_named_as_one(
+    shut: str,
+    command: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    np.savetxt("heights.dat", np.random.default_rng(1).standard_normal((8, 8)) * 1e-9)
+    measured = '[[lower.surface]]\nkind = "measured"\npath = "heights.dat"\nunit = "m"\npixel_size = 2.1e-4\n'
+    Path("scene.toml").write_text(rf.scene_to_toml(rf.read_scene("table1-rough")) + measured)
+    Path("study.toml").write_text('scene = "scene.toml"\n[vary]\ngrid = [8]\n')
+    Path("kept").mkdir()
+    for name in ("r.json", "old.json", "kept/long.json"):
+        Path(name).write_text(WHOLE)
+    monkeypatch.setattr(io, "open", opened_but_for(Path(shut)))
+    assert main(command) == 2
+    err = capsys.readouterr().err
+    one_line(Ended(2, err), "a file that can be read", 2)
+    assert shut in err
+    assert "Permission denied" in err
+
+
+def test_a_folder_is_no_result_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["report", "--results", str(tmp_path)]) == 2
+    one_line(Ended(2, capsys.readouterr().err), "a file that can be read (Is a directory)", 2)
 
 
 # --- hostile texts ---

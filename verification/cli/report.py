@@ -108,7 +108,9 @@ def _read(option: str, path: Path) -> Any:
     except FileNotFoundError as missing:
         allowed = "a result file; make one with 'rough-friction verify --json FILE'"
         raise InputError(option, str(path), allowed) from missing
-    except (ValueError, RecursionError, IsADirectoryError) as broken:  # JSON, UTF-8, or thousands of digits
+    except OSError as refused:
+        raise InputError(option, str(path), f"a file that can be read ({refused.strerror})") from refused
+    except (ValueError, RecursionError) as broken:  # JSON, UTF-8, or thousands of digits
         raise InputError(option, str(path), f"JSON ({broken})") from broken
 
 

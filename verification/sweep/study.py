@@ -132,6 +132,8 @@ def read_study(path: str | Path) -> Study:
         raise InputError("study", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as refused:
+        raise InputError("study", str(path), f"a file that can be read ({refused.strerror})") from refused
     except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
         raise InputError("study", str(path), f"valid TOML ({error})") from error
     study = study_from_dict(table, path.parent)
@@ -250,10 +252,15 @@ def _length(scene: Table) -> float | None:
 def _measured_files(scene: Table) -> dict[str, str]:
     parts = [part for name in ("upper", "lower") for part in scene[name]["surface"]]
     paths = [Path(part["path"]) for part in parts if part["kind"] == "measured"]
+    digests = {}
     for path in paths:
         if not os.path.isfile(path):  # of any name, however long
             raise InputError("scene", str(path), "a measured surface's file")
-    return {str(path): file_digest(path) for path in paths}
+        try:
+            digests[str(path)] = file_digest(path)
+        except OSError as refused:
+            raise InputError("scene", str(path), f"a file that can be read ({refused.strerror})") from refused
+    return digests
 
 
 def _refuse_unknown(name: str, table: Mapping[str, Any], known: tuple[str, ...]) -> None:
