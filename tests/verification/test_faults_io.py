@@ -207,6 +207,39 @@ def test_corrupted_results_are_refused(name: str, tmp_path: Path, capsys: pytest
     assert not (tmp_path / "out").exists()
 
 
+STUDY_WITHOUT_DATA = json.dumps({"tail": []})
+
+
+@pytest.mark.parametrize(
+    ("option", "bad"),
+    [
+        ("--results", CORRUPTED["wrong counts"]),
+        ("--against", CORRUPTED["wrong counts"]),
+        ("--against", "null"),
+        ("--committed", CORRUPTED["wrong counts"]),
+        ("--committed", "[]"),
+        ("--committed", STUDY_WITHOUT_DATA),
+    ],
+)
+def test_the_file_that_is_refused_is_named_by_its_option(
+    option: str,
+    bad: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("kept").mkdir()
+    files = {"--results": "r.json", "--against": "old.json", "--committed": "kept/coverage.json"}
+    for name in files.values():
+        Path(name).write_text(bad if name == files[option] else WHOLE)
+    command = ["report", "--results", "r.json", "--against", "old.json", "--committed", "kept"]
+    assert main([*command, "--output", "out"]) == 2
+    where = "kept" if bad == STUDY_WITHOUT_DATA else files[option]
+    one_line(Ended(2, capsys.readouterr().err), f"{option} = '{where}'", 2)
+    assert not Path("out").exists()
+
+
 def test_a_corrupted_store_is_refused_and_left_as_it_is(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -61,20 +61,20 @@ def run(options: argparse.Namespace) -> int:
     from reports.results import ResultFileError
     from verification.files import write_text
 
-    results = _read("--results", options.results)
-    against = None if options.against is None else _read("--against", options.against)
+    results = read_run(options.results)
+    against = None if options.against is None else read_run(options.against, "--against")
     folder = options.committed or Path(str(resources.files("reports").joinpath("results")))
     if not folder.is_dir():
         raise InputError("--committed", str(folder), "a folder of result files")
     files = sorted(folder.glob("*.json"))
-    committed = {path.stem: _read("--committed", path) for path in files}
+    committed = {path.stem: _committed(path) for path in files}
     path = options.output / "report.html"
     read = [options.results, *([] if options.against is None else [options.against]), *files]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
     try:
         page = render(results, committed, against)
-    except ResultFileError as alien:
-        raise InputError("--results", str(options.results), f"result files ({alien})") from alien
+    except ResultFileError as alien:  # the runs are checked: it is a study
+        raise InputError("--committed", str(folder), f"result files ({alien})") from alien
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
@@ -89,15 +89,30 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def read_run(path: Path) -> Any:
-    """A result file of `verify`, checked; raises InputError for anything else."""
+def read_run(path: Path, option: str = "--results") -> Any:
+    """A result file of `verify`, checked; raises InputError, naming the option, for anything else."""
+    return _checked(option, path, _read(option, path))
+
+
+def _committed(path: Path) -> Any:
+    """A committed file: a run of `verify`, checked, or a study's, which the exhibit that shows it checks."""
+    from refimpl.errors import InputError
+    from reports.results import FORMAT
+
+    found = _read("--committed", path)
+    if not isinstance(found, dict):
+        raise InputError("--committed", str(path), "a result file: a JSON object")
+    return _checked("--committed", path, found) if found.get("format") == FORMAT else found
+
+
+def _checked(option: str, path: Path, found: object) -> Any:
     from refimpl.errors import InputError
     from reports.results import ResultFileError, check
 
     try:
-        return check(_read("--results", path))
+        return check(found)
     except ResultFileError as alien:
-        raise InputError("--results", str(path), f"a result file of 'verify' ({alien})") from alien
+        raise InputError(option, str(path), f"a result file of 'verify' ({alien})") from alien
 
 
 def _read(option: str, path: Path) -> Any:
