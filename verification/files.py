@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -17,6 +18,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
     The file appears in one step; after an error the old file, if any, is still there. What is no regular
     file, a device or a pipe, is written to and never replaced; nor is a link, but the file that it leads to.
+    A new file has the mode that the umask leaves, another keeps its own.
     Raises OSError where the directory cannot be written to.
     """
     if is_stream(path):
@@ -26,7 +28,7 @@ def replacing(path: Path) -> Iterator[Path]:
     name = _temporary(path)
     try:
         yield Path(name)
-        os.chmod(name, 0o644)
+        os.chmod(name, _mode(path))
         os.replace(name, path)
     except BaseException:
         os.unlink(name)
@@ -50,6 +52,16 @@ def _temporary(path: Path) -> str:
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
     os.close(handle)
     return name
+
+
+def _mode(path: Path) -> int:
+    """The mode of the file at `path`, or that of a file made there now."""
+    try:
+        return stat.S_IMODE(os.stat(path).st_mode)
+    except FileNotFoundError:
+        umask = os.umask(0o077)  # it can only be asked for by setting it
+        os.umask(umask)
+        return 0o666 & ~umask
 
 
 def write_text(text: str, path: Path) -> None:
