@@ -7,6 +7,7 @@ on a small file beside it, which the system releases when the holder dies, howev
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator
 from contextlib import closing, contextmanager
@@ -73,7 +74,7 @@ def open_store(path: Path) -> Iterator[Store]:
     Raises InputError for a file that is not a store, cannot be written, or is in use by another sweep; and
     in the block where the disk is full or no longer lets it be written. Other faults are raised as they are.
     """
-    with closing(_lock(path)), closing(_connect(path)) as connection:
+    with _opened(path) as connection:
         try:
             yield Store(connection)
         except sqlite3.OperationalError as refused:
@@ -82,11 +83,31 @@ def open_store(path: Path) -> Iterator[Store]:
             raise InputError("store", str(path), f"a file that can be written ({refused})") from refused
 
 
+@contextmanager
+def _opened(path: Path) -> Iterator[sqlite3.Connection]:
+    """The locked store's connection; a file that is refused keeps no new one beside it."""
+    beside = _lock_file(path)
+    there = os.path.exists(beside)  # of any name, however long
+    with closing(_lock(path)):
+        try:
+            connection = _connect(path)
+        except InputError:
+            if not there:
+                beside.unlink(missing_ok=True)  # while it is held, and so is no other sweep's
+            raise
+        with closing(connection):
+            yield connection
+
+
+def _lock_file(path: Path) -> Path:
+    return path.with_name(path.name + ".lock")
+
+
 def _lock(path: Path) -> sqlite3.Connection:
     """A connection that holds the exclusive transaction on the file beside ``path`` until it is closed."""
     holder = None
     try:
-        holder = sqlite3.connect(path.with_name(path.name + ".lock"), timeout=0.0, isolation_level=None)
+        holder = sqlite3.connect(_lock_file(path), timeout=0.0, isolation_level=None)
         holder.execute("begin exclusive")
     except sqlite3.OperationalError as refused:
         if holder is not None:
