@@ -10,6 +10,7 @@ import math
 import os
 import struct
 import tokenize
+import warnings
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -99,7 +100,9 @@ def _npy(path: Path) -> Array:
 
 
 def _text(path: Path) -> Array:
-    with path.open(encoding="utf-8-sig") as lines:  # with or without a byte order mark
+    # with or without a byte order mark; of no rows NumPy warns, `_heights` refuses them
+    with path.open(encoding="utf-8-sig") as lines, warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
         return np.loadtxt(lines, delimiter="," if path.suffix.lower() == ".csv" else None, ndmin=2)
 
 

@@ -157,6 +157,15 @@ def test_broken_and_hostile_files_get_one_clear_line(tmp_path: Path) -> None:
     assert not (tmp_path / "sprung").exists()
 
 
+@pytest.mark.parametrize("content", ["# only a comment\n", "\n\n\n"])
+@pytest.mark.parametrize("name", ["a.csv", "a.txt"])
+@pytest.mark.filterwarnings("error")
+def test_a_table_without_rows_is_refused_without_a_warning(tmp_path: Path, name: str, content: str) -> None:
+    (tmp_path / name).write_text(content)
+    with pytest.raises(InputError, match=f"{name}.*: expected .*numbers"):
+        MeasuredSurface(tmp_path / name, unit="m", pixel_size=DX).reading  # noqa: B018  # reading is what raises
+
+
 @pytest.mark.parametrize("content", ["a,b,c,d\n1,2,3,4\n", "1 2 3 4\n5 6 7 8\n"])
 def test_points_of_four_columns_are_refused(tmp_path: Path, content: str) -> None:
     (tmp_path / "a.xyz").write_text(content)
