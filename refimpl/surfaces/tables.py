@@ -30,7 +30,7 @@ def surface_from_dict(table: dict[str, Any], folder: Path = Path(), place: str =
     if kind == SurfaceSum.kind:
         return _sum_from_dict(parameters, folder, place)
     if not isinstance(kind, str) or kind not in KINDS:
-        raise InputError(f"{place}.kind", kind, "one of " + ", ".join(KINDS))
+        raise InputError(f"{place}.kind", kind, "one of " + ", ".join((*KINDS, SurfaceSum.kind)))
     known = [f for f in fields(KINDS[kind]) if f.init]  # type: ignore[arg-type]  # all are dataclasses
     for key, value in parameters.items():
         if key not in (f.name for f in known):
