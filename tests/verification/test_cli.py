@@ -115,6 +115,8 @@ def test_help_does_not_wait_for_numpy() -> None:
         (["verify", "--jobs", "0"], "--jobs = 0"),
         (["verify", "--json", "/no/such/folder/results.json"], "/no/such/folder"),
         (["verify", "--json", "."], "directory"),
+        (["verify", "--json", ""], "--json: expected a file's name, or '-' for standard output"),
+        (["sweep", "table3", "--store", ""], "--store: expected a file's name"),
         (["report", "--results", "no-such-file.json"], "no-such-file.json"),
         (["report", "--results", "."], "--results"),
         (["appendix-a"], "required"),

@@ -27,6 +27,8 @@ Parsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 def output_file(text: str) -> Path:
     """Argument type of a file to write: refused at once where it could not be written in the end."""
     path = Path(text)
+    if not text:  # it would be the working directory
+        raise argparse.ArgumentTypeError("expected a file's name, not ''")
     if text == "-":
         raise argparse.ArgumentTypeError("'-' is no file, and this is no text for standard output")
     if os.path.isdir(path):  # of any name, however long
@@ -40,6 +42,8 @@ def output_file(text: str) -> Path:
 
 def output_text(text: str) -> Path:
     """Argument type of a text to write: a file, or '-' for standard output."""
+    if not text:
+        raise argparse.ArgumentTypeError("expected a file's name, or '-' for standard output, not ''")
     return Path(text) if text == "-" else output_file(text)
 
 
