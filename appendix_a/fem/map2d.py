@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from appendix_a.errors import InputError
 from appendix_a.fem.coefficient_map import CoefficientMap, height_change
 from appendix_a.fem.sinusoid import departures
 
@@ -29,7 +30,12 @@ def compute(
     workers: int = 2,
     progress: Callable[[int, int], None] | None = None,
 ) -> CoefficientMap:
-    """Solve every geometry in `workers` processes; `progress(done, all)` after each slope and wavelength."""
+    """Solve every geometry in `workers` processes; `progress(done, all)` after each slope and wavelength.
+
+    slopes_deg: degrees; wavelengths: in half-widths; positions: in wavelengths.  Raises InputError for an
+    axis that does not ascend strictly: splines over it need that.
+    """
+    _check_ascending(slopes_deg=slopes_deg, wavelengths=wavelengths, positions=positions)
     jobs = [(slope, wavelength, positions) for wavelength, slope in product(wavelengths, slopes_deg)]
     shape = (len(slopes_deg), len(wavelengths), len(positions), len(OFFSETS))
     arrays = np.zeros(shape), np.zeros(shape), np.zeros(shape[:3])
@@ -41,6 +47,12 @@ def compute(
             if progress is not None:
                 progress(done, len(jobs))
     return table
+
+
+def _check_ascending(**axes: tuple[float, ...]) -> None:
+    for name, values in axes.items():
+        if not values or not np.all(np.diff(values) > 0):
+            raise InputError(name, values, "at least one value, each above the one before")
 
 
 def _batch(job: tuple[float, float, tuple[float, ...]]) -> tuple[Array, Array, Array]:

@@ -37,6 +37,15 @@ def test_a_computed_entry_is_the_solve_it_came_from():
     assert 0.0 < table.error_percentage_points.max() < 0.02
 
 
+@pytest.mark.parametrize("axis", ["slopes_deg", "wavelengths", "positions"])
+@pytest.mark.parametrize("values", [(4.0, 4.0), (8.0, 4.0), ()])
+def test_axes_that_do_not_ascend_are_refused(axis, values):
+    axes = {"slopes_deg": (10.0,), "wavelengths": (32.0,), "positions": (0.25,)} | {axis: values}
+    with pytest.raises(InputError) as refused:
+        compute(**axes, workers=1)
+    assert (refused.value.field, refused.value.value) == (axis, values)
+
+
 def test_written_table_reads_back(tmp_path):
     table = invented()
     table.write(tmp_path / "map.json")

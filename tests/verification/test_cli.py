@@ -145,6 +145,8 @@ def test_help_does_not_wait_for_numpy() -> None:
         (["appendix-a", "map", "--slopes-deg", "0"], "--slopes-deg"),
         (["appendix-a", "map", "--wavelengths", "1,10"], "--wavelengths"),
         (["appendix-a", "map", "--positions", "nan"], "--positions"),
+        (["appendix-a", "map", "--slopes-deg", "2.5,2.5"], "--slopes-deg = (2.5, 2.5)"),
+        (["appendix-a", "map", "--positions", "0.5,0"], "--positions"),
         (["appendix-a", "map", "--jobs", "0"], "--jobs"),
     ],
 )

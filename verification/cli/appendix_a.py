@@ -178,10 +178,15 @@ def coefficient_map(options: argparse.Namespace) -> int:
             if not low <= value <= high:
                 raise InputError(f"--{name}", value, f"{low:g} to {high:g} {unit}")
     progress = Progress(len(axes["slopes-deg"]) * len(axes["wavelengths"]))
-    found = compute(
-        *axes.values(), workers=options.jobs, progress=lambda *_: progress.tick("slopes and wavelengths")
-    )
-    progress.close()
+    try:
+        with _by_option():
+            found = compute(
+                *axes.values(),
+                workers=options.jobs,
+                progress=lambda *_: progress.tick("slopes and wavelengths"),
+            )
+    finally:
+        progress.close()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "map.json"
         found.write(path)
