@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import signal
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from itertools import product
 
 import numpy as np
@@ -40,13 +42,32 @@ def compute(
     shape = (len(slopes_deg), len(wavelengths), len(positions), len(OFFSETS))
     arrays = np.zeros(shape), np.zeros(shape), np.zeros(shape[:3])
     table = CoefficientMap(slopes_deg, wavelengths, positions, OFFSETS, *arrays)
-    with ProcessPoolExecutor(workers) as pool:
+    with _processes(workers) as pool:
         for done, (job, found) in enumerate(zip(jobs, pool.map(_batch, jobs), strict=True), start=1):
             i, j = slopes_deg.index(job[0]), wavelengths.index(job[1])
             table.kappa_part[i, j], table.constant_part[i, j], table.error_percentage_points[i, j] = found
             if progress is not None:
                 progress(done, len(jobs))
     return table
+
+
+@contextmanager
+def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Worker processes that end with the block: after an error or an interrupt at once, whatever they do.
+
+    They ignore an interrupt themselves, which a terminal sends to all: it is this process that ends them.
+    """
+    ignored = (signal.SIGINT, signal.SIG_IGN)
+    pool = ProcessPoolExecutor(workers, initializer=signal.signal, initargs=ignored)
+    try:
+        yield pool
+    except BaseException:
+        running = list(pool._processes.values())  # public from Python 3.14: `terminate_workers`
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in running:
+            process.terminate()
+        raise
+    pool.shutdown()
 
 
 def _check_ascending(**axes: tuple[float, ...]) -> None:
