@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import xlogy
+
+from appendix_a.strip.field import logarithms
 
 Array = NDArray[np.float64]
 
@@ -35,9 +36,7 @@ def pressed_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
     >>> pressed_strip(np.array([2.0]), 0.0), -6 * np.log(3.0) / np.pi
     (array([-2.09819...]), np.float64(-2.09819...))
     """
-    a = half_width
-    profile: Array = xlogy(x + a, np.abs(x + a) / a) - xlogy(x - a, np.abs(x - a) / a)
-    return -2.0 * (1.0 - nu**2) / np.pi * profile
+    return -2.0 * (1.0 - nu**2) / np.pi * half_width * logarithms(x / half_width)
 
 
 def sheared_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:

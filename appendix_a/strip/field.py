@@ -25,6 +25,17 @@ def stresses(x: ArrayLike, y: ArrayLike) -> tuple[Real, Real, Real]:
 
 def flat_displacement(x: ArrayLike, nu: float) -> Real:
     """u_y(x) - u_y(0) of the boundary, plane strain, in units of pressure times half-width over E."""
-    x = np.asarray(x, dtype=float)
-    logs = xlogy(x + 1, np.abs(x + 1)) - xlogy(x - 1, np.abs(x - 1))
-    return np.asarray(-2 * (1 - nu**2) / np.pi * logs)
+    return np.asarray(-2 * (1 - nu**2) / np.pi * logarithms(x))
+
+
+def logarithms(x: ArrayLike) -> Real:
+    """(x + 1) log|x + 1| - (x - 1) log|x - 1| to rounding, for every finite x.
+
+    Near and far the two cancel, and ``log|x^2 - 1| + 2 x atanh(x or 1/x)`` takes their place.
+    """
+    size = np.abs(np.asarray(x, dtype=float))
+    near, middle, far = np.minimum(size, 0.5), np.clip(size, 0.5, 2.0), np.maximum(size, 2.0)
+    inside = np.log1p(-(near**2)) + 2 * near * np.arctanh(near)
+    about = xlogy(middle + 1, middle + 1) - xlogy(middle - 1, np.abs(middle - 1))
+    outside = 2 * np.log(far) + np.log1p(-((1 / far) ** 2)) + 2 * (far * np.arctanh(1 / far))
+    return np.asarray(np.where(size < 0.5, inside, np.where(size > 2, outside, about)))

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import mpmath as mp
 import numpy as np
 import pytest
 
 from appendix_a.errata import ERRATA, Erratum
 from appendix_a.errors import InputError
+from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.strip import Theta, first_order, printed, superposition
 from appendix_a.strip.field import flat_displacement, stresses
 from appendix_a.strip.profile import Sinusoid
@@ -34,6 +38,22 @@ def test_load_on_any_depth() -> None:
 def test_flat_displacement_is_that_of_johnson() -> None:
     # Johnson 1985, Eq. (2.30b), at x = 2 a: -(1-nu^2)/(pi E) p a {3 ln 9 - 1 ln 1}
     assert flat_displacement(2.0, 0.3) == pytest.approx(-0.91 / np.pi * 3 * np.log(9), rel=1e-14)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_flat_displacement_is_accurate_at_any_distance(sign: int) -> None:
+    """Against hundreds of digits: the two logarithms cancel both near the centre and far away."""
+    sizes = [1e-150, 1e-9, 0.49, 0.5, 1 - 1e-15, 1.0, 1 + 1e-15, 2.0, 2.01, 1e4, 1e15, 1e16, 1e307]
+    with mp.workdps(700):
+        exact = [float(logs(mp.mpf(x)) * -2 / mp.pi) for x in sizes]
+    np.testing.assert_allclose(flat_displacement(sign * np.array(sizes), 0.0), exact, rtol=2e-15)
+    wide = pressed_strip(sign * 3 * np.array(sizes), 0.0, 3.0)
+    np.testing.assert_allclose(wide, 3 * np.array(exact), rtol=3e-15)
+    assert flat_displacement(0.0, 0.0) == 0
+
+
+def logs(x: Any) -> Any:
+    return (x + 1) * mp.log(x + 1) - ((x - 1) * mp.log(abs(x - 1)) if x != 1 else 0)
 
 
 def test_profile() -> None:
