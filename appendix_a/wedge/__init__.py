@@ -71,10 +71,12 @@ def _checked(r: ArrayLike, theta: ArrayLike, gamma: float, half_width: float) ->
     if not (np.isfinite(half_width) and half_width > 0):
         raise InputError("half_width", half_width, "a positive length")
     r, theta = np.broadcast_arrays(np.asarray(r, dtype=float), np.asarray(theta, dtype=float))
-    ratio = r / half_width
+    with np.errstate(over="ignore"):  # to infinity, which is refused
+        ratio = r / half_width
     usable = (ratio >= R_RANGE[0]) & (ratio <= R_RANGE[1])
     if not np.all(usable):
-        raise InputError("r", float(r[~usable][0]), "positive finite distances")
+        allowed = f"positive distances of {R_RANGE[0]:g} to {R_RANGE[1]:g} half-widths"
+        raise InputError("r", float(r[~usable][0]), allowed)
     face = np.pi / 2 - gamma
     inside = np.abs(theta) <= face + FACE_SLACK
     if not np.all(inside):

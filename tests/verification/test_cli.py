@@ -126,6 +126,10 @@ def test_help_does_not_wait_for_numpy() -> None:
             "--gamma-deg = 95.0: expected a slope angle of 0 to below 90 degrees",
         ),
         ([*WEDGE, "--gamma-deg", "nan"], "'nan'"),
+        (
+            [*WEDGE, "--gamma-deg", "45", "--r", "1e308", "--half-width", "1e-300"],
+            "--r = 1e+308: expected positive distances of 1e-300 to 1e+300 half-widths",
+        ),
         ([*WEDGE, "--gamma-deg", "89.999999"], "--gamma-deg = 89.999999: expected a smaller slope angle"),
         (
             [*WEDGE, "--gamma-deg", "10", "--theta-deg", "10,85"],
