@@ -202,12 +202,22 @@ def test_report_refuses_what_is_not_a_result_file(text: str, tmp_path: Path, cap
     assert not (tmp_path / "r").exists()
 
 
-def test_a_report_replaces_none_of_its_files(tmp_path: Path, capsys: Capture) -> None:
+def test_a_report_replaces_none_of_its_files(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     results = tmp_path / "results.json"
     results.write_text(json.dumps(sample.results(sample.case("a/1"))))
     before, output = results.read_text(), tmp_path / "report"
     command = ["report", "--results", str(results), "--output", str(output), "--json"]
     assert "--json" in refused(capsys, *command, str(results))
+    output.write_text("a file")
+    with monkeypatch.context() as drawing:  # it takes a minute, and is not begun
+        drawing.setattr("reports.generator.render", lambda *_: pytest.fail("drawn"))
+        for folder in (output, output / "below"):
+            named = ["report", "--results", str(results), "--output", str(folder)]
+            assert "--output" in refused(capsys, *named)
+    assert output.read_text() == "a file"
+    output.unlink()
     output.mkdir()
     err = refused(capsys, *command, str(output / "report.html"))
     assert "--json" in err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
@@ -11,7 +12,8 @@ import pytest
 import refimpl as rf
 from reports.studies.tradeoff import build
 from verification.cli import main
-from verification.tradeoff import prices
+from verification.cli.tradeoff import _table
+from verification.tradeoff import prices, study
 from verification.tradeoff.measure import QUANTITIES, Run, run
 from verification.tradeoff.settings import Setting, settings
 
@@ -88,6 +90,37 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     for M, said in ((None, "takes three of its grids"), (123, "takes 60 s at about 123 elements")):
         told = build({"studies": [found | {"dense up to": {"seconds": 60.0, "M": M}}]})
         assert any(said in note for note in told.paragraphs)
+
+
+def test_a_reference_that_is_not_settled_judges_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = rf.read_scene("table1-smooth")
+    loose = replace(rf.solve(scene, 16), status=rf.Status.STAGNATED)
+    monkeypatch.setattr(rf, "solve", lambda *_, **__: loose)
+    out = tmp_path / "t.json"
+    command = ["tradeoff", "table1-smooth", "--grids", "8", "--reference", "16", "--json", str(out)]
+    assert main(command) == 1
+    assert "the reference on 8 elements a side ends in 'stagnated'" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_way_without_a_solution_fails_alone(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    measured = study.run
+
+    def failing(scene: rf.Scene, setting: Setting, repeats: int) -> Run:
+        if setting.method == "dense":
+            raise ArithmeticError("no approach balances the load")
+        return measured(scene, setting, repeats)
+
+    monkeypatch.setattr(study, "run", failing)
+    found = study.study(rf.read_scene("table1-smooth"), "s", [8], 16, 1, lambda _: None)
+    assert set(found["failed"].values()) == {"no approach balances the load"}
+    assert all("dense" in at for at in found["failed"])
+    assert {run["method"] for run in found["runs"]} == {"fft", "paper", "qp"}
+    assert "failed:\ndense" in _table(found).replace("  ", "")
 
 
 @pytest.mark.parametrize("scene", sorted(SHIPPED))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import shutil
 import subprocess
 import tempfile
@@ -71,6 +72,7 @@ def run(options: argparse.Namespace) -> int:
     path = options.output / "report.html"
     read = [options.results, *([] if options.against is None else [options.against]), *files]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
+    _check_folder(options.output)
     try:
         page = render(results, committed, against)
     except ResultFileError as alien:  # the runs are checked: it is a study
@@ -87,6 +89,15 @@ def run(options: argparse.Namespace) -> int:
     document = {"report": str(path), "counts": results["counts"]}
     emit(document, options.json, "\n".join([columns(rows, indent=""), *map(str, map(Path.resolve, written))]))
     return 0
+
+
+def _check_folder(output: Path) -> None:
+    """Raise InputError, before anything is drawn, unless the folder is there or can be made."""
+    from refimpl.errors import InputError
+
+    nearest = next(folder for folder in (output, *output.absolute().parents) if os.path.exists(folder))
+    if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
+        raise InputError("--output", str(output), "a folder that can be written to")
 
 
 def read_run(path: Path, option: str = "--results") -> Any:

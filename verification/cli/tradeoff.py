@@ -71,10 +71,16 @@ def _grids(text: str) -> list[int]:
 def _table(found: dict[str, Any]) -> str:
     rows = [["quantity", "error", "cheapest way", "grid", "seconds", "convolutions"]]
     for row in found["prices"]:
-        offer = [row["way"] or "none tried", *(_short(row[key]) for key in ("M", "seconds", "convolutions"))]
+        offer = [
+            row["way"] or "none of those tried",
+            *(_short(row[key]) for key in ("M", "seconds", "convolutions")),
+        ]
         rows.append([row["quantity"], f"{row['error']:.1%}", *offer])
-    left_out = columns([list(item) for item in found["left out"].items()])
-    return f"{columns(rows)}\n\nleft out:\n{left_out}" if left_out else columns(rows)
+    parts = [columns(rows)]
+    for why in ("left out", "failed"):
+        if found[why]:
+            parts.append(f"{why}:\n" + columns([list(item) for item in found[why].items()]))
+    return "\n\n".join(parts)
 
 
 def _short(value: float | None) -> str:

@@ -28,20 +28,30 @@ def study(
     """The document of the study: reference, runs, Pareto fronts, price list, growth.
 
     ``finest`` is the reference's grid; its doubt is the change from half of it. Ways that do not apply to the
-    scene and numbers that are zero, of which there is no relative error, are "left out", with the reason.
+    scene and numbers that are zero, of which there is no relative error, are "left out", with the reason;
+    so are those that find no solution at all, under "failed". Raises ArithmeticError for a reference that is
+    not settled: there is nothing to judge by.
     """
-    solved = [rf.solve(scene, M) for M in (finest // 2, finest)]
+    solved = [_settled(scene, M) for M in (finest // 2, finest)]
     coarse, numbers = ({name: float(getattr(s, name)) for name in QUANTITIES} for s in solved)
     reference = {name: number for name, number in numbers.items() if number}
     doubt = prices.relative(coarse, reference)
     left_out = inapplicable(scene)
     runs: list[Run] = []
+    failed: dict[str, str] = {}
     for setting in settings(grids, TOLERANCES, left_out):
-        progress(f"{setting.way} at {setting.M}")
-        runs.append(run(scene, setting, repeats))
+        at = f"{setting.way} at {setting.M}"
+        progress(at)
+        try:
+            runs.append(run(scene, setting, repeats))
+        except ArithmeticError as none:
+            if type(none) is not ArithmeticError:  # the solvers' own word; a division by zero is a bug
+                raise
+            failed[at] = str(none)
     return {
         "scene": name,
         "left out": left_out | {name: IS_ZERO for name in numbers if name not in reference},
+        "failed": failed,
         "reference": {"M": finest, "numbers": reference, "doubt": doubt},
         "runs": [_row(r, reference) for r in runs],
         "front": {
@@ -57,6 +67,13 @@ def study(
         "dense up to": {"seconds": _DENSE_PATIENCE, "M": prices.affordable(runs, "dense", _DENSE_PATIENCE)},
         "provenance": provenance(),
     }
+
+
+def _settled(scene: rf.Scene, M: int) -> rf.Solution:
+    solution = rf.solve(scene, M)
+    if not solution.converged:
+        raise ArithmeticError(f"the reference on {M} elements a side ends in '{solution.status.value}'")
+    return solution
 
 
 def _row(run: Run, reference: dict[str, float]) -> dict[str, Any]:
