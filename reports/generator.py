@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -22,12 +22,23 @@ def render(
     results: object,
     committed: Mapping[str, Mapping[str, Any]] | None = None,
     against: object | None = None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> str:
     """The page of a run, with committed result files by name, and what changed against an older run.
 
+    ``progress`` is told of every case and figure before it is drawn.
     Raises ResultFileError (a ValueError) for anything but result files.
     """
     evidence = gathered(results, committed or {})
+
+    def case_pictures(case: Case) -> list[Mapping[str, Any]]:
+        progress(case["id"])
+        return pictures(case, evidence)
+
+    def one_picture(figure: drawing.Figure, data: Mapping[str, Any]) -> Mapping[str, Any]:
+        progress(figure.caption)
+        return picture(figure, data)
+
     environment = Environment(
         loader=PackageLoader("reports"),
         autoescape=True,
@@ -51,8 +62,8 @@ def render(
         judgement=judgement,
         facts=facts,
         rerun=lambda case: rerun(case, evidence),
-        pictures=lambda case: pictures(case, evidence),
-        picture=picture,
+        pictures=case_pictures,
+        picture=one_picture,
         cell=cell,
     )
 

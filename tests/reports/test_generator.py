@@ -281,3 +281,9 @@ def test_the_first_page_has_the_first_figure_of_the_best_case_that_has_one(
     ]  # fmt: skip
     shown = leading(gathered(results(*present, case(best, data=series)), {}))
     assert [c["id"] for c, _ in shown] == [best, stand_in, last]
+
+
+def test_progress_names_every_case_as_it_is_drawn() -> None:
+    told: list[str] = []
+    render(results(case("a/1"), case("hertz/b")), progress=told.append)
+    assert {"a/1", "hertz/b"} <= set(told)

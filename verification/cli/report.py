@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from verification.cli.output import Parsers, add_json, check_outputs, columns, emit
+from verification.cli.output import Parsers, StatusLine, add_json, check_outputs, columns, emit
 
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
@@ -73,10 +73,13 @@ def run(options: argparse.Namespace) -> int:
     read = [options.results, *([] if options.against is None else [options.against]), *files]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
     _check_folder(options.output)
+    line = StatusLine()
     try:
-        page = render(results, committed, against)
+        page = render(results, committed, against, line.show)
     except ResultFileError as alien:  # the runs are checked: it is a study
         raise InputError("--committed", str(folder), f"result files ({alien})") from alien
+    finally:
+        line.close()
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
