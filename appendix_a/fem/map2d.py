@@ -43,9 +43,11 @@ def compute(
     arrays = np.zeros(shape), np.zeros(shape), np.zeros(shape[:3])
     table = CoefficientMap(slopes_deg, wavelengths, positions, OFFSETS, *arrays)
     with _processes(workers) as pool:
-        for done, (job, found) in enumerate(zip(jobs, pool.map(_batch, jobs), strict=True), start=1):
+        solving = [pool.submit(_batch, job) for job in jobs]
+        for done, (job, batch) in enumerate(zip(jobs, solving, strict=True), start=1):
             i, j = slopes_deg.index(job[0]), wavelengths.index(job[1])
-            table.kappa_part[i, j], table.constant_part[i, j], table.error_percentage_points[i, j] = found
+            parts = batch.result()
+            table.kappa_part[i, j], table.constant_part[i, j], table.error_percentage_points[i, j] = parts
             if progress is not None:
                 progress(done, len(jobs))
     return table
@@ -62,12 +64,12 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     try:
         yield pool
     except BaseException:
-        running = list(pool._processes.values())  # public from Python 3.14: `terminate_workers`
-        pool.shutdown(wait=False, cancel_futures=True)
-        for process in running:
+        # public from Python 3.14: `terminate_workers`; what waits then is broken, and must not be cancelled
+        for process in list(pool._processes.values()):
             process.terminate()
         raise
-    pool.shutdown()
+    finally:
+        pool.shutdown()
 
 
 def _check_ascending(**axes: tuple[float, ...]) -> None:
