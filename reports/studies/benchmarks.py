@@ -21,7 +21,8 @@ def build(document: Document) -> Exhibit:
     newest = _newest(runs)
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
     last = runs[-1]["conditions"]
-    versions = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
+    told = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
+    versions = [version for version in told if not version.endswith(" None")]  # those have their commit alone
     return Exhibit(
         "Speed beside published solvers",
         (
