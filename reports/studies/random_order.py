@@ -18,12 +18,14 @@ def build(document: Document) -> Exhibit:
         )
         for run in document["runs"]
     ]
+    ends = [end for run in document["runs"] for end in run["not_passed"].items()]
+    skipped = sorted({name.partition("::")[0] for name, end in ends if end == "skipped"}) or ["nothing"]
     verdict = "No test flips" if document["no_test_flips"] else "Some test flips"
     return Exhibit(
         "Random order",
         (
             f"{verdict} in {len(rows)} runs with files and tests shuffled, and every search of random "
-            "examples seeded by the run's seed. What is skipped needs packages that are not installed there.",
+            f"examples seeded by the run's seed. All that is skipped is of {', '.join(skipped)}.",
         ),
         [Table("Runs.", ("seed", "tests", "failed", "skipped", "processor time (s)", "commit"), rows)],
     )
