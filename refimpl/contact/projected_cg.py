@@ -34,9 +34,10 @@ _TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its
 
 
 class _Seen(NamedTuple):
-    """Separation ``v`` of the present pressure (m), and its pressure-weighted mean."""
+    """Separation ``v`` of the present pressure (m), on CG's elements alone, and its mean by pressure."""
 
     v: Array
+    on: Array
     mean: float
 
 
@@ -49,13 +50,13 @@ class ProjectedCG:
 
     def __init__(self, apply: Apply, precondition: Apply, pressure: Array) -> None:
         self._apply, self._precondition = apply, precondition
-        self.pressure = pressure
         self.normal_displacement = apply(pressure)
         self.contact: Mask = pressure > 0
         self._support = Support(self.contact)
+        self._pressing = self._support.of(pressure)
         self._direction: Array | None = None
         self._seen: _Seen | None = None
-        self._residual, self._product = pressure, 0.0
+        self._residual, self._product = self._pressing, 0.0
         self._length, self._trusted = FIRST_LENGTH, True
 
     def freeze(self, b: Array, K: Array, *, target: float | None, approach: float | None) -> None:
@@ -66,6 +67,11 @@ class ProjectedCG:
         self._exchanged = True
         if target is not None:
             self._scale_to_target()
+
+    @property
+    def pressure(self) -> Array:
+        """``f`` on the window (Pa)."""
+        return self._support.onto(self._pressing)
 
     @property
     def separation(self) -> Array:
@@ -82,10 +88,9 @@ class ProjectedCG:
             v = self.normal_displacement + self._b
             if not self._unweighted:
                 v /= self._K
-            pressure = self._pressing()
-            total = float(pressure.sum())
+            on, total = self._support.seen(v), float(self._pressing.sum())
             apart = self._approach or 0.0  # a step overshot: nothing presses, so no mean can be missed
-            self._seen = _Seen(v, inner(pressure, self._support.seen(v)) / total if total > 0 else apart)
+            self._seen = _Seen(v, on, inner(self._pressing, on) / total if total > 0 else apart)
         return self._seen
 
     def residuals(self) -> tuple[float, float]:
@@ -93,13 +98,12 @@ class ProjectedCG:
 
         At an approach the first is no less than the work of what the mean separation misses of it.
         """
-        (v, mean), approach = self._look(), self.approach
+        (v, on, mean), approach = self._look(), self.approach
         lowest = float(v.min())
-        pressure = self._pressing()
-        energy = 0.5 * inner(pressure, self._support.seen(self.normal_displacement))
-        gap = inner(pressure, self._support.seen(v) - lowest)
+        energy = 0.5 * inner(self._pressing, self._support.seen(self.normal_displacement))
+        gap = inner(self._pressing, on - lowest)
         if self._approach is not None:
-            gap = max(gap, abs(mean - approach) * float(pressure.sum()))
+            gap = max(gap, abs(mean - approach) * float(self._pressing.sum()))
         return relative_gap(gap, energy), max(0.0, approach - lowest) / (abs(approach) or 1.0)
 
     def beyond_doubt(self, stiffness: float) -> bool:
@@ -109,7 +113,7 @@ class ProjectedCG:
         """
         v, approach = self._look().v, self.approach
         doubt = _DOUBT * float((np.abs(v - approach) * self.contact).max())
-        pressing = np.count_nonzero(self.pressure > stiffness * doubt)
+        pressing = np.count_nonzero(self._pressing > stiffness * doubt)
         close = np.count_nonzero(v <= approach + doubt)
         return bool(pressing == close == np.count_nonzero(self.contact))
 
@@ -132,12 +136,12 @@ class ProjectedCG:
         if not (self._trusted and self._step_to_trial(residual, direction)):
             self._step_then_cut(residual, direction)
 
-    def _pressing(self) -> Array:
-        return self._support.seen(self.pressure)
-
     def _exchange(self) -> None:
-        """Go on with the present contact set: the last step on it, the load's weights and their squares."""
+        """Go on with the present contact set: all that lives on it, the load's weights and their squares."""
         last, self._support = self._support, Support(self.contact)
+        self._pressing = self._support.of(last.onto(self._pressing))
+        if self._seen is not None:
+            self._seen = self._seen._replace(on=self._support.seen(self._seen.v))
         if self._direction is not None:
             self._direction = self._support.of(last.onto(self._direction))
             self._residual = self._support.of(last.onto(self._residual))
@@ -147,7 +151,7 @@ class ProjectedCG:
 
     def _frozen_residual(self) -> Array:
         """``K (approach - v)`` on the contact set: at the approach that leaves nothing along the weights."""
-        v, approach = self._support.seen(self.separation), self._approach
+        v, approach = self._look().on, self._approach
         if approach is None:
             approach = inner(self._squares, v) / self._norm
         residual = approach - v
@@ -183,12 +187,12 @@ class ProjectedCG:
 
     def _step_to_trial(self, residual: Array, direction: Array) -> bool:
         """To the best point between here and the trial, cut and scaled; False if the cut leaves nothing."""
-        pressure, change = self._pressing(), (_SHORTER * self._length) * direction
-        trial = pressure + change
+        change = (_SHORTER * self._length) * direction
+        trial = self._pressing + change
         cut: Mask | None = None
         if trial.min() < 0:
             cut = trial < 0
-            if not cut_at_zero(trial, pressure, change, self._weights, self._target):
+            if not cut_at_zero(trial, self._pressing, change, self._weights, self._target):
                 return False
         moved = self._apply(self._support.onto(change))
         curvature = inner(change, self._support.seen(moved))
@@ -200,7 +204,7 @@ class ProjectedCG:
 
     def _take(self, share: float, change: Array, moved: Array, cut: Mask | None) -> None:
         """That share of a change, but no pressure below zero; what is cut or falls to zero leaves."""
-        before = self._pressing()
+        before = self._pressing
         pressure = before + share * change
         beyond = share > 1 and bool(pressure.min() < 0)
         if beyond:
@@ -210,7 +214,7 @@ class ProjectedCG:
             pressure[pressure < _NOTHING * before] = 0.0  # whatever trace rounding leaves
             falling = change < 0
             self._leave(self._support.where((pressure == 0) & (falling if cut is None else falling | cut)))
-        self.pressure = self._support.onto(pressure)
+        self._pressing = pressure
         moved *= share
         self.normal_displacement += moved
 
@@ -227,18 +231,17 @@ class ProjectedCG:
 
     def _step_then_cut(self, residual: Array, direction: Array) -> None:
         """The exact step along the direction, then the cut: two applications, and no guess."""
-        step = self._support.onto(direction)
-        moved = self._apply(step)
-        curvature = inner(step, moved)
+        moved = self._apply(self._support.onto(direction))
+        curvature = inner(direction, self._support.seen(moved))
         if curvature > 0:  # zero when the constraint alone fixes the set's pressure
             self._length = inner(residual, direction) / curvature
-            self.pressure = self.pressure + self._length * step
+            self._pressing = self._pressing + self._length * direction
             self.normal_displacement = self.normal_displacement + self._length * moved
             self._trusted = True
-        negative = self.pressure < 0
+        negative = self._pressing < 0
         if negative.any():
-            self.pressure[negative] = 0.0  # at an approach all may go, and come back as they penetrate
-            self._leave(negative)
+            self._pressing[negative] = 0.0  # at an approach all may go, and come back as they penetrate
+            self._leave(self._support.where(negative))
             if self._target is not None:
                 self._scale_to_target(displace=False)
             self.normal_displacement = self._apply(self.pressure)
@@ -249,6 +252,6 @@ class ProjectedCG:
         if carried == 0:  # nothing presses: no factor helps, and the balance of the load says so
             return
         factor = self._target / carried
-        self.pressure = self.pressure * factor
+        self._pressing = self._pressing * factor
         if displace:
             self.normal_displacement = self.normal_displacement * factor

@@ -6,6 +6,9 @@ from dataclasses import replace
 
 import refimpl as rf
 from refimpl.contact.preconditioner import SpectralPreconditioner
+from refimpl.contact.projected_cg import ProjectedCG
+from refimpl.contact.support import Support
+from refimpl.grid import Array
 from refimpl.level_solver import LevelSolver, influence
 from refimpl.nesting import foundation_pressure
 from refimpl.operators.fft import Counter
@@ -40,3 +43,9 @@ def level(problem: Problem, window: Window | None = None) -> LevelSolver:
     return LevelSolver(
         problem, operator, SpectralPreconditioner(operator, problem.pair.normal_compliance), start
     )
+
+
+def press(cg: ProjectedCG, pressure: Array) -> None:
+    """Put CG at another pressure, as if it had come there."""
+    cg._support = Support(pressure > 0)
+    cg._pressing = cg._support.of(pressure)

@@ -15,7 +15,7 @@ from refimpl.level_solver import LevelSolver
 from refimpl.operators.window import Window
 from refimpl.problem import Terms, pose
 from refimpl.updates import Updates
-from tests.refimpl.levels import BALL, coupled, level, posed
+from tests.refimpl.levels import BALL, coupled, level, posed, press
 
 
 class Falling:
@@ -146,7 +146,8 @@ def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
 
     def settle(tolerance: float, support: Mask, withheld: Mask | None = None) -> bool:
         contact = support if withheld is None else next(contacts)  # a state of the cycle, or the path's next
-        solver.cg.pressure, solver.held.support = np.where(contact, 0.5, 0.0), support
+        press(solver.cg, np.where(contact, 0.5, 0.0))
+        solver.held.support = support
         solver.residual, solver._tolerance = 0.0, tolerance
         return True
 
@@ -238,5 +239,5 @@ def test_only_states_on_taus_way_must_keep_off_a_windows_edge(tau: float, crampe
     """Without tau there is one state, and the check on the whole grid tells what its window lacks."""
     problem = posed(coupled(0.3, tau=tau), 16)
     solver = level(problem, Window(4, 8, 4, 12))
-    solver.cg.pressure = np.ones((4, 8))
+    press(solver.cg, np.ones((4, 8)))
     assert solver.cramped is cramped

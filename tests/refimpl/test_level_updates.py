@@ -17,7 +17,7 @@ from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.window import Window
 from refimpl.problem import Terms, pose
 from refimpl.slopes import Slopes
-from tests.refimpl.levels import BALL, coupled, level, posed
+from tests.refimpl.levels import BALL, coupled, level, posed, press
 
 ONE_OF_EIGHT = np.eye(8, dtype=bool)
 
@@ -120,7 +120,7 @@ def test_strong_coupling_lags(sigma: float, lags: bool, tau: float) -> None:
 def test_any_pressure_is_contact() -> None:
     """However small in pascals: it carries tau, and its slopes count."""
     solver = level(posed(replace(BALL, friction=rf.Friction(tau=1.0, beta=0.0)), 8))
-    solver.cg.pressure = np.where(ONE_OF_EIGHT, 1e-3, 0.0)
+    press(solver.cg, np.where(ONE_OF_EIGHT, 1e-3, 0.0))
     assert np.array_equal(solver.contact, ONE_OF_EIGHT)
     solver.held.support = solver.contact
     assert np.array_equal(solver.held.traction, 1.0 * ONE_OF_EIGHT)
