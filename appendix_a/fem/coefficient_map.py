@@ -133,13 +133,27 @@ class CoefficientMap:
 
     @classmethod
     def read(cls, path: Path) -> CoefficientMap:
-        """The table that `write` wrote. Raises InputError for another version."""
+        """The table that `write` wrote. Raises InputError for another version, and for axes that are none."""
         document = json.loads(path.read_text())
         if document["version"] != VERSION:
             raise InputError("version", document["version"], f"{VERSION}")
         slope, wavelength, position, offset = (tuple(document[name]) for name in AXES)
+        check_ascending(slope_deg=slope, wavelength=wavelength, position=position, offset=offset)
         kappa, constant, error = (np.array(document[name]) for name in ARRAYS)
+        shape = len(slope), len(wavelength), len(position), len(offset)
+        for name, found, expected in zip(
+            ARRAYS, (kappa, constant, error), (shape, shape, shape[:3]), strict=True
+        ):
+            if found.shape != expected:
+                raise InputError(name, found.shape, f"the shape of its axes, {expected}")
         return cls(slope, wavelength, position, offset, kappa, constant, error)
+
+
+def check_ascending(**axes: tuple[float, ...]) -> None:
+    """Raises InputError for an axis that is empty or does not rise throughout."""
+    for name, values in axes.items():
+        if not values or not np.all(np.diff(values) > 0):
+            raise InputError(name, values, "at least one value, each above the one before")
 
 
 def height_change(slope_deg: float, wavelength: float, position: float, offsets: Array) -> Array:

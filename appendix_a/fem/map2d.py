@@ -12,8 +12,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from appendix_a.errors import InputError
-from appendix_a.fem.coefficient_map import CoefficientMap, height_change
+from appendix_a.fem.coefficient_map import CoefficientMap, check_ascending, height_change
 from appendix_a.fem.sinusoid import departures
 
 Array = NDArray[np.float64]
@@ -37,7 +36,7 @@ def compute(
     slopes_deg: degrees; wavelengths: in half-widths; positions: in wavelengths.  Raises InputError for an
     axis that does not ascend strictly: splines over it need that.
     """
-    _check_ascending(slopes_deg=slopes_deg, wavelengths=wavelengths, positions=positions)
+    check_ascending(slopes_deg=slopes_deg, wavelengths=wavelengths, positions=positions)
     jobs = [(slope, wavelength, positions) for wavelength, slope in product(wavelengths, slopes_deg)]
     shape = (len(slopes_deg), len(wavelengths), len(positions), len(OFFSETS))
     arrays = np.zeros(shape), np.zeros(shape), np.zeros(shape[:3])
@@ -70,12 +69,6 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
         raise
     finally:
         pool.shutdown()
-
-
-def _check_ascending(**axes: tuple[float, ...]) -> None:
-    for name, values in axes.items():
-        if not values or not np.all(np.diff(values) > 0):
-            raise InputError(name, values, "at least one value, each above the one before")
 
 
 def _batch(job: tuple[float, float, tuple[float, ...]]) -> tuple[Array, Array, Array]:

@@ -46,8 +46,8 @@ def first_order(
     >>> [round(float(d), 4) for d in wavy - flat]
     [0.0091, -0.0091]
     """
-    if not 0 <= nu <= 0.5:
-        raise InputError("nu", nu, "a Poisson ratio in [0, 0.5]")
+    if not -1 < nu <= 0.5:
+        raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
     profile = Sinusoid(slope_deg, wavelength, position)
     offsets = np.asarray(offsets, dtype=float)
     flat = flat_displacement(offsets, nu)

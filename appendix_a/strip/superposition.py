@@ -59,8 +59,8 @@ def printed(
     boundary of a half-plane (Flamant). Exact to first order in the slope for ``Theta.NORMAL``, but for the
     strain between the flat and the wavy line, which the paper leaves out. Raises InputError.
     """
-    if not 0 <= nu <= 0.5:
-        raise InputError("nu", nu, "a Poisson ratio in [0, 0.5]")
+    if not -1 < nu <= 0.5:
+        raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
     profile = Sinusoid(slope_deg, wavelength, 0.0)
     offsets = np.atleast_1d(np.asarray(offsets, dtype=float))
     flat = flat_displacement(offsets, nu)

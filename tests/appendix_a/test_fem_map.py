@@ -1,5 +1,7 @@
 """The map of coefficient errors: small table computed, written, read, looked up; pairs."""
 
+import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -57,6 +59,27 @@ def test_written_table_reads_back(tmp_path):
     (tmp_path / "map.json").write_text(text.replace('"version": 1', '"version": 99'))
     with pytest.raises(InputError):
         CoefficientMap.read(tmp_path / "map.json")
+
+
+@pytest.mark.parametrize(
+    ("field", "spoiled"),
+    [
+        ("wavelength", lambda old: old[::-1]),
+        ("offset", lambda old: []),
+        ("position", lambda old: [math.nan, *old[1:]]),
+        ("constant_part", lambda old: old[:-1]),
+        ("error_percentage_points", lambda old: old[0]),
+    ],
+)
+def test_a_file_whose_axes_are_none_is_refused(tmp_path, field, spoiled):
+    path = tmp_path / "map.json"
+    invented().write(path)
+    document = json.loads(path.read_text())
+    document[field] = spoiled(document[field])
+    path.write_text(json.dumps(document))
+    with pytest.raises(InputError) as refused:
+        CoefficientMap.read(path)
+    assert refused.value.field == field
 
 
 def test_lookup_meets_the_nodes_and_mirrors():
