@@ -252,9 +252,9 @@ def test_a_step_that_overshoots_every_element_leaves_no_tension() -> None:
 def test_no_doubt_is_left_beyond_twice_the_misfit(
     misfit: float, clearance: float, stiffness: float, beyond: bool
 ) -> None:
-    """Of an element under a pressure of 2, and of another with that clearance."""
-    cg = ProjectedCG(lambda f: f.copy(), lambda r: r.copy(), np.array([[2.0, 0.0]]))
-    cg.freeze(np.array([[misfit - 1.0, clearance + 1.0]]), np.ones((1, 2)), target=None, approach=1.0)
+    """Of an element under a pressure of 2, and of another with that clearance; a third is far away."""
+    cg = ProjectedCG(lambda f: f.copy(), lambda r: r.copy(), np.array([[2.0, 0.0, 0.0]]))
+    cg.freeze(np.array([[misfit - 1.0, clearance + 1.0, 1e9]]), np.ones((1, 3)), target=None, approach=1.0)
     assert cg.beyond_doubt(stiffness) is beyond
 
 
