@@ -88,9 +88,9 @@ class ProjectedCG:
             v = self.normal_displacement + self._b
             if not self._unweighted:
                 v /= self._K
-            on, total = self._support.seen(v), float(self._pressing.sum())
-            apart = self._approach or 0.0  # a step overshot: nothing presses, so no mean can be missed
-            self._seen = _Seen(v, on, inner(self._pressing, on) / total if total > 0 else apart)
+            on = self._support.seen(v)
+            total = float(self._pressing.sum()) or 1.0  # a step overshot: nothing presses, and no mean counts
+            self._seen = _Seen(v, on, inner(self._pressing, on) / total)
         return self._seen
 
     def residuals(self) -> tuple[float, float]:
