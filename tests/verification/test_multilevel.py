@@ -15,15 +15,20 @@ import refimpl as rf
 from refimpl.errors import InputError
 from reports.studies.multilevel import build
 from verification.cli import main
+from verification.cli.ensemble import table
 from verification.multilevel.__main__ import document
-from verification.multilevel.ensemble import _BLOCK, PILOT, QUANTITIES, Ensemble, ensemble
-from verification.multilevel.estimator import (
-    Estimate,
-    allocation,
-    cheapest_start,
-    costs_by_start,
-    estimate,
+from verification.multilevel.ensemble import (
+    _BLOCK,
+    FEWEST,
+    PILOT,
+    QUANTITIES,
+    Ensemble,
+    _sizes,
+    _Term,
+    _values,
+    ensemble,
 )
+from verification.multilevel.estimator import Estimate, allocation, costs_by_start, estimate, variances
 from verification.sweep import engine
 from verification.sweep.study import Study, study_from_dict
 
@@ -31,12 +36,27 @@ TABLE = {"scene": "table1-rough", "vary": {"grid": [16, 32]}, "solve": {"toleran
 
 
 def test_the_terms_add_up() -> None:
-    found = estimate([np.array([1.0, 3.0]), np.array([0.5, 0.5, 0.5])])
+    found = estimate([np.array([1.0, 3.0]), np.array([0.5, 0.5, 0.5])], 0.0)
     assert found.mean == pytest.approx(2.5)
     assert found.standard_error == pytest.approx(1.0)
     assert found.freedom == pytest.approx(1.0)
     assert found.half_width == pytest.approx(12.7062, rel=1e-5)  # Student's t at one degree of freedom
-    assert estimate([np.ones(3), np.ones(2)]).half_width == 0
+    assert estimate([np.ones(3), np.ones(2)], 0.0).half_width == 0
+
+
+def test_samples_that_agree_may_have_missed_three_of_them() -> None:
+    """Each worth the root of 0.5; of few samples no more than all may have."""
+    few, many = np.ones(2), np.ones(300)
+    assert variances([few, many], 0.5).tolist() == [0.5, 0.5 * 0.01]
+    found = estimate([many, few], 0.5)
+    assert found.standard_error**2 == pytest.approx(0.5 * 0.01 / 300 + 0.5 / 2)
+
+
+def test_corrections_fall_no_faster_than_a_count_does() -> None:
+    first, large, small = np.array([-9.0, 9.0]), np.array([-2.0, 2.0]), np.array([-0.1, 0.1])
+    assert variances([first, large, small, small], 0.0).tolist() == [162.0, 8.0, 1.0, 0.125]
+    assert variances([first, small], 0.0)[1] == pytest.approx(0.02)  # of a realisation's it may be any share
+    assert variances([first, large, np.ones(300)], 1e-6)[2] == 1.0
 
 
 def test_intervals_cover_as_often_as_they_say() -> None:
@@ -44,7 +64,7 @@ def test_intervals_cover_as_often_as_they_say() -> None:
     random = np.random.default_rng(5)
     covered = 0
     for _ in range(4000):
-        found = estimate([random.normal(1.0, s, n) for s, n in ((1.0, 40), (0.3, 12), (0.2, 5))])
+        found = estimate([random.normal(1.0, s, n) for s, n in ((1.0, 40), (0.3, 12), (0.2, 5))], 1.0)
         covered += abs(found.mean - 3.0) <= found.half_width
     assert covered / 4000 == pytest.approx(0.95, abs=0.014)
 
@@ -85,20 +105,6 @@ def test_costs_by_start_are_those_of_giles() -> None:
     np.testing.assert_allclose(found, np.array(expected) / 1e-6, rtol=1e-5)  # whole numbers of samples
 
 
-@pytest.mark.parametrize(
-    ("costs", "expected"),
-    [
-        ([1.0, 1.5, 3.0, 9.0], 0),  # pays
-        ([1.9, 1.0, 3.0, 9.0], 0),  # not clearly dearer: no better known from a pilot
-        ([2.1, 1.0, 3.0, 9.0], 1),
-        ([1.9, 1.5, 1.2, 1.0], 3),  # whatever is dearer than plain sampling goes
-        ([30.0, 4.0, 1.0], 2),
-    ],
-)
-def test_levels_that_do_not_pay_are_dropped(costs: list[float], expected: int) -> None:
-    assert cheapest_start(np.array(costs)) == expected
-
-
 def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What grids of 8 and 16 elements say has nothing to do with the finest: plain sampling is cheapest."""
     study = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}})
@@ -129,15 +135,54 @@ def test_without_friction_there_is_no_mean_of_mu(tmp_path: Path) -> None:
 def test_either_friction_has_a_mean_of_mu(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, friction: rf.Friction
 ) -> None:
-    spied(monkeypatch, scatter=(1.0, 1.0, 1.0, 1.0))
+    kept = spied(monkeypatch, scatter=(1.0, 1.0, 1.0, 1.0, 1.0))
     scene = replace(rf.read_scene("table1-rough"), friction=friction)
     (tmp_path / "one.toml").write_text(rf.scene_to_toml(scene), "utf-8")
     # on more grids than the pilot has numbers for, whose last holds for all that follow
-    study = study_from_dict(TABLE | {"scene": "one.toml", "vary": {"grid": [8, 16, 32, 64]}}, tmp_path)
+    study = study_from_dict(TABLE | {"scene": "one.toml", "vary": {"grid": [8, 16, 32, 64, 128]}}, tmp_path)
     found = ensemble(study, tmp_path / "a.sqlite", 0.05, workers=0)
     assert found.met
     assert set(found.means) == set(QUANTITIES)
-    assert found.samples == (*PILOT, PILOT[-1])
+    assert found.samples == (0, 0, 0, 0, FEWEST)  # nothing on one grid tells of another
+    last = PILOT[-1]
+    assert len(kept) == PILOT[0] + 2 * (PILOT[1] + PILOT[2] + last + last) + (FEWEST - last)
+
+
+def test_an_element_in_contact_may_come_where_nothing_scatters(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With full contact, say: an error of one element in 3 of 100, and no share of plain sampling's cost."""
+    spied(monkeypatch, scatter=(0.0, 0.0))
+    found = ensemble(study_from_dict(TABLE | {"vary": {"grid": [8, 16]}}), tmp_path / "a.sqlite", 0.05)
+    assert found.met
+    element = (1.61e-3 / 16) ** 2
+    parts = [min(1.0, 3 / N) * element**2 / N for N in found.samples if N]
+    assert found.means["contact_area"].standard_error == pytest.approx(sum(parts) ** 0.5)
+    assert found.means["contact_area"].half_width > 0
+    assert found.plain == dict.fromkeys(QUANTITIES)
+    assert table(found).count("nothing scatters") == 2
+
+
+def test_targets_are_no_shares_of_a_mean_that_may_be_zero() -> None:
+    """A sum of few samples' terms can vanish by chance; what it took would be beyond all bounds."""
+    finer = np.array([[2.0], [4.0]])
+    term = _Term(finer, finer, np.zeros(1), 1.0, 1.0, {})
+    for mean, size in ((1e-9, 3.0), (-0.5, 3.0), (10.0, 10.0)):
+        means = {"contact_area": Estimate(mean, 0.2, 0.4, 9.0)}
+        found = Ensemble((1, 2), means, (2, 2), (1.0, 1.0), {}, {}, False, {})
+        assert _sizes(found, [term, term]) == pytest.approx([0.97 * size])
+
+
+def test_coarse_areas_are_those_of_the_finest_grids_elements() -> None:
+    """Half the correction on elements twice as large; none on the finest; tau on that area over the load."""
+    row = {
+        "contact_area": 4.0,
+        "contact_area_corrected": 3.0,
+        "friction_coefficient": 1.0,
+        "normal_force": 2.0,
+    }
+    assert _values(row, QUANTITIES, 0.1, 0.5) == pytest.approx([1.0 - 0.1 * 0.5 / 2.0, 3.5])
+    assert _values(row, ("contact_area",), 0.1, 0.0) == [4.0]
 
 
 def spied(monkeypatch: pytest.MonkeyPatch, scatter: tuple[float, ...]) -> dict[str, float]:
@@ -155,7 +200,8 @@ def spied(monkeypatch: pytest.MonkeyPatch, scatter: tuple[float, ...]) -> dict[s
                 run.coordinates["realisation"]
             )  # a key knows the code's version
             value = 100 + scatter[level] * np.random.default_rng([seed, level]).standard_normal()
-            rows.append(dict.fromkeys(QUANTITIES, value) | {"status": "converged", "key": run.key})
+            row = dict.fromkeys((*QUANTITIES, "contact_area_corrected"), value)
+            rows.append(row | {"normal_force": 70.0, "status": "converged", "key": run.key})
             spent.append(seconds.setdefault(run.key, 4.0**level))
         return engine.Sweep(0, len(rows), {}, rows, spent, 0.0)
 
@@ -171,7 +217,7 @@ def test_a_target_out_of_reach_is_refused_after_the_pilot(
     study = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}})
     with pytest.raises(InputError, match=f"--target-error = {target:g}: .*realisations.*1000000") as refused:
         ensemble(study, tmp_path / "a.sqlite", target)
-    assert len(solved) == 16 + 2 * 8 + 2 * 4
+    assert len(solved) == PILOT[0] + 2 * PILOT[1] + 2 * PILOT[2]
     assert re.search("takes ([1-9].*|inf) realisations", refused.value.allowed)
 
 
@@ -208,6 +254,8 @@ def test_an_ensemble_resumes_and_repeats(tmp_path: Path) -> None:
         ({"vary": {"grid": [16, 48]}}, "vary.grid"),
         ({"vary": {"grid": [16]}}, "vary.grid"),
         ({"vary": {"grid": [16, 32], "load": [1.0]}}, "vary"),
+        ({"realisations": 75}, "realisations"),
+        ({"first_seed": 2**63 - 10**6}, "first_seed"),
     ],
 )
 def test_a_study_that_is_no_ensemble_is_refused(tmp_path: Path, change: dict, field: str) -> None:
@@ -277,9 +325,14 @@ def test_coverage_is_counted() -> None:
             dict.fromkeys(names, (mean, mean + 1)),
             True,
             {},
+            0.0,
+            2.0,
         )
 
     found = document([made(1.0), made(1.0), made(1.0), made(2.0)], 0.1)
     assert found["quantities"]["contact_area"]["covered"] == 0
     assert document([made(1.0), made(1.1)], 0.1)["quantities"]["contact_area"]["covered"] == 2
-    assert found["quantities"]["contact_area"]["cost over plain"] == pytest.approx(0.1)
+    # 8 s for a standard error of 0.1, for which plain solves of 2 s and that scatter are needed
+    variance = np.var([1, 2, 1, 2, 1, 2, 2, 3], ddof=1)
+    share = found["quantities"]["contact_area"]["cost over plain"]
+    assert share == pytest.approx(8 / (2 * variance / 0.1**2))

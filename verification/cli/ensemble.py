@@ -42,9 +42,10 @@ def table(found: Ensemble) -> str:
         return "\n".join(failed)
     rows = [["mean", "value", "standard error", "95 % interval", "cost over plain sampling"]]
     for name, e in found.means.items():
-        interval = f"+- {e.half_width / abs(e.mean):.2%}"
-        share = f"{found.cost / found.plain[name]:.0%}"
-        rows.append([name, f"{e.mean:.6g}", f"{e.standard_error / abs(e.mean):.2%}", interval, share])
+        error, half_width = (f"{x / abs(e.mean):.2%}" if x else "0" for x in (e.standard_error, e.half_width))
+        plain = found.plain[name]
+        share = f"{found.cost / plain:.0%}" if plain else "nothing scatters"
+        rows.append([name, f"{e.mean:.6g}", error, f"+- {half_width}", share])
     terms = [["grid", "realisations", "processor time of one (s)"]]
     for grid, number, seconds in zip(found.grids, found.samples, found.seconds, strict=True):
         terms.append([str(grid), str(number), f"{seconds:.3g}"] if number else [str(grid), "dropped", "-"])

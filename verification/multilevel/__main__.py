@@ -45,10 +45,12 @@ def _repetition(repetition: int, target: float, store: Path) -> Ensemble:
 def document(done: Sequence[Ensemble], target: float) -> dict[str, Any]:
     """Coverage of the repetitions' common mean, and costs over plain sampling's, by quantity."""
     quantities = {}
+    cost, seconds = (float(np.mean([getattr(e, s) for e in done])) for s in ("cost", "finest_seconds"))
     for name in QUANTITIES:
         estimates = [e.means[name] for e in done]
         mean = float(np.mean([e.mean for e in estimates]))
         finest = np.array([value for e in done for value in e.finest[name]])
+        error = float(np.mean([e.standard_error**2 for e in estimates]))
         quantities[name] = {
             "mean": mean,
             "doubt": float(np.std([e.mean for e in estimates], ddof=1) / len(done) ** 0.5),
@@ -58,7 +60,7 @@ def document(done: Sequence[Ensemble], target: float) -> dict[str, Any]:
             "means": [e.mean for e in estimates],
             "half widths": [e.half_width for e in estimates],
             "standard error": float(np.mean([e.standard_error for e in estimates]) / mean),
-            "cost over plain": float(np.mean([e.cost / e.plain[name] for e in done])),
+            "cost over plain": cost / (seconds * float(finest.var(ddof=1)) / error),
         }
     return {
         "scene": SCENE,
@@ -69,7 +71,8 @@ def document(done: Sequence[Ensemble], target: float) -> dict[str, Any]:
         "met": int(sum(e.met for e in done)),
         "samples": np.mean([e.samples for e in done], axis=0).tolist(),
         "seconds of a sample": np.mean([e.seconds for e in done], axis=0).tolist(),
-        "seconds": float(np.mean([e.cost for e in done])),
+        "seconds": cost,
+        "seconds on the finest grid": seconds,
         "plain realisations": PLAIN,
         "quantities": quantities,
         "provenance": provenance(),

@@ -16,7 +16,8 @@ from scipy.stats import t
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-CLEARLY = 2.0  # times dearer: variances of a pilot's four samples do not tell less
+_UNSEEN = 3.0  # rule of three: what N samples have not shown is rarer than 3 in N, with 95 % confidence
+_FALL = 8.0  # of a correction's variance from grid to grid, at most: that of an area's count goes with h^3
 
 
 @dataclass(frozen=True)
@@ -29,16 +30,34 @@ class Estimate:
     freedom: float
 
 
-def estimate(levels: Sequence[Array]) -> Estimate:
-    """From the samples of every term, each of shape ``(N_l,)`` with N_l of at least 2.
+def variances(levels: Sequence[Array], unseen: float) -> Array:
+    """Of the samples of every term, each of shape ``(N_l,)`` with N_l of at least 2; ``(terms,)``.
+
+    Areas are counts, and pairs of them may all agree. They are not known to: what N of them have not shown
+    may come in a share of 3 in N, and be worth the root of ``unseen``. Nor does the variance of a correction
+    fall faster than that of a count, which is more than few samples can tell.
+
+    >>> variances([np.array([1.0, 3.0]), np.array([0.0, 0.0, 0.0, 0.0]), np.array([1.0, 1.1])], 8.0).round(3)
+    array([2.  , 6.  , 0.75])
+    """
+    found: list[float] = []
+    for term, samples in enumerate(levels):
+        seen = float(np.var(samples, ddof=1)) if np.ptp(samples) > 0 else 0.0
+        least = found[-1] / _FALL if term > 1 else 0.0
+        found.append(max(seen, least) if seen else max(min(1.0, _UNSEEN / len(samples)) * unseen, least))
+    return np.array(found)
+
+
+def estimate(levels: Sequence[Array], unseen: float) -> Estimate:
+    """From the samples of every term; see `variances`.
 
     The half width is Student's at the degrees of freedom of Welch (1947) and Satterthwaite (1946).
     """
-    parts = np.array([np.var(samples, ddof=1) / len(samples) for samples in levels])
     counts = np.array([len(samples) for samples in levels])
-    variance = float(parts.sum())
-    freedom = variance**2 / float((parts**2 / (counts - 1)).sum()) if variance > 0 else np.inf
-    error = float(np.sqrt(variance))
+    parts = variances(levels, unseen) / counts
+    total = float(parts.sum())
+    freedom = total**2 / float((parts**2 / (counts - 1)).sum()) if total > 0 else np.inf
+    error = float(np.sqrt(total))
     quantile = float(t.ppf(0.5 + CONFIDENCE / 2, freedom)) if np.isfinite(freedom) else 0.0
     mean = float(sum(np.mean(samples) for samples in levels))
     return Estimate(mean, error, quantile * error, float(freedom))
@@ -79,12 +98,3 @@ def costs_by_start(scatter: Array, corrections: Array, alone: Array, pairs: Arra
         costs = np.append(alone[s], pairs[s + 1 :])
         found.append(demand(np.vstack([scatter, corrections[s + 1 :]]), costs, target) @ costs)
     return np.array(found)
-
-
-def cheapest_start(costs: Array) -> int:
-    """The coarsest start not `CLEARLY` dearer than the cheapest, and no dearer than plain sampling.
-
-    >>> cheapest_start(np.array([1.5, 1.0, 2.0])), cheapest_start(np.array([5.0, 4.0, 1.0]))
-    (0, 2)
-    """
-    return int(np.flatnonzero(costs <= min(CLEARLY * costs.min(), costs[-1]))[0])
