@@ -180,6 +180,8 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
         ("kill -SEGV $$", "exit status -11"),
         ("true", "neither pressure.csv nor answer.npz"),
         (": > $0/pressure.csv", "unreadable"),
+        ("mkfifo $0/pressure.csv", "pressure.csv is no regular file"),
+        ("cp $0/gap.csv $0/pressure.csv; mkfifo $0/answer.json", "answer.json is no regular file"),
         ("echo 1,2,3,4 > $0/pressure.csv", "shape"),
         ("printf '1,2\\n3\\n' > $0/pressure.csv", "unequal length"),
         ("sed s/0.5/nan/ $0/gap.csv > $0/pressure.csv", "not finite"),

@@ -148,6 +148,9 @@ def write_problem(problem: ContactProblem, directory: Path) -> None:
 def read_answer(directory: Path) -> Answer:
     """The answer in a directory, for `ask` to judge. Raises `BadAnswer` where there is none."""
     table, archive, header = (directory / name for name in ("pressure.csv", "answer.npz", "answer.json"))
+    for path in (table, archive, header):
+        if path.exists() and not path.is_file():  # a pipe would be read for ever
+            raise BadAnswer(f"{path.name} is no regular file")
     if table.exists() == archive.exists():
         found = "both pressure.csv and" if table.exists() else "neither pressure.csv nor"
         raise BadAnswer(f"exit status 0, but {found} answer.npz")
