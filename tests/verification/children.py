@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -42,6 +43,20 @@ def forked(act: Callable[[], int], *, before: Callable[[], object] = lambda: Non
         _, waited = os.waitpid(child, 0)
         err.seek(0)
         return Ended(os.waitstatus_to_exitcode(waited), err.read().decode())
+
+
+def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
+    """The command line, run in a folder. A shell's background job ignores interrupts; this does not."""
+    code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    code += "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    child = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    assert child.stdout is not None
+    assert child.stdout.readline() == "ready\n"
+    return child
 
 
 def one_line(ended: Ended, says: str, status: int = 1) -> None:

@@ -4,31 +4,15 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
 
-from tests.verification.children import LONG, STUDY, Ended, forked, rows
+from tests.verification.children import LONG, STUDY, Ended, forked, rows, started
 from verification.cli import main
 from verification.sweep import engine
 from verification.sweep.study import study_from_dict
-
-
-def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
-    # a shell's background job ignores interrupts, and so would its children
-    code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
-    code += "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    child = subprocess.Popen(
-        [sys.executable, "-c", code, *arguments],
-        cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
-    assert child.stdout is not None
-    assert child.stdout.readline() == "ready\n"
-    return child
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL, signal.SIGTERM])

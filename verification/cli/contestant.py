@@ -10,7 +10,7 @@ from verification.cli.output import columns, emit, judgement, wrapped
 
 if TYPE_CHECKING:
     from verification.case import Result
-    from verification.contestants.isolated import Source
+    from verification.contestants.serving import Source
     from verification.runner import Run
 
 ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout")

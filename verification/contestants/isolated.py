@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from multiprocessing.connection import Connection
+from multiprocessing.connection import wait
 from typing import Any
 
 from refimpl.errors import InputError
@@ -20,7 +20,8 @@ from verification.case import Result, Status
 from verification.contestants.check import Check
 from verification.contestants.command import require_timeout
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
-from verification.contestants.suite import select, suite
+from verification.contestants.serving import Source, serve
+from verification.contestants.suite import select
 
 MOST_PROBLEMS = 6
 """No check poses more problems: so many times the time for one is the time for a check."""
@@ -28,6 +29,8 @@ GRACE = 10.0
 """Seconds beyond that: a command's own limit goes first, and says more."""
 START = 120.0
 """Seconds for a new process to import the solver and the suite."""
+PATIENCE = 1.0
+"""Seconds for a process to end what it started and to remove its files, when it is told to end."""
 
 
 @dataclass(frozen=True)
@@ -72,10 +75,6 @@ class Limited:
         return self.solver(problem)
 
 
-Source = Callable[[], Contestant]
-"""Makes the contestant, in the process that will run it; must be picklable."""
-
-
 class Table:
     """Runs checks one by one in a child process, and starts a new one after a death or a timeout."""
 
@@ -101,21 +100,30 @@ class Table:
         return case.result(Status.ERROR, note, time.perf_counter() - start)
 
     def close(self) -> None:
-        """End the process and all that it started."""
-        self._pipe.close()
+        """End the process and what it started: first in good order, then by force.
+
+        What has left the process's group is out of reach, but for a program that the process itself ran.
+        """
+        self._process.terminate()
+        wait([self._process.sentinel], PATIENCE)
         if self._process.pid is not None:
             with suppress(ProcessLookupError):  # gone already, or not yet the head of a group
                 os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         self._process.join()
+        self._pipe.close()
 
     def _open(self) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, self._source))
+        self._process = context.Process(target=serve, args=(theirs, self._source))
         self._process.start()
         theirs.close()
-        refusal = self._refusal()
+        try:
+            refusal = self._refusal()
+        except BaseException:
+            self.close()
+            raise
         if refusal is not None:
             self.close()
             raise refusal
@@ -138,25 +146,6 @@ class Table:
 
 def _absent(problem: ContactProblem) -> Answer:
     raise RuntimeError("stands for a contestant whose process died")
-
-
-def _serve(pipe: Connection, source: Source) -> None:
-    """In the child: what the solver prints goes to stderr, so that it cannot end up in a result file."""
-    os.setsid()
-    os.dup2(2, 1)
-    checks = {check.slug: check for check in suite()}
-    try:
-        contestant = source()
-    except InputError as refused:
-        pipe.send(refused)
-        return
-    pipe.send(None)
-    while True:
-        try:
-            slug = pipe.recv()
-        except EOFError:
-            return
-        pipe.send(checks[slug].case(contestant).run())
 
 
 def run(

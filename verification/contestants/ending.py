@@ -1,0 +1,50 @@
+"""Signals that end a process let it clean up first: as exceptions, they run every `finally` on their way."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+
+class Ended(BaseException):
+    """A signal asked for the end; no `Exception`, since nobody's solver is to take it for a failure."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+@contextmanager
+def unwinding(*numbers: signal.Signals) -> Iterator[None]:
+    """Within the block, the first of these signals raises `Ended`; the next find the clean-up under way.
+
+    A signal that is ignored stays so (`nohup`), and a process that is forked within gets them as ever. Only
+    the main thread can have it so; in another the block is run as it is.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    found = {number: signal.getsignal(number) for number in numbers}
+    taken = [number for number in numbers if found[number] is not signal.SIG_IGN]
+    owner = os.getpid()
+
+    def unwind(number: int, frame: FrameType | None) -> None:
+        if os.getpid() != owner:
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
+            return
+        for each in taken:
+            signal.signal(each, signal.SIG_IGN)
+        raise Ended(number)
+
+    for number in taken:
+        signal.signal(number, unwind)
+    try:
+        yield
+    finally:
+        for number in taken:
+            signal.signal(number, found[number])
