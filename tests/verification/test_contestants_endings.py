@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.verification.children import started
+from tests.verification.children import forked, started
+from verification.contestants.ending import Ended, unwinding
 
 needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks processes up in /proc")
 SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
@@ -41,8 +42,15 @@ def until(seconds: float, what: str, holds: Callable[[], object]) -> None:
 
 
 @needs_proc
-@pytest.mark.parametrize("how", [signal.SIGINT])
-@pytest.mark.parametrize("solver", [["--exec", SLEEPER], ["--solver", "sleeper:solve"]], ids=lambda s: s[0])
+@pytest.mark.parametrize(
+    ("solver", "how"),
+    [
+        (["--exec", SLEEPER], signal.SIGINT),
+        (["--exec", SLEEPER], signal.SIGTERM),
+        (["--exec", SLEEPER], signal.SIGKILL),
+        (["--solver", "sleeper:solve"], signal.SIGHUP),
+    ],
+)
 def test_a_run_that_is_ended_takes_the_solver_with_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solver: list[str], how: signal.Signals
 ) -> None:
@@ -64,3 +72,37 @@ def test_a_run_that_is_ended_takes_the_solver_with_it(
             os.kill(pid, signal.SIGKILL)
         child.kill()
         child.communicate()
+
+
+def test_a_signal_unwinds_once_and_is_then_as_before() -> None:
+    cleaned = []
+
+    def tidying() -> None:
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+        finally:
+            os.kill(os.getpid(), signal.SIGHUP)  # while it is tidied up
+            cleaned.append(True)
+
+    def act() -> int:
+        with pytest.raises(Ended, match="15"), unwinding(signal.SIGTERM, signal.SIGHUP):
+            tidying()
+        if cleaned:
+            os.kill(os.getpid(), signal.SIGTERM)
+        return 0
+
+    assert forked(act).status == -signal.SIGTERM
+
+
+def test_an_ignored_signal_stays_so_and_a_fork_gets_it_as_ever() -> None:
+    def act() -> int:
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as under nohup
+        with unwinding(signal.SIGTERM, signal.SIGHUP):
+            os.kill(os.getpid(), signal.SIGHUP)
+            child = os.fork()
+            if child == 0:
+                os.kill(os.getpid(), signal.SIGTERM)
+                os._exit(3)
+        return abs(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+
+    assert forked(act).status == signal.SIGTERM

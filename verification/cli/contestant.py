@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import os
+import signal
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -70,6 +72,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.errors import InputError
     from verification.case import Tier
     from verification.contestants import isolated, suite
+    from verification.contestants.ending import Ended, unwinding
     from verification.files import Progress
     from verification.runner import Run
 
@@ -83,13 +86,18 @@ def run(options: argparse.Namespace) -> int:
         return 0
     name, source, stated = _source(options)
     start, progress = time.perf_counter(), Progress(len(checks))
-    results = isolated.run(
-        source,
-        options.only,
-        timeout=_timeout(options),
-        name=name,
-        tick=lambda r: progress.tick(f"{r.status:<11} {r.id}"),
-    )
+    try:
+        with unwinding(signal.SIGTERM, signal.SIGHUP):  # a batch queue's, a terminal's that is closed
+            results = isolated.run(
+                source,
+                options.only,
+                timeout=_timeout(options),
+                name=name,
+                tick=lambda r: progress.tick(f"{r.status:<11} {r.id}"),
+            )
+    except Ended as ended:
+        os.kill(os.getpid(), ended.number)  # everything is tidied up; now what the signal does by itself
+        raise
     progress.close()
     done = Run(Tier.FULL, tuple(options.only), tuple(results), time.perf_counter() - start)
     document = done.document() | {

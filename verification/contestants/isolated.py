@@ -20,7 +20,7 @@ from verification.case import Result, Status
 from verification.contestants.check import Check
 from verification.contestants.command import require_timeout
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
-from verification.contestants.serving import Source, serve
+from verification.contestants.serving import PATIENCE, Source, serve
 from verification.contestants.suite import select
 
 MOST_PROBLEMS = 6
@@ -29,8 +29,6 @@ GRACE = 10.0
 """Seconds beyond that: a command's own limit goes first, and says more."""
 START = 120.0
 """Seconds for a new process to import the solver and the suite."""
-PATIENCE = 1.0
-"""Seconds for a process to end what it started and to remove its files, when it is told to end."""
 
 
 @dataclass(frozen=True)
