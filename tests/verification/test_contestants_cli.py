@@ -21,7 +21,8 @@ from verification.contestants.protocol import (
 
 Capture = pytest.CaptureFixture[str]
 RIVAL = """
-import os, time
+import gc, os, time
+from multiprocessing.connection import Connection
 from verification.contestants import own
 
 def solve(problem):
@@ -34,6 +35,22 @@ def solve(problem):
 
 def twice(problem):
     return 2 * own.solve(problem).pressure
+
+forked = []
+
+def forks(problem):
+    if not forked:
+        forked.append(os.fork())
+        time.sleep(0.5 if forked[0] else 0)  # so the child is the first to answer, and then takes its time
+    elif not forked[0]:
+        time.sleep(3)
+    return own.solve(problem)
+
+def forges(problem):
+    for found in gc.get_objects():
+        if isinstance(found, Connection):
+            found.send(problem.M)
+    return own.solve(problem)
 
 number = 3
 """
@@ -86,6 +103,20 @@ def test_a_solver_that_exits_or_hangs_is_an_error_and_the_rest_still_runs(
     assert found["one-element"][0] == "pass"
     assert found["square-patch"] == ("error", "no verdict within 4.3 s")
     assert found["westergaard-load"] == ("error", "the solver's process died (exit status 0)")
+
+
+def test_a_solver_that_forks_is_judged_once_a_case_and_each_verdict_is_that_of_its_case(rival: Path) -> None:
+    cases = [f"contestant/{name}" for name in ("one-element", "pins", "hertz-load")]
+    results = isolated.run(Named("rival_solver:forks").contestant, cases, timeout=60.0)
+    assert sorted(r.id for r in results) == sorted(cases)
+    assert {r.status for r in results} == {"pass"}
+
+
+def test_what_is_no_verdict_on_the_case_is_an_error(rival: Path) -> None:
+    cases = ["contestant/one-element", "contestant/pins"]
+    results = isolated.run(Named("rival_solver:forges").contestant, cases, timeout=60.0)
+    assert sorted(r.id for r in results) == sorted(cases)
+    assert {r.note for r in results} == {"the solver's process sent something else than this case's verdict"}
 
 
 def test_the_command_line_runs_a_solver(rival: Path, capfd: Capture) -> None:

@@ -83,18 +83,20 @@ class Table:
 
     def run(self, check: Check) -> Result:
         """The verdict on one check; never raises for what the contestant does."""
-        start = time.perf_counter()
+        start, case = time.perf_counter(), check.case(_absent)
         try:
             self._pipe.send(check.slug)
             if self._pipe.poll(self._limit):
-                result: Result = self._pipe.recv()
-                return result
-            note = f"no verdict within {self._limit:g} s"
+                result: object = self._pipe.recv()
+                if isinstance(result, Result) and result.id == case.id:
+                    return result
+                note = "the solver's process sent something else than this case's verdict"
+            else:
+                note = f"no verdict within {self._limit:g} s"
         except (EOFError, OSError):
             note = f"the solver's process died (exit status {self._exit_status()})"
         self.close()
         self._open()
-        case = check.case(_absent)
         return case.result(Status.ERROR, note, time.perf_counter() - start)
 
     def close(self) -> None:
