@@ -16,6 +16,9 @@ from enum import StrEnum
 
 import numpy as np
 
+LONGEST_NOTE = 1000
+"""Characters of somebody else's message that a note keeps."""
+
 
 class Unavailable(Exception):
     """Raised by a case whose optional dependency is missing; the message says which."""
@@ -138,10 +141,10 @@ class Case:
             data = jsonable(dict(measured.data))
             error = error_of(self.metric, self.tolerance, measured)
         except Unavailable as missing:
-            status, note = Status.UNAVAILABLE, str(missing) or "an optional dependency is missing"
+            status, note = Status.UNAVAILABLE, readable(str(missing)) or "an optional dependency is missing"
         # The one place that takes any failure: a case that breaks, or asks to exit, gets its verdict as well.
         except (Exception, SystemExit) as failure:
-            note = f"{type(failure).__name__}: {failure} [{_place(failure)}]"
+            note = f"{type(failure).__name__}: {readable(str(failure))} [{_place(failure)}]"
         if measured is None or error is None:
             return self.result(status, note, time.perf_counter() - start)
         within = error >= self.tolerance if self.metric is Metric.AT_LEAST else error <= self.tolerance
@@ -232,6 +235,17 @@ def jsonable(item: object) -> object:
     if isinstance(item, list | tuple):
         return [jsonable(value) for value in item]
     raise TypeError(f"data holds a {type(item).__name__}, which JSON cannot")
+
+
+def readable(text: str) -> str:
+    """Text from elsewhere as any UTF-8 file takes it, its middle left out where it is long.
+
+    >>> readable("no licence in caf\\udce9")
+    'no licence in caf?'
+    """
+    if len(text) > LONGEST_NOTE:
+        text = f"{text[: LONGEST_NOTE // 2]} ... {text[-LONGEST_NOTE // 2 :]}"
+    return text.encode("utf-8", "replace").decode()
 
 
 def _finite(name: str, number: float) -> float:

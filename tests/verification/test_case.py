@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any, cast
@@ -184,3 +185,18 @@ def test_data_keep_nine_digits_but_the_verdict_keeps_all() -> None:
     assert result.data == {"x": 0.333333333}
     with pytest.raises(TypeError):
         jsonable({1, 2})
+
+
+@pytest.mark.parametrize("failure", [RuntimeError, SystemExit, Unavailable])
+def test_a_note_can_be_written_to_any_utf_8_file_and_has_an_end(failure: type[BaseException]) -> None:
+    def undecodable() -> Measured:
+        raise failure("no licence in " + os.fsdecode(b"/opt/caf\xe9"))
+
+    def endless() -> Measured:
+        raise failure("begun " + "x" * 5_000_000 + " done")
+
+    assert b"no licence in /opt/caf?" in declare(undecodable).run().note.encode()
+    note = declare(endless).run().note
+    assert len(note) < 2000
+    assert "begun xxx" in note
+    assert "xxx done" in note

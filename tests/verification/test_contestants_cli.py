@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -179,6 +180,13 @@ def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
     assert (
         main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "contestant/one-element"]) == 1
     )
+
+
+def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) -> None:
+    command, written = "false " + os.fsdecode(b"caf\xe9"), tmp_path / "mine.json"
+    assert main(["verify", "--exec", command, "--only", "contestant/pins", "--json", str(written)]) == 1
+    assert json.loads(written.read_text())["contestant"]["name"] == "false caf?"
+    assert "false caf?: 0 pass" in capfd.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -70,7 +70,7 @@ def chosen(options: argparse.Namespace) -> bool:
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from refimpl.errors import InputError
-    from verification.case import Tier
+    from verification.case import Tier, readable
     from verification.contestants import isolated, suite
     from verification.contestants.ending import Ended, unwinding
     from verification.files import Progress
@@ -102,12 +102,12 @@ def run(options: argparse.Namespace) -> int:
     done = Run(Tier.FULL, tuple(options.only), tuple(results), time.perf_counter() - start)
     document = done.document() | {
         "contestant": {
-            "name": name,
+            "name": readable(name),
             "abilities": stated or None,
             "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
         }
     }
-    emit(document, options.json, table(name, done))
+    emit(document, options.json, table(readable(name), done))
     return done.exit_status
 
 
