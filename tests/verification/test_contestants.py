@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -177,6 +178,7 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
     [
         ("exit 3", "exit status 3: nothing said"),
         ("echo out of memory >&2; exit 1", "exit status 1: out of memory"),
+        ("rm -r $0; echo gone >&2; exit 1", "exit status 1: gone"),
         ("kill -SEGV $$", "exit status -11"),
         ("true", "neither pressure.csv nor answer.npz"),
         (": > $0/pressure.csv", "unreadable"),
@@ -203,6 +205,18 @@ def test_a_program_that_does_not_answer_is_an_error(script: str, said: str) -> N
     (result,) = run(Command(("sh", "-c", script), Abilities(), timeout=0.2), ["contestant/one-element"])
     assert result.status == "error"
     assert said in result.note
+
+
+def test_of_what_a_program_says_only_the_end_is_read() -> None:
+    script = "yes 'iteration after iteration' | head -c 20000000; echo; echo out of memory; exit 3"
+    tracemalloc.start()
+    try:
+        (result,) = run(Command(("sh", "-c", script), Abilities(), timeout=30), ["contestant/one-element"])
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert "exit status 3: out of memory" in result.note
+    assert peak < 5e6
 
 
 def test_a_program_that_answers_wrongly_fails() -> None:

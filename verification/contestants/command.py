@@ -27,6 +27,7 @@ import zipfile
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -36,6 +37,9 @@ from verification.contestants.protocol import Abilities, Answer, BadAnswer, Cont
 
 LONGEST = 86400.0
 """Seconds that one problem may take: a day. The system's clocks for waiting end at some weeks."""
+
+MOST_READ = 65536
+"""Bytes of a program's output that are looked through for its last line."""
 
 
 def require_timeout(seconds: float) -> None:
@@ -110,10 +114,15 @@ class Command:
                 raise BadAnswer(f"no answer within {self.timeout:g} s") from late
             finally:
                 _end(process)
-        if status:
-            said = (directory / "output.txt").read_bytes().decode(errors="replace").split("\n")
-            last = next((line for line in reversed(said) if line.strip()), "nothing said")
-            raise BadAnswer(f"exit status {status}: {last.strip()[:200]}")
+            if status:
+                raise BadAnswer(f"exit status {status}: {_last_line(output)}")
+
+
+def _last_line(output: BinaryIO) -> str:
+    """The end of what a program said; it may have said gigabytes, or removed the file."""
+    output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_READ))
+    said = output.read(MOST_READ).decode(errors="replace").split("\n")
+    return next((line.strip() for line in reversed(said) if line.strip()), "nothing said")[:200]
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
