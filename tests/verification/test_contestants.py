@@ -179,7 +179,7 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
         ("exit 3", "exit status 3: nothing said"),
         ("echo out of memory >&2; exit 1", "exit status 1: out of memory"),
         ("rm -r $0; echo gone >&2; exit 1", "exit status 1: gone"),
-        ("kill -SEGV $$", "exit status -11"),
+        ("kill -SEGV $$", "killed by SIGSEGV: nothing said"),
         ("true", "neither pressure.csv nor answer.npz"),
         (": > $0/pressure.csv", "unreadable"),
         ("mkfifo $0/pressure.csv", "pressure.csv is no regular file"),

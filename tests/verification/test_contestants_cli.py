@@ -71,6 +71,7 @@ IMPORTS = {
     "rival_raising": "raise RuntimeError('no licence\\nfound')",
     "rival_leaving": "import sys; sys.exit('bye')",
     "rival_dying": "import os; os._exit(7)",
+    "rival_crashing": "import os; os.abort()",
 }
 
 
@@ -202,6 +203,7 @@ def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) 
         (["--solver", "rival_leaving:solve"], "SystemExit: bye"),
         (["--solver", "rival_dying:solve"], "'rival_dying:solve': expected a solver whose import ends well"),
         (["--solver", "rival_dying:solve"], "its process died, exit status 7"),
+        (["--solver", "rival_crashing:solve"], "its process died, killed by SIGABRT"),
         (["--solver", "rival_solver:solve", "--able", "magic"], "magic"),
         (["--solver", "rival_solver:solve", "--largest", "0"], "largest"),
         (["--solver", "rival_solver:solve", "--precision", "0.1"], "precision"),

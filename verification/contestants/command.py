@@ -33,6 +33,7 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
+from verification.contestants.ending import told
 from verification.contestants.protocol import Abilities, Answer, BadAnswer, ContactProblem
 
 LONGEST = 86400.0
@@ -115,7 +116,7 @@ class Command:
             finally:
                 _end(process)
             if status:
-                raise BadAnswer(f"exit status {status}: {_last_line(output)}")
+                raise BadAnswer(f"{told(status)}: {_last_line(output)}")
 
 
 def _last_line(output: BinaryIO) -> str:

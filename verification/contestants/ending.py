@@ -1,4 +1,4 @@
-"""Signals that end a process let it clean up first: as exceptions, they run every `finally` on their way."""
+"""How a process ends: signals let it clean up first, as exceptions that run every `finally` on their way."""
 
 from __future__ import annotations
 
@@ -48,3 +48,15 @@ def unwinding(*numbers: signal.Signals) -> Iterator[None]:
     finally:
         for number in taken:
             signal.signal(number, found[number])
+
+
+def told(status: int | None) -> str:
+    """An exit status in words; Python counts a signal as a negative one.
+
+    >>> told(3), told(-11), told(-40)
+    ('exit status 3', 'killed by SIGSEGV', 'killed by signal 40')
+    """
+    if status is None or status >= 0:
+        return f"exit status {status}"
+    names = {each.value: each.name for each in signal.Signals}
+    return f"killed by {names.get(-status, f'signal {-status}')}"

@@ -19,6 +19,7 @@ from refimpl.grid import Array
 from verification.case import Result, Status
 from verification.contestants.check import Check
 from verification.contestants.command import require_timeout
+from verification.contestants.ending import told
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
 from verification.contestants.serving import PATIENCE, Source, serve
 from verification.contestants.suite import select
@@ -94,7 +95,7 @@ class Table:
             else:
                 note = f"no verdict within {self._limit:g} s"
         except (EOFError, OSError):
-            note = f"the solver's process died (exit status {self._exit_status()})"
+            note = f"the solver's process died ({told(self._exit_status())})"
         self.close()
         self._open()
         return case.result(Status.ERROR, note, time.perf_counter() - start)
@@ -136,7 +137,7 @@ class Table:
                 return refused
             reason = f"no end within {START:g} s"
         except EOFError:
-            reason = f"its process died, exit status {self._exit_status()}"
+            reason = f"its process died, {told(self._exit_status())}"
         return InputError("--solver", self._name, f"a solver whose import ends well ({reason})")
 
     def _exit_status(self) -> int | None:
