@@ -168,6 +168,10 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
     np.savez(tmp_path / "answer.npz", forces=FINE)
     with pytest.raises(BadAnswer, match="KeyError"):
         read_answer(tmp_path)
+    with (tmp_path / "answer.npz").open("wb") as single:
+        np.save(single, FINE)
+    with pytest.raises(BadAnswer, match="holds a single array: expected an archive, as of savez"):
+        read_answer(tmp_path)
     (tmp_path / "answer.npz").write_bytes(b"PK\x03\x04 cut short")
     with pytest.raises(BadAnswer, match="unreadable"):
         read_answer(tmp_path)
@@ -189,6 +193,9 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
         ("sed s/0.5/nan/ $0/gap.csv > $0/pressure.csv", "not finite"),
         ("sed s/0.5/oops/ $0/gap.csv > $0/pressure.csv", "unreadable"),
         ("cp $0/gap.csv $0/pressure.csv; cp $0/problem.npz $0/answer.npz", "both"),
+        ("printf '1,2\\n\\n3,4,\\n' > $0/pressure.csv", "line 3, number 3: '' is no number"),
+        ("printf '1,2\\n0.0D+00,4\\n' > $0/pressure.csv", "line 2, number 1: '0.0D+00' is no number"),
+        ("printf '1,2\\n3,4\\n5\\n' > $0/pressure.csv", "line 3 has 1 numbers, those before have 2"),
         (
             "cp $0/gap.csv $0/pressure.csv; echo '{\"converged\": false}' > $0/answer.json",
             "says that it did not converge",

@@ -173,13 +173,32 @@ def read_answer(directory: Path) -> Answer:
 
 
 def _read_table(path: Path) -> Array:
-    """Numbers between commas; a line of another length raises ValueError, as does an empty file."""
-    rows = [[float(cell) for cell in line.split(",")] for line in path.read_text().splitlines() if line]
-    if not rows or any(len(row) != len(rows[0]) for row in rows):
-        raise ValueError("no numbers, or lines of unequal length")
+    """Numbers between commas; ValueError says which line has something else, or another number of them."""
+    rows: list[list[float]] = []
+    for number, line in enumerate(path.read_text().splitlines(), start=1):
+        if not line:
+            continue
+        rows.append([_number(cell, number, k) for k, cell in enumerate(line.split(","), start=1)])
+        if len(rows[-1]) != len(rows[0]):
+            raise ValueError(
+                f"lines of unequal length: line {number} has {len(rows[-1])} numbers, "
+                f"those before have {len(rows[0])}"
+            )
+    if not rows:
+        raise ValueError("no numbers")
     return np.array(rows)
 
 
+def _number(cell: str, line: int, place: int) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        raise ValueError(f"line {line}, number {place}: {cell[:40]!r} is no number") from None
+
+
 def _read_archive(path: Path) -> Array:
-    with np.load(path, allow_pickle=False) as archive:
+    archive = np.load(path, allow_pickle=False)
+    if isinstance(archive, np.ndarray):
+        raise ValueError(f"{path.name} holds a single array: expected an archive, as of savez")
+    with archive:
         return np.asarray(archive["pressure"])
