@@ -77,6 +77,8 @@ def test_an_approach_counts_from_the_mean_planes_only_where_it_is_periodic() -> 
         (np.array([[1.0, -np.inf], [1.0, 1.0]]), "finite"),
         (1j * FINE, "returned an array of complex128: .* array of real numbers"),
         (FINE > 0, "returned an array of bool"),
+        (np.ma.masked_array(FINE, mask=FINE > 0), "4 pressures are masked"),
+        (Answer(np.ma.masked_less(GAP, 1e-7), True), "1 pressures are masked"),
         (None, "returned None"),
         ([[1.0, 1.0], [1.0, 1.0]], "returned a list"),
         ((FINE, True), r"returned a tuple: .* Answer\(pressure, converged\)"),
@@ -99,7 +101,13 @@ def _still() -> ContactProblem:
 
 
 def test_an_array_and_an_answer_are_accepted() -> None:
-    for answer in (FINE, FINE.astype(int), Answer([[1, 1], [1, 1]], True), Answer(FINE, np.True_)):
+    for answer in (
+        FINE,
+        FINE.astype(int),
+        np.ma.masked_array(FINE),
+        Answer([[1, 1], [1, 1]], True),
+        Answer(FINE, np.True_),
+    ):
         np.testing.assert_array_equal(ask(lambda problem, a=answer: a, _still()), FINE)  # type: ignore[misc]
 
 

@@ -45,11 +45,13 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Array:
             raise BadAnswer(f"the solver says converged = {answer.converged!r}: expected true or false")
         if not answer.converged:
             raise BadAnswer("the solver says that it did not converge")
-        answer = np.asarray(answer.pressure)
+        answer = np.asanyarray(answer.pressure)  # a mask stays
     if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
         raise BadAnswer(f"the solver returned {_named(answer)}: {EXPECTED}")
     if answer.shape != problem.gap.shape:
         raise BadAnswer(f"pressures of shape {answer.shape} for a gap of shape {problem.gap.shape}")
+    if np.ma.is_masked(answer):  # what lies below a mask is nobody's answer
+        raise BadAnswer(f"{int(np.count_nonzero(np.ma.getmaskarray(answer)))} pressures are masked")
     pressure = np.array(answer, dtype=np.float64)
     if not np.isfinite(pressure).all():
         raise BadAnswer(f"{int(np.count_nonzero(~np.isfinite(pressure)))} pressures are not finite")
