@@ -66,14 +66,15 @@ def test_our_own_solver_passes_every_case() -> None:
         assert max(problem.M for problem in posed) <= 160
 
 
-def test_a_periodic_mean_that_is_off_is_an_error_under_a_load() -> None:
-    """It stores no energy, so nothing but the load shows it."""
+@pytest.mark.parametrize("name", ["periodic-elimination", "periodic-approach"])
+def test_a_periodic_mean_that_is_off_is_an_error(name: str) -> None:
+    """It stores no energy, so nothing but the mean itself shows it."""
 
     def lifted(asked: ContactProblem) -> np.ndarray:
         pressure = np.array(own.solve(asked).pressure)
         return pressure + 1e-3 * pressure.mean() if asked.periodic else pressure
 
-    (result,) = run(Limited(lifted, own.solve.abilities), ["contestant/periodic-elimination"])
+    (result,) = run(Limited(lifted, own.solve.abilities), [f"contestant/{name}"])
     assert result.error == pytest.approx(1e-6 / 1e-8, rel=1e-3)
     assert result.status == "fail"
 

@@ -39,6 +39,7 @@ class Fault(StrEnum):
     MEAN_DISPLACEMENT_LOST = "lost mean of the displacement"
     MEAN_PLANES_LOST = "lost mean of the gap"
     MEAN_PRESSURE_LOST = "lost mean of the pressure"
+    MEAN_PRESSURE_ADDED = "uniform pressure at a periodic approach"
     NEAR_FIELD = "wrong near-field coefficients"
     TENSION = "contact that pulls"
     SPACING_KEPT = "spacing kept from an earlier problem"
@@ -116,11 +117,14 @@ class Entrant:
     def misfit(self, pressed: Pressed, exact: Array) -> float:
         """Squared energy-norm error against exact pressures, in units of the claim.
 
-        The mean of a periodic pressure stores no energy: under a load its error counts as squared as well.
+        The mean of a periodic pressure stores no energy: its relative error counts as squared as well. Raises
+        ValueError for pressures to compare with that hold no energy, or carry no load.
         """
-        problem, error = pressed.problem, referee.misfit(pressed.problem, pressed.pressure, exact)
-        if problem.periodic and problem.load is not None:
-            error += (pressed.load / problem.load - 1) ** 2
+        error, carried = referee.misfit(pressed.problem, pressed.pressure, exact), float(exact.sum())
+        if not carried > 0:
+            raise ValueError("the pressures to compare with carry no load")
+        if pressed.problem.periodic:
+            error += (float(pressed.pressure.sum()) / carried - 1) ** 2
         return error / self.claim
 
     def against(self, *answers: tuple[Pressed, Array]) -> Measured:

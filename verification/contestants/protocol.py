@@ -7,6 +7,7 @@ spacing``:
     u(x) = 1/(pi E*) sum f I[1/rho] + c0 sum r I[s/rho^2],      r = tau [f > 0] + beta f
     u + gap >= approach,   f >= 0,   f (u + gap - approach) = 0,
 
+An element is in contact where f > 0, and tau acts only there: off the contact an answer holds exact zeros.
 ``I`` integrates over one element; rho is the distance from source to field point, and s the offset from
 source to field point along the sliding direction ``(cos phi, sin phi)``, in which the upper body slides.
 Friction drags the lower body along it and the upper one against it; the second sum is what that moves the

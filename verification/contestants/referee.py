@@ -1,7 +1,7 @@
 """What the suite computes itself, to judge an answer: displacements, residuals, and solutions by elimination.
 
 None of it is shared with the solvers of `refimpl`. A half-space uses dense matrices of the textbook's corner
-differences up to `LARGEST` elements a side; beyond, for pressure, the same numbers by scipy's convolution.
+differences up to `LARGEST` elements a side; beyond, the same numbers by scipy's convolution.
 A periodic problem uses the exact symbols of `verification.exact.fourier`.
 """
 
@@ -19,7 +19,7 @@ from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from verification.contestants.protocol import ContactProblem
 from verification.exact.fourier import symbol_at
-from verification.properties.textbook import normal_matrix, normal_offsets, shear_matrix
+from verification.properties.textbook import normal_matrix, normal_offsets, shear_matrix, shear_offsets
 
 LARGEST = 32
 
@@ -67,7 +67,10 @@ def displacement(problem: ContactProblem, pressure: Array) -> Array:
         E, slip = problem.reduced_modulus, np.pi * c0 * problem.reduced_modulus
         both = symbol_at(*_waves(problem), E, slip, direction)
         return normal + _filtered(shear, both - symbol_at(*_waves(problem), E))
-    moved = np.asarray(_unit_matrix(problem.M, direction) @ shear.ravel()).reshape(shear.shape)
+    if problem.M > LARGEST:
+        moved = np.asarray(fftconvolve(shear_offsets(problem.M, direction), shear, mode="valid"))
+    else:
+        moved = np.asarray(_unit_matrix(problem.M, direction) @ shear.ravel()).reshape(shear.shape)
     return normal + c0 * problem.spacing * moved
 
 

@@ -22,6 +22,10 @@ ALWAYS = (
     Fault.TRANSPOSED,
     Fault.HALF_ELEMENT,
 )
+AND_MEAN = (
+    "in claims: the squared energy-norm error, at most half the complementarity gap (proven), and the square "
+    "of the mean's, at most K (f, a f)/N^2 times that with K the contact's stiffness (Cauchy and Schwarz): "
+)
 LOADS = (0.001, 0.01, 0.05)
 """Load (N) over E* times the unit square: from a few summits to half the elements."""
 
@@ -81,10 +85,10 @@ def rough_residual_light(entrant: Entrant) -> Measured:
     metric="at_most",
     tolerance=1.01,
     tolerance_reason=CLAIM,
-    catches=(*ALWAYS, Fault.PERIODIC_FOR_APERIODIC, Fault.MEAN_DISPLACEMENT_LOST),
+    catches=(*ALWAYS, Fault.PERIODIC_FOR_APERIODIC, Fault.MEAN_DISPLACEMENT_LOST, Fault.ODD_GRIDS),
 )
 def rough_residual_approach(entrant: Entrant) -> Measured:
-    gap = rough_bump(32, seed=5)
+    gap = rough_bump(31, seed=5)
     return judged(entrant, entrant.press(gap, 1.0, approach=float(gap.min()) + 0.1))
 
 
@@ -151,10 +155,16 @@ def no_tension(entrant: Entrant) -> Measured:
     metric="at_most",
     tolerance=1.01,
     tolerance_reason=CLAIM,
-    catches=(*ALWAYS, Fault.APERIODIC_FOR_PERIODIC, Fault.TENSION, Fault.MEAN_PRESSURE_LOST),
+    catches=(
+        *ALWAYS,
+        Fault.APERIODIC_FOR_PERIODIC,
+        Fault.TENSION,
+        Fault.MEAN_PRESSURE_LOST,
+        Fault.ODD_GRIDS,
+    ),
 )
 def periodic_residual(entrant: Entrant) -> Measured:
-    return judged(entrant, entrant.press(wavy(48, seed=9), 1.0, load=0.02 * MODULUS, periodic=True))
+    return judged(entrant, entrant.press(wavy(45, seed=9), 1.0, load=0.02 * MODULUS, periodic=True))
 
 
 @check(
@@ -180,8 +190,14 @@ def periodic_elimination(entrant: Entrant) -> Measured:
     source="principal pivoting (Murty 1974), written for this suite",
     metric="at_most",
     tolerance=2.0,
-    tolerance_reason="in claims of the squared energy-norm error, as `pins`",
-    catches=(Fault.MEAN_PLANES_LOST, Fault.MODULUS_OFF, Fault.APERIODIC_FOR_PERIODIC, Fault.ODD_GRIDS),
+    tolerance_reason=AND_MEAN + "1.3 here",
+    catches=(
+        Fault.MEAN_PLANES_LOST,
+        Fault.MEAN_PRESSURE_ADDED,
+        Fault.MODULUS_OFF,
+        Fault.APERIODIC_FOR_PERIODIC,
+        Fault.ODD_GRIDS,
+    ),
 )
 def periodic_approach(entrant: Entrant) -> Measured:
     gap = wavy(17, seed=11)
@@ -197,11 +213,11 @@ def periodic_approach(entrant: Entrant) -> Measured:
     metric="at_most",
     tolerance=1.01,
     tolerance_reason=CLAIM,
-    catches=(*ALWAYS, Fault.SIGN_OF_C),
+    catches=(*ALWAYS, Fault.SIGN_OF_C, Fault.ODD_GRIDS),
 )
 def sliding_residual(entrant: Entrant) -> Measured:
     coupling = Coupling(tau=0.0, beta=0.5, shear_compliance=COMPLIANCE, sliding_direction=0.6)
-    gap = rough_bump(24, seed=12)
+    gap = rough_bump(23, seed=12)
     return judged(entrant, entrant.press(gap, 1.0, load=0.05 * MODULUS, coupling=coupling))
 
 

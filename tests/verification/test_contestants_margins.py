@@ -1,0 +1,63 @@
+"""Room that the suite's problems leave an honest solver: what its reasons for tolerances say is computed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from refimpl.grid import Array
+from verification.contestants import own, referee
+from verification.contestants.isolated import Limited
+from verification.contestants.protocol import ContactProblem
+from verification.contestants.suite import run
+
+
+def posed_by(name: str) -> list[tuple[ContactProblem, Array]]:
+    """The problems of a case with our pressures, sought to a hundredth of the claim."""
+    posed: list[tuple[ContactProblem, Array]] = []
+
+    def watching(asked: ContactProblem) -> Array:
+        pressure = np.asarray(own.solve(replace(asked, tolerance=1e-2 * asked.tolerance)).pressure)
+        posed.append((asked, pressure))
+        return pressure
+
+    (result,) = run(Limited(watching, own.solve.abilities), [f"contestant/{name}"])
+    assert result.status == "pass"
+    return posed
+
+
+@pytest.mark.parametrize(
+    ("name", "said"), [("periodic-approach", 1.3), ("periodic-sheared-pins-approach", 3.0)]
+)
+def test_the_mean_adds_what_the_reason_says_at_a_periodic_approach(name: str, said: float) -> None:
+    """The mean is ``w' a e`` with w the pressures that move the contact by one, so ``K e' a e`` bounds it."""
+    ((posed, f),) = posed_by(name)
+    still = replace(posed, coupling=None)
+    on = np.flatnonzero(f)
+    stiffness = np.linalg.inv(referee._Elimination(still).matrix[np.ix_(on, on)]).sum()
+    ratio = stiffness * np.vdot(f, referee.by_pressure(still, f)) / f.sum() ** 2
+    assert ratio == pytest.approx(said, abs=0.05)
+    assert 0.5 * (1 + ratio) < 2.01
+
+
+@pytest.mark.parametrize("name", ["periodic-approach", "periodic-sheared-pins-approach"])
+def test_an_honest_answer_at_its_claim_passes_with_its_mean_counted(name: str) -> None:
+    """Errors of the contact's level, the worst there are, as large as the claim lets them be."""
+
+    def lax(asked: ContactProblem) -> Array:
+        exact = np.asarray(own.solve(replace(asked, tolerance=1e-12)).pressure)
+        low, high = 1e-14, 1.0
+        for _ in range(50):
+            share = float(np.sqrt(low * high))
+            residual = referee.residual(asked, exact + share * exact.mean() * (exact > 0)).worst
+            low, high = (share, high) if residual <= asked.tolerance else (low, share)
+        return np.asarray(exact + low * exact.mean() * (exact > 0))
+
+    for precision in (1e-8, 1e-6):
+        (result,) = run(
+            Limited(lax, replace(own.solve.abilities, precision=precision)), [f"contestant/{name}"]
+        )
+        assert result.error is not None
+        assert 0 < result.error < 0.01  # of 2 claims: an error's energy is of second order
