@@ -11,11 +11,12 @@ import pytest
 from refimpl.grid import Array
 from verification.contestants import own, referee
 from verification.contestants.beds import FAR, Bed, integrals, standing, uneven
-from verification.contestants.broken import Remembering, Wrong
+from verification.contestants.broken import Wrong
 from verification.contestants.check import COMPLIANCE, MODULUS, Entrant
 from verification.contestants.checks.sliding_pins import FREE, PERIODIC
 from verification.contestants.gaps import rough_bump
 from verification.contestants.protocol import ContactProblem, Coupling
+from verification.contestants.remembering import Remembering
 from verification.contestants.suite import run
 from verification.contestants.wrong import padded
 from verification.exact.fourier import symbol_at
@@ -138,6 +139,8 @@ def test_a_bed_stands_in_all_corners_and_on_all_edges() -> None:
         ("shear_compliance", ["sheared-pins", "periodic-sheared-pins"]),
         ("sliding_direction", ["sheared-pins", "periodic-sheared-pins"]),
         ("periodic", ["memory-borders"]),
+        ("beta", ["memory-coupling"]),
+        ("tau", ["memory-coupling"]),
     ],
 )
 def test_a_solver_that_keeps_one_parameter_is_seen(name: str, cases: list[str]) -> None:

@@ -61,3 +61,21 @@ def test_an_honest_answer_at_its_claim_passes_with_its_mean_counted(name: str) -
         )
         assert result.error is not None
         assert 0 < result.error < 0.01  # of 2 claims: an error's energy is of second order
+
+
+def sides(posed: ContactProblem, f: Array) -> tuple[float, float]:
+    """Least pressure in contact over the peak, and least clearance beside it over the approach from touch."""
+    v, on = referee.displacement(posed, f) + posed.gap, f > 0
+    level = float(np.vdot(f, v) / f.sum())
+    return float(f[on].min() / f.max()), float(v[~on].min() / level) - 1
+
+
+def test_friction_in_turn_leaves_every_element_well_on_its_side() -> None:
+    """tau acts or does not: with less room to its sign there could be a second solution, or none."""
+    answers = posed_by("memory-coupling")
+    rubbed = [
+        sides(posed, f) for posed, f in answers if posed.coupling is not None and posed.coupling.tau > 0
+    ]
+    assert len(rubbed) == 2
+    assert min(pressure for pressure, _ in rubbed) > 0.03
+    assert min(clearance for _, clearance in rubbed) > 0.002

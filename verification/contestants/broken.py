@@ -23,6 +23,7 @@ from refimpl.operators.periodic import PeriodicInfluence
 from verification.contestants import own, referee
 from verification.contestants.check import Fault
 from verification.contestants.protocol import Answer, ContactProblem, Contestant
+from verification.contestants.remembering import Forgetful, Remembering
 from verification.contestants.wrong import (
     asked,
     one_off,
@@ -118,6 +119,8 @@ def pulling(problem: ContactProblem) -> Array:
     """The contact's neighbours pull with a thousandth of the peak; the load is made up for."""
     pressure = right(problem)
     contact = pressure > 0
+    if not contact.any():
+        return pressure
     beside = ~contact & (np.roll(contact, 1, axis=0) | np.roll(contact, -1, axis=1))
     pulled = np.where(beside, -1e-3 * pressure.max(), pressure)
     return np.asarray(pulled * (pressure.sum() / pulled.sum()))
@@ -147,25 +150,6 @@ def corner_left_out(problem: ContactProblem) -> Array:
     if not problem.periodic:
         pressure[0, -1] = 0.0
     return pressure
-
-
-class Remembering:
-    """Keeps one parameter of the first problem of each size, or of the first one that slides."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._kept: dict[int, Any] = {}
-
-    def __call__(self, problem: ContactProblem) -> Array:
-        """Solve with what is remembered."""
-        slides = self._name in ("shear_compliance", "sliding_direction")
-        posed = problem.coupling if slides else problem
-        if posed is None:
-            return right(problem)
-        kept = {self._name: self._kept.setdefault(problem.M, getattr(posed, self._name))}
-        if problem.coupling is not None and slides:
-            return right(replace(problem, coupling=replace(problem.coupling, **kept)))
-        return right(replace(problem, **kept))
 
 
 def _coarse_coefficients(rows: int, columns: int, edge: float, *, known: Array | None) -> Array:
@@ -209,6 +193,10 @@ BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.C0_KEPT: lambda: Wrong(Remembering("shear_compliance")),
     Fault.DIRECTION_KEPT: lambda: Wrong(Remembering("sliding_direction")),
     Fault.BORDERS_KEPT: lambda: Wrong(Remembering("periodic")),
+    Fault.BETA_KEPT: lambda: Wrong(Remembering("beta")),
+    Fault.TAU_KEPT: lambda: Wrong(Remembering("tau")),
+    Fault.APPROACH_FORGOTTEN: lambda: Wrong(Forgetful("approach")),
+    Fault.FRICTION_FORGOTTEN: lambda: Wrong(Forgetful("coupling")),
     Fault.ABSOLUTE_THRESHOLD: lambda: Wrong(clipped),
     Fault.TAU_EVERYWHERE: lambda: Wrong(asked(tau_everywhere)),
     Fault.TAU_NOT_ON_ALL: lambda: Wrong(tau_on(well_loaded)),
