@@ -10,7 +10,7 @@ import pytest
 from refimpl.grid import Array
 from verification.contestants import own, referee
 from verification.contestants.isolated import Limited
-from verification.contestants.protocol import ContactProblem
+from verification.contestants.protocol import LARGEST_PRECISION, ContactProblem
 from verification.contestants.suite import run
 
 
@@ -79,3 +79,24 @@ def test_friction_in_turn_leaves_every_element_well_on_its_side() -> None:
     assert len(rubbed) == 2
     assert min(pressure for pressure, _ in rubbed) > 0.03
     assert min(clearance for _, clearance in rubbed) > 0.002
+
+
+@pytest.mark.parametrize("name", ["contact-set", "contact-set-periodic"])
+def test_no_element_can_change_sides_within_the_laxest_claim(name: str) -> None:
+    """With ``e' a e <= g E``: ``e_i^2 <= (a^-1)_ii e' a e``, and ``(a e)_i^2 <= a_ii e' a e``, under a load
+    with as much again for the level. Periodic pressures beside the contact are errors of its neighbours."""
+    ((posed, f),) = posed_by(name)
+    system, on = referee._Elimination(posed), f > 0
+    stored = 0.5 * float(np.vdot(f, referee.by_pressure(posed, f)))
+    if posed.periodic:
+        on = on | np.any([np.roll(f > 0, step, axis) for step in (1, -1) for axis in (0, 1)], axis=0)
+    where = np.flatnonzero(on if posed.periodic else np.ones_like(on))
+    inverse = np.linalg.inv(system.matrix[np.ix_(where, where)])
+    level = float(np.vdot(f, referee.by_pressure(posed, f) + posed.gap) / f.sum())
+    out = np.sqrt(stored * np.diag(inverse).max()) / f.max()
+    into = (1.0 if posed.periodic else 2.0) * np.sqrt(stored * np.diag(system.matrix).max()) / level
+    assert out < 10
+    assert into < 4
+    pressure, clearance = sides(posed, f)
+    assert pressure > 10 * np.sqrt(LARGEST_PRECISION)
+    assert clearance > 4 * np.sqrt(LARGEST_PRECISION)

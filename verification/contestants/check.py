@@ -42,6 +42,7 @@ class Fault(StrEnum):
     MEAN_PRESSURE_ADDED = "uniform pressure at a periodic approach"
     NEAR_FIELD = "wrong near-field coefficients"
     TENSION = "contact that pulls"
+    FAINT_PRESSURE = "faint pressure off the contact"
     SPACING_KEPT = "spacing kept from an earlier problem"
     MODULUS_KEPT = "modulus kept from an earlier problem"
     C0_KEPT = "c0 kept from an earlier problem"
@@ -62,6 +63,7 @@ class Fault(StrEnum):
     CORNER_LEFT_OUT = "corner element left out"
     PADDING_SHORT = "padding short by one element"
     PADDING_CAPPED = "padding capped at 256 points"
+    SHEAR_PADDING_CAPPED = "padding of shear capped at 128 points"
 
 
 @dataclass(frozen=True, eq=False)

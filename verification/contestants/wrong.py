@@ -135,22 +135,23 @@ def tau_along_x(problem: ContactProblem) -> Array:
     return pressure
 
 
-def padded(points: Callable[[int], int]) -> Solver:
+def padded(points: Callable[[int], int], *, of_shear_alone: bool = False) -> Solver:
     """Convolutions on circles of so many points for ``M`` elements: too few alias the farthest offsets."""
 
     def solver(problem: ContactProblem) -> Array:
         pressure, enough = right(problem), 2 * problem.M - 1
-        if problem.periodic or points(problem.M) >= enough:
+        if problem.periodic or points(problem.M) >= enough or (of_shear_alone and problem.coupling is None):
             return pressure
         for _ in range(FEW_ROUNDS):
-            pressure = right(lifted(problem, aliased(problem, pressure, points(problem.M))))
+            moved = sum(aliased(problem, pressure, points(problem.M))[of_shear_alone:])
+            pressure = right(lifted(problem, np.asarray(moved)))
         return pressure
 
     return solver
 
 
-def aliased(problem: ContactProblem, pressure: Array, points: int) -> Array:
-    """What a circle that is too short adds to the displacement (m)."""
+def aliased(problem: ContactProblem, pressure: Array, points: int) -> list[Array]:
+    """What a circle that is too short adds to the displacement (m): by pressure, then by shear if any."""
     M, coupling = problem.M, problem.coupling
     offsets = np.arange(1 - M, M)
     taken = (offsets + points // 2) % points - points // 2 + M - 1
@@ -159,8 +160,7 @@ def aliased(problem: ContactProblem, pressure: Array, points: int) -> Array:
     if coupling is not None:
         tables.append(shear_offsets(M, coupling.sliding_direction) * coupling.shear_compliance)
         tractions.append(coupling.tau * (pressure > 0) + coupling.beta * pressure)
-    wrong = (
-        fftconvolve(table[np.ix_(taken, taken)] - table, traction, mode="valid")
+    return [
+        problem.spacing * fftconvolve(table[np.ix_(taken, taken)] - table, traction, mode="valid")
         for table, traction in zip(tables, tractions, strict=True)
-    )
-    return np.asarray(problem.spacing * sum(wrong))
+    ]
