@@ -10,15 +10,14 @@ from pathlib import Path
 
 import pytest
 
+from verification.case import Status
 from verification.cli import main
-from verification.cli.contestant import _source, add_options
+from verification.cli.contestant import _source, add_options, unseen_faults
 from verification.contestants import isolated, own
 from verification.contestants.check import Fault
 from verification.contestants.isolated import Named
-from verification.contestants.protocol import (
-    Abilities,
-    abilities_of,
-)
+from verification.contestants.protocol import Abilities, abilities_of
+from verification.contestants.suite import suite
 
 Capture = pytest.CaptureFixture[str]
 RIVAL = """
@@ -128,6 +127,7 @@ def test_the_command_line_runs_a_solver(rival: Path, capfd: Capture) -> None:
     assert document["contestant"]["name"] == "rival_solver:solve"
     assert document["contestant"]["abilities"]["periodic"] is False
     assert document["contestant"]["not_applicable"] == {}
+    assert document["contestant"]["unseen_faults"] is None  # some cases were chosen: so much was left out
     assert [c["status"] for c in document["cases"]] == ["pass"]
     assert {"value", "tolerance_reason", "claim", "seconds"} <= set(document["cases"][0])
 
@@ -188,6 +188,20 @@ def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) 
     assert main(["verify", "--exec", command, "--only", "contestant/pins", "--json", str(written)]) == 1
     assert json.loads(written.read_text())["contestant"]["name"] == "false caf?"
     assert "false caf?: 0 pass" in capfd.readouterr().out
+
+
+def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(capfd: Capture) -> None:
+    own_name = "verification.contestants.own:solve"
+    able = ["--able", "aperiodic,load", "--largest", "16"]
+    assert main(["verify", "--solver", own_name, *able, "--json", "-"]) == 0
+    unseen = json.loads(capfd.readouterr().out)["contestant"]["unseen_faults"]
+    assert {Fault.SIGN_OF_C, Fault.APPROACH_FORGOTTEN, Fault.PADDING_CAPPED} <= {*unseen}
+    assert not {Fault.MODULUS_OFF, Fault.SPACING_KEPT, Fault.FAINT_PRESSURE} & {*unseen}
+    assert main(["verify", "--solver", own_name, *able]) == 0
+    printed = " ".join(capfd.readouterr().out.split())
+    assert f"looked for by none of these cases: {unseen[0]}, " in printed
+    assert f", {unseen[-1]} {own_name}: " in printed
+    assert unseen_faults(check.case(own.solve).result(Status.PASS, "", 0.0) for check in suite()) == []
 
 
 @pytest.mark.parametrize(

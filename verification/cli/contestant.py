@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from verification.cli.output import columns, emit, judgement, wrapped
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from verification.case import Result
     from verification.contestants.serving import Source
     from verification.runner import Run
@@ -100,15 +102,27 @@ def run(options: argparse.Namespace) -> int:
         raise
     progress.close()
     done = Run(Tier.FULL, tuple(options.only), tuple(results), time.perf_counter() - start)
+    unseen = None if options.only else unseen_faults(results)
     document = done.document() | {
         "contestant": {
             "name": readable(name),
             "abilities": stated or None,
             "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
+            "unseen_faults": unseen,
         }
     }
-    emit(document, options.json, table(readable(name), done))
+    emit(document, options.json, table(readable(name), done, unseen or []))
     return done.exit_status
+
+
+def unseen_faults(results: Iterable[Result]) -> list[str]:
+    """Faults that no case that ran is meant to catch: a solver of few abilities is judged by few cases."""
+    from verification.contestants.check import Fault
+    from verification.contestants.suite import suite
+
+    ran = {r.id for r in results if r.status != "unavailable"}
+    seen = {fault for check in suite() if check.id in ran for fault in check.catches}
+    return [fault.value for fault in Fault if fault not in seen]
 
 
 def _timeout(options: argparse.Namespace) -> float:
@@ -135,13 +149,15 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
     return options.exec, command.contestant, asdict(abilities)
 
 
-def table(name: str, done: Run) -> str:
-    """Verdicts, reasons of failure, what was not run and why, and the counts."""
+def table(name: str, done: Run, unseen: Sequence[str] = ()) -> str:
+    """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts."""
     ran = [r for r in done.results if r.status != "unavailable"]
     rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
     reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
     parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
+    if unseen:
+        parts.append("looked for by none of these cases:\n" + wrapped(", ".join(unseen), "  "))
     return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
 
 
