@@ -33,7 +33,7 @@ def verdicts(fault: Fault) -> dict[str, str]:
 def own_solver() -> Measured:
     results = run(own.solve)
     left = [f"{r.id}: {r.status} {r.note}" for r in results if r.status != "pass"]
-    data = {"error over tolerance": {r.id: (r.error or 0.0) / r.tolerance for r in results}}
+    data = {"error over tolerance": {r.id: (r.error or 0.0) / (r.tolerance or 1.0) for r in results}}
     return Measured(len(left), 0.0, unit="cases", data=data, note="; ".join(left) or f"{len(results)} cases")
 
 

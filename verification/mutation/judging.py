@@ -17,7 +17,7 @@ def _tests(folder: str, names: str) -> tuple[str, ...]:
     return tuple(f"tests/{folder}/test_{name}.py" for name in names.split())
 
 
-CONTESTANTS = _tests("verification", "contestants contestants_suite contestants_beds")
+CONTESTANTS = _tests("verification", "contestants contestants_suite contestants_beds contestants_margins")
 COVERAGE = _tests("verification", "coverage_judge coverage coverage_priors")
 REPORTS = _tests(
     "reports",
@@ -30,7 +30,7 @@ JUDGES = (
     *_of("cases", "verification", "rates", *_tests("verification", "rates")),
     *_of("contestants", "verification/contestants", "referee check asking beds protocol", *CONTESTANTS),
     *_of("contestants", "verification/contestants/checks",
-         "exact invariance memory periodic residuals sliding sliding_pins smooth", *CONTESTANTS),
+         "area exact invariance memory periodic residuals sliding sliding_pins smooth wide", *CONTESTANTS),
     *_of("error bars", "verification/coverage", "judge beside document priors store", *COVERAGE),
     *_of("benchmarks", "verification/benchmarks", "judge rounds run summary",
          *_tests("verification", "benchmarks")),
