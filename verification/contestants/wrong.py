@@ -143,8 +143,9 @@ def padded(points: Callable[[int], int], *, of_shear_alone: bool = False) -> Sol
         if problem.periodic or points(problem.M) >= enough or (of_shear_alone and problem.coupling is None):
             return pressure
         for _ in range(FEW_ROUNDS):
-            moved = sum(aliased(problem, pressure, points(problem.M))[of_shear_alone:])
-            pressure = right(lifted(problem, np.asarray(moved)))
+            moved = aliased(problem, pressure, points(problem.M))
+            falsely = sum(moved[1:] if of_shear_alone else moved)
+            pressure = right(lifted(problem, np.asarray(falsely)))
         return pressure
 
     return solver
