@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from refimpl.grid import Array
 from verification.case import Measured
 from verification.contestants import referee
 from verification.contestants.check import Entrant, Fault, Pressed, check
@@ -20,6 +21,7 @@ from verification.contestants.gaps import rough_bump
 
 SOURCE = "principal pivoting (Murty 1974), written for this suite"
 BEYOND_DOUBT = "a number of elements; none can change sides within the laxest claim"
+NOTHING = "a number of elements; with zero pressures every condition holds exactly"
 CATCHES = (Fault.FAINT_PRESSURE, Fault.TRANSPOSED, Fault.HALF_ELEMENT)
 
 
@@ -59,3 +61,45 @@ def contact_set(entrant: Entrant) -> Measured:
 def contact_set_periodic(entrant: Entrant) -> Measured:
     gap = wavy(17, 80)
     return wrong_sides(entrant.press(gap, 1.0, approach=-0.5 * float(gap.mean()), periodic=True))
+
+
+def touching_apart(entrant: Entrant, gap: Array, near: float, apart: float, *, periodic: bool) -> Measured:
+    """Number of elements with any pressure at an approach out of reach, asked for after one that is not.
+
+    Raises ValueError where nothing presses within reach either: that would be no answer, but a habit.
+    """
+    if not entrant.press(gap, 1.0, approach=near, periodic=periodic).pressure.any():
+        raise ValueError("nothing presses within reach either")
+    empty = entrant.press(gap, 1.0, approach=apart, periodic=periodic)
+    return Measured(int(np.count_nonzero(empty.pressure)), unit="elements")
+
+
+@check(
+    "out-of-reach",
+    title="A rough bump drawn back: nothing touches",
+    claim="At an approach short of first touch no element has any pressure, and that is an answer",
+    source="f (u + gap - approach) = 0",
+    metric="at_most",
+    tolerance=0.0,
+    tolerance_reason=NOTHING,
+    catches=(Fault.APPROACH_FORGOTTEN,),
+)
+def out_of_reach(entrant: Entrant) -> Measured:
+    gap = rough_bump(16, 45)
+    return touching_apart(entrant, gap - gap.min(), 0.05, -0.05, periodic=False)
+
+
+@check(
+    "out-of-reach-periodic",
+    title="A periodic rough plane drawn back: nothing touches",
+    claim="Where the mean planes are farther apart than the highest summit no element has any pressure",
+    source="f (u + gap - approach) = 0",
+    metric="at_most",
+    tolerance=0.0,
+    tolerance_reason=NOTHING,
+    catches=(Fault.APPROACH_FORGOTTEN,),
+)
+def out_of_reach_periodic(entrant: Entrant) -> Measured:
+    gap = wavy(16, 45)
+    mean = float(gap.mean() - gap.min())
+    return touching_apart(entrant, gap, -0.6 * mean, -1.1 * mean, periodic=True)

@@ -43,24 +43,21 @@ def loads(entrant: Entrant, gap: Array, other: Array, load: float, *, periodic: 
     )
 
 
-def approaches(entrant: Entrant, gap: Array, apart: float, lightly: float, well: float) -> Measured:
-    """A gap at two approaches, the second at three times the modulus, and at twice the spacing too; out of
-    reach, where nothing may press at all; and the first again.
+def approaches(entrant: Entrant, gap: Array, lightly: float, well: float) -> Measured:
+    """A gap at two approaches, the second at three times the modulus, and at twice the spacing too; and the
+    first again.
 
     Approaches (m) count from first touch or, if they are negative, from the mean planes.
     """
     periodic = well < 0
-    pressed = [
+    return worst(
+        entrant,
         entrant.press(gap, 1.0, approach=lightly, periodic=periodic),
         entrant.press(gap, 1.0, approach=well, periodic=periodic),
         entrant.press(gap, 1.0, approach=well, modulus=3 * MODULUS, periodic=periodic),
         entrant.press(gap, 2.0, approach=well, modulus=3 * MODULUS, periodic=periodic),
-    ]
-    empty = entrant.press(gap, 1.0, approach=apart, periodic=periodic)
-    again = entrant.press(gap, 1.0, approach=lightly, periodic=periodic)
-    if empty.pressure.any():  # all of it is wrong
-        return Measured(1 / entrant.claim, unit=CLAIMS, note="pressure where the bodies do not touch")
-    return worst(entrant, *pressed, again)
+        entrant.press(gap, 1.0, approach=lightly, periodic=periodic),
+    )
 
 
 @check(
@@ -95,8 +92,8 @@ def memory_periodic(entrant: Entrant) -> Measured:
 @check(
     "memory-approaches",
     title="Approaches in turn",
-    claim="The approach changes alone, then the modulus alone, then the spacing alone; out of reach nothing "
-    "presses at all; and the first contact comes again",
+    claim="The approach changes alone, then the modulus alone, then the spacing alone; and the first contact "
+    "comes again",
     source=SOURCE,
     metric="at_most",
     tolerance=1.01,
@@ -105,14 +102,14 @@ def memory_periodic(entrant: Entrant) -> Measured:
 )
 def memory_approaches(entrant: Entrant) -> Measured:
     gap = rough_bump(16, 45)
-    return approaches(entrant, gap - gap.min(), -0.05, 0.05, 0.1)
+    return approaches(entrant, gap - gap.min(), 0.05, 0.1)
 
 
 @check(
     "memory-approaches-periodic",
     title="Approaches of periodic planes in turn",
-    claim="The same with approaches of the mean planes: approach, modulus and spacing, each alone; nothing "
-    "presses out of reach; and the first contact comes again",
+    claim="The same with approaches of the mean planes: approach, modulus and spacing, each alone; and the "
+    "first contact comes again",
     source=PERIODIC_SOURCE,
     metric="at_most",
     tolerance=1.01,
@@ -122,7 +119,7 @@ def memory_approaches(entrant: Entrant) -> Measured:
 def memory_approaches_periodic(entrant: Entrant) -> Measured:
     gap = wavy(16, 45)
     mean = float(gap.mean() - gap.min())
-    return approaches(entrant, gap, -1.1 * mean, -0.6 * mean, -0.4 * mean)
+    return approaches(entrant, gap, -0.6 * mean, -0.4 * mean)
 
 
 @check(
