@@ -24,7 +24,8 @@ def build(document: Document) -> Exhibit:
         )
         for name, q in document["quantities"].items()
     ]
-    terms = list(zip(document["grids"], document["samples"], document["seconds of a sample"], strict=True))
+    grids = zip(document["grids"], document["samples"], document["seconds of a sample"], strict=True)
+    terms = [(grid, number or "dropped", seconds or "-") for grid, number, seconds in grids]
     series = {
         name: [list(pair) for pair in zip(q["means"], q["half widths"], strict=True)]
         for name, q in document["quantities"].items()
