@@ -3,7 +3,7 @@
 Only the finest grid's numbers are meant as they are. On coarser ones any that go with them will do. Whole
 elements make areas too large by a share of the perimeter, and that is corrected to what the finest grid's
 elements would make of it, with tau on that area in mu: a third less scatter on 64 elements a side, and a
-third less between grids (measured, table1-rough).
+third to a quarter less between grids (measured, table1-rough).
 """
 
 from __future__ import annotations
