@@ -23,6 +23,8 @@ from verification.multilevel.ensemble import (
     PILOT,
     QUANTITIES,
     Ensemble,
+    _checked,
+    _numbers,
     _sizes,
     _Term,
     _values,
@@ -30,7 +32,7 @@ from verification.multilevel.ensemble import (
 )
 from verification.multilevel.estimator import Estimate, allocation, costs_by_start, estimate, variances
 from verification.sweep import engine
-from verification.sweep.study import Study, study_from_dict
+from verification.sweep.study import MAX_RUNS, Study, study_from_dict
 
 TABLE = {"scene": "table1-rough", "vary": {"grid": [16, 32]}, "solve": {"tolerance": 1e-3}}
 
@@ -171,6 +173,48 @@ def test_targets_are_no_shares_of_a_mean_that_may_be_zero() -> None:
         means = {"contact_area": Estimate(mean, 0.2, 0.4, 9.0)}
         found = Ensemble((1, 2), means, (2, 2), (1.0, 1.0), {}, {}, False, {})
         assert _sizes(found, [term, term]) == pytest.approx([0.97 * size])
+
+
+def test_what_a_perimeter_adds_makes_no_correction(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It goes with the element; on the finest grid all of it is meant to stay."""
+    tau, load, side = 15e6, 70.0, 1.61e-3
+
+    def drawn(study: Study, *_: Any, **__: Any) -> engine.Sweep:
+        rows = []
+        for run in study.runs():
+            seed = study.first_seed + 2 * int(run.coordinates["realisation"])
+            inside = side**2 * np.random.default_rng(seed).uniform(0.1, 0.2)
+            area = inside + side**2 / run.inputs["grid"]
+            row = {"contact_area": area, "contact_area_corrected": inside, "key": run.key}
+            rows.append(
+                row | {"friction_coefficient": tau * area / load, "normal_force": load, "status": "converged"}
+            )
+        return engine.Sweep(0, len(rows), {}, rows, [1.0] * len(rows), 0.0)
+
+    monkeypatch.setattr(engine, "sweep", drawn)
+    study = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}})
+    found = ensemble(study, tmp_path / "a.sqlite", 0.1)
+    start = next(k for k, number in enumerate(found.samples) if number)
+    seeds = study.first_seed + start * _BLOCK + 2 * np.arange(found.samples[start])
+    inside = side**2 * np.mean([np.random.default_rng(seed).uniform(0.1, 0.2) for seed in seeds])
+    area = inside + side**2 / 32
+    assert found.means["contact_area"].mean == pytest.approx(area, rel=1e-12)
+    assert found.means["friction_coefficient"].mean == pytest.approx(tau * area / load, rel=1e-12)
+
+
+@pytest.mark.parametrize(("scatter", "reach"), [(700.0, "0.73 or more"), (2000.0, "none")])
+def test_the_least_share_is_told_where_there_is_one(scatter: float, reach: str) -> None:
+    """A million samples of that scatter about a mean of 1."""
+    samples = np.array([[1 - scatter], [1 + scatter]]) / 2**0.5
+    with pytest.raises(InputError, match=f"expected {reach}: it takes"):
+        _numbers([_Term(samples, samples, np.zeros(1), 1.0, 1.0, {})], 1e-3, np.ones(1))
+
+
+def test_seeds_must_leave_room_for_all_terms() -> None:
+    last = 2**63 - 1 - 2 * _BLOCK - 2 * MAX_RUNS
+    assert _checked(study_from_dict(TABLE | {"first_seed": last}), 0.1) == [16, 32]
+    with pytest.raises(InputError, match="first_seed"):
+        _checked(study_from_dict(TABLE | {"first_seed": last + 1}), 0.1)
 
 
 def test_coarse_areas_are_those_of_the_finest_grids_elements() -> None:
