@@ -25,6 +25,7 @@ from verification.multilevel.ensemble import (
     Ensemble,
     _checked,
     _numbers,
+    _scatter,
     _sizes,
     _Term,
     _values,
@@ -163,6 +164,13 @@ def test_an_element_in_contact_may_come_where_nothing_scatters(
     assert found.means["contact_area"].half_width > 0
     assert found.plain == dict.fromkeys(QUANTITIES)
     assert table(found).count("nothing scatters") == 2
+
+
+def test_equal_numbers_do_not_scatter_by_rounding() -> None:
+    """Three times 0.1 have a mean that is none of them."""
+    same = np.full((3, 1), 0.1)
+    assert same.var() > 0
+    assert _scatter([_Term(same, same, np.zeros(1), 1.0, 1.0, {})]).tolist() == [0.0]
 
 
 def test_targets_are_no_shares_of_a_mean_that_may_be_zero() -> None:

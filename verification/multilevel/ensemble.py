@@ -31,9 +31,7 @@ from verification.sweep.study import MAX_RUNS, Study
 
 QUANTITIES = ("friction_coefficient", "contact_area")
 PILOT = (8, 8, 4, 2)  # samples of the terms at first; the last number serves all finer ones
-FEWEST = (
-    32  # of the first term, before an error is believed: what scatters little by chance would be the last
-)
+FEWEST = 32  # of the first term before an error is believed: few that scatter little would be the last
 _KNOWN = 3.0  # standard errors that a mean must be from zero before targets are shares of it
 TOLERANCE = 1e-5  # of each solve, where the study asks for none: far below any ensemble's scatter
 _BLOCK = 10**7  # seeds between terms, so that no realisation serves two of them
@@ -180,7 +178,8 @@ def _values(row: Row, names: Sequence[str], tau: float, share: float) -> list[fl
 
 def _scatter(terms: Sequence[_Term]) -> Array:
     """A realisation's variance ``(quantities,)``, pooled over all grids: few samples on each."""
-    variances = [term.finer.var(axis=0, ddof=1) for term in terms]
+    differ = [np.ptp(term.finer, axis=0) > 0 for term in terms]  # the variance of equal numbers may round up
+    variances = [term.finer.var(axis=0, ddof=1) * seen for term, seen in zip(terms, differ, strict=True)]
     return np.asarray(np.average(variances, axis=0, weights=[len(term.finer) - 1 for term in terms]))
 
 
