@@ -43,10 +43,10 @@ message is shown, or did not converge: then its row says so by its status.
   [solve]                     # optional: method, oblique, slope_correction, tolerance
 
 With --target-error the study is an ensemble that varies the grid alone, each grid twice the one
-before, and states no realisations: they are as many as it takes. It finds mean mu and A on the finest
-grid, each with a standard error of at most that share, by multilevel Monte Carlo from the grid from
-which a pilot finds it cheapest: the finest is plain sampling. Where a realisation does not converge,
-there is no mean: without it the mean would be that of the easier surfaces.
+before, and states no realisations: they are as many as it takes. By multilevel Monte Carlo it finds
+mean mu and A on the finest grid, each with a standard error of at most that share. A pilot says
+from which grid on the sum is cheapest; from the finest it is plain sampling. Where a realisation
+does not converge, there is no mean: without it the mean would be that of the easier surfaces.
 """
 
 
