@@ -18,6 +18,7 @@ from tests.verification.children import rows
 from verification.cli import main
 from verification.sweep import engine
 from verification.sweep.export import to_csv
+from verification.sweep.run import Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study, study_from_dict
 
@@ -288,3 +289,23 @@ def test_a_scheduler_that_is_not_there(
         arguments = ["sweep", str(tmp_path / "study.toml"), "--scheduler", address]
         assert main([*arguments, "--store", str(tmp_path / "s.sqlite")]) == 2
         assert "--scheduler" in capsys.readouterr().err
+        assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+
+
+@pytest.mark.parametrize("kept", [0, 1])
+def test_a_refusal_leaves_a_store_that_holds_something(tmp_path: Path, kept: int) -> None:
+    path, study = tmp_path / "s.sqlite", small(1, (12,))
+
+    def refused_after(runs: list[Run]) -> None:
+        with open_store(path) as store:
+            for run in runs:
+                store.add(run, *execute(run.inputs))
+            raise InputError("anything", 1, "something else")
+
+    with pytest.raises(InputError, match="anything"):
+        refused_after(list(study.runs())[:kept])
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["s.sqlite", "s.sqlite.lock"][: 2 * kept]
+    assert engine.sweep(study, path, workers=0).found == kept
+    with pytest.raises(InputError, match="anything"):
+        refused_after([])
+    assert engine.sweep(study, path, workers=0).found == 1

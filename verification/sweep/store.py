@@ -85,18 +85,21 @@ def open_store(path: Path) -> Iterator[Store]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """The locked store's connection; a file that is refused keeps no new one beside it."""
-    beside = _lock_file(path)
-    there = os.path.exists(beside)  # of any name, however long
+    """The locked store's connection; of what is refused no new file stays, but a store of finished runs."""
+    new = [file for file in (path, _lock_file(path)) if not os.path.exists(file)]  # of any name, however long
+    kept = False
     with closing(_lock(path)):
         try:
-            connection = _connect(path)
+            with closing(_connect(path)) as connection:
+                try:
+                    yield connection
+                except InputError:
+                    kept = bool(connection.execute("select count(*) from runs").fetchone()[0])
+                    raise
         except InputError:
-            if not there:
-                beside.unlink(missing_ok=True)  # while it is held, and so is no other sweep's
+            for file in [] if kept else new:
+                file.unlink(missing_ok=True)  # while it is held, and so is no other sweep's
             raise
-        with closing(connection):
-            yield connection
 
 
 def _lock_file(path: Path) -> Path:
