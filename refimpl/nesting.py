@@ -56,11 +56,12 @@ def _coarser(M: int) -> int:
 def coarsened(fine: Problem) -> Problem:
     """The problem on half as many elements per side, rounded up: means of four where that number is even."""
     M = (fine.grid.M + 1) // 2
+    seen = fine.terms.oblique  # nothing but slopes looks at the common surface
     return replace(
         fine,
         grid=Grid(fine.grid.side, M),
         gap=resampled(fine.gap, M),
-        mean_surface=resampled(fine.mean_surface, M),
+        mean_surface=resampled(fine.mean_surface, M) if seen else np.broadcast_to(0.0, (M, M)),
     )
 
 

@@ -11,8 +11,8 @@ _LITTLE = 1e-3  # of the load: from 1e-2 to 1e-4 CG takes as many steps, within 
 
 def room(pressure: Array, change: Array) -> float:
     """The multiple of a change at which the first pressure reaches zero."""
-    falling = change < 0
-    return float(np.min(pressure[falling] / -change[falling]))
+    falling = np.flatnonzero(change < 0)
+    return float((pressure.take(falling) / -change.take(falling)).min())
 
 
 def cut_at_zero(trial: Array, pressure: Array, change: Array, weights: Array, target: float | None) -> bool:

@@ -8,24 +8,41 @@ outside takes the mean of its neighbours in S, the nearer the more; neighbours o
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-import scipy.sparse as sparse
+from numpy.typing import NDArray
 
 from refimpl.contact.projected_cg import Apply
 from refimpl.friction import Mask
 from refimpl.grid import Array
 
 _REACH = 2  # elements; one spares a third of the CG steps that two spare, four a tenth more
-_HELD = 0.3  # of what neighbours outside would hold back if they stayed at zero; 0.15 and 0.5 spare less
-_WORTHWHILE = 16_000  # elements of a window: on fewer, set-up and passes cost what the steps spared are worth
+_WORTHWHILE = 8_000  # elements of a window: on fewer, set-up and passes cost what the steps spared are worth
+_AMPLE = 16_000  # elements from which a twentieth of the steps is worth more neighbours
 
-_STEPS = [
-    (i, j)
-    for i in range(-_REACH, _REACH + 1)
-    for j in range(-_REACH, _REACH + 1)
-    if 0 < i * i + j * j < 2 * _REACH**2
-]
-_WEIGHTS = np.array([1 / (i * i + j * j) for i, j in _STEPS])
+
+class _Neighbours(NamedTuple):
+    """Who is asked: steps ``(2, n)`` in elements, weights ``(n,)``, and what those outside hold back.
+
+    ``held`` is the share of what neighbours outside would hold back if they stayed at zero.
+    """
+
+    steps: NDArray[np.intp]
+    weights: Array
+    held: float
+
+    @classmethod
+    def within(cls, squared: int, power: float, held: float) -> _Neighbours:
+        """Those up to a squared distance, by one over a power of the distance."""
+        along, across = np.indices((2 * _REACH + 1,) * 2).reshape(2, -1) - _REACH
+        distance = along**2 + across**2
+        near = (distance > 0) & (distance <= squared)
+        return cls(np.array([along[near], across[near]]), distance[near] ** (-0.5 * power), held)
+
+
+_TWELVE = _Neighbours.within(4, power=1, held=0.5)
+_TWENTY = _Neighbours.within(5, power=2, held=0.3)  # 0.15 and 0.5 spare less
 
 
 def extended(precondition: Apply, contact: Mask) -> Apply:
@@ -37,34 +54,35 @@ class ExtendedPreconditioner:
     """``E' W E`` for a contact set; ``precondition`` is W.
 
     Symmetric and positive definite on any other set as well, so CG may exchange elements: ``E`` differs from
-    the identity by what goes from S out of it, which leaves it invertible.
+    the identity by what goes from S out of it, which leaves it invertible. It is kept as pairs of an element
+    of S at its edge and one beyond: a sparse matrix takes longer to make than all its products.
     """
 
     def __init__(self, precondition: Apply, contact: Mask) -> None:
         self._precondition = precondition
+        steps, weights, held = _TWENTY if contact.size >= _AMPLE else _TWELVE
         n, m = contact.shape
         width = m + 2 * _REACH
         inside, outside = np.zeros((2, n + 2 * _REACH, width), dtype=bool)
         window = slice(_REACH, n + _REACH), slice(_REACH, m + _REACH)
         inside[window], outside[window] = contact, ~contact
         edge = np.flatnonzero(inside.ravel() & _near(outside.ravel(), width))
-        around = edge[:, None] + np.array([i * width + j for i, j in _STEPS])
-        paired = outside.take(around)
-        pairs = np.flatnonzero(paired)
-        outer = around.take(pairs)
-        weights = np.tile(_WEIGHTS, edge.size).take(pairs)
-        asked = np.bincount(outer, weights, minlength=outside.size)
+        around = edge[:, None] + (steps[0] * width + steps[1])
+        paired = np.flatnonzero(outside.take(around))
+        outer = around.take(paired)
+        self._from, step = np.divmod(paired, weights.size)
+        asking = weights.take(step)
+        asked = np.bincount(outer, asking, minlength=outside.size)
         beyond = np.flatnonzero(asked > 0)
-        weights /= ((1 - _HELD) * asked + _HELD * _WEIGHTS.sum()).take(outer)
-        number = np.empty(outside.size, dtype=np.int32)
+        number = np.empty(outside.size, dtype=np.intp)
         number[beyond] = np.arange(beyond.size)
-        ends = np.cumsum(paired.sum(axis=1, dtype=np.int32), dtype=np.int32)
-        rows = weights, number.take(outer), np.concatenate([[0], ends])
-        self._back = sparse.csr_array(rows, shape=(edge.size, beyond.size))
-        self._onward = self._back.T
+        self._to = number.take(outer)
+        asking /= ((1 - held) * asked + held * weights.sum()).take(outer)
+        self._weights = asking
         self._edge, self._beyond = (
-            (place // width - _REACH) * m + place % width - _REACH for place in (edge, beyond)
+            place - (width - m) * (place // width) - _REACH * (m + 1) for place in (edge, beyond)
         )
+        self._source = self._edge.take(self._from)
 
     def __call__(self, residual: Array) -> Array:
         """The preconditioned residual, same shape; the caller masks argument and result.
@@ -73,10 +91,12 @@ class ExtendedPreconditioner:
         """
         own = residual.take(self._beyond)
         free = own == 0
+        own += free * np.bincount(self._to, self._weights * residual.take(self._source))
         continued = residual.copy()
-        continued.ravel()[self._beyond] = own + free * (self._onward @ residual.take(self._edge))
+        continued.put(self._beyond, own)
         found = np.ascontiguousarray(self._precondition(continued))
-        found.ravel()[self._edge] += self._back @ (free * found.take(self._beyond))
+        back = (free * found.take(self._beyond)).take(self._to)
+        found.ravel()[self._edge] += np.bincount(self._from, self._weights * back, self._edge.size)
         return found
 
 

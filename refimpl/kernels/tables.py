@@ -97,8 +97,9 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array |
         table[start:stop, :columns] = rows
         if start < m:
             table[:start, start:columns] = rows[: columns - start, :start].T
-            block = np.tril(rows[: columns - start, start:])
-            table[start:columns, start:columns] = block + np.tril(block, -1).T
+            block = rows[: columns - start, start:]
+            below = np.tri(len(block), dtype=bool)
+            table[start:columns, start:columns] = np.where(below, block, block.T)
     return table
 
 

@@ -20,6 +20,7 @@ from refimpl.operators.window import Window
 from verification.benchmarks.problems import scene
 
 SHAPE, COMPLIANCE = (18, 15), 1e-11
+AMPLE = (128, 126)  # elements of a window from which twenty neighbours are asked
 
 
 def spots(shape: tuple[int, int] = SHAPE, share: float = 0.3, seed: int = 4) -> Mask:
@@ -37,19 +38,24 @@ def spectral(shape: tuple[int, int] = SHAPE) -> SpectralPreconditioner:
 
 
 def continued(contact: Mask, values: Array) -> Array:
-    """Element by element: beyond the contact, neighbours' mean by 1 / distance^2, held back by 0.3."""
+    """Element by element: beyond the contact, the mean of neighbours, held back a little.
+
+    On few elements of the twelve nearest by 1 / distance, held back by 0.5; on many of the twenty nearest by
+    1 / distance^2, held back by 0.3.
+    """
     n, m = contact.shape
+    farthest, power, held = (5, 2, 0.3) if contact.size >= 16_000 else (4, 1, 0.5)
     found = values.copy()
-    near = [(i, j) for i in range(-2, 3) for j in range(-2, 3) if 0 < i * i + j * j <= 5]
+    near = [(i, j) for i in range(-2, 3) for j in range(-2, 3) if 0 < i * i + j * j <= farthest]
+    full = math.fsum(math.hypot(i, j) ** -power for i, j in near)
     for x, y in zip(*np.nonzero(~contact & (values == 0)), strict=True):
         asked = [
-            (1 / (i * i + j * j), values[x + i, y + j])
+            (math.hypot(i, j) ** -power, values[x + i, y + j])
             for i, j in near
             if 0 <= x + i < n and 0 <= y + j < m and contact[x + i, y + j]
         ]
-        full = math.fsum(1 / (i * i + j * j) for i, j in near)
         weight = math.fsum(w for w, _ in asked)
-        found[x, y] = math.fsum(w * value for w, value in asked) / (0.7 * weight + 0.3 * full)
+        found[x, y] = math.fsum(w * value for w, value in asked) / ((1 - held) * weight + held * full)
     return found
 
 
@@ -61,22 +67,47 @@ def energy_of(values: Array, precondition: Callable[[Array], Array]) -> float:
     return float(np.vdot(values, precondition(values)))
 
 
-@pytest.mark.parametrize("share", [0.1, 0.3, 0.8])
-def test_beyond_the_contact_stands_the_mean_of_neighbours(share: float) -> None:
-    contact = spots(share=share)
+@pytest.mark.parametrize(
+    ("shape", "share"), [(SHAPE, 0.1), (SHAPE, 0.3), (SHAPE, 0.8), (AMPLE, 0.3), ((127, 125), 0.3)]
+)
+def test_beyond_the_contact_stands_the_mean_of_neighbours(shape: tuple[int, int], share: float) -> None:
+    contact = spots(shape, share)
     assert contact[:, 0].any() or contact[-1].any()  # the window's border is met
-    values = contact * np.random.default_rng(5).normal(size=SHAPE)
+    values = contact * np.random.default_rng(5).normal(size=shape)
     e = continued(contact, values)
     heard: list[Array] = []
 
     def overheard(residual: Array) -> Array:
         heard.append(residual.copy())
-        return spectral()(residual)
+        return spectral(shape)(residual)
 
     found = ExtendedPreconditioner(overheard, contact)(values)
     np.testing.assert_allclose(heard[0], e, rtol=1e-13, atol=1e-14)
     # and back by the transpose: x.(E' W E x) is the continuation's energy
-    assert np.vdot(values, found) == pytest.approx(energy_of(e, spectral()), rel=1e-12)
+    assert np.vdot(values, found) == pytest.approx(energy_of(e, spectral(shape)), rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", [SHAPE, AMPLE])
+def test_an_element_near_the_edge_may_be_asked_by_nobody(shape: tuple[int, int]) -> None:
+    """Two elements away along both axes: within a square's reach, and no neighbour."""
+    contact = np.ones(shape, dtype=bool)
+    contact[3, 3] = False
+    values = contact * np.random.default_rng(5).normal(size=shape)
+    found = ExtendedPreconditioner(as_given, contact)(values)
+    expected = values.copy()
+    expected[contact] += (continued_matrix_column(contact) * continued(contact, values)[3, 3])[contact]
+    np.testing.assert_allclose(found[contact], expected[contact], rtol=1e-13)
+    assert found[5, 5] == values[5, 5]
+
+
+def continued_matrix_column(contact: Mask) -> Array:
+    """What each element counts for in the continuation to (3, 3), one by one."""
+    found = np.zeros(contact.shape)
+    for x, y in np.ndindex(7, 7):
+        alone = np.zeros(contact.shape)
+        alone[x, y] = contact[x, y]
+        found[x, y] = continued(contact, alone)[3, 3]
+    return found
 
 
 def test_what_has_come_into_contact_goes_on_with_its_own_residual() -> None:
@@ -123,7 +154,7 @@ def condition(contact: Mask, precondition: Callable[[Array], Array]) -> float:
 
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.6, 0.8])
 def test_the_spectrum_on_spots_is_narrower(share: float) -> None:
-    """Condition numbers: 1.25 to 1.36 on twelve sets of spots, where a mask has 1.8 to 2.5."""
+    """Condition numbers: 1.22 to 1.37 on twelve sets of spots, where a mask has 1.7 to 2.4."""
     contact = np.zeros((24, 24), dtype=bool)
     contact[3:-3, 3:-3] = spots((18, 18), share)
     mask = spectral((24, 24))
@@ -135,16 +166,17 @@ def steps(M: int, kind: str) -> int:
     return rf.solve(scene(kind, M, rf.Friction()), grid=M, oblique=False).cost.iterations[f"CG at {M}"]
 
 
-def test_it_spares_a_fifth_of_the_steps_on_a_rough_surface(monkeypatch: pytest.MonkeyPatch) -> None:
-    """11 for 15 at 256 elements a side."""
-    after = steps(256, "rough")
+@pytest.mark.parametrize("M", [128, 256])
+def test_it_spares_a_fifth_of_the_steps_on_a_rough_surface(M: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """11 for 14 at 128 and at 256 elements a side."""
+    after = steps(M, "rough")
     monkeypatch.setattr(fft_solver, "extended", lambda precondition, contact: precondition)
-    assert after <= 0.8 * steps(256, "rough")
+    assert after <= 0.8 * steps(M, "rough")
 
 
 def test_small_windows_do_without() -> None:
     mask = spectral()
     assert extended(mask, spots()) is mask
-    assert extended(mask, np.zeros((93, 172), dtype=bool)) is mask  # 15,996 elements
-    assert isinstance(extended(mask, np.zeros((160, 100), dtype=bool)), ExtendedPreconditioner)
-    assert extended(mask, np.zeros((127, 126), dtype=bool)) is not mask  # 16,002
+    assert extended(mask, np.zeros((93, 86), dtype=bool)) is mask  # 7,998 elements
+    assert isinstance(extended(mask, np.zeros((80, 100), dtype=bool)), ExtendedPreconditioner)
+    assert extended(mask, np.zeros((127, 63), dtype=bool)) is not mask  # 8,001

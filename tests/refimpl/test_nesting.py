@@ -78,12 +78,20 @@ def test_a_quartered_grid_has_means_of_sixteen() -> None:
 
 def test_a_coarse_height_is_the_mean_of_four() -> None:
     fine = problem(6)
+    fine = replace(fine, terms=replace(fine.terms, oblique=True))
     coarse = coarsened(fine)
     for i in range(3):
         for j in range(3):
             four = (slice(2 * i, 2 * i + 2), slice(2 * j, 2 * j + 2))
             assert coarse.gap[i, j] == pytest.approx(fine.gap[four].mean(), rel=1e-15)
             assert coarse.mean_surface[i, j] == pytest.approx(fine.mean_surface[four].mean(), rel=1e-14)
+
+
+def test_a_common_surface_that_no_slope_looks_at_is_not_carried_down() -> None:
+    fine = problem(6)
+    assert not fine.terms.oblique
+    assert fine.mean_surface.any()
+    np.testing.assert_array_equal(coarsened(fine).mean_surface, np.zeros((3, 3)))
 
 
 @pytest.mark.parametrize(("n", "M"), [(4, 8), (4, 6), (4, 7), (5, 16), (2, 3), (7, 4), (9, 9)])
