@@ -36,9 +36,10 @@ class _Neighbours(NamedTuple):
     def within(cls, squared: int, power: float, held: float) -> _Neighbours:
         """Those up to a squared distance, by one over a power of the distance."""
         along, across = np.indices((2 * _REACH + 1,) * 2).reshape(2, -1) - _REACH
-        distance = along**2 + across**2
-        near = (distance > 0) & (distance <= squared)
-        return cls(np.array([along[near], across[near]]), distance[near] ** (-0.5 * power), held)
+        squares = along**2 + across**2
+        near = (squares > 0) & (squares <= squared)
+        distances: Array = np.sqrt(squares[near], dtype=np.float64)
+        return cls(np.array([along[near], across[near]]), distances**-power, held)
 
 
 _TWELVE = _Neighbours.within(4, power=1, held=0.5)

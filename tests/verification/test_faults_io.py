@@ -145,7 +145,8 @@ def test_an_unwritable_report(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "r.json").write_text(json.dumps(results(case("a/1"))))
-    tail = ["--results", str(tmp_path / "r.json"), "--output"]
+    (none := tmp_path / "committed").mkdir()
+    tail = ["--results", str(tmp_path / "r.json"), "--committed", str(none), "--output"]
     (tmp_path / "file").write_text("no folder")
     assert main(["report", *tail, str(tmp_path / "file")]) == 2
     one_line(Ended(2, capsys.readouterr().err), "--output", 2)
