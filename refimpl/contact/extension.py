@@ -33,17 +33,17 @@ class _Neighbours(NamedTuple):
     held: float
 
     @classmethod
-    def within(cls, squared: int, power: float, held: float) -> _Neighbours:
-        """Those up to a squared distance, by one over a power of the distance."""
+    def within(cls, squared: int, held: float) -> _Neighbours:
+        """Those up to a squared distance, by one over the distance."""
         along, across = np.indices((2 * _REACH + 1,) * 2).reshape(2, -1) - _REACH
         squares = along**2 + across**2
         near = (squares > 0) & (squares <= squared)
         distances: Array = np.sqrt(squares[near], dtype=np.float64)
-        return cls(np.array([along[near], across[near]]), distances**-power, held)
+        return cls(np.array([along[near], across[near]]), 1 / distances, held)
 
 
-_TWELVE = _Neighbours.within(4, power=1, held=0.5)
-_TWENTY = _Neighbours.within(5, power=2, held=0.3)  # 0.15 and 0.5 spare less
+_TWELVE = _Neighbours.within(4, held=0.5)
+_TWENTY = _Neighbours.within(5, held=0.3)  # 0.15 spares less; so do weights by the distance's square
 
 
 def extended(precondition: Apply, contact: Mask) -> Apply:

@@ -61,23 +61,24 @@ class FFTInfluence:
         self.target = target or self.source
         self.counter = counter if counter is not None else Counter()
         self._padded = _padded(self.source, self.target)
+        self._points = math.prod(self._padded)
         shifts = self.target.i0 - self.source.i0, self.target.j0 - self.source.j0
         placed = map(_places, self._padded, shifts, self.source.shape, self.target.shape)
         self._from, self._to = zip(*placed, strict=True)
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""
-        self.counter.add("normal", math.prod(self._padded))
+        self.counter.add("normal", self._points)
         return self._convolve(pressure, self._normal_hat)
 
     def shear(self, traction: Array) -> Array:
         """``I[s/rho^2]`` applied to a traction along the sliding direction."""
-        self.counter.add("shear", math.prod(self._padded))
+        self.counter.add("shear", self._points)
         return self._convolve(traction, self._shear_hat)
 
     def shear_across(self, traction: Array) -> Array:
         """``I[t/rho^2]`` applied to a traction across the sliding direction."""
-        self.counter.add("shear", math.prod(self._padded))
+        self.counter.add("shear", self._points)
         return self._convolve(traction, self._across_hat)
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
@@ -85,7 +86,7 @@ class FFTInfluence:
         hat = self._normal_hat + ratio * self._shear_hat
 
         def product(pressure: Array) -> Array:
-            self.counter.add("normal and shear", math.prod(self._padded))
+            self.counter.add("normal and shear", self._points)
             return self._convolve(pressure, hat)
 
         return product
@@ -114,7 +115,7 @@ class FFTInfluence:
     @cached_property
     def _normal_hat(self) -> Array | Complex:
         """The kernel's transform: of a quarter of it, and real, where the circles are even."""
-        points = math.prod(self._padded)
+        points = self._points
         if not all(map(_is_even, self._offsets)):
             self.counter.add("normal kernel", points // 2)
             return self._transformed(signed_table("normal", *self._offsets))
@@ -139,7 +140,7 @@ class FFTInfluence:
 
     def _tangential_hat(self, angle: float) -> Complex:
         """The kernel's transform: of quarters of its parts along x and y, unless offsets opposite 0 count."""
-        points, (N, K) = math.prod(self._padded), self._padded
+        points, (N, K) = self._points, self._padded
         cos, sin = math.cos(angle), math.sin(angle)
         rows, columns = _farthest(self.source, self.target)
         if all(map(_is_even, self._offsets)) and rows < N // 2 and columns < K // 2:
@@ -154,7 +155,7 @@ class FFTInfluence:
         return self._transformed(cos * along_x + sin * along_y)
 
     def _transformed(self, unit_kernel: Array) -> Complex:
-        return fourier.plane(unit_kernel * self.grid.spacing, self._padded, threads(math.prod(self._padded)))
+        return fourier.plane(unit_kernel * self.grid.spacing, self._padded, threads(self._points))
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
         spectrum = self._forward(source)
@@ -163,17 +164,17 @@ class FFTInfluence:
 
     def _forward(self, source: Array) -> Complex:
         (N, K), (along, place) = self._padded, self._from
-        workers = threads(N * K)
+        workers = threads(self._points)
         self._columns[along] = source
         spectrum = np.empty((N // 2 + 1, K), dtype=np.complex128)
-        spectrum[:, : place.start] = 0
+        if place.start:
+            spectrum[:, : place.start] = 0
         spectrum[:, place.stop :] = 0
         fourier.columns(self._columns, spectrum[:, place], workers)
         return fourier.rows(spectrum, workers, forward=True)
 
     def _backward(self, spectrum: Complex) -> Array:
-        N, K = self._padded
-        workers = threads(N * K)
+        N, workers = self._padded[0], threads(self._points)
         spectrum = fourier.rows(spectrum, workers, forward=False)
         found: Array = fourier.columns_back(spectrum[:, self._to[1]], N, workers)[self._to[0]]
         return found
