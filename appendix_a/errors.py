@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+import math
+import numbers
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
 
 class InputError(ValueError):
     """Input refused at the border: names the field, the value and what is allowed.
@@ -18,3 +25,37 @@ class InputError(ValueError):
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
         return type(self), (self.field, self.value, self.allowed)  # so that it crosses process borders
+
+
+def real(value: object) -> float:
+    """The number as a double; NaN, which no range holds, for anything that is no real number.
+
+    >>> real(3), real("3"), real(True), real(None)
+    (3.0, nan, nan, nan)
+    """
+    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+        return math.nan
+    number: Any = value
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf if number > 0 else -math.inf
+
+
+def reals(field: str, values: object, allowed: str) -> NDArray[np.float64]:
+    """Numbers of any shape as doubles. Raises InputError for texts, truths, ragged lists and the like.
+
+    >>> reals("offsets", [1, 2.5], "a list of numbers")
+    array([1. , 2.5])
+    >>> reals("offsets", ["1"], "a list of numbers")
+    Traceback (most recent call last):
+    ...
+    appendix_a.errors.InputError: offsets = ['1']: expected a list of numbers
+    """
+    try:
+        found = np.asarray(values)
+    except ValueError:  # ragged
+        found = np.asarray(None)
+    if found.dtype.kind not in "iuf" and any(math.isnan(real(value)) for value in found.ravel().tolist()):
+        raise InputError(field, values, allowed)
+    return found.astype(np.float64)

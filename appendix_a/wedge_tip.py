@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from appendix_a import wedge
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real, reals
 from appendix_a.strip.field import flat_displacement
 
 Real = NDArray[np.float64]
@@ -52,13 +52,13 @@ def relative_difference(
 
 def tip_displacement(x: ArrayLike, gamma: float, nu: float, *, half_base: float, datum: float) -> Real:
     """Displacements of the surface at x into the body, relative to x = datum, in p a / E (plane strain)."""
-    if not 0 <= gamma < np.pi / 2:
+    if not 0 <= real(gamma) < np.pi / 2:
         raise InputError("gamma", gamma, "a slope angle in [0, pi/2) rad")
-    if not half_base > 1:
+    if not real(half_base) > 1:
         raise InputError("half_base", half_base, "a length above the strip's half-width 1")
-    if not 0 <= nu <= 0.5:
+    if not 0 <= real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio in [0, 0.5]")
-    x = np.asarray(x, dtype=float)
+    x = reals("x", x, "distances from the tip in half-widths")
     zero = _half_space(abs(datum), gamma, nu, half_base) + _local(np.array(abs(datum)), gamma, nu, half_base)
     below = np.array([_half_space(abs(point), gamma, nu, half_base) for point in x.ravel()])
     return np.asarray(below.reshape(x.shape) + _local(np.abs(x), gamma, nu, half_base) - zero)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -49,3 +51,35 @@ def test_the_files_it_names_exist() -> None:
 
 def test_ci_runs_the_readmes_test_command() -> None:
     assert "make test" in (ROOT / ".ci/run").read_text()
+
+
+JUDGED = {
+    "mu": "friction_coefficient",
+    "A": "contact_area",
+    "A, perimeter-corrected,": "contact_area_corrected",
+    "f_max": "max_pressure",
+}
+
+
+def in_both(halves: list[dict[str, Any]], key: str, unit: str) -> str:
+    """A number of both halves, in the table's digits."""
+    if unit == "%":
+        return " / ".join(f"{100 * half[key]:.0f}" for half in halves) + " %"
+    return " / ".join(f"{half[key]:.1f}" for half in halves)
+
+
+def test_the_table_of_bars_is_that_of_the_results() -> None:
+    rows = re.findall(r"^\| ([\w, -]+) to (0\.\d+) \| (.*) \|$", README, flags=re.M)
+    assert len(rows) == 6
+    files = [ROOT / "reports/results" / f"{name}.json" for name in ("coverage", "coverage_fresh")]
+    studies = [json.loads(path.read_text(encoding="utf-8")) for path in files]
+    for name, accuracy, rest in rows:
+        halves = [
+            found["numbers"][JUDGED[name]]
+            for study in studies
+            for found in study["accuracies"]
+            if found["accuracy"] == float(accuracy)
+        ]
+        cells = [in_both(halves, key, "%") for key in ("met", "covered", "covered_at_worst")]
+        cells += [in_both(halves, key, "") for key in ("median_bar_over_error", "median_cost")]
+        assert rest.split(" | ") == cells, name

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real
 
 Array = NDArray[np.float64]
 WAVENUMBER = 2.0 * math.pi
@@ -27,9 +27,9 @@ class Material:
     nu: float
 
     def __post_init__(self) -> None:
-        if not (self.E > 0 and math.isfinite(self.E)):
+        if not 0 < real(self.E) < math.inf:
             raise InputError("E", self.E, "a positive, finite Young's modulus")
-        if not -1.0 < self.nu < 0.5:
+        if not -1.0 < real(self.nu) < 0.5:
             raise InputError("nu", self.nu, "a Poisson ratio, -1 < nu < 0.5")
 
 
@@ -48,11 +48,11 @@ class WavyPair:
     beta: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.slope_deg <= 20.0:
+        if not 0.0 < real(self.slope_deg) <= 20.0:
             raise InputError("slope_deg", self.slope_deg, "a maximum slope above 0 and up to 20 degrees")
-        if not abs(self.shift) < 0.5:
+        if not abs(real(self.shift)) < 0.5:
             raise InputError("shift", self.shift, "a fraction of the wavelength, below a half either way")
-        if self.tau < 0 or self.beta < 0:
+        if not (real(self.tau) >= 0 and real(self.beta) >= 0):
             raise InputError("tau, beta", (self.tau, self.beta), "numbers that are not negative")
 
     @property

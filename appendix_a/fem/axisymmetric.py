@@ -17,7 +17,7 @@ from scipy.sparse import bmat, csc_matrix
 from scipy.special import ellipe, ellipkm1
 from skfem import BilinearForm
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real, reals
 from appendix_a.fem.body import Body, lagrange, solve_fixed
 from appendix_a.fem.departure import LEVELS, ORDER
 from appendix_a.fem.elasticity import lame
@@ -108,10 +108,10 @@ def asperity(
     offsets: (m,) radii >= 0; at 0 the self coefficient.
     Values are absolute (no datum needed) in units of p a / E; `flat` is exact.  Raises InputError.
     """
-    where = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
-    if not (0.0 <= slope_deg <= 45.0 and -1.0 < nu < 0.5):
+    where = np.atleast_1d(reals("offsets", offsets, "radii >= 0"))
+    if not (0.0 <= real(slope_deg) <= 45.0 and -1.0 < real(nu) < 0.5):
         raise InputError("slope_deg, nu", (slope_deg, nu), "0 to 45 degrees, -1 < nu < 0.5")
-    if half_base < 4.0 or np.log2(half_base) % 1.0 or np.any(where < 0.0):
+    if not real(half_base) >= 4.0 or np.log2(half_base) % 1.0 or not np.all(where >= 0.0):
         raise InputError("half_base, offsets", (half_base, where), "a power of two >= 4, radii >= 0")
     boundary = (ridge_boundary if shape == "cone" else cap_boundary)(slope_deg, half_base)
     radius = OUTER * half_base

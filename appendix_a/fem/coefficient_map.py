@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.leading_order import coupling
 
@@ -53,10 +53,14 @@ class CoefficientMap:
         slope_deg: 0 to the largest tabulated; wavelength: at least the smallest (beyond the largest the
         rest is taken from there); position: any.  Raises InputError.
         """
-        if not 0.0 <= slope_deg <= self.slope_deg[-1]:
+        if not 0.0 <= real(slope_deg) <= self.slope_deg[-1]:
             raise InputError("slope_deg", slope_deg, f"0 to {self.slope_deg[-1]:g} degrees")
-        if not wavelength >= self.wavelength[0]:
+        if not real(wavelength) >= self.wavelength[0]:
             raise InputError("wavelength", wavelength, f"at least {self.wavelength[0]:g} half-widths")
+        if not math.isfinite(real(position)):
+            raise InputError("position", position, "a finite fraction of the wavelength")
+        if not -1.0 < real(nu) <= 0.5:
+            raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
         tangent = math.tan(math.radians(slope_deg))
         smallest = math.tan(math.radians(self.slope_deg[0]))
         where = max(tangent, smallest), math.log(min(wavelength, self.wavelength[-1]))

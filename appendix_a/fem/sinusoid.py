@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real, reals
 from appendix_a.fem.departure import Departure, Departures, Setup, departure
 from appendix_a.fem.geometry import sinusoid_boundary
 from appendix_a.fem.mesh import Source
@@ -16,6 +16,7 @@ from appendix_a.fem.result import WavyResult
 Array = NDArray[np.float64]
 END_SIZE = 2.0**-7  # cell at the strip's ends; 2^-10 changes displacements by less than 1e-4 % of flat
 REACH = 3.0  # wavelengths kept on either side; 4 and 8 change less than 0.001 % of flat
+OFFSETS = "a list of finite distances, at most 10000 half-widths"
 OUTER = 8.0  # outer boundary over reach; 64 changes less than 0.001 % of flat
 REACHES = (0.5, 0.5**0.5, 1.0)  # the three outer radii, in units of the one used
 
@@ -37,7 +38,7 @@ def sinusoid(
     >>> ((r.wavy - r.flat) / r.flat * 100).round(1).tolist()  # percent: uphill less, downhill more
     [-2.8, 2.1]
     """
-    if not -1.0 < nu <= 0.5:
+    if not -1.0 < real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
     return departures(slope_deg, wavelength, position, offsets).result(nu)
 
@@ -50,7 +51,7 @@ def departures(
     levels: Sequence[int] = (1, 2, 3),
 ) -> Departures:
     """As `sinusoid`, for every Poisson ratio at once; `levels` are the three meshes, coarse to fine."""
-    where = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
+    where = np.atleast_1d(reals("offsets", offsets, OFFSETS))
     _check(slope_deg, wavelength, position, where)
     # fading waves must not touch the outermost offset at half the reach either: it begins at reach / 4 there
     reach = max(REACH * wavelength, 4.0 * float(np.max(np.abs(where), initial=1.0)))
@@ -75,14 +76,14 @@ def _at(
 
 
 def _check(slope_deg: float, wavelength: float, position: float, offsets: Array) -> None:
-    if not 0.0 <= slope_deg <= 45.0:
+    if not 0.0 <= real(slope_deg) <= 45.0:
         raise InputError("slope_deg", slope_deg, "a maximum slope of 0 to 45 degrees")
-    if not 4.0 <= wavelength <= 1e4:
+    if not 4.0 <= real(wavelength) <= 1e4:
         raise InputError("wavelength", wavelength, "4 to 10000 times the strip's half-width")
-    if not np.isfinite(position):
+    if not np.isfinite(real(position)):
         raise InputError("position", position, "a finite fraction of the wavelength")
     if offsets.ndim != 1 or not np.all(np.abs(offsets) <= 1e4):
-        raise InputError("offsets", offsets, "a list of finite distances, at most 10000 half-widths")
+        raise InputError("offsets", offsets, OFFSETS)
 
 
 def fem_json(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real, reals
 from appendix_a.fem.departure import Departures, Setup, departure
 from appendix_a.fem.geometry import ridge_boundary
 from appendix_a.fem.mesh import Source
@@ -30,12 +30,12 @@ def wedge_tip(slope_deg: float, half_base: float, nu: float, *, offsets: ArrayLi
     offsets: (m,) horizontal distances from the tip in units of a.
     Raises InputError.
     """
-    where = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
-    if not 0.0 <= slope_deg <= 45.0:
+    where = np.atleast_1d(reals("offsets", offsets, "distances from the tip in half-widths"))
+    if not 0.0 <= real(slope_deg) <= 45.0:
         raise InputError("slope_deg", slope_deg, "0 to 45 degrees")
-    if half_base < 4.0 or np.log2(half_base) % 1.0:
+    if not real(half_base) >= 4.0 or np.log2(half_base) % 1.0:
         raise InputError("half_base", half_base, "a power of two, at least 4 half-widths")
-    if not -1.0 < nu <= 0.5:
+    if not -1.0 < real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
     if not np.all(np.abs(where) < OUTER * half_base / 8):
         raise InputError("offsets", where, f"finite, less than {OUTER / 8:g} half bases from the tip")

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real
 from appendix_a.fem3d.patch import facet_prediction, normal_coefficient
 from appendix_a.fem3d.surface import Sample, X, Y, flat_sample, sample
 from appendix_a.fem3d.wavy import Kind, Waviness
@@ -183,7 +183,7 @@ def _check(
         ("position", position, 0.0, 1.0),
         ("nu", nu, 0.0, 0.45),
     ):
-        if not low <= value <= high:
+        if not low <= real(value) <= high:
             raise InputError(field, value, f"a number from {low:g} to {high:g}")
     for field, word, known in (("kind", kind, Kind), ("width", width, Width), ("quality", quality, Quality)):
         if word not in [member.value for member in known]:

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, reals
 from appendix_a.fem3d import study
 from appendix_a.fem3d.coefficients import LABELS
 
@@ -60,9 +60,11 @@ class Table3D:
         known = Series(series.wavelength, 1 - series.position, series.nu, series.kind, series.width)
         turned = series.position > 0.5
         slopes = self.slopes(known if turned else series)
-        wanted = np.tan(np.radians(slope_deg))
-        if np.any(np.asarray(slope_deg) > slopes[-1]) or np.any(np.asarray(slope_deg) < 0):
-            raise InputError("slope_deg", slope_deg, f"0 to {slopes[-1]:g} degrees")
+        allowed = f"0 to {slopes[-1]:g} degrees"
+        degrees = reals("slope_deg", slope_deg, allowed)
+        if not np.all((degrees >= 0) & (degrees <= slopes[-1])):
+            raise InputError("slope_deg", slope_deg, allowed)
+        wanted = np.tan(np.radians(degrees))
         tangents = np.tan(np.radians(slopes))
         rows = self.errors[known if turned else series]
         quotients = np.array([rows[float(s)] for s in slopes]) / tangents[:, None]

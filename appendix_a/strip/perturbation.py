@@ -23,7 +23,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real, reals
 from appendix_a.strip.field import flat_displacement
 from appendix_a.strip.profile import Sinusoid
 
@@ -46,9 +46,9 @@ def first_order(
     >>> [round(float(d), 4) for d in wavy - flat]
     [0.0091, -0.0091]
     """
-    if not -1 < nu <= 0.5:
+    if not -1 < real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
     profile = Sinusoid(slope_deg, wavelength, position)
-    offsets = np.asarray(offsets, dtype=float)
+    offsets = reals("offsets", offsets, "distances from the centre in half-widths")
     flat = flat_displacement(offsets, nu)
     return flat - (1 + nu) * (1 - 2 * nu) * profile.depth(np.clip(offsets, -1, 1)), flat

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real
 
 Real = NDArray[np.float64]
 
@@ -28,11 +28,11 @@ class Sinusoid:
     position: float
 
     def __post_init__(self) -> None:
-        if not 0 <= self.slope_deg < 90:
+        if not 0 <= real(self.slope_deg) < 90:
             raise InputError("slope_deg", self.slope_deg, "a maximum slope in [0, 90) degrees")
-        if not (np.isfinite(self.wavelength) and self.wavelength > 0):
+        if not 0 < real(self.wavelength) < np.inf:
             raise InputError("wavelength", self.wavelength, "a positive length in units of a")
-        if not np.isfinite(self.position):
+        if not np.isfinite(real(self.position)):
             raise InputError("position", self.position, "a finite x / wavelength")
 
     @property

@@ -13,7 +13,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real, reals
 from appendix_a.strip.field import flat_displacement, stresses
 from appendix_a.strip.profile import Sinusoid
 
@@ -59,10 +59,10 @@ def printed(
     boundary of a half-plane (Flamant). Exact to first order in the slope for ``Theta.NORMAL``, but for the
     strain between the flat and the wavy line, which the paper leaves out. Raises InputError.
     """
-    if not -1 < nu <= 0.5:
+    if not -1 < real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
     profile = Sinusoid(slope_deg, wavelength, 0.0)
-    offsets = np.atleast_1d(np.asarray(offsets, dtype=float))
+    offsets = np.atleast_1d(reals("offsets", offsets, "distances from the centre in half-widths"))
     flat = flat_displacement(offsets, nu)
     centre, *change = (_surface(x, profile, theta, nu) for x in (0.0, *offsets))
     return flat + np.array(change) - centre, flat

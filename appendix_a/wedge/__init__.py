@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from appendix_a.errors import InputError
+from appendix_a.errors import InputError, real, reals
 from appendix_a.wedge import fast
 
 __all__ = ["displacements", "stresses"]
@@ -58,7 +58,7 @@ def displacements(
     tip is the only datum.
     """
     r, theta = _checked(r, theta, gamma, half_width)
-    if not 0 <= nu <= 0.5:
+    if not 0 <= real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio in [0, 0.5]")
     along, across = fast.unit_displacements(r.ravel() / half_width, theta.ravel(), gamma, nu)
     return along.reshape(r.shape), across.reshape(r.shape)
@@ -66,16 +66,16 @@ def displacements(
 
 def _checked(r: ArrayLike, theta: ArrayLike, gamma: float, half_width: float) -> tuple[Real, Real]:
     """``r`` and ``theta`` broadcast, theta clipped to the faces."""
-    if not 0 <= gamma < np.pi / 2:
+    if not 0 <= real(gamma) < np.pi / 2:
         raise InputError("gamma", gamma, "an angle of the faces to the mean plane in [0, pi/2) rad")
-    if not (np.isfinite(half_width) and half_width > 0):
+    if not 0 < real(half_width) < np.inf:
         raise InputError("half_width", half_width, "a positive length")
-    r, theta = np.broadcast_arrays(np.asarray(r, dtype=float), np.asarray(theta, dtype=float))
+    allowed = f"positive distances of {R_RANGE[0]:g} to {R_RANGE[1]:g} half-widths"
+    r, theta = np.broadcast_arrays(reals("r", r, allowed), reals("theta", theta, "angles in rad"))
     with np.errstate(over="ignore"):  # to infinity, which is refused
         ratio = r / half_width
     usable = (ratio >= R_RANGE[0]) & (ratio <= R_RANGE[1])
     if not np.all(usable):
-        allowed = f"positive distances of {R_RANGE[0]:g} to {R_RANGE[1]:g} half-widths"
         raise InputError("r", float(r[~usable][0]), allowed)
     face = np.pi / 2 - gamma
     inside = np.abs(theta) <= face + FACE_SLACK
