@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,10 +19,18 @@ REACH = 3.0  # wavelengths kept on either side; 4 and 8 change less than 0.001 %
 OFFSETS = "a list of finite distances, at most 10000 half-widths"
 OUTER = 8.0  # outer boundary over reach; 64 changes less than 0.001 % of flat
 REACHES = (0.5, 0.5**0.5, 1.0)  # the three outer radii, in units of the one used
+LEVELS = (1, 2, 3)  # the three meshes, coarse to fine; the coarsest on every radius
+SOLVES = len(REACHES) + len(LEVELS) - 1
 
 
 def sinusoid(
-    slope_deg: float, wavelength: float, position: float, nu: float, *, offsets: ArrayLike
+    slope_deg: float,
+    wavelength: float,
+    position: float,
+    nu: float,
+    *,
+    offsets: ArrayLike,
+    progress: Callable[[], None] | None = None,
 ) -> WavyResult:
     """Surface displacements of profile (A2) under a uniform pressure p along the local normal, plane strain.
 
@@ -32,6 +40,7 @@ def sinusoid(
     position: x / lambda of the strip's centre: crest 0, flank 0.25 (+x downhill), valley 0.5.
     nu: Poisson's ratio, -1 < nu <= 0.5.
     offsets: (m,) horizontal distances from the centre in units of a, at most 10^4.
+    progress: called after each of the `SOLVES` solves: far offsets take a quarter of a minute and more.
     Raises InputError.
 
     >>> r = sinusoid(6.5, 100.0, 0.25, 0.3, offsets=[-3.0, 3.0])
@@ -40,7 +49,7 @@ def sinusoid(
     """
     if not -1.0 < real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
-    return departures(slope_deg, wavelength, position, offsets).result(nu)
+    return departures(slope_deg, wavelength, position, offsets, progress=progress).result(nu)
 
 
 def departures(
@@ -48,15 +57,25 @@ def departures(
     wavelength: float,
     position: float,
     offsets: ArrayLike,
-    levels: Sequence[int] = (1, 2, 3),
+    levels: Sequence[int] = LEVELS,
+    *,
+    progress: Callable[[], None] | None = None,
 ) -> Departures:
     """As `sinusoid`, for every Poisson ratio at once; `levels` are the three meshes, coarse to fine."""
     where = np.atleast_1d(reals("offsets", offsets, OFFSETS))
     _check(slope_deg, wavelength, position, where)
     # fading waves must not touch the outermost offset at half the reach either: it begins at reach / 4 there
     reach = max(REACH * wavelength, 4.0 * float(np.max(np.abs(where), initial=1.0)))
-    radii = [_at(slope_deg, wavelength, position, where, part * reach, levels[0]) for part in REACHES]
-    meshes = [radii[-1], *(_at(slope_deg, wavelength, position, where, reach, level) for level in levels[1:])]
+
+    def solved(radius: float, level: int) -> Departure:
+        boundary = sinusoid_boundary(slope_deg, wavelength, position, radius)
+        found = departure(setup_for(wavelength, radius), level, boundary, where)
+        if progress is not None:
+            progress()
+        return found
+
+    radii = [solved(part * reach, levels[0]) for part in REACHES]
+    meshes = [radii[-1], *(solved(reach, level) for level in levels[1:])]
     return Departures(where, tuple(meshes), tuple(radii))
 
 
@@ -66,13 +85,6 @@ def setup_for(wavelength: float, reach: float) -> Setup:
     near = min(reach, 1.5 * wavelength)
     waves = [Source(-near, near, wavelength / 8, 1.0), Source(-reach, reach, wavelength / 4, 1.0)]
     return Setup((*ends, *waves), float(2.0 ** np.ceil(np.log2(OUTER * reach))))
-
-
-def _at(
-    slope_deg: float, wavelength: float, position: float, offsets: Array, reach: float, level: int
-) -> Departure:
-    boundary = sinusoid_boundary(slope_deg, wavelength, position, reach)
-    return departure(setup_for(wavelength, reach), level, boundary, offsets)
 
 
 def _check(slope_deg: float, wavelength: float, position: float, offsets: Array) -> None:
@@ -87,10 +99,16 @@ def _check(slope_deg: float, wavelength: float, position: float, offsets: Array)
 
 
 def fem_json(
-    slope_deg: float, wavelength: float, position: float, nu: float, *, offsets: ArrayLike
+    slope_deg: float,
+    wavelength: float,
+    position: float,
+    nu: float,
+    *,
+    offsets: ArrayLike,
+    progress: Callable[[], None] | None = None,
 ) -> dict[str, list[float] | float]:
     """`sinusoid` as the command line prints it."""
-    found = sinusoid(slope_deg, wavelength, position, nu, offsets=offsets)
+    found = sinusoid(slope_deg, wavelength, position, nu, offsets=offsets, progress=progress)
     return {
         "offsets": found.offsets.tolist(),
         "wavy": found.wavy.tolist(),

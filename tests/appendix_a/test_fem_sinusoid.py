@@ -12,7 +12,7 @@ from appendix_a.fem.geometry import Boundary, flat, sinusoid_boundary
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source
 from appendix_a.fem.mixed import displacements as mixed_displacements
-from appendix_a.fem.sinusoid import departures, setup_for
+from appendix_a.fem.sinusoid import SOLVES, departures, setup_for
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.leading_order import facet_prediction, first_order
 from verification.exact.rational_bump import RationalBump
@@ -99,7 +99,10 @@ def test_flat_boundary_and_stated_error():
 
 
 def test_json_has_the_documented_keys_and_lists():
-    document = json.loads(json.dumps(fem_json(6.5, 100.0, 0.25, 0.3, offsets=[-10, -3, 3, 10])))
+    done: list[None] = []
+    found = fem_json(6.5, 100.0, 0.25, 0.3, offsets=[-10, -3, 3, 10], progress=lambda: done.append(None))
+    assert len(done) == SOLVES
+    document = json.loads(json.dumps(found))
     assert list(document) == ["offsets", "wavy", "flat", "discretisation_error"]
     assert all(len(document[name]) == 4 for name in ("offsets", "wavy", "flat"))
     assert 0.0 < document["discretisation_error"] < 1e-4

@@ -310,6 +310,16 @@ def test_tables_keep_within_their_width() -> None:
 
 
 @pytest.mark.parametrize("terminal", [True, False])
+def test_finite_elements_say_on_a_terminal_how_far_they_are(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    wave = ["--slope-deg", "1", "--wavelength", "8", "--position", "0", "--nu", "0.3", "--offsets=2"]
+    assert main(["appendix-a", "fem", *wave]) == 0
+    assert ("[5/5] finite elements" in capsys.readouterr().err) is terminal
+
+
+@pytest.mark.parametrize("terminal", [True, False])
 def test_a_status_line_is_for_terminals(
     terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:

@@ -152,9 +152,17 @@ def strip(options: argparse.Namespace) -> int:
 def fem(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem import fem_json
+    from appendix_a.fem.sinusoid import SOLVES
+    from verification.files import Progress
 
-    with _by_option():
-        document = fem_json(*_wave(options), offsets=options.offsets)
+    progress = Progress(SOLVES)
+    try:
+        with _by_option():
+            document = fem_json(
+                *_wave(options), offsets=options.offsets, progress=lambda: progress.tick("finite elements")
+            )
+    finally:
+        progress.close()
     remark = f"discretisation error {document['discretisation_error']:.1g}"
     emit(document, options.json, _displacements(document, remark))
     return 0
