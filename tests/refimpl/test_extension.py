@@ -67,7 +67,8 @@ def energy_of(values: Array, precondition: Callable[[Array], Array]) -> float:
 
 
 @pytest.mark.parametrize(
-    ("shape", "share"), [(SHAPE, 0.1), (SHAPE, 0.3), (SHAPE, 0.8), (AMPLE, 0.3), ((127, 126), 0.3), ((3, 5333), 0.3)]
+    ("shape", "share"),
+    [(SHAPE, 0.1), (SHAPE, 0.3), (SHAPE, 0.8), (AMPLE, 0.3), ((127, 126), 0.3), ((3, 5333), 0.3)],
 )
 def test_beyond_the_contact_stands_the_mean_of_neighbours(shape: tuple[int, int], share: float) -> None:
     contact = spots(shape, share)
