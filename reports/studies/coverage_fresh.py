@@ -13,9 +13,9 @@ def build(document: Document) -> Exhibit:
     built = coverage.build(document)
     made = document["provenance"]
     unseen = (
-        "The bars were last changed after a look at the study above, whose scenes therefore count as seen. "
-        f"These were solved after that, by commit {made['commit'][:7]} on {made['date'][:10]}, and judged "
-        "once."
+        "The bars of mu and A were last changed after a look at the study above, whose scenes therefore "
+        "count as seen. These were first solved after that. No look at them has changed a bar: here they are "
+        f"judged with the solver of commit {made['commit'][:7]}, on {made['date'][:10]}."
     )
-    title = "Accuracy asked for, on scenes never looked at"
+    title = "Accuracy asked for, on scenes that have changed no bar"
     return replace(built, title=title, paragraphs=(unseen, *built.paragraphs))

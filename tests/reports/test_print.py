@@ -1,0 +1,23 @@
+"""On paper nothing scrolls: tables of many columns are set smaller, or their last ones would be cut off."""
+
+from __future__ import annotations
+
+import json
+import re
+
+from reports.generator import render
+from tests.documents import ROOT
+from tests.reports.sample import case, results
+
+TABLE = re.compile(r'<table class="sortable( wide)?">\s*<thead><tr>(.*?)</tr>', flags=re.S)
+
+
+def test_tables_of_more_than_eight_columns_are_set_small() -> None:
+    study = json.loads((ROOT / "reports/results/benchmarks.json").read_text(encoding="utf-8"))
+    page = render(results(case("a/1")), {"benchmarks": study})
+    columns = [(head.count("<th"), bool(wide)) for wide, head in TABLE.findall(page)]
+    assert (13, True) in columns
+    assert all(wide is (count > 8) for count, wide in columns)
+    paper = page.partition("@media print")[2].partition("\n}")[0]
+    assert ".wide { font-size" in paper
+    assert "th { white-space: normal; }" in paper
