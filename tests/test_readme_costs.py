@@ -45,12 +45,15 @@ TABLE: dict[str, Number] = {
 }
 
 
-def newest() -> dict[tuple[str, int], tuple[Ratios, Rows]]:
-    """Ratios and rows by surface and grid, of the last run in which every code took part."""
+EVERY = frozenset({OURS, ALONE, PEER, QUICKEST, SHEARED, SLOPED})
+RUNS = json.loads((ROOT / "reports/results/benchmarks.json").read_text(encoding="utf-8"))["runs"]
+
+
+def newest(codes: frozenset[str] = EVERY) -> dict[tuple[str, int], tuple[Ratios, Rows]]:
+    """Ratios and rows by surface and grid, of the last run in which all of the codes took part."""
     found = {}
-    record = json.loads((ROOT / "reports/results/benchmarks.json").read_text(encoding="utf-8"))
-    for run in record["runs"]:
-        if {row["code"] for row in run["rows"]} >= {OURS, ALONE, PEER, QUICKEST, SHEARED, SLOPED}:
+    for run in RUNS:
+        if {row["code"] for row in run["rows"]} >= codes:
             for ratios in run["ratios"]:
                 at = ratios["kind"], ratios["M"]
                 rows = {row["code"]: row for row in run["rows"] if (row["kind"], row["M"]) == at}
@@ -72,3 +75,40 @@ def test_a_row_is_that_of_the_record(label: str) -> None:
 def test_no_other_row_stands_there() -> None:
     table = README.partition("| | 128 |")[2].partition("\n\n")[0]
     assert re.findall(r"^\| (\S.*?) \|", table, flags=re.M) == list(TABLE)
+
+
+def at_512(number: Number, codes: frozenset[str] = EVERY) -> list[float]:
+    """That number on the smooth and on the rough flat."""
+    found = newest(codes)
+    return [float(number(*found[kind, 512]) or 0.0) for kind in ("smooth", "rough")]
+
+
+def seconds(ratios: Ratios, rows: Rows) -> float:
+    return float(rows[OURS]["seconds"]["median"])
+
+
+def test_what_is_said_first_is_so() -> None:
+    smooth, rough = at_512(seconds)
+    text = " ".join(README.split())
+    assert f"takes {smooth:.2f} s on a smooth flat and {rough:.2f} s on a rough one" in text
+    smooth, rough = at_512(over(PEER))
+    assert smooth > 5
+    assert rough > 3  # "a fifth and less than a third"
+    others = EVERY - {QUICKEST} | {"tamaas", "ContactMechanics"}
+    for name, version in (("tamaas", "Tamaas 2.9.0"), ("ContactMechanics", "ContactMechanics 1.8.3")):
+        smooth, rough = at_512(over(name), others)
+        assert re.search(rf"{version} (takes )?{smooth:.0f} / {rough:.0f} times", text)
+        assert min(smooth, rough) > max(at_512(over(PEER), others))
+    smooth, rough = at_512(seconds, others)
+    assert f"with {smooth:.2f} / {rough:.2f} s of ours" in text
+
+
+def test_rounds_are_those_of_the_runs() -> None:
+    rounds = {entry["M"]: run["conditions"]["rounds"] for run in RUNS[-3:] for entry in run["ratios"]}
+    assert rounds == {128: 9, 256: 9, 512: 9, 1024: 3, 2048: 2}
+    assert {run["conditions"]["threads"] for run in RUNS[-3:]} == {2}
+
+
+def test_one_entry_misses_the_aim_and_no_other() -> None:
+    alone = {at: fastest("fastest peer, solver alone")(*found) or 0.0 for at, found in newest().items()}
+    assert [at for at, ratio in alone.items() if ratio < (2 if at[1] <= 512 else 3)] == [("rough", 128)]

@@ -98,17 +98,8 @@ def _check(slope_deg: float, wavelength: float, position: float, offsets: Array)
         raise InputError("offsets", offsets, OFFSETS)
 
 
-def fem_json(
-    slope_deg: float,
-    wavelength: float,
-    position: float,
-    nu: float,
-    *,
-    offsets: ArrayLike,
-    progress: Callable[[], None] | None = None,
-) -> dict[str, list[float] | float]:
-    """`sinusoid` as the command line prints it."""
-    found = sinusoid(slope_deg, wavelength, position, nu, offsets=offsets, progress=progress)
+def fem_json(found: WavyResult) -> dict[str, list[float] | float]:
+    """What `sinusoid` found as the command line prints it."""
     return {
         "offsets": found.offsets.tolist(),
         "wavy": found.wavy.tolist(),

@@ -1,4 +1,4 @@
-"""Error bars once more, on scenes that were solved after the bars were last changed."""
+"""Error bars once more, on scenes that were first solved after bars of mu and A were last changed."""
 
 from __future__ import annotations
 

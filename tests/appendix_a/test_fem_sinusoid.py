@@ -100,9 +100,9 @@ def test_flat_boundary_and_stated_error():
 
 def test_json_has_the_documented_keys_and_lists():
     done: list[None] = []
-    found = fem_json(6.5, 100.0, 0.25, 0.3, offsets=[-10, -3, 3, 10], progress=lambda: done.append(None))
+    found = sinusoid(6.5, 100.0, 0.25, 0.3, offsets=[-10, -3, 3, 10], progress=lambda: done.append(None))
     assert len(done) == SOLVES
-    document = json.loads(json.dumps(found))
+    document = json.loads(json.dumps(fem_json(found)))
     assert list(document) == ["offsets", "wavy", "flat", "discretisation_error"]
     assert all(len(document[name]) == 4 for name in ("offsets", "wavy", "flat"))
     assert 0.0 < document["discretisation_error"] < 1e-4

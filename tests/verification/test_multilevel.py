@@ -1,9 +1,8 @@
-"""Multilevel ensembles: the estimator on made-up samples, the allocation, and a small real ensemble."""
+"""Multilevel ensembles: which grids they keep, what they know of means, and how they resume."""
 
 from __future__ import annotations
 
 import json
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from reports.studies.multilevel import build
+from tests.verification.drawn import TABLE, spied
 from verification.cli import main
 from verification.cli.ensemble import table
 from verification.multilevel.__main__ import document
@@ -25,87 +25,13 @@ from verification.multilevel.ensemble import (
     Ensemble,
     _checked,
     _numbers,
-    _scatter,
-    _sizes,
     _Term,
     _values,
     ensemble,
 )
-from verification.multilevel.estimator import Estimate, allocation, costs_by_start, estimate, variances
+from verification.multilevel.estimator import Estimate
 from verification.sweep import engine
 from verification.sweep.study import MAX_RUNS, Study, study_from_dict
-
-TABLE = {"scene": "table1-rough", "vary": {"grid": [16, 32]}, "solve": {"tolerance": 1e-3}}
-
-
-def test_the_terms_add_up() -> None:
-    found = estimate([np.array([1.0, 3.0]), np.array([0.5, 0.5, 0.5])], 0.0)
-    assert found.mean == pytest.approx(2.5)
-    assert found.standard_error == pytest.approx(1.0)
-    assert found.freedom == pytest.approx(1.0)
-    assert found.half_width == pytest.approx(12.7062, rel=1e-5)  # Student's t at one degree of freedom
-    assert estimate([np.ones(3), np.ones(2)], 0.0).half_width == 0
-
-
-def test_samples_that_agree_may_have_missed_three_of_them() -> None:
-    """Each worth the root of 0.5; of few samples no more than all may have."""
-    few, many = np.ones(2), np.ones(300)
-    assert variances([few, many], 0.5).tolist() == [0.5, 0.5 * 0.01]
-    found = estimate([many, few], 0.5)
-    assert found.standard_error**2 == pytest.approx(0.5 * 0.01 / 300 + 0.5 / 2)
-
-
-def test_corrections_fall_no_faster_than_a_count_does() -> None:
-    first, large, small = np.array([-9.0, 9.0]), np.array([-2.0, 2.0]), np.array([-0.1, 0.1])
-    assert variances([first, large, small, small], 0.0).tolist() == [162.0, 8.0, 1.0, 0.125]
-    assert variances([first, small], 0.0)[1] == pytest.approx(0.02)  # of a realisation's it may be any share
-    assert variances([first, large, np.ones(300)], 1e-6)[2] == 1.0
-
-
-def test_intervals_cover_as_often_as_they_say() -> None:
-    """4000 ensembles of three terms, 5 samples in the last: 95 % within four standard deviations, 1.4 %."""
-    random = np.random.default_rng(5)
-    covered = 0
-    for _ in range(4000):
-        found = estimate([random.normal(1.0, s, n) for s, n in ((1.0, 40), (0.3, 12), (0.2, 5))], 1.0)
-        covered += abs(found.mean - 3.0) <= found.half_width
-    assert covered / 4000 == pytest.approx(0.95, abs=0.014)
-
-
-def test_the_allocation_is_the_cheapest_that_meets_the_target() -> None:
-    variances, costs = np.array([[1.0], [0.04]]), np.array([1.0, 16.0])
-    numbers = allocation(variances, costs, np.array([0.1]))
-    assert numbers.tolist() == [180, 9]
-    assert (variances[:, 0] / numbers).sum() <= 0.01 + 1e-12
-
-    def price(first: int) -> float:
-        return first + 16 * 0.04 / (0.01 - 1.0 / first)
-
-    assert price(180) <= min(price(n) for n in range(101, 400)) * 1.001
-
-
-def test_several_quantities_all_meet_theirs() -> None:
-    variances = np.array([[1.0, 0.1], [0.01, 0.1]])
-    target = np.array([0.1, 0.05])
-    numbers = allocation(variances, np.array([1.0, 4.0]), target)
-    assert np.all((variances / numbers[:, None]).sum(axis=0) <= target**2 + 1e-12)
-
-
-def test_what_does_not_scatter_asks_for_no_samples() -> None:
-    """The friction of a frictionless scene: its mean is 0, and so is the target."""
-    variances, costs = np.array([[0.0, 1.0], [0.0, 0.04]]), np.array([1.0, 16.0])
-    assert allocation(variances, costs, np.array([0.0, 0.1])).tolist() == [180, 9]
-    assert allocation(variances[:, :1], costs, np.array([0.0])).tolist() == [0, 0]
-
-
-def test_costs_by_start_are_those_of_giles() -> None:
-    """Three terms: (sum of sqrt(V C))^2 / target^2, the first V and C those of plain solves on its grid."""
-    corrections = np.array([[np.nan], [0.04], [0.01]])  # the first term has no coarser grid
-    alone, pairs, target = np.array([1.0, 4.0, 16.0]), np.array([1.0, 5.0, 20.0]), np.array([0.001])
-    found = costs_by_start(np.array([1.0]), corrections, alone, pairs, target)
-    root = np.sqrt
-    expected = [(1.0 + root(0.04 * 5) + root(0.01 * 20)) ** 2, (2.0 + root(0.01 * 20)) ** 2, 16.0]
-    np.testing.assert_allclose(found, np.array(expected) / 1e-6, rtol=1e-5)  # whole numbers of samples
 
 
 def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,23 +92,6 @@ def test_an_element_in_contact_may_come_where_nothing_scatters(
     assert table(found).count("nothing scatters") == 2
 
 
-def test_equal_numbers_do_not_scatter_by_rounding() -> None:
-    """Three times 0.1 have a mean that is none of them."""
-    same = np.full((3, 1), 0.1)
-    assert same.var() > 0
-    assert _scatter([_Term(same, same, np.zeros(1), 1.0, 1.0, {})]).tolist() == [0.0]
-
-
-def test_targets_are_no_shares_of_a_mean_that_may_be_zero() -> None:
-    """A sum of few samples' terms can vanish by chance; what it took would be beyond all bounds."""
-    finer = np.array([[2.0], [4.0]])
-    term = _Term(finer, finer, np.zeros(1), 1.0, 1.0, {})
-    for mean, size in ((1e-9, 3.0), (-0.5, 3.0), (10.0, 10.0)):
-        means = {"contact_area": Estimate(mean, 0.2, 0.4, 9.0)}
-        found = Ensemble((1, 2), means, (2, 2), (1.0, 1.0), {}, {}, False, {})
-        assert _sizes(found, [term, term]) == pytest.approx([0.97 * size])
-
-
 def test_what_a_perimeter_adds_makes_no_correction(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It goes with the element; on the finest grid all of it is meant to stay."""
     tau, load, side = 15e6, 70.0, 1.61e-3
@@ -237,58 +146,6 @@ def test_coarse_areas_are_those_of_the_finest_grids_elements() -> None:
     assert _values(row, ("contact_area",), 0.1, 0.0) == [4.0]
 
 
-def spied(monkeypatch: pytest.MonkeyPatch, scatter: tuple[float, ...]) -> dict[str, float]:
-    """Sweeps solve nothing, but draw: independent numbers of that scatter by grid (8, 16, ...).
-
-    Returns the seconds of every run by its key.
-    """
-    seconds: dict[str, float] = {}
-
-    def drawn(study: Study, *_: Any, **__: Any) -> engine.Sweep:
-        rows, spent = [], []
-        for run in study.runs():
-            level = int(np.log2(run.inputs["grid"] / 8))
-            seed = study.first_seed + 2 * int(
-                run.coordinates["realisation"]
-            )  # a key knows the code's version
-            value = 100 + scatter[level] * np.random.default_rng([seed, level]).standard_normal()
-            row = dict.fromkeys((*QUANTITIES, "contact_area_corrected"), value)
-            rows.append(row | {"normal_force": 70.0, "status": "converged", "key": run.key})
-            spent.append(seconds.setdefault(run.key, 4.0**level))
-        return engine.Sweep(0, len(rows), {}, rows, spent, 0.0)
-
-    monkeypatch.setattr(engine, "sweep", drawn)
-    return seconds
-
-
-@pytest.mark.parametrize("target", [1e-6, 1e-30, 1e-300])
-def test_a_target_out_of_reach_is_refused_after_the_pilot(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, target: float
-) -> None:
-    solved = spied(monkeypatch, scatter=(1.0, 1.0, 1.0))
-    study = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}})
-    with pytest.raises(InputError, match=f"--target-error = {target:g}: .*realisations.*1000000") as refused:
-        ensemble(study, tmp_path / "a.sqlite", target)
-    assert len(solved) == PILOT[0] + 2 * PILOT[1] + 2 * PILOT[2]
-    assert re.search("takes ([1-9].*|inf) realisations", refused.value.allowed)
-
-
-def test_how_far_out_of_reach_goes_by_the_inverse_square(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    spied(monkeypatch, scatter=(1.0, 1.0, 1.0))
-    study, numbers = study_from_dict(TABLE | {"vary": {"grid": [8, 16, 32]}}), []
-    for target in (1e-6, 1e-7):
-        with pytest.raises(InputError) as refused:
-            ensemble(study, tmp_path / "a.sqlite", target)
-        told = re.search(r"takes (\S+) realisations", refused.value.allowed)
-        assert told is not None
-        numbers.append(float(told[1]))
-    # scatter of 1 in 100, hence 1e8 plain samples of it, within what a pilot of four may be off
-    assert 1e7 < numbers[0] < 1e9
-    assert numbers[1] == pytest.approx(100 * numbers[0], rel=0.1)
-
-
 def test_an_ensemble_resumes_and_repeats(tmp_path: Path) -> None:
     study = study_from_dict(TABLE)
     first = ensemble(study, tmp_path / "a.sqlite", 0.05, workers=0)
@@ -298,22 +155,6 @@ def test_an_ensemble_resumes_and_repeats(tmp_path: Path) -> None:
     assert again == first
     shown = build(json.loads(json.dumps(document([first, again], 0.05))))
     assert len(shown.tables) == 2
-
-
-@pytest.mark.parametrize(
-    ("change", "field"),
-    [
-        ({"vary": {"grid": [16, 48]}}, "vary.grid"),
-        ({"vary": {"grid": [16]}}, "vary.grid"),
-        ({"vary": {"grid": [16, 32], "load": [1.0]}}, "vary"),
-        ({"realisations": 75}, "realisations"),
-        ({"first_seed": 2**63 - 10**6}, "first_seed"),
-    ],
-)
-def test_a_study_that_is_no_ensemble_is_refused(tmp_path: Path, change: dict, field: str) -> None:
-    with pytest.raises(InputError) as refused:
-        ensemble(study_from_dict(TABLE | change), tmp_path / "a.sqlite", 0.05)
-    assert refused.value.field == field
 
 
 @pytest.mark.parametrize("broken", [0, 3])
@@ -340,18 +181,6 @@ def test_no_mean_is_taken_of_what_did_not_converge(
     command = ["sweep", str(tmp_path / "e.toml"), "--store", str(tmp_path / "s.sqlite")]
     assert main([*command, "--target-error", "5%"]) == 1
     assert "2 of 16 runs did not converge" in capsys.readouterr().out
-
-
-def test_a_scene_without_scatter_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="Gaussian"):
-        ensemble(study_from_dict(TABLE | {"scene": "hertz"}), tmp_path / "a.sqlite", 0.05)
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("target", [0.0, 1.0, -0.1])
-def test_a_target_out_of_range_is_refused(tmp_path: Path, target: float) -> None:
-    with pytest.raises(InputError, match="target-error"):
-        ensemble(study_from_dict(TABLE), tmp_path / "a.sqlite", target)
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -151,18 +151,18 @@ def strip(options: argparse.Namespace) -> int:
 
 def fem(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary and of a flat one."""
-    from appendix_a.fem import fem_json
-    from appendix_a.fem.sinusoid import SOLVES
+    from appendix_a.fem.sinusoid import SOLVES, fem_json, sinusoid
     from verification.files import Progress
 
     progress = Progress(SOLVES)
     try:
         with _by_option():
-            document = fem_json(
+            found = sinusoid(
                 *_wave(options), offsets=options.offsets, progress=lambda: progress.tick("finite elements")
             )
     finally:
         progress.close()
+    document = fem_json(found)
     remark = f"discretisation error {document['discretisation_error']:.1g}"
     emit(document, options.json, _displacements(document, remark))
     return 0
