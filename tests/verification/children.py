@@ -46,8 +46,12 @@ def forked(act: Callable[[], int], *, before: Callable[[], object] = lambda: Non
 
 
 def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
-    """The command line, run in a folder. A shell's background job ignores interrupts; this does not."""
+    """The command line, run in a folder.
+
+    A shell's background job ignores interrupts, and what nohup runs hang-ups; this does not.
+    """
     code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    code += "signal.signal(signal.SIGHUP, signal.SIG_DFL); "
     code += "print('ready', flush=True); from verification.cli import main; raise SystemExit(main())"
     environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     child = subprocess.Popen(

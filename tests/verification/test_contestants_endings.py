@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +12,6 @@ import pytest
 
 from tests.verification.children import forked, started
 from verification.contestants.ending import Ended, unwinding
-from verification.contestants.isolated import heard
 
 needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks processes up in /proc")
 SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
@@ -75,32 +72,6 @@ def test_a_run_that_is_ended_takes_the_solver_with_it(
             os.kill(pid, signal.SIGKILL)
         child.kill()
         child.communicate()
-
-
-def test_a_signal_that_another_thread_takes_is_heard_all_the_same() -> None:
-    """It wakes nobody up who waits, as one that comes just before the wait does not."""
-    ours, theirs = multiprocessing.Pipe()
-    over = threading.Event()
-    other = threading.Thread(target=over.wait)
-    other.start()
-    assert other.ident is not None
-    later = threading.Timer(0.1, signal.pthread_kill, (other.ident, signal.SIGUSR1))
-    start = time.monotonic()
-    try:
-        with unwinding(signal.SIGUSR1):
-            later.start()
-            with pytest.raises(Ended):
-                heard(ours, 60.0)
-    finally:
-        later.cancel()  # or it would end whoever has no handler any more
-        over.set()
-        other.join()
-    assert time.monotonic() - start < 30  # half a second, and what a busy machine adds
-    theirs.send("something")
-    assert heard(ours, 0.0)
-    ours.recv()
-    assert not heard(ours, 0.0)
-    assert not heard(ours, 0.01)
 
 
 def test_a_signal_unwinds_once_and_is_then_as_before() -> None:

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from multiprocessing.connection import Connection, wait
+from multiprocessing.connection import wait
 from typing import Any
 
 from refimpl.errors import InputError
@@ -30,9 +30,6 @@ GRACE = 10.0
 """Seconds beyond that: a command's own limit goes first, and says more."""
 START = 120.0
 """Seconds for a new process to import the solver and the suite."""
-SLICE = 0.5
-"""Seconds of waiting at a stretch. A signal that comes between Python's last look and the wait, or that the
-system gives to another thread, wakes nobody up: it is heard when the stretch is over."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,7 @@ class Table:
         start, case = time.perf_counter(), check.case(_absent)
         try:
             self._pipe.send(check.slug)
-            if heard(self._pipe, self._limit):
+            if self._pipe.poll(self._limit):
                 result: object = self._pipe.recv()
                 if isinstance(result, Result) and result.id == case.id:
                     return result
@@ -135,7 +132,7 @@ class Table:
     def _refusal(self) -> InputError | None:
         """What the new process has against the solver, or what became of the process itself."""
         try:
-            if heard(self._pipe, START):
+            if self._pipe.poll(START):
                 refused: InputError | None = self._pipe.recv()
                 return refused
             reason = f"no end within {START:g} s"
@@ -146,15 +143,6 @@ class Table:
     def _exit_status(self) -> int | None:
         self._process.join(1.0)
         return self._process.exitcode
-
-
-def heard(pipe: Connection, seconds: float) -> bool:
-    """Whether there is something to receive within that time; signals are heard within a `SLICE`."""
-    deadline = time.monotonic() + seconds
-    while not pipe.poll(min(SLICE, max(0.0, deadline - time.monotonic()))):
-        if time.monotonic() >= deadline:
-            return False
-    return True
 
 
 def _absent(problem: ContactProblem) -> Answer:
