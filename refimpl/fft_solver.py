@@ -8,12 +8,12 @@ from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import Apply
 from refimpl.friction import Mask
 from refimpl.grid import Array, resampled
+from refimpl.grid.window import Window
 from refimpl.level_solver import LevelSolver, WindowInfluence, influence
 from refimpl.nesting import Start, foundation_pressure, levels, sharpened, touching
 from refimpl.operators.base import Influence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
 from refimpl.problem import Problem
 

@@ -20,9 +20,9 @@ from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.forces import Forces, resultants
 from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array
+from refimpl.grid.window import Window
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.operators.window import Window
 from refimpl.problem import Problem
 from refimpl.slopes import Slopes
 

@@ -11,7 +11,7 @@ import scipy.fft as sfft
 
 from refimpl.friction import Mask
 from refimpl.grid import Array, inner
-from refimpl.operators.window import Window
+from refimpl.grid.window import Window
 from refimpl.slopes import Slopes
 from refimpl.solution import REPORTED, Solution
 from refimpl.summit import LEVEL, Summit, deepest, highest

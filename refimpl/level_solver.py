@@ -17,11 +17,11 @@ from refimpl.contact.projected_cg import Apply, ProjectedCG
 from refimpl.flexibility import Flexibility
 from refimpl.friction import Mask, TauSupport
 from refimpl.grid import Array
+from refimpl.grid.window import Window
 from refimpl.held import Held
 from refimpl.nesting import Start
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.operators.window import Window
 from refimpl.outcome import Outcome, Status, Visited
 from refimpl.problem import Problem, visit
 from refimpl.tau_path import followed

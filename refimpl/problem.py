@@ -10,10 +10,10 @@ import numpy as np
 from refimpl.forces import resultants
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
+from refimpl.grid.window import Window
 from refimpl.materials import Pair
 from refimpl.operators.base import Influence
 from refimpl.operators.transforms import keep_memory
-from refimpl.operators.window import Window
 from refimpl.outcome import Visited
 from refimpl.scene import Friction, Scene
 from refimpl.slopes import Slopes

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, differences
-from refimpl.operators.window import Window
+from refimpl.grid.window import Window
 
 
 @dataclass(frozen=True)

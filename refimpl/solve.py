@@ -14,11 +14,11 @@ from refimpl.errors import InputError
 from refimpl.fft_solver import solve_fft
 from refimpl.gathered import gathered
 from refimpl.grid import Grid
+from refimpl.grid.window import Window
 from refimpl.grid_result import GridResult
 from refimpl.nesting import Start
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
-from refimpl.operators.window import Window
 from refimpl.outcome import Outcome, Status
 from refimpl.paper import solve_paper
 from refimpl.plan import Method, Plan

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from refimpl.friction import Mask
 from refimpl.grid import Array
-from refimpl.operators.window import Window
+from refimpl.grid.window import Window
 
 _RIVAL = 0.5  # of the highest element: lower maxima have no say in how well a summit is known
 _NEAR = np.arange(-2, 3)[:, None]

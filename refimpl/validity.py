@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from refimpl.coefficient_error import SlopeError, slope_error
+from refimpl.grid.contact_patches import spot_sizes
+from refimpl.grid.window import Window
 from refimpl.materials import Pair
-from refimpl.operators.window import Window
 from refimpl.scene import Body, Scene
 from refimpl.slopes import Slopes
-from refimpl.spots import spot_sizes
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
 from refimpl.surfaces.window import ROUNDING

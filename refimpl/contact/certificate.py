@@ -11,8 +11,8 @@ from refimpl.contact.gap import relative_gap
 from refimpl.forces import Forces, resultants
 from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array, inner
+from refimpl.grid.window import Window
 from refimpl.operators.base import Influence
-from refimpl.operators.window import Window
 from refimpl.problem import Problem
 from refimpl.slopes import Slopes
 

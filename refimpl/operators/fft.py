@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
+from refimpl.grid.window import Window, padded_length
 from refimpl.operators.fourier import Complex, factors, fourier, threads
 from refimpl.operators.symmetric import even_hat, odd_hat
 from refimpl.operators.tables import signed_table, unit_table
-from refimpl.operators.window import Window, padded_length
 
 
 @dataclass

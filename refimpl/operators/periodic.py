@@ -15,9 +15,9 @@ import numpy as np
 import scipy.fft as sfft
 
 from refimpl.grid import Array, Grid
+from refimpl.grid.window import Window
 from refimpl.operators.fft import Counter
 from refimpl.operators.fourier import Complex, fourier, threads
-from refimpl.operators.window import Window
 
 
 class PeriodicInfluence:

@@ -26,10 +26,10 @@ from numpy.typing import NDArray
 from refimpl.forces import EDGE_SHARE
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid, resampled
-from refimpl.operators.window import Window
+from refimpl.grid.contact_patches import spot_sizes
+from refimpl.grid.window import Window
 from refimpl.problem import Problem
 from refimpl.slopes import Slopes
-from refimpl.spots import spot_sizes
 
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes

@@ -9,10 +9,10 @@ from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.contact.support import Support
 from refimpl.grid import Array
+from refimpl.grid.window import Window
 from refimpl.level_solver import LevelSolver, influence
 from refimpl.nesting import foundation_pressure
 from refimpl.operators.fft import Counter
-from refimpl.operators.window import Window
 from refimpl.problem import Problem, Terms, pose
 
 BALL = rf.Scene(

@@ -14,9 +14,9 @@ from refimpl.contact.extension import ExtendedPreconditioner, extended
 from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
+from refimpl.grid.window import Window
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.window import Window
 from verification.benchmarks.problems import scene
 
 SHAPE, COMPLIANCE = (18, 15), 1e-11

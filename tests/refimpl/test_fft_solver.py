@@ -13,8 +13,8 @@ from refimpl.contact.certificate import certify
 from refimpl.contact.projected_cg import Apply
 from refimpl.fft_solver import _beyond, _certified, _widened, solve_fft
 from refimpl.friction import Mask
+from refimpl.grid.window import Window
 from refimpl.operators.fft import Counter, FFTInfluence
-from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
 from refimpl.slopes import Slopes
 from tests.refimpl.levels import BALL, coupled, level, posed

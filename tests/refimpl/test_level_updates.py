@@ -13,8 +13,8 @@ import refimpl as rf
 from refimpl import fft_solver
 from refimpl.contact.certificate import certify
 from refimpl.grid import Array
+from refimpl.grid.window import Window
 from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.window import Window
 from refimpl.problem import Terms, pose
 from refimpl.slopes import Slopes
 from tests.refimpl.levels import BALL, coupled, level, posed, press

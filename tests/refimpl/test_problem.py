@@ -11,9 +11,9 @@ import refimpl as rf
 from refimpl import problem as module
 from refimpl.forces import resultants
 from refimpl.friction import local_friction
+from refimpl.grid.window import Window
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
-from refimpl.operators.window import Window
 from refimpl.problem import Problem, Terms, pose, visit
 from refimpl.slopes import Slopes
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from refimpl.grid import differences
-from refimpl.operators.window import Window
+from refimpl.grid.window import Window
 from refimpl.slopes import Slopes
 
 M, H = 9, 0.25

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from refimpl.friction import Mask
-from refimpl.spots import spot_sizes
+from refimpl.grid.contact_patches import spot_sizes
 
 
 def walked(contact: Mask, periodic: bool) -> list[int]:

@@ -17,10 +17,10 @@ from refimpl.contact.certificate import State
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.fft_solver import solve_fft
 from refimpl.friction import Mask
+from refimpl.grid.window import Window
 from refimpl.level_solver import LevelSolver
 from refimpl.mixing import Mixing
 from refimpl.operators.fft import Counter
-from refimpl.operators.window import Window
 from refimpl.outcome import Outcome
 from refimpl.problem import Problem, Terms, pose
 from tests.refimpl.levels import BALL, level, posed

@@ -9,8 +9,8 @@ import numpy as np
 import scipy.fft as sfft
 
 from refimpl.grid import Array, Grid
+from refimpl.grid.window import Window
 from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.window import Window
 from verification.contestants.protocol import ContactProblem
 
 

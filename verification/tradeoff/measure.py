@@ -16,7 +16,7 @@ import scipy.fft as sfft
 import refimpl as rf
 from refimpl import fft_solver
 from refimpl.grid import Array
-from refimpl.operators.window import Window, padded_length
+from refimpl.grid.window import Window, padded_length
 from refimpl.problem import Problem
 from verification.tradeoff.settings import Setting
 from verification.tradeoff.single import single_precision
