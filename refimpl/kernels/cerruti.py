@@ -25,7 +25,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.kernels.far_field import Kernel
+from refimpl.kernels.quadrature import Kernel
 
 Array = NDArray[np.float64]
 _FLOOR = 1e-150  # of a length whose square must not underflow; t log(length / t) is nothing below it

@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.kernels.far_field import Kernel
+from refimpl.kernels.quadrature import Kernel
 
 Array = NDArray[np.float64]
 _TINY = float(np.finfo(np.float64).tiny)

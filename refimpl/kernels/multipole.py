@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from refimpl.kernels.far_field import TRUNCATION
+from refimpl.kernels.quadrature import TRUNCATION
 
 Array = NDArray[np.float64]
 Coefficients = Sequence[float]

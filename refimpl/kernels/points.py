@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from refimpl.errors import InputError, require_number
 from refimpl.kernels.cerruti import CERRUTI
-from refimpl.kernels.far_field import NEAR, Kernel, across, shells
 from refimpl.kernels.love import LOVE
+from refimpl.kernels.quadrature import NEAR, Kernel, across, shells
 
 Array = NDArray[np.float64]
 

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from refimpl.errors import InputError
 from refimpl.kernels import multipole
 from refimpl.kernels.cerruti import CERRUTI
-from refimpl.kernels.far_field import NEAR, Kernel, across, order_for
 from refimpl.kernels.love import LOVE
 from refimpl.kernels.points import scale
+from refimpl.kernels.quadrature import NEAR, Kernel, across, order_for
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,15 @@ import pytest
 
 from refimpl.errors import InputError
 from refimpl.kernels import normal_integral, normal_table, tables, tangential_integral, tangential_table
-from refimpl.kernels.far_field import NEAR, ORDERS, TRUNCATION, order_for, reach, relative_error_bound, shells
+from refimpl.kernels.quadrature import (
+    NEAR,
+    ORDERS,
+    TRUNCATION,
+    order_for,
+    reach,
+    relative_error_bound,
+    shells,
+)
 from verification.case import Status
 from verification.cases import kernel_forms, kernels
 from verification.exact import kernel_reference as reference

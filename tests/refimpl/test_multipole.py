@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from refimpl.kernels import multipole, normal_integral, tangential_integral
-from refimpl.kernels.far_field import TRUNCATION
+from refimpl.kernels.quadrature import TRUNCATION
 
 SERIES = {"normal": multipole.LOVE, "tangential": multipole.CERRUTI}
 INTEGRAL = {"normal": normal_integral, "tangential": tangential_integral}

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from refimpl.kernels import multipole, normal_integral, tangential_integral
 from refimpl.kernels.cerruti import CERRUTI
-from refimpl.kernels.far_field import ORDERS, across, relative_error_bound
 from refimpl.kernels.love import LOVE
+from refimpl.kernels.quadrature import ORDERS, across, relative_error_bound
 from verification.case import Measured
 from verification.cases.kernels import CERRUTI_SOURCE, LOVE_SOURCE
 from verification.exact import kernel_reference as reference
@@ -77,7 +77,7 @@ def textbook_tangential_fails() -> Measured:
     "kernels/quadrature-bound",
     title="The error bound that chooses the quadrature order holds",
     claim="truncation errors of 2 ... 9 points stay below the Bernstein-ellipse bound wherever tried",
-    source="refimpl/kernels/far_field.py; Trefethen 2008 for the method",
+    source="refimpl/kernels/quadrature.py; Trefethen 2008 for the method",
     metric="at_most",
     tolerance=1.0,
     tolerance_reason="error over bound; a bound is a bound",

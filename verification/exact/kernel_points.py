@@ -11,7 +11,7 @@ from itertools import product
 
 import numpy as np
 
-from refimpl.kernels.far_field import shells
+from refimpl.kernels.quadrature import shells
 
 Point = tuple[float, float, float, float]
 

@@ -14,7 +14,7 @@ from refimpl import coefficient_error, discretisation, forces, gathered, paper, 
 from refimpl.budget import Budget
 from refimpl.contact import active_set, bounds, certificate, energy_norm
 from refimpl.estimate import Estimate
-from refimpl.kernels import far_field, points, tables
+from refimpl.kernels import points, quadrature, tables
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -35,7 +35,7 @@ def _method(owner: type, name: str, replacement: Any) -> Iterator[Patch]:
 IN_REFIMPL: dict[str, LocalFault] = {
     "kernel-quadrature": (
         "one Gauss point too few far from the load",
-        lambda: everywhere(far_field.order_for, wrong.fewer_points),
+        lambda: everywhere(quadrature.order_for, wrong.fewer_points),
     ),
     "kernel-cancels": (
         "Cerruti's closed form cancels close to x = 0",

@@ -12,7 +12,7 @@ from refimpl import coefficient_error, forces, gathered, paper, slopes
 from refimpl.contact import active_set, bounds
 from refimpl.estimate import Estimate
 from refimpl.grid import Array, Grid
-from refimpl.kernels import cerruti, far_field
+from refimpl.kernels import cerruti, quadrature
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -28,7 +28,7 @@ _spread_by_support = gathered._spread_by_support
 _iterate, _gathered, _difference = paper._Scheme._iterate, gathered.gathered, slopes._difference
 _complementarity, _scene_sampled = active_set.complementarity, Scene.sampled
 _perimeter, _departure = forces.perimeter_corrected_area, coefficient_error._departure
-_white_noise, _order_for, _bar = noise.white_noise, far_field.order_for, Estimate.bar
+_white_noise, _order_for, _bar = noise.white_noise, quadrature.order_for, Estimate.bar
 
 
 def mean_displaces(self: PeriodicInfluence) -> Array:
