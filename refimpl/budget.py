@@ -23,7 +23,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from refimpl.errors import InputError, require_number
-from refimpl.forces import facet_resultants
+from refimpl.model.forces import facet_resultants
 from refimpl.parameters import check_tolerances
 from refimpl.scene import Scene
 from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity

@@ -20,7 +20,7 @@ from scipy.interpolate import BSpline, RegularGridInterpolator, make_interp_spli
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
-from refimpl.materials import Material
+from refimpl.model.materials import Material
 
 _VERSION = 1
 _NEIGHBOUR = 2.0  # offset of the next element in half-widths

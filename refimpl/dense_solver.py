@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.contact.active_set import complementarity, restricted_solve
-from refimpl.contact.certificate import State, certify
-from refimpl.friction import Mask, TauSupport, local_friction
 from refimpl.grid import Array
+from refimpl.model.certificate import State, certify
+from refimpl.model.friction import Mask, TauSupport, local_friction
+from refimpl.model.problem import Problem, visit
+from refimpl.model.slopes import Slopes
+from refimpl.model.state import Outcome, Status, Visited
 from refimpl.operators.dense import DenseInfluence
-from refimpl.outcome import Outcome, Status, Visited
-from refimpl.problem import Problem, visit
-from refimpl.slopes import Slopes
 
 _SLOPE_TOLERANCE = 1e-13  # of the peak pressure: 450 eps, or where changes of slopes stop shrinking before
 _ROUNDING_FLOOR = 1e-11  # a change below this that no longer shrinks is rounding of the linear solves

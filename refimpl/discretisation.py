@@ -27,9 +27,9 @@ import numpy as np
 
 from refimpl.estimate import DECAY, Bias, Estimate, Prior, line
 from refimpl.first_touch import POWERS, first_touch, missed, missed_share, touched
-from refimpl.forces import EDGE_SHARE
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
+from refimpl.model.forces import EDGE_SHARE
 
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
 SINGLES = 1.5  # what a lone element's edge counts more than an edge

@@ -20,7 +20,7 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
-from refimpl.materials import Material
+from refimpl.model.materials import Material
 
 _VERSION = 1
 _WAVELENGTH = 20.0

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array
+from refimpl.model.friction import Mask, local_friction
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
 
 _WEAK = 0.3  # sigma up to which CG takes the coupling in; on random scenes it pays to 0.5, and fails at 0.7
 

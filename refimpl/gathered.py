@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 from refimpl.coefficient_error import slope_error
-from refimpl.contact.certificate import State
 from refimpl.first_touch import POWERS
-from refimpl.forces import perimeter_corrected_area
-from refimpl.outcome import Outcome, Status, Visited
+from refimpl.model.certificate import State
+from refimpl.model.forces import perimeter_corrected_area
+from refimpl.model.problem import Problem
+from refimpl.model.state import Outcome, Status, Visited
 from refimpl.plan import Plan
 from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
-from refimpl.problem import Problem
 from refimpl.solution import Cost, Solution
 from refimpl.uncertainty import AREAS, merged
 

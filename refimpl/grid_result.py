@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft as sfft
 
-from refimpl.friction import Mask
 from refimpl.grid import Array, inner
 from refimpl.grid.window import Window
-from refimpl.slopes import Slopes
+from refimpl.model.friction import Mask
+from refimpl.model.slopes import Slopes
 from refimpl.solution import REPORTED, Solution
 from refimpl.summit import LEVEL, Summit, deepest, highest
 from refimpl.uncertainty import adhesive_share, edge_excess, iteration_parts, merged

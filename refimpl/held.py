@@ -8,11 +8,11 @@ import numpy as np
 
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.flexibility import Flexibility
-from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array, inner
 from refimpl.mixing import Mixing
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
+from refimpl.model.friction import Mask, local_friction
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 
 _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
 _FARTHEST = 1e30  # sides; shear displacements beyond have run off, while their squares still fit a double

@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 
 from refimpl.contact.projected_cg import Apply, ProjectedCG
 from refimpl.flexibility import Flexibility
-from refimpl.friction import Mask, TauSupport
 from refimpl.grid import Array
 from refimpl.grid.window import Window
 from refimpl.held import Held
+from refimpl.model.friction import Mask, TauSupport
+from refimpl.model.problem import Problem, visit
+from refimpl.model.state import Outcome, Status, Visited
 from refimpl.nesting import Start
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.outcome import Outcome, Status, Visited
-from refimpl.problem import Problem, visit
 from refimpl.tau_path import followed
 from refimpl.updates import Updates
 
@@ -99,7 +99,7 @@ class LevelSolver:
         )
 
     def solve(self, tolerance: float) -> Outcome:
-        """The settled state; tau's support follows the rule of `refimpl.friction`.
+        """The settled state; tau's support follows the rule of `refimpl.model.friction`.
 
         Where one of tau's states meets the window's edge the next are not the rule's: it ends ``cramped``.
         """

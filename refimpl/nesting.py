@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from refimpl.contact.projected_cg import FIRST_LENGTH, Apply
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid, resampled
-from refimpl.problem import Problem
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem
 
 _COARSEST = 32  # elements per side where nesting starts
 _COARSEST_OF_TWO = 16  # the same of grids that would have no coarser one

@@ -22,15 +22,15 @@ import numpy as np
 import scipy.fft as sfft
 from scipy.ndimage import map_coordinates
 
-from refimpl.contact.certificate import State, certify
-from refimpl.friction import Mask, TauSupport, local_friction
 from refimpl.grid import Array, inner
+from refimpl.model.certificate import State, certify
+from refimpl.model.friction import Mask, TauSupport, local_friction
+from refimpl.model.problem import Problem, visit
+from refimpl.model.slopes import Slopes
+from refimpl.model.state import Outcome, Status, Visited
 from refimpl.nesting import coarsened
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.tables import unit_table
-from refimpl.outcome import Outcome, Status, Visited
-from refimpl.problem import Problem, visit
-from refimpl.slopes import Slopes
 
 PAPER_TOLERANCE = 1e-4  # |(P - N) / P|, section 5
 _PRESSURE_SHARE = 0.1  # |df| / |f| may be this share of the load tolerance: 1e-5, section 5
@@ -115,7 +115,7 @@ class _Scheme:
         self._periodic_hat: Array = self._compliance * sfft.rfft2(row).real
 
     def settle_tau(self, approach: float | None) -> Outcome:
-        """Balance under the rule for tau's support that all solvers share (`refimpl.friction`)."""
+        """Balance under the rule for tau's support that all solvers share (`refimpl.model.friction`)."""
         rule = TauSupport(self.problem.gap.shape)
         states: list[Visited] = []
         in_cycles: list[Visited] = []

@@ -9,11 +9,11 @@ from typing import Literal
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.model.problem import Terms
 from refimpl.planning.choice import Forced, Term, affordable, choose
 from refimpl.planning.outlook import Outlook, expected
 from refimpl.planning.resolution import Resolution, resolution
 from refimpl.posing import Posing
-from refimpl.problem import Terms
 from refimpl.scene import Scene
 
 Method = Literal["dense", "fft", "paper"]

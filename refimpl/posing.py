@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from refimpl.grid import Grid
-from refimpl.problem import Problem, Terms, pose
+from refimpl.model.problem import Problem, Terms, pose
 from refimpl.scene import Scene
 
 EVERYTHING = Terms(coupled=True, oblique=True, slope_correction=False)

@@ -15,7 +15,7 @@ from typing import Literal
 from refimpl.discretisation import discretisation, estimates
 from refimpl.errors import InputError, require_number
 from refimpl.grid_result import GridResult
-from refimpl.outcome import Status
+from refimpl.model.state import Status
 from refimpl.remark import Remark
 from refimpl.solution import Cost, Solution
 from refimpl.uncertainty import Uncertainty, merged

@@ -11,7 +11,7 @@ import numpy as np
 
 from refimpl.errors import MOST, InputError, keep_doubles, require_number, require_size
 from refimpl.grid import Array, Grid
-from refimpl.materials import Material, Pair
+from refimpl.model.materials import Material, Pair
 from refimpl.surfaces import Surface, SurfaceWarning, as_surface
 
 # What a surface is asked with, by the names that the scene has for it.

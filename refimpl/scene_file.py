@@ -12,7 +12,7 @@ from typing import Any
 import tomli_w
 
 from refimpl.errors import InputError, within
-from refimpl.materials import Material
+from refimpl.model.materials import Material
 from refimpl.parameters import check_tolerances
 from refimpl.scene import Body, Friction, Scene
 from refimpl.surfaces import surface_from_dict

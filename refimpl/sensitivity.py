@@ -30,9 +30,9 @@ from refimpl.errors import LEAST, InputError
 from refimpl.fixed_set import FixedSet
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
-from refimpl.materials import RIGID
+from refimpl.model.materials import RIGID
+from refimpl.model.problem import Problem, Terms, pose
 from refimpl.parameters import moving, parameters, with_parameter
-from refimpl.problem import Problem, Terms, pose
 from refimpl.scene import Scene
 from refimpl.solution import Solution
 from refimpl.solve import solve

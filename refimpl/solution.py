@@ -11,16 +11,16 @@ import numpy as np
 
 from refimpl.coefficient_error import SlopeError
 from refimpl.contact.bounds import Bounds, proven_bounds
-from refimpl.contact.certificate import Certificate
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
-from refimpl.outcome import Status
+from refimpl.model.certificate import Certificate
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
+from refimpl.model.state import Status
 from refimpl.plan import Plan
 from refimpl.planning.effects import Effect
-from refimpl.problem import Problem
 from refimpl.remark import Remark
 from refimpl.scene import Friction
-from refimpl.slopes import Slopes
 from refimpl.validity import Caution, plain_warning
 
 

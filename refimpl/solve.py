@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from refimpl.contact.certificate import State, certify
 from refimpl.dense_solver import solve_dense
 from refimpl.errors import InputError
 from refimpl.fft_solver import solve_fft
@@ -16,15 +15,16 @@ from refimpl.gathered import gathered
 from refimpl.grid import Grid
 from refimpl.grid.window import Window
 from refimpl.grid_result import GridResult
+from refimpl.model.certificate import State, certify
+from refimpl.model.problem import Problem
+from refimpl.model.state import Outcome, Status
 from refimpl.nesting import Start
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
-from refimpl.outcome import Outcome, Status
 from refimpl.paper import solve_paper
 from refimpl.plan import Method, Plan
 from refimpl.planning.afterwards import effects_left_out
 from refimpl.posing import Posing
-from refimpl.problem import Problem
 from refimpl.refine import Quantity, refine, total_cost, uncertainty
 from refimpl.remark import Remark
 from refimpl.request import Request
@@ -63,7 +63,7 @@ def solve(
         "contact_area_corrected" or "max_pressure"
     approach : prescribe the approach (m) instead of the scene's load
     oblique : False drops every slope term; None lets the scene decide
-    slope_correction : exact facet tractions in Eq. (7): `refimpl.forces`
+    slope_correction : exact facet tractions in Eq. (7): `refimpl.model.forces`
     coupled, tilted : force in or out what shear does to the gap, and to the slopes of the common surface;
         None lets the scene decide
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.friction import Mask
 from refimpl.grid import Array
 from refimpl.grid.window import Window
+from refimpl.model.friction import Mask
 
 _RIVAL = 0.5  # of the highest element: lower maxima have no say in how well a summit is known
 _NEAR = np.arange(-2, 3)[:, None]

@@ -1,4 +1,4 @@
-"""Tau's rule (`refimpl.friction`) walked on one grid.
+"""Tau's rule (`refimpl.model.friction`) walked on one grid.
 
 A state on the way need only tell its contact, so it is left as soon as that is beyond doubt. Of a cycle's
 states mu is told as well: those are settled further if need be. Only the last is settled to the tolerance,
@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from refimpl.friction import Mask, TauSupport
-from refimpl.outcome import Visited
+from refimpl.model.friction import Mask, TauSupport
+from refimpl.model.state import Visited
 
 _SUPPORT_ITERATIONS = 200
 _STUCK = 3  # states in a row that cannot be settled: their contacts are no longer the rule's

@@ -11,9 +11,9 @@ import numpy as np
 from refimpl.coefficient_error import SlopeError, slope_error
 from refimpl.grid.contact_patches import spot_sizes
 from refimpl.grid.window import Window
-from refimpl.materials import Pair
+from refimpl.model.materials import Pair
+from refimpl.model.slopes import Slopes
 from refimpl.scene import Body, Scene
-from refimpl.slopes import Slopes
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
 from refimpl.surfaces.window import ROUNDING

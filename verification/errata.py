@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import refimpl as rf
-from refimpl.forces import plasticity_index, smooth_friction_coefficient
+from refimpl.model.forces import plasticity_index, smooth_friction_coefficient
 from verification.reproduction import table3
 from verification.reproduction.ensemble import column, estimate
 from verification.reproduction.printed import (

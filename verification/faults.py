@@ -18,15 +18,15 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl import forces, friction, level_solver, problem, slopes
-from refimpl.contact import certificate
+from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.kernels import normal_integral, tangential_integral
-from refimpl.materials import Material, Pair
+from refimpl.model import certificate, forces, friction, problem, slopes
+from refimpl.model.materials import Material, Pair
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 from refimpl.operators import dense, fft, tables
 from refimpl.operators.fft import FFTInfluence
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
 
 Patch = tuple[Any, str, Any]
 """Owner, name, replacement."""

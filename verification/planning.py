@@ -18,12 +18,12 @@ import numpy as np
 import refimpl as rf
 from refimpl.fft_solver import solve_fft
 from refimpl.grid import Grid
+from refimpl.model.problem import Problem, Terms, pose
 from refimpl.operators.fft import Counter
 from refimpl.plan import Plan, make_plan
 from refimpl.planning import effects
 from refimpl.planning.effects import Effect, Scales
 from refimpl.posing import EVERYTHING
-from refimpl.problem import Problem, Terms, pose
 
 SIDE = 1e-3
 TOLERANCE = 1e-9  # of each solve: a thousandth of the smallest effects that are judged

@@ -50,11 +50,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.contact.energy_norm import EnergyNorm
-from refimpl.forces import resultants
-from refimpl.friction import Mask
 from refimpl.grid import Array
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
+from refimpl.model.forces import resultants
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 
 
 @dataclass(frozen=True, eq=False)

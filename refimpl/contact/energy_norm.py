@@ -36,11 +36,11 @@ import math
 import numpy as np
 
 from refimpl.contact.preconditioner import SpectralPreconditioner
-from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.problem import Problem
 
 SMALLEST_SYMBOL = 1.8243012646
 """``sum (-1)^(i+j) g(i, j)`` over the lattice, rounded down; a test encloses it."""

@@ -19,10 +19,10 @@ from typing import NamedTuple
 import numpy as np
 
 from refimpl.contact.cut import cut_at_zero, room
-from refimpl.contact.gap import relative_gap
 from refimpl.contact.support import Support
-from refimpl.friction import Mask
 from refimpl.grid import Array, inner
+from refimpl.model.friction import Mask
+from refimpl.model.gap import relative_gap
 
 Apply = Callable[[Array], Array]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.model.friction import Mask
 
 _FEW = 0.35  # share of a window up to which lists are quicker: 0.35 measured at 256 elements, 0.45 at 512
 

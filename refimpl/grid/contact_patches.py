@@ -8,7 +8,7 @@ from scipy import ndimage
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from refimpl.friction import Mask
+from refimpl.model.friction import Mask
 
 
 def spot_sizes(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:

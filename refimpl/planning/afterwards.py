@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from refimpl.grid import Array
+from refimpl.model.problem import Problem
 from refimpl.planning import effects
 from refimpl.planning.effects import Effect, Scales
 from refimpl.planning.outlook import Outlook, found
-from refimpl.problem import Problem
 
 _ESTIMATES = {
     "shear coupling": effects.shear_coupling,

@@ -30,7 +30,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from refimpl.materials import Pair
+from refimpl.model.materials import Pair
 from refimpl.planning.outlook import Outlook
 from refimpl.scene import Friction
 

@@ -23,13 +23,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.forces import EDGE_SHARE
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid, resampled
 from refimpl.grid.contact_patches import spot_sizes
 from refimpl.grid.window import Window
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
+from refimpl.model.forces import EDGE_SHARE
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
@@ -66,7 +66,7 @@ class Outlook:
     def edge_error(self) -> float:
         """Relative error of A that whole elements make along the edges of the spots.
 
-        On a circle of radius r the excess of `refimpl.forces.perimeter_corrected_area` is 0.30 spacing / r.
+        On a circle of radius r the excess of `refimpl.model.forces.perimeter_corrected_area` is 0.30 spacing / r.
         """
         return 8 / math.pi * EDGE_SHARE * math.sqrt(math.pi * self.spots / self.elements)
 

@@ -11,9 +11,9 @@ from refimpl.contact.support import Support
 from refimpl.grid import Array
 from refimpl.grid.window import Window
 from refimpl.level_solver import LevelSolver, influence
+from refimpl.model.problem import Problem, Terms, pose
 from refimpl.nesting import foundation_pressure
 from refimpl.operators.fft import Counter
-from refimpl.problem import Problem, Terms, pose
 
 BALL = rf.Scene(
     upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(radius=0.05)),

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from refimpl.contact import active_set
 from refimpl.contact.active_set import complementarity, restricted_solve
-from refimpl.friction import Mask
+from refimpl.model.friction import Mask
 
 
 def by_enumeration(G: np.ndarray, q: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from refimpl.contact.bounds import (
     proven_bounds,
 )
 from refimpl.contact.energy_norm import EnergyNorm
-from refimpl.slopes import Slopes
+from refimpl.model.slopes import Slopes
 from tests.refimpl.frozen import POLYMER, SIDE, STEEL, M, assert_true, frozen_solution, scene
 
 

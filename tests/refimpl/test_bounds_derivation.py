@@ -11,12 +11,12 @@ from numpy.polynomial import Polynomial
 
 from refimpl.contact.bounds import UNPROVEN, _Frozen, _shear_row, proven_bounds
 from refimpl.contact.energy_norm import EnergyNorm
-from refimpl.forces import Forces, resultants
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
+from refimpl.model.forces import Forces, resultants
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
 from tests.refimpl.frozen import assert_true, frozen_solution, posed
 
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.contact import certificate as module
-from refimpl.contact.certificate import Certificate, State, certify
-from refimpl.forces import Forces, resultants
+from refimpl.model import certificate as module
+from refimpl.model.certificate import Certificate, State, certify
+from refimpl.model.forces import Forces, resultants
+from refimpl.model.problem import Problem, Terms, pose
+from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
-from refimpl.problem import Problem, Terms, pose
-from refimpl.slopes import Slopes
 
 M = 10
 SCENE = rf.Scene(

@@ -13,10 +13,10 @@ import refimpl as rf
 from refimpl import dense_solver
 from refimpl.contact import active_set
 from refimpl.contact.active_set import restricted_solve
-from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem, Terms, pose
 from refimpl.operators.dense import DenseInfluence
-from refimpl.problem import Problem, Terms, pose
 
 M, SIDE = 3, 1e-3
 

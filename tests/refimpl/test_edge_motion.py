@@ -11,8 +11,8 @@ import pytest
 import refimpl as rf
 from refimpl.edge_motion import EdgeMotion
 from refimpl.fixed_set import FixedSet
-from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.model.friction import Mask
 
 
 def fixed_set(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedSet:

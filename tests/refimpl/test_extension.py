@@ -12,9 +12,9 @@ import refimpl as rf
 from refimpl import fft_solver
 from refimpl.contact.extension import ExtendedPreconditioner, extended
 from refimpl.contact.preconditioner import SpectralPreconditioner
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.grid.window import Window
+from refimpl.model.friction import Mask
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from verification.benchmarks.problems import scene

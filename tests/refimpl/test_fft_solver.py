@@ -9,14 +9,14 @@ import pytest
 
 import refimpl as rf
 from refimpl import fft_solver
-from refimpl.contact.certificate import certify
 from refimpl.contact.projected_cg import Apply
 from refimpl.fft_solver import _beyond, _certified, _widened, solve_fft
-from refimpl.friction import Mask
 from refimpl.grid.window import Window
+from refimpl.model.certificate import certify
+from refimpl.model.friction import Mask
+from refimpl.model.slopes import Slopes
+from refimpl.model.state import Outcome
 from refimpl.operators.fft import Counter, FFTInfluence
-from refimpl.outcome import Outcome
-from refimpl.slopes import Slopes
 from tests.refimpl.levels import BALL, coupled, level, posed
 
 

@@ -11,13 +11,13 @@ import pytest
 import refimpl as rf
 from refimpl import flexibility
 from refimpl.flexibility import Flexibility
-from refimpl.friction import local_friction
 from refimpl.grid import Array
+from refimpl.model.friction import local_friction
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
 from tests.refimpl.levels import coupled, posed
 
 M = 12

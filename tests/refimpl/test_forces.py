@@ -8,14 +8,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from refimpl.forces import (
+from refimpl.model.forces import (
     facet_resultants,
     perimeter_corrected_area,
     plasticity_index,
     resultants,
     smooth_friction_coefficient,
 )
-from refimpl.slopes import Slopes
+from refimpl.model.slopes import Slopes
 
 TRIPLES = ((3, 4, 5), (5, 12, 13), (8, 15, 17), (7, 24, 25), (-3, 4, 5), (-20, 21, 29), (0, 1, 1))
 """Opposite, adjacent, hypotenuse: angles whose cosine, sine and tangent are rational."""

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from refimpl.friction import TauSupport, local_friction
+from refimpl.model.friction import TauSupport, local_friction
 from refimpl.scene import Friction
 
 

@@ -10,10 +10,10 @@ import pytest
 
 import refimpl as rf
 from refimpl import level_solver
-from refimpl.friction import Mask
 from refimpl.grid.window import Window
 from refimpl.level_solver import LevelSolver
-from refimpl.problem import Terms, pose
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Terms, pose
 from refimpl.updates import Updates
 from tests.refimpl.levels import BALL, coupled, level, posed, press
 

@@ -11,12 +11,12 @@ import pytest
 
 import refimpl as rf
 from refimpl import fft_solver
-from refimpl.contact.certificate import certify
 from refimpl.grid import Array
 from refimpl.grid.window import Window
+from refimpl.model.certificate import certify
+from refimpl.model.problem import Terms, pose
+from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
-from refimpl.problem import Terms, pose
-from refimpl.slopes import Slopes
 from tests.refimpl.levels import BALL, coupled, level, posed, press
 
 ONE_OF_EIGHT = np.eye(8, dtype=bool)

@@ -7,7 +7,7 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from refimpl.materials import Material, Pair
+from refimpl.model.materials import Material, Pair
 
 
 def test_hand_made_numbers() -> None:

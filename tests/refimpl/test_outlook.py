@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.model.problem import Problem, pose
 from refimpl.planning import effects
 from refimpl.planning.effects import Scales
 from refimpl.planning.outlook import Outlook, _first, _mirrored, _rising, _touched, expected
 from refimpl.posing import EVERYTHING
-from refimpl.problem import Problem, pose
 from verification.coverage.scenes import random_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::refimpl.surfaces.SurfaceWarning")

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.contact.certificate import State
 from refimpl.grid import Array, Grid
+from refimpl.model.certificate import State
+from refimpl.model.problem import pose
+from refimpl.model.state import Outcome, Status
 from refimpl.operators.fft import Counter
-from refimpl.outcome import Outcome, Status
 from refimpl.paper import Trace, _interpolated, solve_paper
 from refimpl.plan import make_plan
-from refimpl.problem import pose
 
 
 def run(

@@ -11,13 +11,13 @@ import pytest
 
 import refimpl as rf
 from refimpl import paper as module
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
+from refimpl.model.friction import Mask
+from refimpl.model.problem import pose
+from refimpl.model.state import Status
 from refimpl.operators.fft import Counter
-from refimpl.outcome import Status
 from refimpl.paper import Trace, _Scheme
 from refimpl.plan import make_plan
-from refimpl.problem import pose
 
 A, B = np.eye(8, dtype=bool), np.ones((8, 8), dtype=bool)
 

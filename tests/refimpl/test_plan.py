@@ -9,13 +9,13 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid_result import REPORTED
+from refimpl.model.problem import pose
 from refimpl.operators import tables
 from refimpl.plan import make_plan
 from refimpl.planning import effects
 from refimpl.planning.effects import Scales
 from refimpl.planning.outlook import expected, found
 from refimpl.posing import EVERYTHING
-from refimpl.problem import pose
 
 STEEL, COPPER, RUBBER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(10e6, 0.5)
 SMOOTH = rf.Scene(

@@ -14,7 +14,7 @@ import pytest
 import refimpl as rf
 from refimpl import plan
 from refimpl.coefficient_error import SlopeError
-from refimpl.forces import plasticity_index
+from refimpl.model.forces import plasticity_index
 from refimpl.planning.effects import Effect
 from refimpl.validity import Caution, Limit, cautions, plain_warning, softer_hardness
 

@@ -10,8 +10,8 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
+from refimpl.model.problem import Terms, pose
 from refimpl.posing import EVERYTHING, Posing
-from refimpl.problem import Terms, pose
 from refimpl.surfaces import SurfaceWarning
 
 SCENE = rf.read_scene("table1-smooth")

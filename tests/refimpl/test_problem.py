@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import problem as module
-from refimpl.forces import resultants
-from refimpl.friction import local_friction
 from refimpl.grid.window import Window
+from refimpl.model import problem as module
+from refimpl.model.forces import resultants
+from refimpl.model.friction import local_friction
+from refimpl.model.problem import Problem, Terms, pose, visit
+from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
-from refimpl.problem import Problem, Terms, pose, visit
-from refimpl.slopes import Slopes
 
 SOFT, HARD = rf.Material(2e9, 0.1), rf.Material(50e9, 0.4)
 M, SIDE = 6, 1e-3

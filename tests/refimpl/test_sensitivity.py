@@ -10,7 +10,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.discretisation import AREA
-from refimpl.forces import EDGE_SHARE
+from refimpl.model.forces import EDGE_SHARE
 from refimpl.parameters import check_tolerances, parameters, with_parameter
 from refimpl.sensitivity import _STRIDE, NUMBERS, Sensitivity, sensitivity
 

@@ -10,7 +10,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.budget import Budget, Budgets, budget
-from refimpl.forces import facet_resultants
+from refimpl.model.forces import facet_resultants
 from refimpl.scene_file import read_tolerances, scene_to_toml
 from refimpl.sensitivity import NUMBERS
 

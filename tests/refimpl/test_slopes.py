@@ -9,7 +9,7 @@ import pytest
 
 from refimpl.grid import differences
 from refimpl.grid.window import Window
-from refimpl.slopes import Slopes
+from refimpl.model.slopes import Slopes
 
 M, H = 9, 0.25
 X = (np.arange(M) * H)[:, None] * np.ones(M)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from refimpl.friction import Mask
 from refimpl.grid.contact_patches import spot_sizes
+from refimpl.model.friction import Mask
 
 
 def walked(contact: Mask, periodic: bool) -> list[int]:

@@ -13,16 +13,16 @@ import pytest
 import refimpl as rf
 from refimpl import fft_solver
 from refimpl.contact import projected_cg
-from refimpl.contact.certificate import State
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.fft_solver import solve_fft
-from refimpl.friction import Mask
 from refimpl.grid.window import Window
 from refimpl.level_solver import LevelSolver
 from refimpl.mixing import Mixing
+from refimpl.model.certificate import State
+from refimpl.model.friction import Mask
+from refimpl.model.problem import Problem, Terms, pose
+from refimpl.model.state import Outcome
 from refimpl.operators.fft import Counter
-from refimpl.outcome import Outcome
-from refimpl.problem import Problem, Terms, pose
 from tests.refimpl.levels import BALL, level, posed
 from verification.coverage import scenes as study
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from refimpl import tau_path
-from refimpl.friction import Mask
-from refimpl.outcome import Visited
+from refimpl.model.friction import Mask
+from refimpl.model.state import Visited
 from refimpl.tau_path import followed
 
 

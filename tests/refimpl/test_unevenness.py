@@ -10,7 +10,7 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult, alike, unevenness
-from refimpl.slopes import Slopes
+from refimpl.model.slopes import Slopes
 from verification.coverage.scenes import random_scene
 
 

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.contact.certificate import certify
 from refimpl.grid import Array
+from refimpl.model.certificate import certify
+from refimpl.model.problem import Terms, pose
+from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
-from refimpl.problem import Terms, pose
-from refimpl.slopes import Slopes
 from verification.contestants import own, referee
 from verification.contestants.broken import BROKEN, Wrong, asked, periodic
 from verification.contestants.check import COMPLIANCE, MODULUS, Entrant, Fault

@@ -15,8 +15,8 @@ import numpy as np
 import refimpl as rf
 from refimpl.fft_solver import solve_fft
 from refimpl.grid import Array, Grid
+from refimpl.model.problem import pose
 from refimpl.operators.fft import Counter
-from refimpl.problem import pose
 from refimpl.request import Request
 from verification.adapters import aspher, contactmechanics, tamaas
 from verification.adapters.peer import Peer

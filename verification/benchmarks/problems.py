@@ -6,7 +6,7 @@ from functools import cache
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
-from refimpl.materials import Pair
+from refimpl.model.materials import Pair
 from verification.contestants.protocol import ContactProblem
 
 SIDE = 1.61e-3  # m

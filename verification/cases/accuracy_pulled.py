@@ -11,7 +11,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid_result import GridResult
-from refimpl.materials import Pair
+from refimpl.model.materials import Pair
 from refimpl.refine import uncertainty
 from verification.case import Measured
 from verification.registry import case

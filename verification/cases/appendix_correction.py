@@ -167,7 +167,7 @@ def declare(slug: str, pair: str) -> None:
         title=f"What the slope correction changes, {pair}",
         claim="Up to the paper's rms slope of 2.5 degrees exact facet tractions change mu, A, f_max and Q by "
         "less than 2 %, on the mean over eight surfaces",
-        source="exact facet tractions (refimpl.forces); paper, Table 1, section 8 and Appendix A",
+        source="exact facet tractions (refimpl.model.forces); paper, Table 1, section 8 and Appendix A",
         metric="at_most",
         tolerance=2.0,
         tolerance_reason="percent: the paper's bound on its coefficients, asked of the results",

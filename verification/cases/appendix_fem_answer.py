@@ -82,7 +82,7 @@ def _correction(slope: float, wavelength: float) -> dict[str, Array]:
     "appendix-fem/correction",
     title="Facet tractions remove the first-order part, 10 degrees",
     claim="exact facet tractions make the neighbour error's antisymmetric part at least 5 times smaller",
-    source="exact facet tractions (refimpl.forces); appendix_a.leading_order.facet_prediction",
+    source="exact facet tractions (refimpl.model.forces); appendix_a.leading_order.facet_prediction",
     metric="at_most",
     tolerance=0.2,
     tolerance_reason="asked; measured 0.012 (wavelength 20) and 0.003 (100): odd in the slope, third order",

@@ -8,10 +8,10 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
-from refimpl.forces import facet_resultants, plasticity_index, smooth_friction_coefficient
 from refimpl.grid import Array, Grid
+from refimpl.model.forces import facet_resultants, plasticity_index, smooth_friction_coefficient
+from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
-from refimpl.slopes import Slopes
 from verification.case import Measured
 from verification.registry import case
 
@@ -210,7 +210,7 @@ def plasticity_threshold() -> Measured:
     title="Resultants of facets, added as vectors",
     claim="N, F and Q of tilted facets are the sums of pressure times the facet's area vector (the cross "
     "product of its edges) and of friction times its edge along the sliding direction",
-    source="exact tractions of a facet per projected area (refimpl.forces); statics",
+    source="exact tractions of a facet per projected area (refimpl.model.forces); statics",
     metric="at_most",
     tolerance=4e-15,
     tolerance_reason="over the sum of magnitudes: 400 terms in numpy's blocks of 128 meet 18 roundings at "

@@ -10,11 +10,11 @@ import numpy as np
 import refimpl as rf
 from refimpl.contact.bounds import Bounds, proven_bounds
 from refimpl.contact.energy_norm import EnergyNorm
-from refimpl.friction import local_friction
 from refimpl.grid import Array
+from refimpl.model.friction import local_friction
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
 from verification.case import Measured
 from verification.golden.store import Golden, named, stored
 from verification.properties.states import compliances

@@ -11,10 +11,10 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
+from refimpl.model.problem import pose
 from refimpl.operators.fft import Counter
 from refimpl.paper import PAPER_TOLERANCE, Trace, solve_paper
 from refimpl.plan import make_plan
-from refimpl.problem import pose
 from verification.case import Measured
 from verification.registry import case
 from verification.scenes import Trial, cross_checks
@@ -155,7 +155,7 @@ def own_tolerance_friction() -> Measured:
     "paper/same-state",
     title="Status, contact and tau's support of the three solvers",
     claim="Tightened, the paper's scheme ends as the dense reference does, on the same elements",
-    source=SOURCE + "; tau's rule: refimpl.friction",
+    source=SOURCE + "; tau's rule: refimpl.model.friction",
     metric="equal",
     tolerance=0.0,
     tolerance_reason="statuses and sets are equal or not; the solution is unique for a given support of tau",

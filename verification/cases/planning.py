@@ -10,8 +10,8 @@ from functools import cache
 import refimpl as rf
 from refimpl.fft_solver import solve_fft
 from refimpl.grid import Grid
+from refimpl.model.problem import Terms, pose
 from refimpl.operators.fft import Counter
-from refimpl.problem import Terms, pose
 from refimpl.request import Request
 from verification.case import Measured
 from verification.cli.explain import explained

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 import refimpl as rf
-from refimpl.forces import smooth_friction_coefficient
 from refimpl.grid import Array
+from refimpl.model.forces import smooth_friction_coefficient
 from verification.case import Measured
 from verification.registry import case
 from verification.reproduction import table3

@@ -9,9 +9,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.fft_solver import begun
-from refimpl.friction import Mask
 from refimpl.grid import Array
 from refimpl.level_solver import LevelSolver
+from refimpl.model.friction import Mask
 from refimpl.nesting import Start
 from refimpl.operators.fft import Counter
 from verification.case import Measured

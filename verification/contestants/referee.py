@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
+from refimpl.model.friction import Mask
 from verification.contestants.protocol import ContactProblem
 from verification.exact.fourier import symbol_at
 from verification.properties.textbook import normal_matrix, normal_offsets, shear_matrix, shear_offsets

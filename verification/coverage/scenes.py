@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import refimpl as rf
-from refimpl.materials import Pair
+from refimpl.model.materials import Pair
 from verification.coverage.shapes import Barrel, Waves, measured_like
 
 SIDE = 1e-3  # m; the problem is scale-free, so one side stands for all

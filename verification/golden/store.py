@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.model.friction import Mask
 from verification.files import to_json, write_text
 from verification.golden.enclosure import BITS, Ball, Proof, arb
 from verification.golden.scenes import SIDE, GoldenScene

@@ -10,16 +10,17 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from refimpl import coefficient_error, discretisation, forces, gathered, paper, slopes, summit
+from refimpl import coefficient_error, discretisation, gathered, paper, summit
 from refimpl.budget import Budget
-from refimpl.contact import active_set, bounds, certificate, energy_norm
+from refimpl.contact import active_set, bounds, energy_norm
 from refimpl.estimate import Estimate
 from refimpl.kernels import points, quadrature, tables
+from refimpl.model import certificate, forces, slopes
+from refimpl.model.problem import Problem
+from refimpl.model.state import Status
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.outcome import Status
-from refimpl.problem import Problem
 from refimpl.scene import Scene
 from refimpl.surfaces import gaussian, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness

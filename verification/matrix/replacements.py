@@ -8,17 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from refimpl import coefficient_error, forces, gathered, paper, slopes
+from refimpl import coefficient_error, gathered, paper
 from refimpl.contact import active_set, bounds
 from refimpl.estimate import Estimate
 from refimpl.grid import Array, Grid
 from refimpl.kernels import cerruti, quadrature
+from refimpl.model import forces, slopes
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.problem import Problem
 from refimpl.scene import Scene
-from refimpl.slopes import Slopes
 from refimpl.surfaces import noise
 
 _normal_symbol = vars(PeriodicInfluence)["_normal_symbol"].func

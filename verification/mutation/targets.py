@@ -68,11 +68,11 @@ TARGETS = (
              ("tests/refimpl/test_fourier.py", "tests/refimpl/test_operators.py"))
       for name in ("fourier", "symmetric")),
     Target("contact", "refimpl/contact/active_set.py", _tests("active_set", "dense_solver")),
-    Target("contact", "refimpl/contact/certificate.py", _tests("certificate", "solve")),
-    Target("friction", "refimpl/friction.py", _tests("friction", "tau_cycle")),
-    Target("equilibrium", "refimpl/problem.py", _tests("problem")),
-    Target("equilibrium", "refimpl/forces.py", _tests("forces")),
-    Target("equilibrium", "refimpl/slopes.py", _tests("slopes")),
+    Target("contact", "refimpl/model/certificate.py", _tests("certificate", "solve")),
+    Target("friction", "refimpl/model/friction.py", _tests("friction", "tau_cycle")),
+    Target("equilibrium", "refimpl/model/problem.py", _tests("problem")),
+    Target("equilibrium", "refimpl/model/forces.py", _tests("forces")),
+    Target("equilibrium", "refimpl/model/slopes.py", _tests("slopes")),
     Target("equilibrium", "refimpl/dense_solver.py", _tests("dense_solver", "tau_cycle", "solve")),
     Target("equilibrium", "refimpl/paper.py",
            ("tests/refimpl/test_paper_scheme.py", "tests/refimpl/test_paper.py")),
@@ -80,7 +80,7 @@ TARGETS = (
     Target("contact", "refimpl/contact/extension.py", ("tests/refimpl/test_extension.py",)),
     Target("contact", "refimpl/contact/projected_cg.py",
            _tests("projected_cg", "projected_cg_steps", "solve")),
-    Target("contact", "refimpl/contact/gap.py", _tests("projected_cg")),
+    Target("contact", "refimpl/model/gap.py", _tests("projected_cg")),
     Target("contact", "refimpl/contact/cut.py", _tests("cut", "projected_cg", "projected_cg_steps")),
     Target("contact", "refimpl/contact/support.py", _tests("support", "projected_cg", "projected_cg_steps")),
     Target("equilibrium", "refimpl/grid/grid.py", _tests("grid", "nesting", "input", "projected_cg", "solve")),
@@ -116,7 +116,7 @@ TARGETS = (
     *(Target("surfaces", f"refimpl/surfaces/{name}.py", SURFACES)
       for name in ("bicubic", "gaps", "gaussian", "levelling", "measured", "noise", "shapes", "statistics",
                    "window")),
-    Target("surfaces", "refimpl/materials.py",
+    Target("surfaces", "refimpl/model/materials.py",
            (*_alone("materials"), REFUSED)),
 )  # fmt: skip
 """What the mutation score speaks of."""

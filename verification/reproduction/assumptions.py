@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import refimpl as rf
-from refimpl.forces import Forces, facet_resultants, resultants
+from refimpl.model.forces import Forces, facet_resultants, resultants
 from verification.reproduction.table1 import rough
 from verification.reproduction.tangential import displacements, with_tangential
 

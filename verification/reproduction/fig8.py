@@ -10,8 +10,8 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 import refimpl as rf
-from refimpl.forces import plasticity_index
 from refimpl.grid import Array
+from refimpl.model.forces import plasticity_index
 from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
 from verification.reproduction.printed import CORRELATION_LENGTH, HARDNESS, LOADS, SPHERE_RMS
 from verification.reproduction.table1 import SMOOTH, rough

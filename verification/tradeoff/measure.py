@@ -17,7 +17,7 @@ import refimpl as rf
 from refimpl import fft_solver
 from refimpl.grid import Array
 from refimpl.grid.window import Window, padded_length
-from refimpl.problem import Problem
+from refimpl.model.problem import Problem
 from verification.tradeoff.settings import Setting
 from verification.tradeoff.single import single_precision
 from verification.variational.energy import Energy, frictionless

@@ -19,12 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import refimpl as rf
-from refimpl.contact.certificate import State, certify
 from refimpl.grid import Grid
+from refimpl.model.certificate import State, certify
+from refimpl.model.problem import Problem, Terms, pose
+from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.tables import unit_table
-from refimpl.problem import Problem, Terms, pose
-from refimpl.slopes import Slopes
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

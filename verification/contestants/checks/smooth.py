@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from refimpl.friction import Mask
 from refimpl.grid import Array
+from refimpl.model.friction import Mask
 from verification.case import Measured
 from verification.contestants.check import MODULUS, Entrant, Fault, Pressed, check, difference
 from verification.contestants.gaps import centres

@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.forces import resultants
-from refimpl.friction import Mask
 from refimpl.grid import Array, Grid
 from refimpl.grid.window import Window
-from refimpl.materials import Pair
+from refimpl.model.forces import resultants
+from refimpl.model.friction import Mask
+from refimpl.model.materials import Pair
+from refimpl.model.slopes import Slopes
+from refimpl.model.state import Visited
 from refimpl.operators.base import Influence
 from refimpl.operators.transforms import keep_memory
-from refimpl.outcome import Visited
 from refimpl.scene import Friction, Scene
-from refimpl.slopes import Slopes
 
 
 @dataclass(frozen=True)

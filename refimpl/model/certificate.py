@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.contact.gap import relative_gap
-from refimpl.forces import Forces, resultants
-from refimpl.friction import Mask, local_friction
 from refimpl.grid import Array, inner
 from refimpl.grid.window import Window
+from refimpl.model.forces import Forces, resultants
+from refimpl.model.friction import Mask, local_friction
+from refimpl.model.gap import relative_gap
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
 from refimpl.operators.base import Influence
-from refimpl.problem import Problem
-from refimpl.slopes import Slopes
 
 
 @dataclass(frozen=True)

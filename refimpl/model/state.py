@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
 
-from refimpl.friction import Mask
 from refimpl.grid import Array
-from refimpl.slopes import Slopes
+from refimpl.model.friction import Mask
+from refimpl.model.slopes import Slopes
 
 
 class Status(Enum):
@@ -16,7 +16,7 @@ class Status(Enum):
 
     CONVERGED: the certificate meets the tolerance. STAGNATED: it stopped improving above it.
     ITERATION_LIMIT: a loop's limit came first. CYCLED: the support of tau cycled and was settled by
-    the rule of `refimpl.friction`; the certificate holds for the settled traction. NO_CONTACT: the
+    the rule of `refimpl.model.friction`; the certificate holds for the settled traction. NO_CONTACT: the
     approach leaves the surfaces apart.
     """
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
-from refimpl.slopes import Slopes
+from refimpl.model.slopes import Slopes
 
 EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
 
