@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from refimpl.contact.extension import extended
-from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import Apply
 from refimpl.grid import Array, resampled
 from refimpl.grid.window import Window
@@ -14,8 +12,10 @@ from refimpl.model.problem import Problem
 from refimpl.model.state import Outcome
 from refimpl.nesting import Start, foundation_pressure, levels, sharpened, touching
 from refimpl.operators.base import Influence
+from refimpl.operators.extension import extended
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.operators.preconditioner import SpectralPreconditioner
 
 MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 _COARSE_TOLERANCE = 1e-3  # a coarse state is only a start: its own grid error is larger than this

@@ -15,16 +15,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from refimpl.contact.extension import ExtendedPreconditioner
-from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.grid import Array
 from refimpl.grid.window import Window
 from refimpl.model.forces import Forces, resultants
 from refimpl.model.friction import Mask, local_friction
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.operators.extension import ExtendedPreconditioner
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.operators.preconditioner import SpectralPreconditioner
 
 _MARGIN = 2  # elements around the contact: its slopes are central differences
 _STEP = 1e-4  # of the quotient, in peaks: the model is nonlinear by slopes^2 only, rounding costs 1e-12

@@ -25,7 +25,7 @@ from refimpl.model import certificate, forces, friction, problem, slopes
 from refimpl.model.materials import Material, Pair
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.operators import dense, fft, tables
+from refimpl.operators import dense, fft, kernel_tables
 from refimpl.operators.fft import FFTInfluence
 
 Patch = tuple[Any, str, Any]
@@ -44,7 +44,7 @@ class Fault:
     def injected(self) -> Iterator[None]:
         """`refimpl` has the fault within this context; coefficients are tabulated anew."""
         with ExitStack() as stack:
-            stack.enter_context(mock.patch.dict(tables._cache, clear=True))
+            stack.enter_context(mock.patch.dict(kernel_tables._cache, clear=True))
             for owner, name, wrong in self.patches:
                 stack.enter_context(mock.patch.object(owner, name, wrong))
             yield
@@ -55,9 +55,9 @@ def _scaled(function: Callable[..., Any], factor: float) -> Callable[..., Any]:
 
 
 def _tables_of(kind: str, factor: float) -> Patch:
-    right = tables._TABLES[kind]
-    wrong = {**tables._TABLES, kind: lambda n, m, dx, known: factor * right(n, m, dx)}
-    return tables, "_TABLES", wrong
+    right = kernel_tables._TABLES[kind]
+    wrong = {**kernel_tables._TABLES, kind: lambda n, m, dx, known: factor * right(n, m, dx)}
+    return kernel_tables, "_TABLES", wrong
 
 
 def everywhere(right: Any, wrong: Any, packages: Collection[str] = ("refimpl",)) -> tuple[Patch, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""Where libraries of BLAS, ducc0 and `refimpl.operators.transforms` read it, most of them at import."""
+"""Where libraries of BLAS, ducc0 and `refimpl.operators.threads` read it, most of them at import."""
 
 
 @contextmanager

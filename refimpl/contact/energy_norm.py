@@ -35,12 +35,12 @@ import math
 
 import numpy as np
 
-from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.grid import Array
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.operators.preconditioner import SpectralPreconditioner
 
 SMALLEST_SYMBOL = 1.8243012646
 """``sum (-1)^(i+j) g(i, j)`` over the lattice, rounded down; a test encloses it."""

@@ -15,7 +15,7 @@ from refimpl.model.materials import Pair
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import Visited
 from refimpl.operators.base import Influence
-from refimpl.operators.transforms import keep_memory
+from refimpl.operators.threads import keep_memory
 from refimpl.scene import Friction, Scene
 
 

@@ -1,6 +1,6 @@
 """Exact aperiodic convolution on a window by zero-padded real FFTs.
 
-Transforms are those of `refimpl.operators.fourier`. Columns that are known to be zero
+Transforms are those of `refimpl.operators.transforms`. Columns that are known to be zero
 are not transformed, and columns of the result that nobody asked for are not transformed back.
 """
 
@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
 from refimpl.grid.window import Window, padded_length
-from refimpl.operators.fourier import Complex, factors, fourier, threads
+from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.symmetric import even_hat, odd_hat
-from refimpl.operators.tables import signed_table, unit_table
+from refimpl.operators.transforms import Complex, factors, fourier, threads
 
 
 @dataclass

@@ -17,7 +17,7 @@ import scipy.fft as sfft
 from refimpl.grid import Array, Grid
 from refimpl.grid.window import Window
 from refimpl.operators.fft import Counter
-from refimpl.operators.fourier import Complex, fourier, threads
+from refimpl.operators.transforms import Complex, fourier, threads
 
 
 class PeriodicInfluence:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array
-from refimpl.operators.fourier import Complex, fourier
+from refimpl.operators.transforms import Complex, fourier
 
 
 def even_hat(quarter: Array, workers: int) -> Array:

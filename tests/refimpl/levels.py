@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import refimpl as rf
-from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.contact.support import Support
 from refimpl.grid import Array
@@ -14,6 +13,7 @@ from refimpl.level_solver import LevelSolver, influence
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.nesting import foundation_pressure
 from refimpl.operators.fft import Counter
+from refimpl.operators.preconditioner import SpectralPreconditioner
 
 BALL = rf.Scene(
     upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(radius=0.05)),

@@ -10,13 +10,13 @@ import pytest
 
 import refimpl as rf
 from refimpl import fft_solver
-from refimpl.contact.extension import ExtendedPreconditioner, extended
-from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.grid import Array, Grid
 from refimpl.grid.window import Window
 from refimpl.model.friction import Mask
 from refimpl.operators.dense import DenseInfluence
+from refimpl.operators.extension import ExtendedPreconditioner, extended
 from refimpl.operators.fft import FFTInfluence
+from refimpl.operators.preconditioner import SpectralPreconditioner
 from verification.benchmarks.problems import scene
 
 SHAPE, COMPLIANCE = (18, 15), 1e-11

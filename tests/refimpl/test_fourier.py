@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.contact import preconditioner
-from refimpl.operators import fft, fourier, periodic, symmetric
-from refimpl.operators.fourier import Ducc, Library, SciPy
+from refimpl.operators import fft, periodic, preconditioner, symmetric, transforms
+from refimpl.operators.transforms import Ducc, Library, SciPy
 
 RANDOM = np.random.default_rng(5)
 SHAPES = [(1, 1), (1, 6), (7, 5), (12, 8), (45, 64)]
@@ -109,7 +108,7 @@ def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyP
     """To rounding: measured 1e-14 of the largest pressure."""
     found = []
     for library in (SciPy(), ducc()):
-        for module in (fourier, fft, symmetric, periodic, preconditioner):
+        for module in (transforms, fft, symmetric, periodic, preconditioner):
             monkeypatch.setattr(module, "fourier", library)
         found.append(rf.solve(rf.read_scene(name), 48, tolerance=1e-10))
     one, other = found
@@ -123,13 +122,13 @@ def test_without_ducc0_it_is_scipys(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(name: str) -> None:
         raise ImportError(name)
 
-    assert isinstance(fourier.best_installed(), SciPy | Ducc)
-    monkeypatch.setattr(fourier, "import_module", missing)
-    assert isinstance(fourier.best_installed(), SciPy)
+    assert isinstance(transforms.best_installed(), SciPy | Ducc)
+    monkeypatch.setattr(transforms, "import_module", missing)
+    assert isinstance(transforms.best_installed(), SciPy)
 
 
 def test_a_second_thread_starts_where_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "3")
-    monkeypatch.setattr(fourier.fourier, "worthwhile", 1000)
-    assert fourier.threads(999) == 1
-    assert fourier.threads(1000) == fourier.threads(2000) == 3
+    monkeypatch.setattr(transforms.fourier, "worthwhile", 1000)
+    assert transforms.threads(999) == 1
+    assert transforms.threads(1000) == transforms.threads(2000) == 3

@@ -14,8 +14,8 @@ from refimpl.grid.window import Window
 from refimpl.kernels import normal_integral, tangential_integral
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
+from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.operators.tables import signed_table, unit_table
 
 KINDS = ("normal", "shear", "shear_across")
 ANGLES = (0.0, 0.7, 2.0, -2.5)

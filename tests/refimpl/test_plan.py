@@ -10,7 +10,7 @@ import pytest
 import refimpl as rf
 from refimpl.grid_result import REPORTED
 from refimpl.model.problem import pose
-from refimpl.operators import tables
+from refimpl.operators import kernel_tables
 from refimpl.plan import make_plan
 from refimpl.planning import effects
 from refimpl.planning.effects import Scales
@@ -200,8 +200,8 @@ def test_nothing_builds_a_cerruti_kernel_that_does_not_need_one(monkeypatch: pyt
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("a tangential kernel was built")
 
-    monkeypatch.setattr(tables, "_cache", {})
-    monkeypatch.setitem(tables._TABLES, "tangential", refuse)
+    monkeypatch.setattr(kernel_tables, "_cache", {})
+    monkeypatch.setitem(kernel_tables._TABLES, "tangential", refuse)
     rf.solve(FRICTIONLESS, 32)
     rf.solve(replace(ROUGH, friction=rf.Friction()), 32)
     rf.solve(TWINS, 32, oblique=False)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from refimpl.contact.energy_norm import SMALLEST_SYMBOL
-from refimpl.contact.preconditioner import SpectralPreconditioner
 from refimpl.grid import Grid
 from refimpl.grid.window import Window
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
+from refimpl.operators.kernel_tables import unit_table
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.operators.tables import unit_table
+from refimpl.operators.preconditioner import SpectralPreconditioner
 
 M, SIDE, COMPLIANCE = 10, 1e-3, 1e-11
 GRID = Grid(SIDE, M)

@@ -13,16 +13,16 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Array
-from refimpl.operators import fourier, transforms
+from refimpl.operators import threads, transforms
 
 
 def test_threads_are_the_cores_of_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: 7)
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 2, 5}, raising=False)
-    assert transforms.allowed_threads() == 3
+    assert threads.allowed_threads() == 3
     monkeypatch.delattr(os, "sched_getaffinity")
-    assert transforms.allowed_threads() == 7
+    assert threads.allowed_threads() == 7
 
 
 @pytest.mark.parametrize("said", ["none", "0", "-2", ""])
@@ -30,15 +30,15 @@ def test_a_number_of_threads_that_is_none_counts_for_nothing(
     monkeypatch: pytest.MonkeyPatch, said: str
 ) -> None:
     monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
-    by_itself = transforms.allowed_threads()
+    by_itself = threads.allowed_threads()
     monkeypatch.setenv("OMP_NUM_THREADS", said)
-    assert transforms.allowed_threads() == by_itself
+    assert threads.allowed_threads() == by_itself
 
 
 def test_small_transforms_have_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "3")
-    assert fourier.threads(256 * 256) == 1
-    assert fourier.threads(1024 * 1024) == 3
+    assert transforms.threads(256 * 256) == 1
+    assert transforms.threads(1024 * 1024) == 3
 
 
 SOLVED = """
@@ -72,7 +72,7 @@ def test_threads_change_no_bit_of_scipy_and_the_last_ones_of_ducc0(scene: str) -
 
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="only glibc is taught so")
 def test_kept_memory_is_not_touched_anew() -> None:
-    transforms.keep_memory(1024**2)
+    threads.keep_memory(1024**2)
     np.ones(1 << 20).sum()
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
     for _ in range(20):
@@ -83,7 +83,7 @@ def test_kept_memory_is_not_touched_anew() -> None:
 _PEAK = """
 from pathlib import Path
 import numpy as np
-from refimpl.operators.transforms import keep_memory
+from refimpl.operators.threads import keep_memory
 def peak():
     lines = Path("/proc/self/status").read_text().splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))

@@ -17,7 +17,7 @@ import numpy as np
 from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.kernels import normal_table
-from refimpl.operators import tables
+from refimpl.operators import kernel_tables
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from verification.contestants import own, referee
@@ -58,7 +58,7 @@ class Wrong:
 def patched(*patches: tuple[Any, str, Any]) -> Iterator[None]:
     """`refimpl` with a fault inside, while the context lasts; coefficients are tabulated anew."""
     with ExitStack() as stack:
-        stack.enter_context(mock.patch.dict(tables._cache, clear=True))
+        stack.enter_context(mock.patch.dict(kernel_tables._cache, clear=True))
         for owner, name, wrong in patches:
             stack.enter_context(mock.patch.object(owner, name, wrong))
         yield
@@ -174,7 +174,7 @@ _IN_SINGLE_PRECISION = (
     (FFTInfluence, "_convolve", _single(FFTInfluence._convolve)),
     (PeriodicInfluence, "_filter", _single(PeriodicInfluence._filter)),
 )
-_POINT_FORCES = (tables, "_TABLES", {**tables._TABLES, "normal": _coarse_coefficients})
+_POINT_FORCES = (kernel_tables, "_TABLES", {**kernel_tables._TABLES, "normal": _coarse_coefficients})
 _THREE_STEPS = (level_solver, "_CG_LIMIT", 3)
 
 BROKEN: dict[Fault, Callable[[], Contestant]] = {

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.fourier import Complex, fourier, threads
+from refimpl.operators.transforms import Complex, fourier, threads
 
 
 class SingleInfluence(FFTInfluence):

@@ -24,7 +24,7 @@ from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import Counter, FFTInfluence
-from refimpl.operators.tables import unit_table
+from refimpl.operators.kernel_tables import unit_table
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

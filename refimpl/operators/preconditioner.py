@@ -6,8 +6,8 @@ import math
 
 from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.fourier import factors, fourier, threads
 from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.operators.transforms import factors, fourier, threads
 
 
 class SpectralPreconditioner:
