@@ -16,7 +16,7 @@ from refimpl.model.materials import Material
 from refimpl.parameters import check_tolerances
 from refimpl.scene import Body, Friction, Scene
 from refimpl.surfaces import surface_from_dict
-from refimpl.surfaces.base import SurfaceSum
+from refimpl.surfaces.surface import SurfaceSum
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
 _OPTIONAL_KEYS = ("sliding_direction", "sliding_offset", "periodic")

@@ -15,8 +15,8 @@ from refimpl.model.materials import Pair
 from refimpl.model.slopes import Slopes
 from refimpl.scene import Body, Scene
 from refimpl.surfaces import Flat, Sphere
+from refimpl.surfaces.crop import ROUNDING
 from refimpl.surfaces.statistics import rms_slopes
-from refimpl.surfaces.window import ROUNDING
 
 if TYPE_CHECKING:
     from refimpl.solution import Solution

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.base import Surface
 from refimpl.surfaces.bicubic import resample, resample_periodic
+from refimpl.surfaces.surface import Surface
 
 _ALLOWED = "a 2-D array of finite heights in m over the scene's square, indexed [i, j] along x, y"
 

@@ -25,8 +25,8 @@ from scipy.sparse import csr_array
 
 from refimpl.errors import InputError, require_size
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.base import Surface, positive
-from refimpl.surfaces.noise import white_noise
+from refimpl.surfaces.surface import Surface, positive
+from refimpl.surfaces.white_noise import white_noise
 
 DECAY = 2.3  # of Eq. (9)
 NODES_PER_LENGTH = 6

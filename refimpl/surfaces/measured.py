@@ -11,11 +11,11 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.base import Surface, finite, positive
 from refimpl.surfaces.bicubic import resample
-from refimpl.surfaces.levelling import DEGREES, Form, fit
+from refimpl.surfaces.crop import ROUNDING, Window, by
+from refimpl.surfaces.detrending import DEGREES, Form, fit
 from refimpl.surfaces.readers import UNITS, Reading, read
-from refimpl.surfaces.window import ROUNDING, Window, by
+from refimpl.surfaces.surface import Surface, finite, positive
 
 _ALLOWED_PIXEL = "a positive length in m, or two (x, y)"
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"

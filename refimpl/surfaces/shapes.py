@@ -9,7 +9,7 @@ import numpy as np
 
 from refimpl.errors import LEAST, InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.base import Surface, finite
+from refimpl.surfaces.surface import Surface, finite
 
 
 @dataclass(frozen=True)

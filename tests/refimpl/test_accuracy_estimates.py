@@ -195,7 +195,7 @@ def test_single_elements_leave_mu_open_too() -> None:
     assert estimates(spread_out)["friction_coefficient"].bar(0.3) < 0.06
 
 
-@pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
+@pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
 @pytest.mark.parametrize("seed", range(4))
 def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
     """No grid resolves these. Of 160 solves of 32 such surfaces, 128 to 512 a side, all bars held, the peak's

@@ -127,7 +127,7 @@ def test_elements_per_correlation_length_told_once() -> None:
 
 
 @pytest.mark.parametrize(("M", "points"), [(32, 2.0), (64, None), (65, None)])
-@pytest.mark.filterwarnings("ignore::refimpl.surfaces.base.SurfaceWarning")
+@pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
 def test_points_of_data_between_elements(M: int, points: float | None) -> None:
     heights = np.zeros((48, 64))
     warned = named(rf.solve(replace(SMOOTH, lower=rf.Body(STEEL, heights)), M)).get(Limit.DATA)

@@ -17,8 +17,8 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning
 from refimpl.surfaces.gaussian import MAX_NODES
-from refimpl.surfaces.noise import white_noise
 from refimpl.surfaces.statistics import kurtosis, skewness
+from refimpl.surfaces.white_noise import white_noise
 
 SIDE, LENGTH = 1.61e-3, 104e-6
 GRID = Grid(SIDE, 64)

@@ -14,9 +14,9 @@ from scipy.interpolate import RectBivariateSpline
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import MeasuredSurface, SurfaceWarning
-from refimpl.surfaces.gaps import fill
-from refimpl.surfaces.levelling import DEGREES, fit
-from refimpl.surfaces.window import Window
+from refimpl.surfaces.crop import Window
+from refimpl.surfaces.detrending import DEGREES, fit
+from refimpl.surfaces.missing_points import fill
 from tests.refimpl.measured import (
     DX,
     DY,

@@ -20,7 +20,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene import Scene
-from refimpl.surfaces import noise
+from refimpl.surfaces import white_noise
 
 _normal_symbol = vars(PeriodicInfluence)["_normal_symbol"].func
 _fft_across, _dense_along = FFTInfluence.shear_across, DenseInfluence._along
@@ -29,7 +29,7 @@ _spread_by_support = gathered._spread_by_support
 _iterate, _gathered, _difference = paper._Scheme._iterate, gathered.gathered, slopes._difference
 _complementarity, _scene_sampled = active_set.complementarity, Scene.sampled
 _perimeter, _departure = forces.perimeter_corrected_area, coefficient_error._departure
-_white_noise, _order_for, _bar = noise.white_noise, quadrature.order_for, Estimate.bar
+_white_noise, _order_for, _bar = white_noise.white_noise, quadrature.order_for, Estimate.bar
 
 
 def mean_displaces(self: PeriodicInfluence) -> Array:

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError, within
-from refimpl.surfaces.base import Surface, SurfaceSum
 from refimpl.surfaces.gaussian import GaussianRoughness
 from refimpl.surfaces.measured import MeasuredSurface
 from refimpl.surfaces.shapes import Flat, Sphere
+from refimpl.surfaces.surface import Surface, SurfaceSum
 
 KINDS: dict[str, type[Surface]] = {c.kind: c for c in (Flat, Sphere, GaussianRoughness, MeasuredSurface)}
 

@@ -10,7 +10,7 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.surfaces.bicubic import MEMORY
-from refimpl.surfaces.gaps import fill
+from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.readers import Reading
 
 ROUNDING = 1e-9  # relative slack of lengths: far above double rounding, far below a pixel
