@@ -13,8 +13,8 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.model.materials import Material
 from refimpl.model.state import Status
-from refimpl.scene import Body, Friction, Scene
-from refimpl.scene_file import read_scene, scene_to_toml, shipped_scenes
+from refimpl.scene.scene import Body, Friction, Scene
+from refimpl.scene.scene_file import read_scene, scene_to_toml, shipped_scenes
 from refimpl.sensitivity import Sensitivity, sensitivity
 from refimpl.solution import Solution
 from refimpl.solve import solve

@@ -24,8 +24,8 @@ from dataclasses import dataclass, field
 
 from refimpl.errors import InputError, require_number
 from refimpl.model.forces import facet_resultants
-from refimpl.parameters import check_tolerances
-from refimpl.scene import Scene
+from refimpl.scene.parameters import check_tolerances
+from refimpl.scene.scene import Scene
 from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
 from refimpl.solution import Solution
 
@@ -79,7 +79,7 @@ def budget(
 
     Parameters
     ----------
-    tolerances : relative 95 % half-widths by the names of `refimpl.parameters`; none by default
+    tolerances : relative 95 % half-widths by the names of `refimpl.scene.parameters`; none by default
     sampling : 95 % half-widths of ensemble means by the numbers' names, where there is an ensemble
 
     Raises `InputError` for unknown names, and as `refimpl.sensitivity` does.

@@ -13,8 +13,8 @@ from refimpl.model.problem import Terms
 from refimpl.planning.choice import Forced, Term, affordable, choose
 from refimpl.planning.outlook import Outlook, expected
 from refimpl.planning.resolution import Resolution, resolution
-from refimpl.posing import Posing
-from refimpl.scene import Scene
+from refimpl.scene.discretise import Posing
+from refimpl.scene.scene import Scene
 
 Method = Literal["dense", "fft", "paper"]
 METHODS: tuple[Method, ...] = ("dense", "fft", "paper")

@@ -8,9 +8,9 @@ from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Grid
 from refimpl.paper import PAPER_TOLERANCE
 from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
-from refimpl.posing import Posing
 from refimpl.refine import Quantity, check_accuracy, check_quantity, deserved_tolerance
-from refimpl.scene import Scene
+from refimpl.scene.discretise import Posing
+from refimpl.scene.scene import Scene
 from refimpl.solution import Solution
 
 # Of mean pressure and tau over the reduced modulus, and of approaches over the side.

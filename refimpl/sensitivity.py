@@ -32,8 +32,8 @@ from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 from refimpl.model.materials import RIGID
 from refimpl.model.problem import Problem, Terms, pose
-from refimpl.parameters import moving, parameters, with_parameter
-from refimpl.scene import Scene
+from refimpl.scene.parameters import moving, parameters, with_parameter
+from refimpl.scene.scene import Scene
 from refimpl.solution import Solution
 from refimpl.solve import solve
 

@@ -20,7 +20,7 @@ from refimpl.model.state import Status
 from refimpl.plan import Plan
 from refimpl.planning.effects import Effect
 from refimpl.remark import Remark
-from refimpl.scene import Friction
+from refimpl.scene.scene import Friction
 from refimpl.validity import Caution, plain_warning
 
 

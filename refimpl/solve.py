@@ -24,11 +24,11 @@ from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.paper import solve_paper
 from refimpl.plan import Method, Plan
 from refimpl.planning.afterwards import effects_left_out
-from refimpl.posing import Posing
 from refimpl.refine import Quantity, refine, total_cost, uncertainty
 from refimpl.remark import Remark
 from refimpl.request import Request
-from refimpl.scene import Scene
+from refimpl.scene.discretise import Posing
+from refimpl.scene.scene import Scene
 from refimpl.solution import Cost, Solution
 from refimpl.surfaces import GaussianRoughness
 from refimpl.validity import cautions

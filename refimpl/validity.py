@@ -13,7 +13,7 @@ from refimpl.grid.contact_patches import spot_sizes
 from refimpl.grid.window import Window
 from refimpl.model.materials import Pair
 from refimpl.model.slopes import Slopes
-from refimpl.scene import Body, Scene
+from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.crop import ROUNDING
 from refimpl.surfaces.statistics import rms_slopes

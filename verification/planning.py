@@ -23,7 +23,7 @@ from refimpl.operators.fft import Counter
 from refimpl.plan import Plan, make_plan
 from refimpl.planning import effects
 from refimpl.planning.effects import Effect, Scales
-from refimpl.posing import EVERYTHING
+from refimpl.scene.discretise import EVERYTHING
 
 SIDE = 1e-3
 TOLERANCE = 1e-9  # of each solve: a thousandth of the smallest effects that are judged

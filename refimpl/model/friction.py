@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
-from refimpl.scene import Friction
+from refimpl.scene.scene import Friction
 
 Mask = NDArray[np.bool_]
 

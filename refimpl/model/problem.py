@@ -16,7 +16,7 @@ from refimpl.model.slopes import Slopes
 from refimpl.model.state import Visited
 from refimpl.operators.base import Influence
 from refimpl.operators.threads import keep_memory
-from refimpl.scene import Friction, Scene
+from refimpl.scene.scene import Friction, Scene
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from refimpl.errors import InputError
 from refimpl.planning import effects
 from refimpl.planning.effects import NONE, Effect, Scales
 from refimpl.planning.outlook import Outlook
-from refimpl.scene import Scene
+from refimpl.scene.scene import Scene
 
 _BUDGET = 0.5  # share of the demand that all terms left out may add up to
 _OF_THE_GRID = 0.01  # of the grid's own error: what may be left out where no friction force is at stake

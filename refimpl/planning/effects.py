@@ -32,7 +32,7 @@ from dataclasses import dataclass
 
 from refimpl.model.materials import Pair
 from refimpl.planning.outlook import Outlook
-from refimpl.scene import Friction
+from refimpl.scene.scene import Friction
 
 _TILT = 1.4  # spots that are not round; 0.6 to 1.3 found
 _MEAN_SLOPE = 1.5  # mean slope on the solver's contact over that on the expected one

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from refimpl.scene import Scene
+from refimpl.scene.scene import Scene
 from refimpl.surfaces import GaussianRoughness
 from refimpl.surfaces.gaussian import DECAY
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from refimpl.model.friction import TauSupport, local_friction
-from refimpl.scene import Friction
+from refimpl.scene.scene import Friction
 
 
 def mask(text: str) -> np.ndarray:

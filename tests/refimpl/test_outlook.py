@@ -13,7 +13,7 @@ from refimpl.model.problem import Problem, pose
 from refimpl.planning import effects
 from refimpl.planning.effects import Scales
 from refimpl.planning.outlook import Outlook, _first, _mirrored, _rising, _touched, expected
-from refimpl.posing import EVERYTHING
+from refimpl.scene.discretise import EVERYTHING
 from verification.coverage.scenes import random_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::refimpl.surfaces.SurfaceWarning")

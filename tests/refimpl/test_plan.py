@@ -15,7 +15,7 @@ from refimpl.plan import make_plan
 from refimpl.planning import effects
 from refimpl.planning.effects import Scales
 from refimpl.planning.outlook import expected, found
-from refimpl.posing import EVERYTHING
+from refimpl.scene.discretise import EVERYTHING
 
 STEEL, COPPER, RUBBER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(10e6, 0.5)
 SMOOTH = rf.Scene(

@@ -11,7 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.problem import Terms, pose
-from refimpl.posing import EVERYTHING, Posing
+from refimpl.scene.discretise import EVERYTHING, Posing
 from refimpl.surfaces import SurfaceWarning
 
 SCENE = rf.read_scene("table1-smooth")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.scene_file import scene_from_dict, scene_to_dict
+from refimpl.scene.scene_file import scene_from_dict, scene_to_dict
 
 SPEC_EXAMPLE = """
 load = 70.0            # N

@@ -11,7 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.discretisation import AREA
 from refimpl.model.forces import EDGE_SHARE
-from refimpl.parameters import check_tolerances, parameters, with_parameter
+from refimpl.scene.parameters import check_tolerances, parameters, with_parameter
 from refimpl.sensitivity import _STRIDE, NUMBERS, Sensitivity, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)

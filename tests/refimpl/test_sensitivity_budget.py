@@ -11,7 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.budget import Budget, Budgets, budget
 from refimpl.model.forces import facet_resultants
-from refimpl.scene_file import read_tolerances, scene_to_toml
+from refimpl.scene.scene_file import read_tolerances, scene_to_toml
 from refimpl.sensitivity import NUMBERS
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)

@@ -12,7 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl.budget import budget
 from refimpl.fixed_set import FixedSet, Response
-from refimpl.parameters import with_parameter
+from refimpl.scene.parameters import with_parameter
 from refimpl.sensitivity import Sensitivity, sensitivity
 
 STEEL, COPPER = rf.Material(200e9, 0.3), rf.Material(118e9, 0.2)

@@ -11,7 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.errors import InputError
-from refimpl.scene_file import scene_from_dict
+from refimpl.scene.scene_file import scene_from_dict
 from refimpl.surfaces import measured
 from verification.sweep import study as study_module
 from verification.sweep.run import COORDINATES, OUTCOMES, execute

@@ -10,7 +10,7 @@ from scipy.stats import qmc
 
 import refimpl as rf
 from refimpl.budget import budget
-from refimpl.parameters import moving, with_parameter
+from refimpl.scene.parameters import moving, with_parameter
 from refimpl.sensitivity import NUMBERS, Sensitivity
 from verification.case import Measured
 from verification.coverage.scenes import random_scene

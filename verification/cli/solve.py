@@ -128,7 +128,7 @@ def run(options: argparse.Namespace) -> int:
     import refimpl
     from refimpl.errors import InputError
     from refimpl.request import Request
-    from refimpl.scene_file import read_tolerances
+    from refimpl.scene.scene_file import read_tolerances
     from verification.cli import budget as budget_lines
     from verification.cli import explain, plot, vtk
 

@@ -37,7 +37,7 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the study and print the price list."""
     from refimpl.errors import InputError
-    from refimpl.scene_file import read_scene
+    from refimpl.scene.scene_file import read_scene
     from verification.files import Progress
     from verification.tradeoff.settings import inapplicable, settings
     from verification.tradeoff.study import TOLERANCES, study

@@ -21,7 +21,7 @@ from refimpl.model.state import Status
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.scene import Scene
+from refimpl.scene.scene import Scene
 from refimpl.surfaces import gaussian, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness
 from verification.faults import Patch

@@ -19,7 +19,7 @@ from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.scene import Scene
+from refimpl.scene.scene import Scene
 from refimpl.surfaces import white_noise
 
 _normal_symbol = vars(PeriodicInfluence)["_normal_symbol"].func

@@ -111,7 +111,7 @@ TARGETS = (
     Target("sensitivity", "refimpl/fixed_set.py", _alone("fixed_set", "sensitivity", "sensitivity_refusals")),
     Target("sensitivity", "refimpl/edge_motion.py", _alone("edge_motion", "sensitivity")),
     Target("sensitivity", "refimpl/sensitivity.py", _alone("sensitivity", "sensitivity_refusals")),
-    Target("sensitivity", "refimpl/parameters.py", _alone("sensitivity")),
+    Target("sensitivity", "refimpl/scene/parameters.py", _alone("sensitivity")),
     Target("sensitivity", "refimpl/budget.py", _alone("sensitivity_budget", "sensitivity_refusals")),
     *(Target("surfaces", f"refimpl/surfaces/{name}.py", SURFACES)
       for name in ("bicubic", "gaps", "gaussian", "levelling", "measured", "noise", "shapes", "statistics",

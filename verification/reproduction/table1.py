@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 import refimpl as rf
-from refimpl.scene_file import read_scene
+from refimpl.scene.scene_file import read_scene
 from verification.exact.hertz import Sphere
 from verification.reproduction.printed import CORRELATION_LENGTH
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from refimpl.grid import Grid
 from refimpl.plan import memory_of
 from refimpl.request import Request
-from refimpl.scene import Scene
-from refimpl.scene_file import scene_from_dict
+from refimpl.scene.scene import Scene
+from refimpl.scene.scene_file import scene_from_dict
 
 if TYPE_CHECKING:
     from verification.sweep.study import Study

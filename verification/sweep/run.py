@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-from refimpl.scene_file import scene_from_dict
+from refimpl.scene.scene_file import scene_from_dict
 
 COORDINATES = (
     "realisation", "grid", "load", "upper_rms", "lower_rms", "correlation_length",

@@ -16,7 +16,7 @@ from refimpl import read_scene
 from refimpl.errors import InputError, require_number
 from refimpl.plan import METHODS
 from refimpl.planning.choice import Forced
-from refimpl.scene_file import scene_to_dict
+from refimpl.scene.scene_file import scene_to_dict
 from verification.sweep import posable
 from verification.sweep.run import COORDINATES, Run, code_digest, file_digest
 

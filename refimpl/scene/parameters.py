@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import fields, replace
 
 from refimpl.errors import InputError, require_number
-from refimpl.scene import Body, Scene
+from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import Surface, SurfaceSum
 
 BODIES = ("upper", "lower")
@@ -20,7 +20,7 @@ def parameters(scene: Scene) -> dict[str, float]:
     ``load``, ``friction.tau``, ``friction.beta``, ``upper.material.E``, ``upper.material.nu``,
     ``upper.surface[0].rms`` and so on.
 
-    >>> from refimpl.scene_file import read_scene
+    >>> from refimpl.scene.scene_file import read_scene
     >>> parameters(read_scene("hertz"))["load"]
     70.0
     """

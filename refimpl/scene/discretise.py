@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from refimpl.grid import Grid
 from refimpl.model.problem import Problem, Terms, pose
-from refimpl.scene import Scene
+from refimpl.scene.scene import Scene
 
 EVERYTHING = Terms(coupled=True, oblique=True, slope_correction=False)
 

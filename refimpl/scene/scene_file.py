@@ -13,8 +13,8 @@ import tomli_w
 
 from refimpl.errors import InputError, within
 from refimpl.model.materials import Material
-from refimpl.parameters import check_tolerances
-from refimpl.scene import Body, Friction, Scene
+from refimpl.scene.parameters import check_tolerances
+from refimpl.scene.scene import Body, Friction, Scene
 from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceSum
 
