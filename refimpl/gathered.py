@@ -12,8 +12,8 @@ from refimpl.model.certificate import State
 from refimpl.model.forces import perimeter_corrected_area
 from refimpl.model.problem import Problem
 from refimpl.model.state import Outcome, Status, Visited
-from refimpl.plan import Plan
-from refimpl.planning.afterwards import effects_left_out, uncertainty_left_out
+from refimpl.planning.effects_after import effects_left_out, uncertainty_left_out
+from refimpl.planning.plan import Plan
 from refimpl.solution import Cost, Solution
 from refimpl.uncertainty import AREAS, merged
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Grid
 from refimpl.paper import PAPER_TOLERANCE
-from refimpl.plan import DECISION_GRID, Method, Plan, make_plan
+from refimpl.planning.plan import DECISION_GRID, Method, Plan, make_plan
 from refimpl.refine import Quantity, check_accuracy, check_quantity, deserved_tolerance
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene

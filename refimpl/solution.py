@@ -17,8 +17,8 @@ from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import Status
-from refimpl.plan import Plan
-from refimpl.planning.effects import Effect
+from refimpl.planning.plan import Plan
+from refimpl.planning.term_effects import Effect
 from refimpl.remark import Remark
 from refimpl.scene.scene import Friction
 from refimpl.validity import Caution, plain_warning

@@ -22,8 +22,8 @@ from refimpl.nesting import Start
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.paper import solve_paper
-from refimpl.plan import Method, Plan
-from refimpl.planning.afterwards import effects_left_out
+from refimpl.planning.effects_after import effects_left_out
+from refimpl.planning.plan import Method, Plan
 from refimpl.refine import Quantity, refine, total_cost, uncertainty
 from refimpl.remark import Remark
 from refimpl.request import Request

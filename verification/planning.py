@@ -20,9 +20,9 @@ from refimpl.fft_solver import solve_fft
 from refimpl.grid import Grid
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.operators.fft import Counter
-from refimpl.plan import Plan, make_plan
-from refimpl.planning import effects
-from refimpl.planning.effects import Effect, Scales
+from refimpl.planning import term_effects
+from refimpl.planning.plan import Plan, make_plan
+from refimpl.planning.term_effects import Effect, Scales
 from refimpl.scene.discretise import EVERYTHING
 
 SIDE = 1e-3
@@ -37,10 +37,10 @@ WITHOUT = {
 CORRECTION = "slope correction"  # put in rather than left out: Eq. (7) is printed without it
 WITH = {CORRECTION: Terms(coupled=True, oblique=True, slope_correction=True)}
 ESTIMATES = {
-    "shear coupling": effects.shear_coupling,
-    "shear tilt": effects.shear_tilt,
-    "obliqueness": effects.obliqueness,
-    CORRECTION: effects.slope_correction,
+    "shear coupling": term_effects.shear_coupling,
+    "shear tilt": term_effects.shear_tilt,
+    "obliqueness": term_effects.obliqueness,
+    CORRECTION: term_effects.slope_correction,
 }
 
 
@@ -131,7 +131,7 @@ def _trials_of(number: int, problem: Problem, plan: Plan) -> list[Trial]:
     result = []
     for name, terms in {**WITHOUT, **WITH}.items():
         estimate = ESTIMATES[name](scales)
-        if estimate == effects.NONE and name in WITHOUT:  # no choice of the plan's: nothing is left out
+        if estimate == term_effects.NONE and name in WITHOUT:  # no choice of the plan's: nothing is left out
             continue
         mu, area = _mu_and_area(replace(problem, terms=terms))
         change, larger = abs(mu - whole[0]), abs(area - whole[1]) / whole[1]

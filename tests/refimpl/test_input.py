@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import plan
+from refimpl.planning import plan
 
 STEEL = rf.Material(200e9, 0.3)
 SCENE = rf.Scene(

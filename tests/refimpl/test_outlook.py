@@ -10,9 +10,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.model.problem import Problem, pose
-from refimpl.planning import effects
-from refimpl.planning.effects import Scales
-from refimpl.planning.outlook import Outlook, _first, _mirrored, _rising, _touched, expected
+from refimpl.planning import term_effects
+from refimpl.planning.expected_contact import Outlook, _first, _mirrored, _rising, _touched, expected
+from refimpl.planning.term_effects import Scales
 from refimpl.scene.discretise import EVERYTHING
 from verification.coverage.scenes import random_scene
 
@@ -58,7 +58,7 @@ def test_the_fewest_elements_that_carry_the_load(M: int, share: float) -> None:
 def estimates(problem: Problem, outlook: Outlook) -> np.ndarray:
     """How much three terms would change, by that outlook."""
     scales = Scales(outlook, problem.pair, problem.friction)
-    terms = (effects.shear_coupling, effects.obliqueness, effects.shear_tilt)
+    terms = (term_effects.shear_coupling, term_effects.obliqueness, term_effects.shear_tilt)
     return np.array([term(scales).larger for term in terms])
 
 
@@ -73,7 +73,7 @@ def test_a_glance_tells_what_all_heights_do(monkeypatch: pytest.MonkeyPatch) -> 
         problem = pose(scene, rf.Grid(scene.side, 160), EVERYTHING, None)
         told = expected(problem)
         with monkeypatch.context() as patched:
-            patched.setattr("refimpl.planning.outlook._GLANCE", 160)
+            patched.setattr("refimpl.planning.expected_contact._GLANCE", 160)
             whole = expected(problem)
         assert (told.symmetric, told.mirrored) == (whole.symmetric, whole.mirrored)
         some = estimates(problem, whole) > 0

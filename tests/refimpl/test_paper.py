@@ -14,7 +14,7 @@ from refimpl.model.problem import pose
 from refimpl.model.state import Outcome, Status
 from refimpl.operators.fft import Counter
 from refimpl.paper import Trace, _interpolated, solve_paper
-from refimpl.plan import make_plan
+from refimpl.planning.plan import make_plan
 
 
 def run(

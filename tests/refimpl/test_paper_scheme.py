@@ -17,7 +17,7 @@ from refimpl.model.problem import pose
 from refimpl.model.state import Status
 from refimpl.operators.fft import Counter
 from refimpl.paper import Trace, _Scheme
-from refimpl.plan import make_plan
+from refimpl.planning.plan import make_plan
 
 A, B = np.eye(8, dtype=bool), np.ones((8, 8), dtype=bool)
 

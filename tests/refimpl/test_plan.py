@@ -11,10 +11,10 @@ import refimpl as rf
 from refimpl.grid_result import REPORTED
 from refimpl.model.problem import pose
 from refimpl.operators import kernel_tables
-from refimpl.plan import make_plan
-from refimpl.planning import effects
-from refimpl.planning.effects import Scales
-from refimpl.planning.outlook import expected, found
+from refimpl.planning import term_effects
+from refimpl.planning.expected_contact import expected, found
+from refimpl.planning.plan import make_plan
+from refimpl.planning.term_effects import Scales
 from refimpl.scene.discretise import EVERYTHING
 
 STEEL, COPPER, RUBBER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(10e6, 0.5)
@@ -42,7 +42,7 @@ def test_exact_zeros_are_left_out_for_nothing(scene: rf.Scene, why: str) -> None
     term = plan.term("shear coupling")
     assert not term.included
     assert why in term.reason
-    assert term.effect == effects.NONE
+    assert term.effect == term_effects.NONE
     assert plan.left_out == () or "shear coupling" not in plan.left_out
 
 
@@ -142,7 +142,7 @@ def test_shear_tilts_the_common_surface_of_twins() -> None:
     scales = Scales(tilted.plan.outlook, tilted.problem.pair, strong.friction)
     assert "shear" in tilted.cost.applications
     assert "shear" not in level.cost.applications
-    assert 0 < lost <= effects.shear_tilt(scales).friction * scales.mu < 3 * lost
+    assert 0 < lost <= term_effects.shear_tilt(scales).friction * scales.mu < 3 * lost
 
 
 def test_parts_add_up_to_the_whole() -> None:
@@ -182,11 +182,11 @@ def test_accuracy_leaves_out_and_says_so() -> None:
 
 def test_a_term_that_turns_out_to_matter_is_put_back(monkeypatch: pytest.MonkeyPatch) -> None:
     """Estimates a thousand times too small before the solve, and right after it."""
-    honest = effects.shear_coupling
+    honest = term_effects.shear_coupling
     monkeypatch.setattr(
-        effects,
+        term_effects,
         "shear_coupling",
-        lambda scales: effects.Effect(*(1e-3 * x for x in vars(honest(scales)).values())),
+        lambda scales: term_effects.Effect(*(1e-3 * x for x in vars(honest(scales)).values())),
     )
     soft = replace(
         ROUGH, lower=rf.Body(rf.Material(2.5e9, 0.1), ROUGH.lower.surface), friction=rf.Friction(0, 0.4)

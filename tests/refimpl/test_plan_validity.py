@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import plan
 from refimpl.coefficient_error import SlopeError
 from refimpl.model.forces import plasticity_index
-from refimpl.planning.effects import Effect
+from refimpl.planning import plan
+from refimpl.planning.term_effects import Effect
 from refimpl.validity import Caution, Limit, cautions, plain_warning, softer_hardness
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)

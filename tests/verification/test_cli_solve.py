@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import refimpl
-from refimpl.plan import METHODS
+from refimpl.planning.plan import METHODS
 from refimpl.refine import QUANTITIES
 from tests.verification.test_cli import Capture, refused
 from verification.cli import main, plot, solve

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.case import Measured
 from verification.extremes.determinism import difference, in_a_process, solved
 from verification.registry import case

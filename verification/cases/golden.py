@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.case import Measured
 from verification.golden.enclosure import prove
 from verification.golden.store import Golden, enclosed, named, relative, stored

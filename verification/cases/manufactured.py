@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 import refimpl as rf
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.case import Measured
 from verification.manufactured import Manufactured, manufacture
 from verification.registry import case

@@ -14,7 +14,7 @@ from refimpl.grid import Array, Grid
 from refimpl.model.problem import pose
 from refimpl.operators.fft import Counter
 from refimpl.paper import PAPER_TOLERANCE, Trace, solve_paper
-from refimpl.plan import make_plan
+from refimpl.planning.plan import make_plan
 from verification.case import Measured
 from verification.registry import case
 from verification.scenes import Trial, cross_checks

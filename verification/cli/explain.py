@@ -9,9 +9,9 @@ from refimpl.surfaces.gaussian import DECAY
 from verification.cli.output import columns
 
 if TYPE_CHECKING:
-    from refimpl.plan import Plan
-    from refimpl.planning.choice import Term
+    from refimpl.planning.plan import Plan
     from refimpl.planning.resolution import Resolution
+    from refimpl.planning.terms import Term
 
 
 def explained(plan: Plan, scene: str) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 import refimpl as rf
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Unsupported
 
 WORK = 3.0

@@ -12,7 +12,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 
 GRIDS: dict[Method, int] = {"fft": 384, "dense": 24}
 """384: transforms that get two threads, periodic or not; 24: matrices that BLAS factorises in parallel."""

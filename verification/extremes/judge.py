@@ -10,7 +10,7 @@ import mpmath as mp
 import numpy as np
 
 import refimpl as rf
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.extremes.oracle import NotSettled, Oracle
 from verification.extremes.state import Judged, Verdict, number
 

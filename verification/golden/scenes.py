@@ -11,7 +11,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 
 SIDE = 2.0**-10
 STEEL, COPPER, POLYMER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(2.5e9, 0.38)

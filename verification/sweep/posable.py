@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from refimpl.grid import Grid
-from refimpl.plan import memory_of
+from refimpl.planning.plan import memory_of
 from refimpl.request import Request
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_from_dict

@@ -14,8 +14,8 @@ from typing import Any
 
 from refimpl import read_scene
 from refimpl.errors import InputError, require_number
-from refimpl.plan import METHODS
-from refimpl.planning.choice import Forced
+from refimpl.planning.plan import METHODS
+from refimpl.planning.terms import Forced
 from refimpl.scene.scene_file import scene_to_dict
 from verification.sweep import posable
 from verification.sweep.run import COORDINATES, Run, code_digest, file_digest

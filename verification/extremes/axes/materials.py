@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 import refimpl as rf
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.extremes.judge import SOLVERS, by_oracle, guarded
 from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import STEEL, TABLE1, pressed

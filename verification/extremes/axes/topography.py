@@ -11,7 +11,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.extremes.judge import GOOD, SOLVERS, TOLERANCE, by_oracle, guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import POLYMER, STEEL, TABLE1

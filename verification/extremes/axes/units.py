@@ -14,7 +14,7 @@ from functools import cache, partial
 import numpy as np
 
 import refimpl as rf
-from refimpl.plan import Method
+from refimpl.planning.plan import Method
 from verification.extremes.judge import guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes import COPPER, STEEL

@@ -10,9 +10,9 @@ from typing import Literal
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.model.problem import Terms
-from refimpl.planning.choice import Forced, Term, affordable, choose
-from refimpl.planning.outlook import Outlook, expected
+from refimpl.planning.expected_contact import Outlook, expected
 from refimpl.planning.resolution import Resolution, resolution
+from refimpl.planning.terms import Forced, Term, affordable, choose
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene
 

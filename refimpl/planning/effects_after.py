@@ -7,14 +7,14 @@ from dataclasses import replace
 
 from refimpl.grid import Array
 from refimpl.model.problem import Problem
-from refimpl.planning import effects
-from refimpl.planning.effects import Effect, Scales
-from refimpl.planning.outlook import Outlook, found
+from refimpl.planning import term_effects
+from refimpl.planning.expected_contact import Outlook, found
+from refimpl.planning.term_effects import Effect, Scales
 
 _ESTIMATES = {
-    "shear coupling": effects.shear_coupling,
-    "obliqueness": effects.obliqueness,
-    "shear tilt": effects.shear_tilt,
+    "shear coupling": term_effects.shear_coupling,
+    "obliqueness": term_effects.obliqueness,
+    "shear tilt": term_effects.shear_tilt,
 }
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from refimpl.errors import InputError
-from refimpl.planning import effects
-from refimpl.planning.effects import NONE, Effect, Scales
-from refimpl.planning.outlook import Outlook
+from refimpl.planning import term_effects
+from refimpl.planning.expected_contact import Outlook
+from refimpl.planning.term_effects import NONE, Effect, Scales
 from refimpl.scene.scene import Scene
 
 _BUDGET = 0.5  # share of the demand that all terms left out may add up to
@@ -61,7 +61,7 @@ def choose(
     Where the budget is ``of_mu`` and there is no friction, slopes are all of mu and never small.
     """
     scales = Scales(outlook, scene.materials, scene.friction)
-    coupling, slopes = effects.shear_coupling(scales), effects.obliqueness(scales)
+    coupling, slopes = term_effects.shear_coupling(scales), term_effects.obliqueness(scales)
     open_terms: dict[str, float] = {}
     if forced.coupled is None and coupling != NONE and not forced.slope_correction:
         open_terms["shear coupling"] = coupling.larger
@@ -76,7 +76,7 @@ def choose(
         "slope correction",
         forced.slope_correction,
         "asked for" if forced.slope_correction else "not asked for: Eq. (7) as printed",
-        effects.slope_correction(scales),
+        term_effects.slope_correction(scales),
     )
     return coupled, oblique, tilted, correction, _tau_support(scene, moved or correction.included)
 
@@ -124,7 +124,7 @@ def _obliqueness(forced: Forced, effect: Effect, small: set[str]) -> Term:
 def _tilt(scene: Scene, forced: Forced, scales: Scales, coupled: Term, oblique: Term, budget: float) -> Term:
     """Shear's motion of the common surface: with coupling in, its kernel is there and costs nothing more."""
     name = "shear tilt"
-    effect = effects.shear_tilt(scales)
+    effect = term_effects.shear_tilt(scales)
     if not oblique.included:
         return Term(name, False, "no slopes to tilt")
     if forced.tilted is not None:

@@ -31,7 +31,7 @@ import math
 from dataclasses import dataclass
 
 from refimpl.model.materials import Pair
-from refimpl.planning.outlook import Outlook
+from refimpl.planning.expected_contact import Outlook
 from refimpl.scene.scene import Friction
 
 _TILT = 1.4  # spots that are not round; 0.6 to 1.3 found
