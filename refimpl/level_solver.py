@@ -24,7 +24,7 @@ from refimpl.model.state import Outcome, Status, Visited
 from refimpl.nesting import Start
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.tau_path import followed
+from refimpl.solvers.tau_active_set import followed
 from refimpl.updates import Updates
 
 _REDUCTION = 0.1  # of the residual is as much as CG leaves between updates of what is held

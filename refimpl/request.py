@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Grid
-from refimpl.paper import PAPER_TOLERANCE
 from refimpl.planning.plan import DECISION_GRID, Method, Plan, make_plan
 from refimpl.refine import Quantity, check_accuracy, check_quantity, deserved_tolerance
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene
 from refimpl.solution import Solution
+from refimpl.solvers.paper import PAPER_TOLERANCE
 
 # Of mean pressure and tau over the reduced modulus, and of approaches over the side.
 LEAST_STRAIN, MOST_STRAIN = 1e-30, 1e6

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from refimpl.dense_solver import solve_dense
 from refimpl.errors import InputError
 from refimpl.fft_solver import solve_fft
 from refimpl.gathered import gathered
@@ -21,7 +20,6 @@ from refimpl.model.state import Outcome, Status
 from refimpl.nesting import Start
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
-from refimpl.paper import solve_paper
 from refimpl.planning.effects_after import effects_left_out
 from refimpl.planning.plan import Method, Plan
 from refimpl.refine import Quantity, refine, total_cost, uncertainty
@@ -30,6 +28,8 @@ from refimpl.request import Request
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene
 from refimpl.solution import Cost, Solution
+from refimpl.solvers.dense import solve_dense
+from refimpl.solvers.paper import solve_paper
 from refimpl.surfaces import GaussianRoughness
 from refimpl.validity import cautions
 

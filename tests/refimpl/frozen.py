@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 import refimpl as rf
-from refimpl.contact.active_set import complementarity, restricted_solve
 from refimpl.contact.bounds import Bounds
 from refimpl.contact.energy_norm import EnergyNorm
 from refimpl.grid import Array, Grid
@@ -15,6 +14,7 @@ from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
+from refimpl.solvers.pivoting import complementarity, restricted_solve
 
 SIDE, M = 1e-3, 10
 POLYMER, STEEL = rf.Material(2.5e9, 0.1), rf.Material(200e9, 0.3)

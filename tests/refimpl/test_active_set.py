@@ -9,9 +9,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from refimpl.contact import active_set
-from refimpl.contact.active_set import complementarity, restricted_solve
 from refimpl.model.friction import Mask
+from refimpl.solvers import pivoting
+from refimpl.solvers.pivoting import complementarity, restricted_solve
 
 
 def by_enumeration(G: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -124,7 +124,7 @@ def test_single_exchanges_follow_ten_of_blocks_without_progress(
         visited.append(active.copy())
         return restricted_solve(G, right, active)
 
-    monkeypatch.setattr(active_set, "restricted_solve", recorded)
+    monkeypatch.setattr(pivoting, "restricted_solve", recorded)
     assert complementarity(G, q, start).solves == len(visited)
     counts: list[int] = []
     singles = 0
@@ -179,7 +179,7 @@ def test_a_matrix_without_the_property_is_named_in_time(n: int, monkeypatch: pyt
         solves += 1
         return restricted_solve(G, right, active)
 
-    monkeypatch.setattr(active_set, "restricted_solve", counted)
+    monkeypatch.setattr(pivoting, "restricted_solve", counted)
     with pytest.raises(ArithmeticError, match="no P-matrix"):
         complementarity(-np.eye(n), -np.ones(n), np.zeros(n, dtype=bool))
     assert 10 * (n + 10) <= solves <= 100 * (n + 10)

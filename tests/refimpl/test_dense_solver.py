@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import dense_solver
-from refimpl.contact import active_set
-from refimpl.contact.active_set import restricted_solve
 from refimpl.grid import Array
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.operators.dense import DenseInfluence
+from refimpl.solvers import dense, pivoting
+from refimpl.solvers.pivoting import restricted_solve
 
 M, SIDE = 3, 1e-3
 
@@ -44,7 +43,7 @@ def test_slopes_settle_even_where_pressure_does_not_follow_them_at_once(approach
 
 
 def test_slopes_that_do_not_settle_are_no_convergence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dense_solver, "_SLOPE_ITERATIONS", 1)
+    monkeypatch.setattr(dense, "_SLOPE_ITERATIONS", 1)
     solution = rf.solve(spike(rf.Friction(tau=0.0, beta=0.1)), M, method="dense", oblique=True)
     assert solution.status is rf.Status.ITERATION_LIMIT
 
@@ -57,18 +56,18 @@ def sliding_spike() -> tuple[Problem, DenseInfluence]:
 
 def test_the_loops_themselves_say_that_slopes_did_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever the certificate makes of the state that they left."""
-    monkeypatch.setattr(dense_solver, "_SLOPE_ITERATIONS", 1)
-    outcome, _ = dense_solver.solve_dense(*sliding_spike())
+    monkeypatch.setattr(dense, "_SLOPE_ITERATIONS", 1)
+    outcome, _ = dense.solve_dense(*sliding_spike())
     assert outcome.status is rf.Status.ITERATION_LIMIT
 
 
 def test_slopes_that_settled_before_may_not_settle_now(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each support of tau is judged for itself."""
-    solver = dense_solver._DenseSolver(*sliding_spike())
+    solver = dense._DenseSolver(*sliding_spike())
     support = np.ones((M, M), dtype=bool)
     solver.settle_slopes(support)
     assert solver.slopes_settled
-    monkeypatch.setattr(dense_solver, "_SLOPE_ITERATIONS", 1)
+    monkeypatch.setattr(dense, "_SLOPE_ITERATIONS", 1)
     solver.problem = replace(solver.problem, load=0.2)
     solver.settle_slopes(support)
     assert not solver.slopes_settled
@@ -85,13 +84,13 @@ def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
     problem, operator = sliding_spike()
     contacts = iter((A, B, A, last))
 
-    def settle_slopes(solver: dense_solver._DenseSolver, support: Mask) -> Array:
+    def settle_slopes(solver: dense._DenseSolver, support: Mask) -> Array:
         solver.pressure, solver.slopes_settled = np.where(next(contacts), 0.5, 0.0), True
         return np.where(support, 0.5, 0.0)
 
-    monkeypatch.setattr(dense_solver._DenseSolver, "settle_slopes", settle_slopes)
+    monkeypatch.setattr(dense._DenseSolver, "settle_slopes", settle_slopes)
     sliding = replace(problem, friction=rf.Friction(tau=0.5, beta=0.1))
-    outcome, _ = dense_solver.solve_dense(sliding, operator)
+    outcome, _ = dense.solve_dense(sliding, operator)
     assert outcome.status is status
     assert np.array_equal(outcome.withheld, ~A)
     assert len(outcome.visited) == 2
@@ -102,7 +101,7 @@ def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     problem, operator = sliding_spike()
-    solver = dense_solver._DenseSolver(problem, operator)
+    solver = dense._DenseSolver(problem, operator)
 
     def jittered(support: Mask) -> None:
         k = solver.picard  # relative changes: 1, then 3e-12, 5e-12, 7e-12, ...
@@ -123,7 +122,7 @@ def test_slopes_end_at_a_change_of_1e_13_of_the_peak(
 ) -> None:
     """The loop's bound; above it they go on, even where a change exceeds the one before."""
     problem, operator = sliding_spike()
-    solver = dense_solver._DenseSolver(problem, operator)
+    solver = dense._DenseSolver(problem, operator)
     solver.pressure = 1e6 * np.eye(M)
     monkeypatch.setattr(Problem, "slopes", lambda *displacements: solver.slopes)  # which stay
     steps = iter((*changes, 0.0, 0.0))
@@ -158,7 +157,7 @@ def test_facet_tractions_are_solved_for(approach: float | None) -> None:
 def test_one_pass_without_slopes() -> None:
     scene, grid = spike(rf.Friction(tau=0.0, beta=0.1)), rf.Grid(SIDE, M)
     problem = pose(scene, grid, Terms(coupled=True, oblique=False, slope_correction=False), None)
-    outcome, _ = dense_solver.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
+    outcome, _ = dense.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
     assert outcome.iterations["slopes"] == 1
 
 
@@ -170,7 +169,7 @@ def test_pivoting_starts_from_the_contact_that_was_found_last(approach: float | 
     grid = rf.Grid(SIDE, 5)
     terms = Terms(coupled=True, oblique=True, slope_correction=False)
     problem = pose(replace(scene, load=3.0), grid, terms, approach)
-    solver = dense_solver._DenseSolver(problem, DenseInfluence(grid, scene.sliding_direction))
+    solver = dense._DenseSolver(problem, DenseInfluence(grid, scene.sliding_direction))
     support = np.ones((5, 5), dtype=bool)
     solver.settle_slopes(support)
     solves, passes = solver.solves, solver.picard
@@ -187,12 +186,12 @@ def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
         calls.append(1)
         return restricted_solve(*arguments)
 
-    for module in (dense_solver, active_set):
+    for module in (dense, pivoting):
         monkeypatch.setattr(module, "restricted_solve", counted)
     scene = spike(rf.Friction(tau=0.0, beta=0.1))
     grid = rf.Grid(SIDE, M)
     problem = pose(scene, grid, Terms(coupled=True, oblique=True, slope_correction=False), None)
-    outcome, _ = dense_solver.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
+    outcome, _ = dense.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
     assert outcome.iterations["linear solves"] == len(calls) > 2
 
 
@@ -202,7 +201,7 @@ def test_newton_steps_that_are_not_within_the_bracket_halve_it(
 ) -> None:
     """Its ends are not. Proposals are played; ``g = h = 0`` and ``K = 1``, so ``q`` is minus the approach."""
     problem, operator = sliding_spike()
-    solver = dense_solver._DenseSolver(problem, operator)
+    solver = dense._DenseSolver(problem, operator)
     assert problem.load is not None
     target = problem.load / problem.grid.element_area
     proposals, tried = iter((1.0, 5.0, *beyond)), list[float]()
@@ -218,10 +217,10 @@ def test_newton_steps_that_are_not_within_the_bracket_halve_it(
         pressure = np.full(M**2, target * share / M**2)
         return SimpleNamespace(pressure=pressure, active=np.ones(M**2, dtype=bool), solves=1)
 
-    monkeypatch.setattr(dense_solver, "restricted_solve", restricted)
-    monkeypatch.setattr(dense_solver, "complementarity", contact)
+    monkeypatch.setattr(dense, "restricted_solve", restricted)
+    monkeypatch.setattr(dense, "complementarity", contact)
     zero, one = np.zeros(M**2), np.ones(M**2)
-    solver._solve_load(dense_solver._Frozen(np.eye(M**2), zero, one, one, 0.0), zero)
+    solver._solve_load(dense._Frozen(np.eye(M**2), zero, one, one, 0.0), zero)
     assert tried == pytest.approx([1.0, 5.0, 3.0, 4.0], rel=1e-9)
     assert solver.solves == 8
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import dense_solver, paper
+from refimpl.solvers import dense, paper
 
 RIGID = rf.Material(E=1e100, nu=0.3)
 
@@ -66,7 +66,7 @@ def test_beta_beyond_all_sense_ends_with_a_status() -> None:
 
 def test_limits_of_nested_loops_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(paper, "_BUDGET", 500)
-    monkeypatch.setattr(dense_solver, "_SOLVES", 100)
+    monkeypatch.setattr(dense, "_SOLVES", 100)
     scene = squeezed(16)
     by_paper, dense = (rf.solve(scene, grid=16, method=method) for method in ("paper", "dense"))
     assert by_paper.status is dense.status is rf.Status.ITERATION_LIMIT

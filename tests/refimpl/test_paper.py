@@ -13,8 +13,8 @@ from refimpl.model.certificate import State
 from refimpl.model.problem import pose
 from refimpl.model.state import Outcome, Status
 from refimpl.operators.fft import Counter
-from refimpl.paper import Trace, _interpolated, solve_paper
 from refimpl.planning.plan import make_plan
+from refimpl.solvers.paper import Trace, _interpolated, solve_paper
 
 
 def run(

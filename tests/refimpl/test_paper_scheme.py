@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import paper as module
 from refimpl.grid import Array, Grid
 from refimpl.model.friction import Mask
 from refimpl.model.problem import pose
 from refimpl.model.state import Status
 from refimpl.operators.fft import Counter
-from refimpl.paper import Trace, _Scheme
 from refimpl.planning.plan import make_plan
+from refimpl.solvers import paper as module
+from refimpl.solvers.paper import Trace, _Scheme
 
 A, B = np.eye(8, dtype=bool), np.ones((8, 8), dtype=bool)
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from refimpl import tau_path
 from refimpl.model.friction import Mask
 from refimpl.model.state import Visited
-from refimpl.tau_path import followed
+from refimpl.solvers import tau_active_set
+from refimpl.solvers.tau_active_set import followed
 
 
 def mask(marks: str) -> Mask:
@@ -129,7 +129,7 @@ def test_where_the_rule_gives_up_the_last_state_is_settled() -> None:
 
 
 def test_a_path_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tau_path, "_SUPPORT_ITERATIONS", 2)
+    monkeypatch.setattr(tau_active_set, "_SUPPORT_ITERATIONS", 2)
     state = Played({"ab": "Ab", "Ab": "AB", "AB": "AB"})
     assert not followed(state, 1e-8)[0].settled
     assert state.asked == ["ab", "Ab"]
@@ -142,7 +142,7 @@ def test_a_path_of_states_that_cannot_be_settled_is_given_up(monkeypatch: pytest
     state = Played({"ab": "Ab", "Ab": "aB", "aB": "AB", "AB": "AB"}, sticks="ab Ab aB")
     assert not followed(state, 1e-8)[0].settled
     assert state.asked == ["ab", "Ab", "aB"]
-    monkeypatch.setattr(tau_path, "_STUCK", 2)
+    monkeypatch.setattr(tau_active_set, "_STUCK", 2)
     contacts = {"ab": "Ab", "Ab": "AB", "AB": "AB"}
     state = Played(contacts, sticks="Ab")
     assert followed(state, 1e-8)[0].settled

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.paper import _Scheme
+from refimpl.solvers.paper import _Scheme
 from verification.case import Status, Unavailable
 from verification.cases import paper_iterations, paper_scheme, variational
 from verification.registry import find

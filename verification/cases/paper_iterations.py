@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import refimpl as rf
-from refimpl.paper import PAPER_TOLERANCE
+from refimpl.solvers.paper import PAPER_TOLERANCE
 from verification.case import Measured
 from verification.cases.paper_scheme import PRESSURE_TOLERANCE, SOURCE, STEPS_LEFT, TIGHT, traced
 from verification.registry import case

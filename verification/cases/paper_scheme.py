@@ -13,8 +13,8 @@ import refimpl as rf
 from refimpl.grid import Array, Grid
 from refimpl.model.problem import pose
 from refimpl.operators.fft import Counter
-from refimpl.paper import PAPER_TOLERANCE, Trace, solve_paper
 from refimpl.planning.plan import make_plan
+from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
 from verification.case import Measured
 from verification.registry import case
 from verification.scenes import Trial, cross_checks

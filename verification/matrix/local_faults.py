@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from refimpl import coefficient_error, discretisation, gathered, paper, summit
+from refimpl import coefficient_error, discretisation, gathered, summit
 from refimpl.budget import Budget
-from refimpl.contact import active_set, bounds, energy_norm
+from refimpl.contact import bounds, energy_norm
 from refimpl.estimate import Estimate
 from refimpl.kernels import points, quadrature, tables
 from refimpl.model import certificate, forces, slopes
@@ -22,6 +22,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
+from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness
 from verification.faults import Patch
@@ -80,7 +81,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "small-pressures-dropped": (
         "the dense reference drops pressures below 1e-8 of the peak",
-        lambda: everywhere(active_set.complementarity, wrong.small_dropped),
+        lambda: everywhere(pivoting.complementarity, wrong.small_dropped),
     ),
     "perimeter": (
         "the perimeter's correction halved",

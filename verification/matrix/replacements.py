@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from refimpl import coefficient_error, gathered, paper
-from refimpl.contact import active_set, bounds
+from refimpl import coefficient_error, gathered
+from refimpl.contact import bounds
 from refimpl.estimate import Estimate
 from refimpl.grid import Array, Grid
 from refimpl.kernels import cerruti, quadrature
@@ -20,6 +20,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
+from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import white_noise
 
 _normal_symbol = vars(PeriodicInfluence)["_normal_symbol"].func
@@ -27,7 +28,7 @@ _fft_across, _dense_along = FFTInfluence.shear_across, DenseInfluence._along
 _tractions, _problem_slopes = Problem.tractions, Problem.slopes
 _spread_by_support = gathered._spread_by_support
 _iterate, _gathered, _difference = paper._Scheme._iterate, gathered.gathered, slopes._difference
-_complementarity, _scene_sampled = active_set.complementarity, Scene.sampled
+_complementarity, _scene_sampled = pivoting.complementarity, Scene.sampled
 _perimeter, _departure = forces.perimeter_corrected_area, coefficient_error._departure
 _white_noise, _order_for, _bar = white_noise.white_noise, quadrature.order_for, Estimate.bar
 

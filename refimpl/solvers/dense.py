@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.contact.active_set import complementarity, restricted_solve
 from refimpl.grid import Array
 from refimpl.model.certificate import State, certify
 from refimpl.model.friction import Mask, TauSupport, local_friction
@@ -19,6 +18,7 @@ from refimpl.model.problem import Problem, visit
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import Outcome, Status, Visited
 from refimpl.operators.dense import DenseInfluence
+from refimpl.solvers.pivoting import complementarity, restricted_solve
 
 _SLOPE_TOLERANCE = 1e-13  # of the peak pressure: 450 eps, or where changes of slopes stop shrinking before
 _ROUNDING_FLOOR = 1e-11  # a change below this that no longer shrinks is rounding of the linear solves
