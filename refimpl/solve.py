@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from refimpl.errors import InputError
-from refimpl.fft_solver import solve_fft
 from refimpl.gathered import gathered
 from refimpl.grid import Grid
 from refimpl.grid.window import Window
@@ -17,7 +16,6 @@ from refimpl.grid_result import GridResult
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
 from refimpl.model.state import Outcome, Status
-from refimpl.nesting import Start
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.planning.effects_after import effects_left_out
@@ -30,6 +28,8 @@ from refimpl.scene.scene import Scene
 from refimpl.solution import Cost, Solution
 from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
+from refimpl.solvers.production.coarse_grids import Start
+from refimpl.solvers.production.nested_solver import solve_fft
 from refimpl.surfaces import GaussianRoughness
 from refimpl.validity import cautions
 

@@ -18,7 +18,6 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.kernels import normal_integral, tangential_integral
 from refimpl.model import certificate, forces, friction, problem, slopes
@@ -27,6 +26,7 @@ from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators import dense, fft, kernel_tables
 from refimpl.operators.fft import FFTInfluence
+from refimpl.solvers.production import level
 
 Patch = tuple[Any, str, Any]
 """Owner, name, replacement."""
@@ -223,7 +223,7 @@ FAULTS = {
     ),
     "stuck": Fault(
         "three CG steps and a certificate that is always clean",
-        ((level_solver, "_CG_LIMIT", 3), *everywhere(_certify, _certified_blindly)),
+        ((level, "_CG_LIMIT", 3), *everywhere(_certify, _certified_blindly)),
         "complementarity",
     ),
 }

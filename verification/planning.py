@@ -16,7 +16,6 @@ from dataclasses import astuple, dataclass, replace
 import numpy as np
 
 import refimpl as rf
-from refimpl.fft_solver import solve_fft
 from refimpl.grid import Grid
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.operators.fft import Counter
@@ -24,6 +23,7 @@ from refimpl.planning import term_effects
 from refimpl.planning.plan import Plan, make_plan
 from refimpl.planning.term_effects import Effect, Scales
 from refimpl.scene.discretise import EVERYTHING
+from refimpl.solvers.production.nested_solver import solve_fft
 
 SIDE = 1e-3
 TOLERANCE = 1e-9  # of each solve: a thousandth of the smallest effects that are judged

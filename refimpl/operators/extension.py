@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.contact.projected_cg import Apply
 from refimpl.grid import Array
 from refimpl.model.friction import Mask
+from refimpl.solvers.production.projected_cg import Apply
 
 _REACH = 2  # elements; the eight nearest alone spare three quarters of the CG steps that two spare
 _WORTHWHILE = 8_000  # elements of a window: on fewer, set-up and passes cost what the steps spared are worth

@@ -28,9 +28,9 @@ from refimpl.model.friction import Mask, TauSupport, local_friction
 from refimpl.model.problem import Problem, visit
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import Outcome, Status, Visited
-from refimpl.nesting import coarsened
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.kernel_tables import unit_table
+from refimpl.solvers.production.coarse_grids import coarsened
 
 PAPER_TOLERANCE = 1e-4  # |(P - N) / P|, section 5
 _PRESSURE_SHARE = 0.1  # |df| / |f| may be this share of the load tolerance: 1e-5, section 5

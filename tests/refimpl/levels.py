@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import refimpl as rf
-from refimpl.contact.projected_cg import ProjectedCG
-from refimpl.contact.support import Support
 from refimpl.grid import Array
 from refimpl.grid.window import Window
-from refimpl.level_solver import LevelSolver, influence
 from refimpl.model.problem import Problem, Terms, pose
-from refimpl.nesting import foundation_pressure
 from refimpl.operators.fft import Counter
 from refimpl.operators.preconditioner import SpectralPreconditioner
+from refimpl.solvers.production.coarse_grids import foundation_pressure
+from refimpl.solvers.production.contact_vectors import Support
+from refimpl.solvers.production.level import LevelSolver, influence
+from refimpl.solvers.production.projected_cg import ProjectedCG
 
 BALL = rf.Scene(
     upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(radius=0.05)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from refimpl.contact.cut import cut_at_zero, room
+from refimpl.solvers.production.step_length import cut_at_zero, room
 
 
 def cut(pressure: list[float], step: list[float], target: float | None) -> tuple[bool, np.ndarray]:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import fft_solver
 from refimpl.grid import Array, Grid
 from refimpl.grid.window import Window
 from refimpl.model.friction import Mask
@@ -17,6 +16,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.extension import ExtendedPreconditioner, extended
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.preconditioner import SpectralPreconditioner
+from refimpl.solvers.production import nested_solver
 from verification.benchmarks.problems import scene
 
 SHAPE, COMPLIANCE = (18, 15), 1e-11
@@ -170,7 +170,7 @@ def steps(M: int, kind: str) -> int:
 def test_it_spares_a_fifth_of_the_steps_on_a_rough_surface(M: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """11 for 14 at 128 and at 256 elements a side."""
     after = steps(M, "rough")
-    monkeypatch.setattr(fft_solver, "extended", lambda precondition, contact: precondition)
+    monkeypatch.setattr(nested_solver, "extended", lambda precondition, contact: precondition)
     assert after <= 0.8 * steps(M, "rough")
 
 

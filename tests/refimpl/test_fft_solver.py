@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import fft_solver
-from refimpl.contact.projected_cg import Apply
-from refimpl.fft_solver import _beyond, _certified, _widened, solve_fft
 from refimpl.grid.window import Window
 from refimpl.model.certificate import certify
 from refimpl.model.friction import Mask
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import Outcome
 from refimpl.operators.fft import Counter, FFTInfluence
+from refimpl.solvers.production import nested_solver
+from refimpl.solvers.production.nested_solver import _beyond, _certified, _widened, solve_fft
+from refimpl.solvers.production.projected_cg import Apply
 from tests.refimpl.levels import BALL, coupled, level, posed
 
 
@@ -60,7 +60,7 @@ def test_what_feeds_back_strongly_does_so_on_finer_grids() -> None:
     solver.settle(1e-3)
     assert solver.strong
     assert solver.answer().strong
-    finer = fft_solver.begun(posed(STEEP, 256, oblique=True), solver.answer(), Counter())
+    finer = nested_solver.begun(posed(STEEP, 256, oblique=True), solver.answer(), Counter())
     assert finer.strong
 
 
@@ -73,10 +73,10 @@ def test_residuals_are_continued_beyond_the_contact_that_a_grid_begins_with(
         asked.append(contact)
         return precondition
 
-    monkeypatch.setattr(fft_solver, "extended", recorded)
+    monkeypatch.setattr(nested_solver, "extended", recorded)
     coarse = level(posed(BALL, 16))
     coarse.settle(1e-3)
-    finer = fft_solver.begun(posed(BALL, 32), coarse.answer(), Counter())
+    finer = nested_solver.begun(posed(BALL, 32), coarse.answer(), Counter())
     assert finer.contact.any()
     assert not finer.contact.all()
     assert np.array_equal(asked[-1], finer.contact)
@@ -140,7 +140,7 @@ def test_a_wider_window_holds_the_contact_and_what_penetrates_beside_it() -> Non
     needed = solver.window.mask(M) | outside
     wider = _widened(solver.whole, outcome, needed, Counter(), strong=True)
     assert wider.strong
-    assert wider.window == Window.around(needed, fft_solver.MARGIN).filling(M)
+    assert wider.window == Window.around(needed, nested_solver.MARGIN).filling(M)
     assert wider.window.shape < (M, M)
     assert np.array_equal(wider.full(wider.cg.pressure), outcome.pressure)
 

@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import flexibility
-from refimpl.flexibility import Flexibility
 from refimpl.grid import Array
 from refimpl.model.friction import local_friction
 from refimpl.model.problem import Problem
@@ -18,6 +16,8 @@ from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.solvers.production import flexibility
+from refimpl.solvers.production.flexibility import Flexibility
 from tests.refimpl.levels import coupled, posed
 
 M = 12

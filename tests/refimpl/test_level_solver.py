@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import level_solver
 from refimpl.grid.window import Window
-from refimpl.level_solver import LevelSolver
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Terms, pose
-from refimpl.updates import Updates
+from refimpl.solvers.production import level
+from refimpl.solvers.production.level import LevelSolver
+from refimpl.solvers.production.updates import Updates
 from tests.refimpl.levels import BALL, coupled, level, posed, press
 
 
@@ -35,7 +35,7 @@ class Falling:
     ("factor", "budget", "steps"),
     [
         (0.99, 1000, math.ceil(math.log(0.1) / math.log(0.99))),  # slow, but a tenth less within the patience
-        (1.0, 1000, level_solver._CG_PATIENCE),
+        (1.0, 1000, level._CG_PATIENCE),
         (0.99, 7, 7),
     ],
 )
@@ -119,7 +119,7 @@ def test_updates_are_as_far_apart_as_they_bring_little_back(
     monkeypatch.setattr(solver, "_reduce", reduce)
     monkeypatch.setattr(solver.held, "update", update)
     monkeypatch.setattr(solver.held, "mix", lambda mixing: None)
-    monkeypatch.setattr(level_solver, "_UPDATES", 2)
+    monkeypatch.setattr(level, "_UPDATES", 2)
     solver.settle(1e-12)
     assert goals == pytest.approx([0.1, next_share], rel=1e-12)
 

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import fft_solver
 from refimpl.grid import Array
 from refimpl.grid.window import Window
 from refimpl.model.certificate import certify
 from refimpl.model.problem import Terms, pose
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
+from refimpl.solvers.production import nested_solver
 from tests.refimpl.levels import BALL, coupled, level, posed, press
 
 ONE_OF_EIGHT = np.eye(8, dtype=bool)
@@ -43,8 +43,8 @@ def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() ->
     beside[solver.window.slices] = False
     assert np.any(beside & (coarse.gap < 0.9 * solver.cg.approach))
     expected, found = (
-        fft_solver.begun(fine, whole.answer(), whole.counter),
-        fft_solver.begun(fine, solver.answer(), solver.counter),
+        nested_solver.begun(fine, whole.answer(), whole.counter),
+        nested_solver.begun(fine, solver.answer(), solver.counter),
     )
     assert found.window == expected.window
     assert np.array_equal(found.cg.contact, expected.cg.contact)
@@ -154,11 +154,11 @@ def test_a_finer_grid_starts_with_nearly_the_answer(approach: float | None) -> N
     coarse, fine = (posed(BALL, M, approach=approach) for M in (32, 64))
     solver = level(coarse)
     assert solver.settle(1e-6)
-    refined = fft_solver.begun(fine, solver.answer(), solver.counter)
+    refined = nested_solver.begun(fine, solver.answer(), solver.counter)
     answer = level(fine)
     assert answer.settle(1e-8)
     exact, start = answer.cg.pressure, refined.full(refined.cg.pressure)
-    assert refined.window == Window.around(exact > 0, fft_solver.MARGIN).filling(64)
+    assert refined.window == Window.around(exact > 0, nested_solver.MARGIN).filling(64)
     # the coarse grid's own error, measured: 0.080 and 0.057, and a fifteenth of the contact's elements
     assert np.linalg.norm(start - exact) <= 0.1 * np.linalg.norm(exact)
     assert np.count_nonzero((start > 0) != (exact > 0)) <= 0.08 * np.count_nonzero(exact)

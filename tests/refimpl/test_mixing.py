@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from refimpl import mixing
 from refimpl.grid import Array
-from refimpl.mixing import Mixing
+from refimpl.solvers.production import anderson
+from refimpl.solvers.production.anderson import Mixing
 
 
 def skew(n: int, radius: float, seed: int) -> Array:
@@ -52,7 +52,7 @@ def test_what_is_left_lacking_is_gmres_residual(updates: int) -> None:
 
 
 def test_only_the_last_differences_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mixing, "_DEPTH", 3)
+    monkeypatch.setattr(anderson, "_DEPTH", 3)
     mixed, x = Mixing(), np.ones((1, 10))
     matrix = skew(10, 2.0, seed=3)
     held, lacks = [], []

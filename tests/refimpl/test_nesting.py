@@ -11,11 +11,17 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array, Grid, resampled
 from refimpl.grid.window import Window
-from refimpl.level_solver import LevelSolver, influence
 from refimpl.model.problem import Problem, Terms, pose
-from refimpl.nesting import coarsened, foundation_pressure, levels, sharpened, touching
 from refimpl.operators.fft import Counter
 from refimpl.operators.preconditioner import SpectralPreconditioner
+from refimpl.solvers.production.coarse_grids import (
+    coarsened,
+    foundation_pressure,
+    levels,
+    sharpened,
+    touching,
+)
+from refimpl.solvers.production.level import LevelSolver, influence
 from tests.refimpl.levels import BALL
 from tests.refimpl.levels import posed as level_posed
 

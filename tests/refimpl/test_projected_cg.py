@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from refimpl.contact.projected_cg import ProjectedCG
 from refimpl.grid import Grid
 from refimpl.model.gap import relative_gap
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.preconditioner import SpectralPreconditioner
 from refimpl.solvers.pivoting import complementarity
+from refimpl.solvers.production.projected_cg import ProjectedCG
 
 M, SIDE, COMPLIANCE = 10, 1e-3, 1e-11
 GRID = Grid(SIDE, M)

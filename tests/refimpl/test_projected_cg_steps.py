@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from refimpl.contact.projected_cg import ProjectedCG
+from refimpl.solvers.production.projected_cg import ProjectedCG
 
 
 def springs(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import level_solver
+from refimpl.solvers.production import level
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
 SMOOTH = rf.Scene(
@@ -127,7 +127,7 @@ def test_the_summary_is_plain() -> None:
 
 @pytest.mark.parametrize("limit", [0, 2])
 def test_a_starved_solver_never_claims_convergence(limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(level_solver, "_CG_LIMIT", limit)
+    monkeypatch.setattr(level, "_CG_LIMIT", limit)
     scene = rf.read_scene("metal-polymer")
     s = rf.solve(scene, 24)
     assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.contact import support
-from refimpl.contact.support import Support
+from refimpl.solvers.production import contact_vectors
+from refimpl.solvers.production.contact_vectors import Support
 
 RANDOM = np.random.default_rng(8)
 FIELD = RANDOM.normal(size=(5, 8))
@@ -53,7 +53,7 @@ def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyP
     """To rounding: measured 5e-15 of the largest pressure."""
     found = []
     for few in (0.0, 1.0):
-        monkeypatch.setattr(support, "_FEW", few)
+        monkeypatch.setattr(contact_vectors, "_FEW", few)
         found.append(rf.solve(rf.read_scene(name), 48, tolerance=1e-10))
     one, other = found
     assert one.converged

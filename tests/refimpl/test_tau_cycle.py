@@ -11,18 +11,17 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import fft_solver
-from refimpl.contact import projected_cg
-from refimpl.contact.projected_cg import ProjectedCG
-from refimpl.fft_solver import solve_fft
 from refimpl.grid.window import Window
-from refimpl.level_solver import LevelSolver
-from refimpl.mixing import Mixing
 from refimpl.model.certificate import State
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.model.state import Outcome
 from refimpl.operators.fft import Counter
+from refimpl.solvers.production import nested_solver, projected_cg
+from refimpl.solvers.production.anderson import Mixing
+from refimpl.solvers.production.level import LevelSolver
+from refimpl.solvers.production.nested_solver import solve_fft
+from refimpl.solvers.production.projected_cg import ProjectedCG
 from tests.refimpl.levels import BALL, level, posed
 from verification.coverage import scenes as study
 
@@ -96,8 +95,8 @@ def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) ->
         return state.pressure > 0 if len(asked) == 1 else judge(problem, state, window, tolerance)
 
     asked: list[Window] = []
-    judge = fft_solver._beyond
-    monkeypatch.setattr(fft_solver, "_beyond", once_too_small)
+    judge = nested_solver._beyond
+    monkeypatch.setattr(nested_solver, "_beyond", once_too_small)
     monkeypatch.setattr(LevelSolver, "solve", recorded)
     solve_fft(posed(FAINT, 80), 1e-8, Counter())
     assert len(windows) > 1 + windows.index(asked[0])

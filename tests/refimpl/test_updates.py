@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from refimpl.updates import Updates
+from refimpl.solvers.production.updates import Updates
 
 
 def begun(*, lags: bool = True, strong: bool = False) -> Updates:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import nesting
+from refimpl.solvers.production import coarse_grids
 from verification.cases.cross_check import approach_difference, pressure_difference
 from verification.properties import Sample
 from verification.scenes import TOLERANCE, Trial, cross_checks
@@ -44,8 +44,8 @@ NESTED = ("rough", "direction-0.7", "metal-polymer", "strong-tau", "slope-correc
 @pytest.mark.parametrize("name", NESTED)
 def test_nested_grids_and_windows_agree_too(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Production nests grids of more than 30 elements; here already of 10, so that windows come in."""
-    monkeypatch.setattr(nesting, "_COARSEST", 5)
-    monkeypatch.setattr(nesting, "_COARSEST_OF_TWO", 5)
+    monkeypatch.setattr(coarse_grids, "_COARSEST", 5)
+    monkeypatch.setattr(coarse_grids, "_COARSEST_OF_TWO", 5)
     trial = TRIALS[name]
     M = trial.M - trial.M % 2
     scene_trial = Trial(trial.name, trial.stresses, trial.scene, M, trial.options)

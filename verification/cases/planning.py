@@ -8,11 +8,11 @@ from dataclasses import replace
 from functools import cache
 
 import refimpl as rf
-from refimpl.fft_solver import solve_fft
 from refimpl.grid import Grid
 from refimpl.model.problem import Terms, pose
 from refimpl.operators.fft import Counter
 from refimpl.request import Request
+from refimpl.solvers.production.nested_solver import solve_fft
 from verification.case import Measured
 from verification.cli.explain import explained
 from verification.registry import case

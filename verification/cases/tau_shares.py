@@ -8,12 +8,12 @@ from typing import cast
 import numpy as np
 
 import refimpl as rf
-from refimpl.fft_solver import begun
 from refimpl.grid import Array
-from refimpl.level_solver import LevelSolver
 from refimpl.model.friction import Mask
-from refimpl.nesting import Start
 from refimpl.operators.fft import Counter
+from refimpl.solvers.production.coarse_grids import Start
+from refimpl.solvers.production.level import LevelSolver
+from refimpl.solvers.production.nested_solver import begun
 from verification.case import Measured
 from verification.coverage.scenes import random_scene
 from verification.registry import case

@@ -14,12 +14,12 @@ from unittest import mock
 
 import numpy as np
 
-from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.kernels import normal_table
 from refimpl.operators import kernel_tables
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.solvers.production import level
 from verification.contestants import own, referee
 from verification.contestants.check import Fault
 from verification.contestants.protocol import Answer, ContactProblem, Contestant
@@ -175,7 +175,7 @@ _IN_SINGLE_PRECISION = (
     (PeriodicInfluence, "_filter", _single(PeriodicInfluence._filter)),
 )
 _POINT_FORCES = (kernel_tables, "_TABLES", {**kernel_tables._TABLES, "normal": _coarse_coefficients})
-_THREE_STEPS = (level_solver, "_CG_LIMIT", 3)
+_THREE_STEPS = (level, "_CG_LIMIT", 3)
 
 BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.SIGN_OF_C: lambda: Wrong(asked(other_sign)),

@@ -14,10 +14,10 @@ import numpy as np
 import scipy.fft as sfft
 
 import refimpl as rf
-from refimpl import fft_solver
 from refimpl.grid import Array
 from refimpl.grid.window import Window, padded_length
 from refimpl.model.problem import Problem
+from refimpl.solvers.production import nested_solver
 from verification.tradeoff.settings import Setting
 from verification.tradeoff.single import single_precision
 from verification.variational.energy import Energy, frictionless
@@ -62,7 +62,7 @@ def _solved(scene: rf.Scene, setting: Setting) -> tuple[dict[str, float], str, A
     """Numbers, status, pressure, and the sum of n log n over all applications."""
     if setting.method == "qp":
         return _minimised(scene, setting)
-    grids = nullcontext() if setting.nested else mock.patch.object(fft_solver, "levels", _only_the_finest)
+    grids = nullcontext() if setting.nested else mock.patch.object(nested_solver, "levels", _only_the_finest)
     precision = single_precision() if setting.single else nullcontext()
     with grids, precision:
         solution = _solution(scene, setting)

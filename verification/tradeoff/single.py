@@ -10,10 +10,10 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl import level_solver
 from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.transforms import Complex, fourier, threads
+from refimpl.solvers.production import level
 
 
 class SingleInfluence(FFTInfluence):
@@ -48,5 +48,5 @@ class SingleInfluence(FFTInfluence):
 @contextmanager
 def single_precision() -> Iterator[None]:
     """Solve with `SingleInfluence`; certificates, periodic scenes and what links grids stay as they are."""
-    with mock.patch.object(level_solver, "FFTInfluence", SingleInfluence):
+    with mock.patch.object(level, "FFTInfluence", SingleInfluence):
         yield

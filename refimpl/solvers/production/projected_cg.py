@@ -7,7 +7,7 @@ step is cut at zero pressure and brought to the load *before* the displacement i
 from the present through the trial is taken: one application a step, whether elements leave or not. Elements
 that penetrate enter S afterwards (Polonsky and Keer 1999, Wear 231, 206). Conjugacy is measured by the
 Polak-Ribiere quotient, which forgets the past by itself when S changes. ``a`` may have a weak skew part
-(`refimpl.flexibility`): the residual holds it, and no curvature sees it.
+(`refimpl.solvers.production.flexibility`): the residual holds it, and no curvature sees it.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from refimpl.contact.cut import cut_at_zero, room
-from refimpl.contact.support import Support
 from refimpl.grid import Array, inner
 from refimpl.model.friction import Mask
 from refimpl.model.gap import relative_gap
+from refimpl.solvers.production.contact_vectors import Support
+from refimpl.solvers.production.step_length import cut_at_zero, room
 
 Apply = Callable[[Array], Array]
 

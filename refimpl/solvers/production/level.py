@@ -1,8 +1,8 @@
 """One grid of the production solver: projected CG on the contact's window, with the rest lagged.
 
-CG inverts ``a f``, and weak coupling with it (`refimpl.flexibility`). The rest of the problem is held
-(`refimpl.held`) while CG reduces the residual as far as that lets it, and is then brought up to date. Where
-its own feedback is weak few updates suffice; where it is not they are mixed (`refimpl.mixing`).
+CG inverts ``a f``, and weak coupling with it (`refimpl.solvers.production.flexibility`). The rest of the problem is held
+(`refimpl.solvers.production.lagged_terms`) while CG reduces the residual as far as that lets it, and is then brought up to date. Where
+its own feedback is weak few updates suffice; where it is not they are mixed (`refimpl.solvers.production.anderson`).
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.contact.projected_cg import Apply, ProjectedCG
-from refimpl.flexibility import Flexibility
 from refimpl.grid import Array
 from refimpl.grid.window import Window
-from refimpl.held import Held
 from refimpl.model.friction import Mask, TauSupport
 from refimpl.model.problem import Problem, visit
 from refimpl.model.state import Outcome, Status, Visited
-from refimpl.nesting import Start
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
+from refimpl.solvers.production.coarse_grids import Start
+from refimpl.solvers.production.flexibility import Flexibility
+from refimpl.solvers.production.lagged_terms import Held
+from refimpl.solvers.production.projected_cg import Apply, ProjectedCG
+from refimpl.solvers.production.updates import Updates
 from refimpl.solvers.tau_active_set import followed
-from refimpl.updates import Updates
 
 _REDUCTION = 0.1  # of the residual is as much as CG leaves between updates of what is held
 _LEAST_FEEDBACK = 1e-3  # and this, where the last update brought hardly anything back
@@ -71,7 +71,7 @@ class LevelSolver:
         self.held = Held(self.problem, self.flexibility, self.cg)
         self._nowhere = self.held.support
         self._withheld: Mask | None = None
-        # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.nesting`
+        # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.solvers.production.coarse_grids`
         self._stiffness = 0.5 / (problem.pair.normal_compliance * problem.grid.spacing)
         self.stuck = False
         self._updates = Updates(math.inf, lags=True, strong=strong)

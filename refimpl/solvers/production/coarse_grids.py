@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from refimpl.contact.projected_cg import FIRST_LENGTH, Apply
 from refimpl.grid import Array, Grid, resampled
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
+from refimpl.solvers.production.projected_cg import FIRST_LENGTH, Apply
 
 _COARSEST = 32  # elements per side where nesting starts
 _COARSEST_OF_TWO = 16  # the same of grids that would have no coarser one
@@ -21,7 +21,7 @@ class Start(NamedTuple):
     """One grid's answer: pressure (Pa) and the pair's displacement ``v - h`` (m), both ``(M, M)``.
 
     ``approach`` (m) is None where heights were sampled anew: grids differ in where they see first touch.
-    ``strong`` says that updates had to be mixed (`refimpl.level_solver`): finer grids feed back even more.
+    ``strong`` says that updates had to be mixed (`refimpl.solvers.production.level`): finer grids feed back even more.
     """
 
     pressure: Array

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from refimpl.contact.projected_cg import ProjectedCG
-from refimpl.flexibility import Flexibility
 from refimpl.grid import Array, inner
-from refimpl.mixing import Mixing
 from refimpl.model.friction import Mask, local_friction
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.solvers.production.anderson import Mixing
+from refimpl.solvers.production.flexibility import Flexibility
+from refimpl.solvers.production.projected_cg import ProjectedCG
 
 _STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
 _FARTHEST = 1e30  # sides; shear displacements beyond have run off, while their squares still fit a double

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from refimpl.contact.projected_cg import Apply
 from refimpl.grid import Array, resampled
 from refimpl.grid.window import Window
-from refimpl.level_solver import LevelSolver, WindowInfluence, influence
 from refimpl.model.certificate import State, certify
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
 from refimpl.model.state import Outcome
-from refimpl.nesting import Start, foundation_pressure, levels, sharpened, touching
 from refimpl.operators.base import Influence
 from refimpl.operators.extension import extended
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.operators.preconditioner import SpectralPreconditioner
+from refimpl.solvers.production.coarse_grids import Start, foundation_pressure, levels, sharpened, touching
+from refimpl.solvers.production.level import LevelSolver, WindowInfluence, influence
+from refimpl.solvers.production.projected_cg import Apply
 
 MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 _COARSE_TOLERANCE = 1e-3  # a coarse state is only a start: its own grid error is larger than this

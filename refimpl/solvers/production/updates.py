@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from refimpl.mixing import Mixing
+from refimpl.solvers.production.anderson import Mixing
 
 _STRONG = 0.3  # an update that brings back more than this share of the last residual counts as strong
 _TWICE = 2  # such updates in a row start the mixing; one may be a contact that opens

@@ -1,6 +1,6 @@
 """Anderson's mixing: successive approximations that would not contract by themselves.
 
-What is held while CG works (`refimpl.level_solver`) is a field x, and the pressure that CG finds asks for
+What is held while CG works (`refimpl.solvers.production.level`) is a field x, and the pressure that CG finds asks for
 another, g(x). Slopes ask for the cosines of a surface that the pressure itself has moved: their feedback
 grows with displacement over spacing, so that on fine grids x <- g(x) leads away from the solution, and
 relaxed as far as it must be leads nowhere in sensible time. Close to the solution g is all but linear. So the
