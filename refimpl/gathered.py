@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from refimpl.accuracy.first_contact import POWERS
+from refimpl.accuracy.iteration_error import AREAS, merged
 from refimpl.coefficient_error import slope_error
-from refimpl.first_touch import POWERS
 from refimpl.model.certificate import State
 from refimpl.model.forces import perimeter_corrected_area
 from refimpl.model.problem import Problem
@@ -15,7 +16,6 @@ from refimpl.model.state import Outcome, Status, Visited
 from refimpl.planning.effects_after import effects_left_out, uncertainty_left_out
 from refimpl.planning.plan import Plan
 from refimpl.solution import Cost, Solution
-from refimpl.uncertainty import AREAS, merged
 
 
 def gathered(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from refimpl.accuracy.refinement import Quantity, check_accuracy, check_quantity, deserved_tolerance
 from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Grid
 from refimpl.planning.plan import DECISION_GRID, Method, Plan, make_plan
-from refimpl.refine import Quantity, check_accuracy, check_quantity, deserved_tolerance
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene
 from refimpl.solution import Solution

@@ -24,12 +24,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.discretisation import AREA, area_scatter
+from refimpl.accuracy.discretisation_error import AREA, area_scatter
+from refimpl.accuracy.grid_features import GridResult
 from refimpl.edge_motion import EdgeMotion
 from refimpl.errors import LEAST, InputError
 from refimpl.fixed_set import FixedSet
 from refimpl.grid import Array
-from refimpl.grid_result import GridResult
 from refimpl.model.materials import RIGID
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.scene.parameters import moving, parameters, with_parameter

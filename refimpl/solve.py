@@ -8,11 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.refinement import Quantity, refine, total_cost, uncertainty
 from refimpl.errors import InputError
 from refimpl.gathered import gathered
 from refimpl.grid import Grid
 from refimpl.grid.window import Window
-from refimpl.grid_result import GridResult
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
 from refimpl.model.state import Outcome, Status
@@ -20,7 +21,6 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.planning.effects_after import effects_left_out
 from refimpl.planning.plan import Method, Plan
-from refimpl.refine import Quantity, refine, total_cost, uncertainty
 from refimpl.remark import Remark
 from refimpl.request import Request
 from refimpl.scene.discretise import Posing

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from refimpl.discretisation import EDGE_SHARE, EDGE_SIZE, SUMMIT
-from refimpl.grid_result import GridResult
+from refimpl.accuracy.discretisation_error import EDGE_SHARE, EDGE_SIZE, SUMMIT
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.peak import LEVEL, Summit
 from refimpl.solution import REPORTED
-from refimpl.summit import LEVEL, Summit
 
 SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9

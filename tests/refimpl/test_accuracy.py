@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid_result import REPORTED
-from refimpl.refine import OPENING, refine
-from refimpl.uncertainty import iteration_parts, merged
+from refimpl.accuracy.grid_features import REPORTED
+from refimpl.accuracy.iteration_error import iteration_parts, merged
+from refimpl.accuracy.refinement import OPENING, refine
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 

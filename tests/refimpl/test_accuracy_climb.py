@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.discretisation import estimates
-from refimpl.grid_result import GridResult
-from refimpl.refine import LADDER, OPENING, ambiguous, climb, next_grid, relative_bar
+from refimpl.accuracy.discretisation_error import estimates
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.peak import Summit
+from refimpl.accuracy.refinement import LADDER, OPENING, ambiguous, climb, next_grid, relative_bar
 from refimpl.solution import REPORTED
-from refimpl.summit import Summit
 from tests.refimpl.made_up import AREA_LIMIT, PEAK, made_up
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl import discretisation
-from refimpl.discretisation import (
+from refimpl.accuracy import discretisation_error
+from refimpl.accuracy.discretisation_error import (
     EDGE_SHARE,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
@@ -19,8 +19,8 @@ from refimpl.discretisation import (
     estimates,
     thinness,
 )
-from refimpl.grid_result import GridResult
-from refimpl.refine import OPENING, relative_bar, uncertainty
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.refinement import OPENING, relative_bar, uncertainty
 from refimpl.solution import REPORTED
 from refimpl.validity import Limit
 from tests.refimpl.made_up import AREA_LIMIT, BETA, PEAK, SIDE, SLIP, made_up, told
@@ -105,13 +105,13 @@ def test_what_is_known_of_spots_of_few_elements() -> None:
     )
     counted = [math.sqrt(r.edge / EDGE_SHARE) * r.spacing for r in (few, many)]
     assert area_scatter([few, many]) == pytest.approx([counted[0] * (4 / 3) ** 8, counted[1]], rel=1e-3)
-    off = EDGE_SIZE * few.edge * (1 + discretisation.SINGLES / 4)
+    off = EDGE_SIZE * few.edge * (1 + discretisation_error.SINGLES / 4)
     assert estimates([few])["contact_area"].value == pytest.approx(area - off)
-    assert discretisation.unevenness([few, many]) == pytest.approx([0.01 * 16 / 9, 0.01], rel=1e-3)
+    assert discretisation_error.unevenness([few, many]) == pytest.approx([0.01 * 16 / 9, 0.01], rel=1e-3)
     single = replace(few, edge=4 * EDGE_SHARE * area)
     mu = many.numbers["friction_coefficient"]
     small = replace(few, numbers={**few.numbers, "friction_coefficient": 9.0})
-    assert discretisation.unevenness([small, single, many]) == pytest.approx(
+    assert discretisation_error.unevenness([small, single, many]) == pytest.approx(
         [0.01 * 16 / 9, mu, 0.01], rel=1e-3
     )
 
@@ -139,16 +139,16 @@ def test_a_grid_without_contact_knows_nothing_beside_one_that_has() -> None:
     assert thinness([apart, found]).tolist() == [1.0, (found.edge / found.numbers["contact_area"]) ** 1.5]
     assert thinness([replace(found, edge=2 * found.numbers["contact_area"])]) == [1.0]
     assert thinness([replace(found, edge=-0.5 * found.numbers["contact_area"])]) == [0.0]  # of holes
-    assert discretisation.discretisation([found, apart]) == {}
-    assert set(discretisation.discretisation([apart, found])) == set(REPORTED) - {"normal_force"}
+    assert discretisation_error.discretisation([found, apart]) == {}
+    assert set(discretisation_error.discretisation([apart, found])) == set(REPORTED) - {"normal_force"}
 
 
 @pytest.mark.parametrize("number", [1e101, -1e101, math.inf, math.nan])
 def test_a_state_that_ran_off_is_not_bounded(number: float) -> None:
     """Nothing is not the same as zero: an accuracy would be met by it."""
     ran_off = replace(made_up(64), numbers={**made_up(64).numbers, "friction_force": number})
-    parts = discretisation.discretisation([ran_off])
-    assert set(parts) == set(discretisation.discretisation([made_up(64)]))
+    parts = discretisation_error.discretisation([ran_off])
+    assert set(parts) == set(discretisation_error.discretisation([made_up(64)]))
     assert all(part == {"discretisation": math.inf} for part in parts.values())
 
 
@@ -163,7 +163,7 @@ def test_what_an_edge_leaves_open_of_forces_goes_with_the_load() -> None:
     assert twice == pytest.approx(2 * one)
     thin = (grids[0].edge / grids[0].numbers["contact_area"]) ** 1.5
     assert one == pytest.approx(
-        12.706 * discretisation.BINORMAL.scatter * thin * 70.0, rel=1e-3
+        12.706 * discretisation_error.BINORMAL.scatter * thin * 70.0, rel=1e-3
     )  # Student's t
 
 
@@ -245,4 +245,4 @@ def test_constants_agree_with_the_perimeter_correction() -> None:
     contact = np.zeros((8, 8), dtype=bool)
     contact[2:5, 3:6] = True  # 12 edges
     corrected = rf.forces.perimeter_corrected_area(contact, 1.0)  # type: ignore[attr-defined]  # submodule
-    assert 9 - corrected == pytest.approx(12 * discretisation.EDGE_SHARE)
+    assert 9 - corrected == pytest.approx(12 * discretisation_error.EDGE_SHARE)

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 import refimpl as rf
-from refimpl.discretisation import PULLED, estimates
-from refimpl.grid_result import GridResult, depth, pull
+from refimpl.accuracy.discretisation_error import PULLED, estimates
+from refimpl.accuracy.grid_features import GridResult, depth, pull
 from tests.refimpl.made_up import made_up
 
 SOFT, HARD = rf.Material(E=1e9, nu=0.1), rf.Material(E=1e12, nu=0.3)

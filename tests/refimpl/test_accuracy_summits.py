@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 import refimpl as rf
-from refimpl import discretisation
-from refimpl.discretisation import OTHER, SUMMIT, SUMMIT_SPREAD, estimates
-from refimpl.summit import Summit
+from refimpl.accuracy import discretisation_error
+from refimpl.accuracy.discretisation_error import OTHER, SUMMIT, SUMMIT_SPREAD, estimates
+from refimpl.accuracy.peak import Summit
 from tests.refimpl.made_up import PEAK, SIDE, made_up, peaked
 
 
@@ -44,7 +44,7 @@ def test_a_peak_that_stands_alone_is_not_bounded(roughness: float, more: float) 
         assert uneven[name].spread == even[name].spread
     assert uneven["approach"].spread == pytest.approx(math.sqrt(more) * even["approach"].spread)
     of_parabola, found = (found["max_pressure"].spread for found in (even, uneven))
-    assert of_parabola > 1.96 * math.hypot(0.1 * SUMMIT_SPREAD, 0.1 * discretisation.PEAK.scatter)
+    assert of_parabola > 1.96 * math.hypot(0.1 * SUMMIT_SPREAD, 0.1 * discretisation_error.PEAK.scatter)
     assert found <= more * of_parabola
     assert (found > of_parabola) is (more > 1)
     assert math.isinf(found) is math.isinf(more)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy import optimize, stats
 
-from refimpl.discretisation import AREA, EDGE_SIZE, EDGE_SIZE_SPREAD
-from refimpl.estimate import Bias, Estimate, Prior, line
+from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, line
+from refimpl.accuracy.discretisation_error import AREA, EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.grid import Array
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid_result import REPORTED
+from refimpl.accuracy.grid_features import REPORTED
 from refimpl.model.problem import pose
 from refimpl.operators import kernel_tables
 from refimpl.planning import term_effects

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.discretisation import AREA
+from refimpl.accuracy.discretisation_error import AREA
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.scene.parameters import check_tolerances, parameters, with_parameter
 from refimpl.sensitivity import _STRIDE, NUMBERS, Sensitivity, sensitivity

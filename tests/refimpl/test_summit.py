@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import refimpl as rf
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.peak import LEVEL, Summit, deepest, highest
 from refimpl.grid import Array
-from refimpl.grid_result import GridResult
-from refimpl.summit import LEVEL, Summit, deepest, highest
 
 inside = st.floats(-0.499, 0.499)
 bends = st.floats(1e-3, 4.0)

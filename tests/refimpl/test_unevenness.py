@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.accuracy.grid_features import GridResult, alike, unevenness
 from refimpl.grid import Array
-from refimpl.grid_result import GridResult, alike, unevenness
 from refimpl.model.slopes import Slopes
 from verification.coverage.scenes import random_scene
 

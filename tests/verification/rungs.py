@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from refimpl.discretisation import EDGE_SHARE
-from refimpl.grid_result import GridResult
+from refimpl.accuracy.discretisation_error import EDGE_SHARE
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.peak import LEVEL, Summit
 from refimpl.solution import REPORTED
-from refimpl.summit import LEVEL, Summit
 from verification.coverage.scenes import SIDE
 from verification.coverage.store import Rung
 

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import refimpl
+from refimpl.accuracy.refinement import QUANTITIES
 from refimpl.planning.plan import METHODS
-from refimpl.refine import QUANTITIES
 from tests.verification.test_cli import Capture, refused
 from verification.cli import main, plot, solve
 from verification.cli.plot import hertz_of

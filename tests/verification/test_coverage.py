@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.refine import OPENING
+from refimpl.accuracy.refinement import OPENING
 from reports.drawing import svg
 from reports.studies import exhibit
 from tests.verification.rungs import GRIDS, rung

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from refimpl.summit import LEVEL, Summit
+from refimpl.accuracy.peak import LEVEL, Summit
 from tests.verification.rungs import GRIDS, rung
 from verification.coverage import beside
 from verification.coverage.judge import (

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from refimpl import discretisation
-from refimpl.discretisation import (
+from refimpl.accuracy import discretisation_error
+from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, line
+from refimpl.accuracy.discretisation_error import (
     AREA,
     BINORMAL,
     BULK,
@@ -22,9 +23,8 @@ from refimpl.discretisation import (
     SUMMIT,
     SUMMIT_SPREAD,
 )
-from refimpl.estimate import Bias, Estimate, Prior, line
-from refimpl.first_touch import TOUCH
-from refimpl.refine import OPENING
+from refimpl.accuracy.first_contact import TOUCH
+from refimpl.accuracy.refinement import OPENING
 from tests.documents import ROOT
 from verification.coverage import priors
 from verification.coverage.priors import Numbers, fitted, log_likelihood
@@ -71,7 +71,7 @@ def test_nine_nodes_leave_bars_that_many_more_hardly_move(monkeypatch: pytest.Mo
 
     nine, (nodes, weights) = bars(), np.polynomial.hermite_e.hermegauss(41)
     many = mean + spread * nodes, weights / weights.sum()
-    monkeypatch.setattr("refimpl.estimate._factors", lambda *_: many)
+    monkeypatch.setattr("refimpl.accuracy.bayesian_line._factors", lambda *_: many)
     np.testing.assert_allclose(nine, bars(), rtol=0.015)
 
 
@@ -114,8 +114,8 @@ def test_the_model_fitted_is_the_one_that_bars_are_made_of(
     store = tmp_path / "store.jsonl"
     climb(store, [seed], [*OPENING, 96])
     results = [rung.result for rung in ladders(store)[seed]]
-    monkeypatch.setattr(discretisation, "line", spied)
-    discretisation.estimates(results)
+    monkeypatch.setattr(discretisation_error, "line", spied)
+    discretisation_error.estimates(results)
     area, mu, force, peak, across, approach = lines
     load = results[-1].numbers["normal_force"]
     np.testing.assert_allclose(force[0], load * mu[0], rtol=1e-9)  # both of friction, of which one is fitted

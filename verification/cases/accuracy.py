@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from refimpl.discretisation import EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.accuracy.discretisation_error import EDGE_SIZE, EDGE_SIZE_SPREAD
 from verification.case import Measured
 from verification.cases import hertz
 from verification.cases.hertz import mean_radii

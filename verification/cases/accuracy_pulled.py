@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid_result import GridResult
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.refinement import uncertainty
 from refimpl.model.materials import Pair
-from refimpl.refine import uncertainty
 from verification.case import Measured
 from verification.registry import case
 

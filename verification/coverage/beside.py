@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.refine import OPENING, uncertainty
+from refimpl.accuracy.refinement import OPENING, uncertainty
 from verification.coverage.judge import Held, Verdict, bounded, ratio_of, reference_of
 from verification.coverage.scenes import random_scene
 from verification.coverage.store import NUMBERS, Rung

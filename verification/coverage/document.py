@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from refimpl.refine import LADDER, OPENING
+from refimpl.accuracy.refinement import LADDER, OPENING
 from verification.coverage.beside import AT_APPROACH, BESIDE, Bar, at_approach, where_climbs_end
 from verification.coverage.beside import GRIDS as BARS
 from verification.coverage.beside import summary as summary_of_bars
@@ -17,7 +17,7 @@ from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb,
 from verification.provenance import provenance
 
 GRIDS = (*OPENING, *(M for M in LADDER if OPENING[-1] < M <= FINEST))
-"""What may be asked for: all that `refimpl.refine` has."""
+"""What may be asked for: all that `refimpl.accuracy.refinement` has."""
 CHECK, CHECK_SEEDS = 2048, range(8, 14)
 """References are checked on one more grid for one scene of each class that is not periodic."""
 APPROACH_SEEDS = range(72)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.refine import OPENING, climb, relative_bar
+from refimpl.accuracy.refinement import OPENING, climb, relative_bar
 from verification.coverage.scenes import random_scene
 from verification.coverage.store import NUMBERS, Rung
 

@@ -1,6 +1,6 @@
 """``python -m verification.coverage.priors --store FILE --json FILE``: what training scenes ask of priors.
 
-`refimpl.discretisation` models a number found on nested grids as ``y_k = q + c e_k + r_k``. Nothing is known
+`refimpl.accuracy.discretisation_error` models a number found on nested grids as ``y_k = q + c e_k + r_k``. Nothing is known
 of q beforehand, so the likelihood of the other parameters is that of the numbers' differences from grid to
 grid: no reference is needed, and none can be wrong. It is greatest at the values written here, beside those
 adopted and the logarithm of the likelihood that these give away.
@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 from scipy import optimize, special
 
-from refimpl import discretisation
-from refimpl.discretisation import (
+from refimpl.accuracy import discretisation_error
+from refimpl.accuracy.discretisation_error import (
     AREA,
     BINORMAL,
     BULK,
@@ -29,9 +29,9 @@ from refimpl.discretisation import (
     SUMMIT,
     SUMMIT_SPREAD,
 )
-from refimpl.first_touch import TOUCH, first_touch
+from refimpl.accuracy.first_contact import TOUCH, first_touch
+from refimpl.accuracy.grid_features import GridResult
 from refimpl.grid import Array
-from refimpl.grid_result import GridResult
 from verification.coverage.store import ladders, rungs
 from verification.files import to_json, write_text
 from verification.provenance import provenance
@@ -58,8 +58,8 @@ def areas(results: Sequence[GridResult], singles: float) -> Numbers:
     """Contact areas over the finest grid's scatter; a lone element's edge counts ``1 + singles`` times."""
     area = np.array([result.numbers["contact_area"] for result in results])
     edge = np.array([result.edge for result in results])
-    scatter = discretisation.area_scatter(results)
-    wider = edge * (1 + singles * discretisation.singleness(results) ** 2)
+    scatter = discretisation_error.area_scatter(results)
+    wider = edge * (1 + singles * discretisation_error.singleness(results) ** 2)
     return Numbers(area / scatter[-1], scatter / scatter[-1], wider / scatter[-1])
 
 
@@ -68,8 +68,8 @@ def rests(results: Sequence[GridResult], bulk: float, unevenness: float) -> Numb
     numbers = [result.numbers for result in results]
     mu = np.array([found["friction_coefficient"] for found in numbers])
     area = np.array([found["contact_area"] for found in numbers])
-    slip, uneven = np.array([result.slip for result in results]), discretisation.unevenness(results)
-    thin = discretisation.thinness(results) * abs(mu[-1])
+    slip, uneven = np.array([result.slip for result in results]), discretisation_error.unevenness(results)
+    thin = discretisation_error.thinness(results) * abs(mu[-1])
     size = np.hypot.reduce([bulk * thin, unevenness * uneven, np.full(thin.shape, SOLVED * abs(mu[-1]))])
     weights = np.maximum.accumulate(size[::-1])[::-1]
     return Numbers(mu - slip * area, weights, np.zeros_like(mu))
@@ -80,7 +80,7 @@ def binormals(results: Sequence[GridResult], binormal: float, unevenness: float)
     forces, loads = np.transpose(
         [(result.numbers["binormal_force"], result.numbers["normal_force"]) for result in results]
     )
-    thin, uneven = discretisation.thinness(results), discretisation.unevenness(results)
+    thin, uneven = discretisation_error.thinness(results), discretisation_error.unevenness(results)
     size = np.hypot.reduce([binormal * thin, unevenness * uneven, np.full(thin.shape, QUIET)])
     weights = np.maximum.accumulate(size[::-1])[::-1]
     return Numbers(forces / loads[-1], weights, np.zeros_like(forces))
@@ -97,7 +97,7 @@ def peaks(results: Sequence[GridResult]) -> Numbers:
 def approaches(results: Sequence[GridResult], other: float, touch: float) -> Numbers:
     """Approaches from the surfaces' own first touch, for a scatter of one: both parts of it are given."""
     found = np.array([result.numbers["approach"] for result in results])
-    thin = other * discretisation.thinness(results) * abs(found[-1])
+    thin = other * discretisation_error.thinness(results) * abs(found[-1])
     hung = np.array([result.peak.widened(size, 0.5) for result, size in zip(results, thin, strict=True)])
     touched = np.array([first_touch(result) for result in results]) * (touch / TOUCH)
     size = np.hypot.reduce([hung, touched, np.full(thin.shape, SOLVED * abs(found[-1]))])

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from refimpl.grid_result import GridResult
-from refimpl.refine import OPENING
-from refimpl.summit import Summit
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.peak import Summit
+from refimpl.accuracy.refinement import OPENING
 from verification.coverage.scenes import random_scene
 from verification.files import Progress
 

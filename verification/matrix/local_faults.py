@@ -10,10 +10,11 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from refimpl import coefficient_error, discretisation, gathered, summit
+from refimpl import coefficient_error, gathered
+from refimpl.accuracy import discretisation_error, peak
+from refimpl.accuracy.bayesian_line import Estimate
 from refimpl.budget import Budget
 from refimpl.contact import bounds, energy_norm
-from refimpl.estimate import Estimate
 from refimpl.kernels import points, quadrature, tables
 from refimpl.model import certificate, forces, slopes
 from refimpl.model.problem import Problem
@@ -157,11 +158,11 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "touch-of-elements": (
         "approaches counted from the highest elements",
-        lambda: everywhere(summit.deepest, lambda field: summit.LEVEL),
+        lambda: everywhere(peak.deepest, lambda field: peak.LEVEL),
     ),
     "edge-not-expected": (
         "error bars that know of no edge's excess",
-        lambda: ((discretisation, "EDGE_SIZE", 0.0),),
+        lambda: ((discretisation_error, "EDGE_SIZE", 0.0),),
     ),
     "coupling-gone": (
         "derivatives without the coupling that cancels in the scene itself",

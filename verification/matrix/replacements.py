@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from refimpl import coefficient_error, gathered
+from refimpl.accuracy.bayesian_line import Estimate
 from refimpl.contact import bounds
-from refimpl.estimate import Estimate
 from refimpl.grid import Array, Grid
 from refimpl.kernels import cerruti, quadrature
 from refimpl.model import forces, slopes

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft as sfft
 
+from refimpl.accuracy.iteration_error import adhesive_share, edge_excess, iteration_parts, merged
+from refimpl.accuracy.peak import LEVEL, Summit, deepest, highest
 from refimpl.grid import Array, inner
 from refimpl.grid.window import Window
 from refimpl.model.friction import Mask
 from refimpl.model.slopes import Slopes
 from refimpl.solution import REPORTED, Solution
-from refimpl.summit import LEVEL, Summit, deepest, highest
-from refimpl.uncertainty import adhesive_share, edge_excess, iteration_parts, merged
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Numbers at a prescribed approach, as if it counted from where the surfaces themselves touch first.
 
 Approaches count from first touch, of which a grid knows its highest elements only. The gap's summit lies
-higher (`refimpl.summit`), so at the approach prescribed the bodies are less far into one another than on
+higher (`refimpl.accuracy.peak`), so at the approach prescribed the bodies are less far into one another than on
 the grid. What that takes of a number is foretold by its power of the approach in Hertz' contact.
 """
 
@@ -11,7 +11,7 @@ import math
 import sys
 from dataclasses import replace
 
-from refimpl.grid_result import GridResult
+from refimpl.accuracy.grid_features import GridResult
 
 TOUCH = 0.02  # of its drop: how far off the summit of a gap is found (one standard deviation)
 POWERS = {

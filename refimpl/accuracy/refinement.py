@@ -1,6 +1,6 @@
 """Grids refined until the error bar of a chosen number is as short as asked for.
 
-Two coarse grids open; the bar they give (`refimpl.discretisation`) also foretells the bar of finer
+Two coarse grids open; the bar they give (`refimpl.accuracy.discretisation_error`) also foretells the bar of finer
 grids, so that the next one is, as a rule, the last. All grids but the last together then cost a share
 of it only.
 """
@@ -12,13 +12,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from refimpl.discretisation import discretisation, estimates
+from refimpl.accuracy.discretisation_error import discretisation, estimates
+from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.iteration_error import Uncertainty, merged
 from refimpl.errors import InputError, require_number
-from refimpl.grid_result import GridResult
 from refimpl.model.state import Status
 from refimpl.remark import Remark
 from refimpl.solution import Cost, Solution
-from refimpl.uncertainty import Uncertainty, merged
 
 Quantity = Literal["friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure"]
 QUANTITIES: tuple[Quantity, ...] = (

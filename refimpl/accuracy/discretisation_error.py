@@ -1,11 +1,11 @@
 """How far the numbers found on grids are from the continuous problem's: the discretisation's error bars.
 
-Each number is the intercept q of a line over the grids (`refimpl.estimate`), ``y_k = q + c e_k + r_k``. In
+Each number is the intercept q of a line over the grids (`refimpl.accuracy.bayesian_line`), ``y_k = q + c e_k + r_k``. In
 an area ``e_k`` is what whole elements add along the contact's edge (Yastrebov, Anciaux and Molinari 2017),
 and ``r_k`` which elements the edge happens to catch: the count of n edge elements varies as sqrt(n), and n
 goes as 1 / h, so ``w`` falls as h^(3/2). Friction takes its edge's share from the area, by ``tau / N``. The
 highest pressure is that of a parabola through the peak, and ``e_k`` its drop to the neighbours
-(`refimpl.summit`); approaches count from first touch, a summit as well (`refimpl.first_touch`). Where bodies
+(`refimpl.accuracy.peak`); approaches count from first touch, a summit as well (`refimpl.accuracy.first_contact`). Where bodies
 differ, tau on whole elements pulls at more than the contact, which falls as h only (`PULLED`). Every other
 number's ``w`` is told by the grids themselves: by how much of the contact is edge, by how slopes bend from
 element to element. These fall as powers of h where a surface is resolved; where it is not they do not, and
@@ -25,10 +25,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from refimpl.estimate import DECAY, Bias, Estimate, Prior, line
-from refimpl.first_touch import POWERS, first_touch, missed, missed_share, touched
+from refimpl.accuracy.bayesian_line import DECAY, Bias, Estimate, Prior, line
+from refimpl.accuracy.first_contact import POWERS, first_touch, missed, missed_share, touched
+from refimpl.accuracy.grid_features import GridResult
 from refimpl.grid import Array
-from refimpl.grid_result import GridResult
 from refimpl.model.forces import EDGE_SHARE
 
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
