@@ -8,7 +8,7 @@ Every entry is a half-width in the number's unit that holds with 95 %.
 - sampling: of a mean over realisations of roughness; of one realisation there is none to state.
 - model form: what is known of the model's own error. V&V 20 leaves it to comparison with experiment;
   two of its sources can be bounded from within. "coefficients": a flat half-space's influence
-  coefficients on a slope (`refimpl.coefficient_error`), taken as if all of them were wrong by as much as
+  coefficients on a slope (`refimpl.solution.influence_error`), taken as if all of them were wrong by as much as
   the worst neighbour at the contact's rms slope, which is a change of both moduli by that share.
   "cosines": the printed cosines of Eqs (2) and (3) against the exact tractions of a facet.
 
@@ -27,7 +27,7 @@ from refimpl.model.forces import facet_resultants
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Scene
 from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
-from refimpl.solution import Solution
+from refimpl.solution.solution import Solution
 
 
 @dataclass(frozen=True)

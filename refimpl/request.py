@@ -10,7 +10,7 @@ from refimpl.grid import Grid
 from refimpl.planning.plan import DECISION_GRID, Method, Plan, make_plan
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene
-from refimpl.solution import Solution
+from refimpl.solution.solution import Solution
 from refimpl.solvers.paper import PAPER_TOLERANCE
 
 # Of mean pressure and tau over the reduced modulus, and of approaches over the side.

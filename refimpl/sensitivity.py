@@ -34,7 +34,7 @@ from refimpl.model.materials import RIGID
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.scene.parameters import moving, parameters, with_parameter
 from refimpl.scene.scene import Scene
-from refimpl.solution import Solution
+from refimpl.solution.solution import Solution
 from refimpl.solve import solve
 
 NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")

@@ -11,7 +11,6 @@ import numpy as np
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.refinement import Quantity, refine, total_cost, uncertainty
 from refimpl.errors import InputError
-from refimpl.gathered import gathered
 from refimpl.grid import Grid
 from refimpl.grid.window import Window
 from refimpl.model.certificate import State, certify
@@ -21,17 +20,18 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.planning.effects_after import effects_left_out
 from refimpl.planning.plan import Method, Plan
-from refimpl.remark import Remark
 from refimpl.request import Request
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene
-from refimpl.solution import Cost, Solution
+from refimpl.solution.gathered import gathered
+from refimpl.solution.limits import cautions
+from refimpl.solution.remark import Remark
+from refimpl.solution.solution import Cost, Solution
 from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import Start
 from refimpl.solvers.production.nested_solver import solve_fft
 from refimpl.surfaces import GaussianRoughness
-from refimpl.validity import cautions
 
 Progress = Callable[[str], None]
 
@@ -163,7 +163,7 @@ def _solve_planned(
 
 
 def _remarks(scene: Scene, grid: Grid, lines: Sequence[str]) -> tuple[Remark, ...]:
-    """What surfaces had to remark; unresolved roughness is told by name (`refimpl.validity`)."""
+    """What surfaces had to remark; unresolved roughness is told by name (`refimpl.solution.limits`)."""
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     told = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
     return tuple(Remark(line) for line in lines if line not in told)

@@ -15,7 +15,7 @@ from refimpl.grid import Array, inner
 from refimpl.grid.window import Window
 from refimpl.model.friction import Mask
 from refimpl.model.slopes import Slopes
-from refimpl.solution import REPORTED, Solution
+from refimpl.solution.solution import REPORTED, Solution
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from refimpl.solution import Solution
+from refimpl.solution.solution import Solution
 
 AREAS = "contact_area", "contact_area_corrected"  # open by the same elements
 Parts = dict[str, float]

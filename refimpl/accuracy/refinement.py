@@ -17,8 +17,8 @@ from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.iteration_error import Uncertainty, merged
 from refimpl.errors import InputError, require_number
 from refimpl.model.state import Status
-from refimpl.remark import Remark
-from refimpl.solution import Cost, Solution
+from refimpl.solution.remark import Remark
+from refimpl.solution.solution import Cost, Solution
 
 Quantity = Literal["friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure"]
 QUANTITIES: tuple[Quantity, ...] = (

@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 import refimpl as rf
-from refimpl.contact.bounds import Bounds
-from refimpl.contact.energy_norm import EnergyNorm
 from refimpl.grid import Array, Grid
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
+from refimpl.solution.bounds import Bounds
+from refimpl.solution.energy_norm import EnergyNorm
 from refimpl.solvers.pivoting import complementarity, restricted_solve
 
 SIDE, M = 1e-3, 10

@@ -8,7 +8,7 @@ from dataclasses import replace
 from refimpl.accuracy.discretisation_error import EDGE_SHARE, EDGE_SIZE, SUMMIT
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.peak import LEVEL, Summit
-from refimpl.solution import REPORTED
+from refimpl.solution.solution import REPORTED
 
 SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9

@@ -14,7 +14,7 @@ from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.peak import Summit
 from refimpl.accuracy.refinement import LADDER, OPENING, ambiguous, climb, next_grid, relative_bar
-from refimpl.solution import REPORTED
+from refimpl.solution.solution import REPORTED
 from tests.refimpl.made_up import AREA_LIMIT, PEAK, made_up
 
 

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.contact.bounds import (
+from refimpl.model.slopes import Slopes
+from refimpl.solution.bounds import (
     NO_BOUND_CORRECTED,
     NO_BOUND_PERIODIC,
     NO_BOUND_STEEP,
     _Frozen,
     proven_bounds,
 )
-from refimpl.contact.energy_norm import EnergyNorm
-from refimpl.model.slopes import Slopes
+from refimpl.solution.energy_norm import EnergyNorm
 from tests.refimpl.frozen import POLYMER, SIDE, STEEL, M, assert_true, frozen_solution, scene
 
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from refimpl.contact.bounds import UNPROVEN, _Frozen, _shear_row, proven_bounds
-from refimpl.contact.energy_norm import EnergyNorm
 from refimpl.grid import Array, Grid
 from refimpl.model.forces import Forces, resultants
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
+from refimpl.solution.bounds import UNPROVEN, _Frozen, _shear_row, proven_bounds
+from refimpl.solution.energy_norm import EnergyNorm
 from tests.refimpl.frozen import assert_true, frozen_solution, posed
 
 

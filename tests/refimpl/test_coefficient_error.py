@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.coefficient_error import SlopeError, _table, coefficient_error, slope_error
+from refimpl.solution.influence_error import SlopeError, _table, coefficient_error, slope_error
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 SOFT, STIFF = rf.Material(E=1e9, nu=0.1), rf.Material(E=1e15, nu=0.1)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.contact.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
 from refimpl.grid import Array, Grid
 from refimpl.operators.dense import DenseInfluence
+from refimpl.solution.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
 from tests.refimpl.frozen import M, posed, scene
 
 

@@ -15,7 +15,7 @@ from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.first_contact import TOUCH, first_touch, missed, missed_share, touched
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.peak import LEVEL, Summit
-from refimpl.solution import REPORTED
+from refimpl.solution.solution import REPORTED
 
 STEEL, RADIUS, SIDE, APPROACH = rf.Material(E=200e9, nu=0.3), 0.01, 1e-3, 3e-6
 FRICTION = rf.Friction(tau=200e6, beta=0.1)

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.coefficient_error import SlopeError
 from refimpl.model.forces import plasticity_index
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
-from refimpl.validity import Caution, Limit, cautions, plain_warning, softer_hardness
+from refimpl.solution.influence_error import SlopeError
+from refimpl.solution.limits import Caution, Limit, cautions, plain_warning, softer_hardness
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
 HARD_STEEL = rf.Material(200e9, 0.30, hardness=7e9)

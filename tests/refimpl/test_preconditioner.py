@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from refimpl.contact.energy_norm import SMALLEST_SYMBOL
 from refimpl.grid import Grid
 from refimpl.grid.window import Window
 from refimpl.operators.dense import DenseInfluence
@@ -13,6 +12,7 @@ from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.kernel_tables import unit_table
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.operators.preconditioner import SpectralPreconditioner
+from refimpl.solution.energy_norm import SMALLEST_SYMBOL
 
 M, SIDE, COMPLIANCE = 10, 1e-3, 1e-11
 GRID = Grid(SIDE, M)

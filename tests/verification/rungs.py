@@ -7,7 +7,7 @@ import numpy as np
 from refimpl.accuracy.discretisation_error import EDGE_SHARE
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.peak import LEVEL, Summit
-from refimpl.solution import REPORTED
+from refimpl.solution.solution import REPORTED
 from verification.coverage.scenes import SIDE
 from verification.coverage.store import Rung
 

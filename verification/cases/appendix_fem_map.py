@@ -15,7 +15,7 @@ from appendix_a.fem.sinusoid import setup_for
 from appendix_a.leading_order import slope_of_error
 from appendix_a.strip import first_order
 from refimpl import Material
-from refimpl.coefficient_error import coefficient_error
+from refimpl.solution.influence_error import coefficient_error
 from verification.case import Measured
 from verification.cases.appendix_fem import POINTS, POINTS_REASON, percent
 from verification.registry import case
@@ -129,7 +129,7 @@ def whole_map() -> Measured:
     "appendix-fem/small-slope-error",
     title="What a solution states as its coefficient error, on a small slope",
     claim="at 0.1 degrees on a flank the error read from the map is that of first-order theory",
-    source="appendix_a.strip.first_order; refimpl.coefficient_error",
+    source="appendix_a.strip.first_order; refimpl.solution.influence_error",
     metric="relative",
     tolerance=0.005,
     tolerance_reason="second order over first: of the slope's size, 0.0017; 0.0010 measured, times five",

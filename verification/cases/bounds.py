@@ -1,4 +1,4 @@
-"""The proven bounds of `refimpl.contact.bounds` against solutions that are proven by ball arithmetic."""
+"""The proven bounds of `refimpl.solution.bounds` against solutions that are proven by ball arithmetic."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
-from refimpl.contact.bounds import Bounds, proven_bounds
-from refimpl.contact.energy_norm import EnergyNorm
 from refimpl.grid import Array
 from refimpl.model.friction import local_friction
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
+from refimpl.solution.bounds import Bounds, proven_bounds
+from refimpl.solution.energy_norm import EnergyNorm
 from verification.case import Measured
 from verification.golden.store import Golden, named, stored
 from verification.properties.states import compliances
@@ -22,7 +22,7 @@ from verification.properties.textbook import normal_matrix
 from verification.registry import case
 from verification.scenes import pressed
 
-SOURCE = "derivation in refimpl/contact/bounds.py; truth from ball arithmetic, verification/golden"
+SOURCE = "derivation in refimpl/solution/bounds.py; truth from ball arithmetic, verification/golden"
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 PROVEN = "a bound that is exceeded once is none; the truth is enclosed to 1e-16"
 
@@ -199,7 +199,7 @@ def contact_sets() -> Measured:
     "bounds/least-eigenvalue",
     title="Least eigenvalue of the flexibility",
     claim="the symbol's smallest value is below every grid's smallest eigenvalue, and within 0.5 % at M = 16",
-    source="refimpl/contact/energy_norm.py; numpy.linalg.eigvalsh",
+    source="refimpl/solution/energy_norm.py; numpy.linalg.eigvalsh",
     metric="at_most",
     tolerance=1.0,
     tolerance_reason="a lower bound that is exceeded once is none; eigvalsh errs by 1e-15",

@@ -10,11 +10,9 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from refimpl import coefficient_error, gathered
 from refimpl.accuracy import discretisation_error, peak
 from refimpl.accuracy.bayesian_line import Estimate
 from refimpl.budget import Budget
-from refimpl.contact import bounds, energy_norm
 from refimpl.kernels import points, quadrature, tables
 from refimpl.model import certificate, forces, slopes
 from refimpl.model.problem import Problem
@@ -23,6 +21,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
+from refimpl.solution.solution import bounds, energy_norm, gathered, influence_error
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness
@@ -174,6 +173,6 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "error-table": (
         "Appendix A's table read 10 % too low",
-        lambda: ((coefficient_error, "_departure", wrong.low_departure),),
+        lambda: ((influence_error, "_departure", wrong.low_departure),),
     ),
 }

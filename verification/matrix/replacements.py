@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl import coefficient_error, gathered
 from refimpl.accuracy.bayesian_line import Estimate
-from refimpl.contact import bounds
 from refimpl.grid import Array, Grid
 from refimpl.kernels import cerruti, quadrature
 from refimpl.model import forces, slopes
@@ -20,6 +18,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
+from refimpl.solution.solution import bounds, gathered, influence_error
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import white_noise
 
@@ -29,7 +28,7 @@ _tractions, _problem_slopes = Problem.tractions, Problem.slopes
 _spread_by_support = gathered._spread_by_support
 _iterate, _gathered, _difference = paper._Scheme._iterate, gathered.gathered, slopes._difference
 _complementarity, _scene_sampled = pivoting.complementarity, Scene.sampled
-_perimeter, _departure = forces.perimeter_corrected_area, coefficient_error._departure
+_perimeter, _departure = forces.perimeter_corrected_area, influence_error._departure
 _white_noise, _order_for, _bar = white_noise.white_noise, quadrature.order_for, Estimate.bar
 
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from refimpl.accuracy.first_contact import POWERS
 from refimpl.accuracy.iteration_error import AREAS, merged
-from refimpl.coefficient_error import slope_error
 from refimpl.model.certificate import State
 from refimpl.model.forces import perimeter_corrected_area
 from refimpl.model.problem import Problem
 from refimpl.model.state import Outcome, Status, Visited
 from refimpl.planning.effects_after import effects_left_out, uncertainty_left_out
 from refimpl.planning.plan import Plan
-from refimpl.solution import Cost, Solution
+from refimpl.solution.influence_error import slope_error
+from refimpl.solution.solution import Cost, Solution
 
 
 def gathered(

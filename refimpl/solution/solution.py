@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.coefficient_error import SlopeError
-from refimpl.contact.bounds import Bounds, proven_bounds
 from refimpl.grid import Array, Grid
 from refimpl.model.certificate import Certificate
 from refimpl.model.friction import Mask
@@ -19,9 +17,11 @@ from refimpl.model.slopes import Slopes
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect
-from refimpl.remark import Remark
 from refimpl.scene.scene import Friction
-from refimpl.validity import Caution, plain_warning
+from refimpl.solution.bounds import Bounds, proven_bounds
+from refimpl.solution.influence_error import SlopeError
+from refimpl.solution.limits import Caution, plain_warning
+from refimpl.solution.remark import Remark
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Solution:
     ``slope_error`` quotes what Appendix A's table says of flat-surface influence coefficients at this
     contact's slopes. ``problem`` is what was solved: the scene on its grid. ``left_out`` holds, for each
     term that the plan left out as small, its effect as the found contact has it; ``warnings`` are texts
-    with ``limit``, ``number`` and ``allowed``: those of `refimpl.validity`, and remarks without numbers.
+    with ``limit``, ``number`` and ``allowed``: those of `refimpl.solution.limits`, and remarks without numbers.
     """
 
     status: Status

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from refimpl.coefficient_error import SlopeError, slope_error
 from refimpl.grid.contact_patches import spot_sizes
 from refimpl.grid.window import Window
 from refimpl.model.materials import Pair
 from refimpl.model.slopes import Slopes
 from refimpl.scene.scene import Body, Scene
+from refimpl.solution.influence_error import SlopeError, slope_error
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.crop import ROUNDING
 from refimpl.surfaces.statistics import rms_slopes
 
 if TYPE_CHECKING:
-    from refimpl.solution import Solution
+    from refimpl.solution.solution import Solution
 
 _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (Greenwood and Williamson 1966)
 _COEFFICIENT_ERROR = 0.02  # section 4: what the paper accepts of flat-surface influence coefficients

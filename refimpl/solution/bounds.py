@@ -49,12 +49,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.contact.energy_norm import EnergyNorm
 from refimpl.grid import Array
 from refimpl.model.forces import resultants
 from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.solution.energy_norm import EnergyNorm
 
 
 @dataclass(frozen=True, eq=False)
