@@ -9,6 +9,7 @@
 ('CONVERGED', 0.217)
 """
 
+from refimpl.driver.solve import solve
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.model.materials import Material
@@ -17,7 +18,6 @@ from refimpl.scene.scene import Body, Friction, Scene
 from refimpl.scene.scene_file import read_scene, scene_to_toml, shipped_scenes
 from refimpl.sensitivity import Sensitivity, sensitivity
 from refimpl.solution.solution import Solution
-from refimpl.solve import solve
 from refimpl.surfaces import (
     ArraySurface,
     Flat,

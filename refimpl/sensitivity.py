@@ -26,6 +26,7 @@ import numpy as np
 
 from refimpl.accuracy.discretisation_error import AREA, area_scatter
 from refimpl.accuracy.grid_features import GridResult
+from refimpl.driver.solve import solve
 from refimpl.edge_motion import EdgeMotion
 from refimpl.errors import LEAST, InputError
 from refimpl.fixed_set import FixedSet
@@ -35,7 +36,6 @@ from refimpl.model.problem import Problem, Terms, pose
 from refimpl.scene.parameters import moving, parameters, with_parameter
 from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution
-from refimpl.solve import solve
 
 NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")
 _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8

@@ -122,7 +122,7 @@ def test_a_term_put_back_costs_what_it_cost(monkeypatch: pytest.MonkeyPatch) -> 
         spent.append(found.cost.point_logs)
         return found
 
-    module = sys.modules["refimpl.solve"]  # the package's attribute of that name is the function
+    module = sys.modules["refimpl.driver.solve"]  # the package's attribute of that name is the function
     planned = module._solve_planned
     monkeypatch.setattr(module, "_solve_planned", counted)
     changes = iter([{"obliqueness": _Large()}, *[{}] * 20])

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.request import Request
+from refimpl.driver.options import Request
 
 SCENE = rf.read_scene("table1-rough")
 WIDTHS = (np.float32, np.float16, np.longdouble, np.int64, np.uint64, Fraction)

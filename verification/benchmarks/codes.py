@@ -13,10 +13,10 @@ from functools import partial
 import numpy as np
 
 import refimpl as rf
+from refimpl.driver.options import Request
 from refimpl.grid import Array, Grid
 from refimpl.model.problem import pose
 from refimpl.operators.fft import Counter
-from refimpl.request import Request
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
 from verification.adapters.peer import Peer

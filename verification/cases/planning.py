@@ -8,10 +8,10 @@ from dataclasses import replace
 from functools import cache
 
 import refimpl as rf
+from refimpl.driver.options import Request
 from refimpl.grid import Grid
 from refimpl.model.problem import Terms, pose
 from refimpl.operators.fft import Counter
-from refimpl.request import Request
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.case import Measured
 from verification.cli.explain import explained

@@ -126,8 +126,8 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
+    from refimpl.driver.options import Request
     from refimpl.errors import InputError
-    from refimpl.request import Request
     from refimpl.scene.scene_file import read_tolerances
     from verification.cli import budget as budget_lines
     from verification.cli import explain, plot, vtk

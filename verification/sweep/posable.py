@@ -9,9 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from refimpl.driver.options import Request
 from refimpl.grid import Grid
 from refimpl.planning.plan import memory_of
-from refimpl.request import Request
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_from_dict
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.refinement import Quantity, refine, total_cost, uncertainty
+from refimpl.driver.options import Request
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.grid.window import Window
@@ -20,7 +21,6 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, WholeGridInfluence
 from refimpl.planning.effects_after import effects_left_out
 from refimpl.planning.plan import Method, Plan
-from refimpl.request import Request
 from refimpl.scene.discretise import Posing
 from refimpl.scene.scene import Scene
 from refimpl.solution.gathered import gathered
