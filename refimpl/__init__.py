@@ -16,7 +16,7 @@ from refimpl.model.materials import Material
 from refimpl.model.state import Status
 from refimpl.scene.scene import Body, Friction, Scene
 from refimpl.scene.scene_file import read_scene, scene_to_toml, shipped_scenes
-from refimpl.sensitivity import Sensitivity, sensitivity
+from refimpl.sensitivities.sensitivity import Sensitivity, sensitivity
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import (
     ArraySurface,

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.edge_motion import EdgeMotion
-from refimpl.fixed_set import FixedSet
 from refimpl.grid import Array
 from refimpl.model.friction import Mask
+from refimpl.sensitivities.edge_motion import EdgeMotion
+from refimpl.sensitivities.fixed_contact import FixedSet
 
 
 def fixed_set(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedSet:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.fixed_set import FixedSet
 from refimpl.grid import Array
+from refimpl.sensitivities.fixed_contact import FixedSet
 from tests.refimpl.test_sensitivity import sliding
 
 M = 48

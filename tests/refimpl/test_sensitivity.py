@@ -12,7 +12,7 @@ import refimpl as rf
 from refimpl.accuracy.discretisation_error import AREA
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.scene.parameters import check_tolerances, parameters, with_parameter
-from refimpl.sensitivity import _STRIDE, NUMBERS, Sensitivity, sensitivity
+from refimpl.sensitivities.sensitivity import _STRIDE, NUMBERS, Sensitivity, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 M, TIGHT = 48, 1e-11

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 import refimpl as rf
-from refimpl.budget import Budget, Budgets, budget
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.scene_file import read_tolerances, scene_to_toml
-from refimpl.sensitivity import NUMBERS
+from refimpl.sensitivities.budget import Budget, Budgets, budget
+from refimpl.sensitivities.sensitivity import NUMBERS
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 SCENE = rf.Scene(

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.budget import budget
-from refimpl.fixed_set import FixedSet, Response
 from refimpl.scene.parameters import with_parameter
-from refimpl.sensitivity import Sensitivity, sensitivity
+from refimpl.sensitivities.budget import budget
+from refimpl.sensitivities.fixed_contact import FixedSet, Response
+from refimpl.sensitivities.sensitivity import Sensitivity, sensitivity
 
 STEEL, COPPER = rf.Material(200e9, 0.3), rf.Material(118e9, 0.2)
 ROUGH = rf.Scene(
@@ -74,7 +74,9 @@ def test_solves_that_do_not_converge_are_not_compared(
     solution: rf.Solution, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ended = replace(solution, status=rf.Status.STAGNATED)
-    monkeypatch.setattr(sys.modules["refimpl.sensitivity"], "solve", lambda *args, **options: ended)
+    monkeypatch.setattr(
+        sys.modules["refimpl.sensitivities.sensitivity"], "solve", lambda *args, **options: ended
+    )
     with pytest.raises(ArithmeticError, match=r"load changed by 0\.1 ended as stagnated"):
         sensitivity(ROUGH, solution)
 

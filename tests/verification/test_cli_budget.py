@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 import refimpl as rf
-from refimpl.budget import Budget, Budgets
-from refimpl.sensitivity import NUMBERS, Sensitivity
+from refimpl.sensitivities.budget import Budget, Budgets
+from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
 from verification.cli import budget as lines
 from verification.cli import main
 
@@ -65,7 +65,7 @@ def test_an_interrupted_budget_leaves_the_solution(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(importlib.import_module("refimpl.budget"), "budget", interrupted)
+    monkeypatch.setattr(importlib.import_module("refimpl.sensitivities.budget"), "budget", interrupted)
     found = tmp_path / "found.json"
     assert main(["solve", toleranced(tmp_path), "--grid", "16", "--json", str(found)]) == 130
     assert "status: CONVERGED" in capsys.readouterr().out

@@ -9,9 +9,9 @@ from scipy import stats
 from scipy.stats import qmc
 
 import refimpl as rf
-from refimpl.budget import budget
 from refimpl.scene.parameters import moving, with_parameter
-from refimpl.sensitivity import NUMBERS, Sensitivity
+from refimpl.sensitivities.budget import budget
+from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
 from verification.case import Measured
 from verification.coverage.scenes import random_scene
 from verification.registry import case

@@ -10,7 +10,7 @@ from verification.cli.output import StatusLine, columns
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
-    from refimpl.budget import Budget, Budgets
+    from refimpl.sensitivities.budget import Budget, Budgets
 
 # number of a budget, its name in the table
 NAMES = {
@@ -29,8 +29,8 @@ def hindrance(solution: Solution, approach: float | None) -> str:
 
 
 def made(scene: Scene, solution: Solution, tolerances: Mapping[str, float]) -> Budgets:
-    """The budgets, and a line for who waits. Raises as `refimpl.budget` does."""
-    from refimpl.budget import budget
+    """The budgets, and a line for who waits. Raises as `refimpl.sensitivities.budget` does."""
+    from refimpl.sensitivities.budget import budget
 
     line = StatusLine()
     line.show("uncertainty budget: what every parameter changes")

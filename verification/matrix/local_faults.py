@@ -12,7 +12,6 @@ from typing import Any
 
 from refimpl.accuracy import discretisation_error, peak
 from refimpl.accuracy.bayesian_line import Estimate
-from refimpl.budget import Budget
 from refimpl.kernels import points, quadrature, tables
 from refimpl.model import certificate, forces, slopes
 from refimpl.model.problem import Problem
@@ -21,6 +20,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
+from refimpl.sensitivities.budget import Budget
 from refimpl.solution.solution import bounds, energy_norm, gathered, influence_error
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, statistics
@@ -165,7 +165,13 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "coupling-gone": (
         "derivatives without the coupling that cancels in the scene itself",
-        lambda: ((import_module("refimpl.sensitivity"), "_terms", lambda solution: solution.problem.terms),),
+        lambda: (
+            (
+                import_module("refimpl.sensitivities.sensitivity"),
+                "_terms",
+                lambda solution: solution.problem.terms,
+            ),
+        ),
     ),
     "inputs-added": (
         "tolerances of inputs added as they are, not in squares",

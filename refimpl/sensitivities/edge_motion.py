@@ -12,8 +12,8 @@ import math
 import numpy as np
 from scipy.ndimage import binary_erosion, uniform_filter
 
-from refimpl.fixed_set import FixedSet
 from refimpl.grid import Array
+from refimpl.sensitivities.fixed_contact import FixedSet
 
 _WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
 

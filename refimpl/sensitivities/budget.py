@@ -26,7 +26,7 @@ from refimpl.errors import InputError, require_number
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Scene
-from refimpl.sensitivity import NUMBERS, Sensitivity, sensitivity
+from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity
 from refimpl.solution.solution import Solution
 
 

@@ -1,12 +1,12 @@
 """What a solution's numbers change by when the scene's numbers change.
 
 Pressures answer smoothly while the contact set stays as it is, so that friction, binormal force and
-peak pressure follow from one linear solve a parameter (`refimpl.fixed_set`). The area does not: at a
+peak pressure follow from one linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does not: at a
 fixed set it is constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` is added
 to friction.
 
 - Load, moduli and friction leave the surfaces alone, and the edges of the contact move by what the
-  linear answer grows like there (`refimpl.edge_motion`), up to one factor. That is taken from the load, for
+  linear answer grows like there (`refimpl.sensitivities.edge_motion`), up to one factor. That is taken from the load, for
   which the area is differenced over two full solves.
 - Shapes and roughness bring contact to new places, which no fixed set foresees: the area is differenced
   over two full solves for each.
@@ -27,14 +27,14 @@ import numpy as np
 from refimpl.accuracy.discretisation_error import AREA, area_scatter
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.driver.solve import solve
-from refimpl.edge_motion import EdgeMotion
 from refimpl.errors import LEAST, InputError
-from refimpl.fixed_set import FixedSet
 from refimpl.grid import Array
 from refimpl.model.materials import RIGID
 from refimpl.model.problem import Problem, Terms, pose
 from refimpl.scene.parameters import moving, parameters, with_parameter
 from refimpl.scene.scene import Scene
+from refimpl.sensitivities.edge_motion import EdgeMotion
+from refimpl.sensitivities.fixed_contact import FixedSet
 from refimpl.solution.solution import Solution
 
 NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")
