@@ -18,8 +18,8 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-from verification.files import to_json, write_text
-from verification.provenance import provenance
+from verification.framework.files import to_json, write_text
+from verification.framework.provenance import provenance
 
 # A property holds or does not, however busy the machine is: the limit of 200 ms for one example failed
 # tests at random under load.

@@ -19,11 +19,11 @@ from refimpl.kernels.quadrature import (
     relative_error_bound,
     shells,
 )
-from verification.case import Status
 from verification.cases import kernel_forms, kernels
 from verification.exact import kernel_reference as reference
 from verification.exact.kernel_points import random_points
-from verification.registry import find
+from verification.framework.case import Status
+from verification.framework.registry import find
 
 # Twice the error allowed to either; they differ in the order and the axis of quadrature.
 SAME = 2 * kernels.TOLERANCE

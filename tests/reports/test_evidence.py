@@ -14,7 +14,7 @@ from reports.studies import exhibit
 from reports.summary import groups
 from reports.traceability import paper, traced
 from tests.reports.sample import ERRATUM, case, results
-from verification.registry import load
+from verification.framework.registry import load
 
 
 def dated(date: str, *cases: dict, **other: object) -> dict:

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from verification import registry
+from verification.framework import registry
 
 HEAD = """
 import os, time
 import numpy as np
-from verification.case import Measured, Unavailable
-from verification.registry import case
+from verification.framework.case import Measured, Unavailable
+from verification.framework.registry import case
 from functools import partial
 case = partial(case, title="t", claim="c", source="s", tolerance_reason="exact")
 """

@@ -12,11 +12,11 @@ import pytest
 
 from verification.adapters import aspher, contactmechanics, table, tamaas, traps
 from verification.adapters.peer import Peer, PeerAnswer, closure
-from verification.case import Unavailable
 from verification.contestants import gaps, referee, suite
 from verification.contestants.asking import ask
 from verification.contestants.own import solve as own
 from verification.contestants.protocol import Abilities, ContactProblem, Unsupported
+from verification.framework.case import Unavailable
 
 PEERS = (tamaas.solve, contactmechanics.solve, aspher.solve)
 TABLE_1 = {"side": 1.61e-3, "radius": 0.14, "load": 70.0, "modulus": 1 / (0.91 / 200e9 + 0.91 / 118e9)}

@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from verification.case import Case, Measured, Metric, Status, Unavailable, jsonable
+from verification.framework.case import Case, Measured, Metric, Status, Unavailable, jsonable
 
 
 def declare(

@@ -14,11 +14,11 @@ import pytest
 
 from tests.documents import ROOT
 from tests.reports import sample
-from verification import registry, runner
-from verification.case import Case, Measured, Metric, Status, Tier
 from verification.cli import main, parser, verify
 from verification.cli.appendix_a import numbers
 from verification.cli.output import WIDTH, StatusLine, columns
+from verification.framework import registry, runner
+from verification.framework.case import Case, Measured, Metric, Status, Tier
 
 QUICK = "kernels/love-at-centre"
 FEM = ["appendix-a", "fem", "--slope-deg=6.5", "--wavelength=100", "--position=0.25", "--offsets=-3,3"]

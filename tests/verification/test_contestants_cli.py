@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from verification.case import Status
 from verification.cli import main
 from verification.cli.contestant import _source, add_options, unseen_faults
 from verification.contestants import isolated, own
@@ -18,6 +17,7 @@ from verification.contestants.check import Fault
 from verification.contestants.isolated import Named
 from verification.contestants.protocol import Abilities, abilities_of
 from verification.contestants.suite import suite
+from verification.framework.case import Status
 
 Capture = pytest.CaptureFixture[str]
 RIVAL = """

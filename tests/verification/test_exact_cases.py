@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from verification import registry
-from verification.case import Status
 from verification.cases import (
     reference_punch,
     reference_scenes,
@@ -19,6 +17,8 @@ from verification.cases import (
     reference_smooth,
     reference_waves,
 )
+from verification.framework import registry
+from verification.framework.case import Status
 
 MODULES = (reference_smooth, reference_punch, reference_waves, reference_sliding)
 

@@ -25,8 +25,8 @@ import pytest
 import refimpl as rf
 from tests.reports.sample import case, results
 from tests.verification.children import LONG, STUDY, Ended, forked, one_line, rows, small
-from verification import files
 from verification.cli import main, plot
+from verification.framework import files
 from verification.sweep import engine
 from verification.sweep.store import open_store
 

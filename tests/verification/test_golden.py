@@ -12,8 +12,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from verification.case import Unavailable
 from verification.exact.kernel_reference import normal, tangential
+from verification.framework.case import Unavailable
 from verification.golden import build
 from verification.golden.enclosure import BITS, NotProven, _Balls, arb, prove
 from verification.golden.store import Enclosed, document, enclosed, named, parsed, stored

@@ -176,10 +176,10 @@ def test_what_the_parent_has_of_the_tree_is_forgotten(tmp_path: Path) -> None:
     for package in ("refimpl", "verification"):
         (tmp_path / package).mkdir()
         (tmp_path / package / "__init__.py").write_text("")
-    (tmp_path / "verification/case.py").write_text("ONE = 1\n")
-    test = "from verification.case import ONE\ndef test_it(): assert ONE == 1\n"
+    (tmp_path / "verification/framework/case.py").write_text("ONE = 1\n")
+    test = "from verification.framework.case import ONE\ndef test_it(): assert ONE == 1\n"
     (tmp_path / "test_half.py").write_text(test)
-    script = JUDGE.replace('"half.py"', '"verification/case.py"')
+    script = JUDGE.replace('"half.py"', '"verification/framework/case.py"')
     asked = [sys.executable, "-c", script, str(tmp_path), json.dumps(["ONE = 1.0\n", "ONE = 2\n"])]
     done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
     assert json.loads(done.stdout) == [["survived", None], ["killed", "test_half.py::test_it"]]

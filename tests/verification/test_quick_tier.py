@@ -6,8 +6,8 @@ from itertools import groupby
 
 import pytest
 
-from verification import registry
-from verification.case import Case, Status, Tier
+from verification.framework import registry
+from verification.framework.case import Case, Status, Tier
 
 QUICK = registry.select(registry.load(), Tier.QUICK)
 BY_MODULE = {name: list(cases) for name, cases in groupby(QUICK, key=lambda case: case.module)}

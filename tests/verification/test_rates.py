@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verification.rates import extrapolate, fit_order
+from verification.framework.rates import extrapolate, fit_order
 
 H = [0.4, 0.2, 0.1, 0.05]
 

@@ -9,8 +9,8 @@ from textwrap import indent
 
 import pytest
 
-from verification import registry
-from verification.case import Tier
+from verification.framework import registry
+from verification.framework.case import Tier
 
 Make = Callable[..., str]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from verification import files, provenance, runner
-from verification.case import Case, Measured, Metric, Result, Status, Tier
+from verification.framework import files, provenance, runner
+from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
 
 Make = Callable[..., str]
 

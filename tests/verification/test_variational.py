@@ -12,9 +12,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.solvers.paper import _Scheme
-from verification.case import Status, Unavailable
 from verification.cases import paper_iterations, paper_scheme, variational
-from verification.registry import find
+from verification.framework.case import Status, Unavailable
+from verification.framework.registry import find
 from verification.scenes import Trial, pressed
 from verification.variational import __main__ as command
 from verification.variational import timing

@@ -10,8 +10,8 @@ from types import ModuleType
 
 import numpy as np
 
-from verification.case import Unavailable
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Unsupported
+from verification.framework.case import Unavailable
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,12 +19,12 @@ import numpy as np
 from refimpl.grid import Array
 from verification.adapters import aspher, contactmechanics, tamaas, traps
 from verification.adapters.peer import Peer
-from verification.case import Result, Status, jsonable
 from verification.contestants import own, referee
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, abilities_of
 from verification.contestants.suite import suite
-from verification.files import Progress, to_json, write_text
-from verification.provenance import provenance
+from verification.framework.case import Result, Status, jsonable
+from verification.framework.files import Progress, to_json, write_text
+from verification.framework.provenance import provenance
 
 Solver = Peer | own.Own
 ENTRANTS: dict[str, Solver] = {

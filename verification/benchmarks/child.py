@@ -22,7 +22,7 @@ import scipy.fft as sfft
 from verification.benchmarks.codes import Pressed, codes
 from verification.benchmarks.judge import judged, padded_box
 from verification.benchmarks.problems import problem
-from verification.files import to_json, write_text
+from verification.framework.files import to_json, write_text
 
 _WARM_UP = (64, 1e-4)  # elements per side, tolerance
 _AGAIN = 20.0  # seconds up to which a solve is repeated

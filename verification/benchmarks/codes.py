@@ -21,7 +21,7 @@ from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
 from verification.adapters.peer import Peer
 from verification.benchmarks.problems import FRICTION, SIDE, problem, scene
-from verification.provenance import DISTRIBUTION, versions
+from verification.framework.provenance import DISTRIBUTION, versions
 
 OWN = "refimpl"
 ALONE = f"{OWN}-solver"

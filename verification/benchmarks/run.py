@@ -22,9 +22,9 @@ from verification.benchmarks.rounds import (
     tuned,
 )
 from verification.benchmarks.summary import ratios, row
-from verification.case import jsonable
-from verification.files import Progress, to_json, write_text
-from verification.provenance import provenance
+from verification.framework.case import jsonable
+from verification.framework.files import Progress, to_json, write_text
+from verification.framework.provenance import provenance
 
 _GROWTH = 8.0  # seconds from one grid to the twice finer one: four times the elements, and more iterations
 

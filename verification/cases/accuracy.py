@@ -10,13 +10,13 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import EDGE_SIZE, EDGE_SIZE_SPREAD
-from verification.case import Measured
 from verification.cases import hertz
 from verification.cases.hertz import mean_radii
 from verification.coverage.judge import verdicts
 from verification.coverage.store import NUMBERS, climb, ladders
 from verification.exact.hertz import UNCERTAINTY, Sphere
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SCENE = rf.read_scene("hertz")
 EXACT = Sphere(load=SCENE.load, radius=0.14, modulus=SCENE.materials.reduced_modulus)

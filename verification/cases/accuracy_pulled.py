@@ -13,8 +13,8 @@ import refimpl as rf
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.refinement import uncertainty
 from refimpl.model.materials import Pair
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SIDE, SOFT = 1e-3, 1e9  # m; Pa, the more compliant body's modulus
 FINER = 4  # times the elements per side of the reference

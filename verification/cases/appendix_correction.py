@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 import refimpl as rf
 from appendix_a.facet import facet_coefficient, neighbours
 from refimpl.grid import Grid
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 from verification.reproduction.ensemble import estimate
 from verification.reproduction.table1 import rough
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from appendix_a.errata import ERRATA, Erratum
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 
 def declare(erratum: Erratum, slug: str) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 
 from appendix_a import wedge
 from appendix_a.wedge import enclosure, printed, reference, residues
-from verification.case import Measured, Unavailable
 from verification.exact.wedge_residuals import residuals
-from verification.registry import case
+from verification.framework.case import Measured, Unavailable
+from verification.framework.registry import case
 
 SOURCE = "Tranter 1948; paper Eqs (A4)-(A9), derived anew"
 SEED = 2001

@@ -6,8 +6,8 @@ import numpy as np
 
 from appendix_a import wedge, wedge_tip
 from appendix_a.strip import field
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 
 @case(

@@ -12,8 +12,8 @@ from refimpl.grid import Array, Grid
 from refimpl.model.forces import facet_resultants, plasticity_index, smooth_friction_coefficient
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SCENES = ("table1-smooth", "table1-rough", "metal-polymer", "rough-planes")
 

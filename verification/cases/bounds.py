@@ -15,11 +15,11 @@ from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.bounds import Bounds, proven_bounds
 from refimpl.solution.energy_norm import EnergyNorm
-from verification.case import Measured
+from verification.framework.case import Measured
+from verification.framework.registry import case
 from verification.golden.store import Golden, named, stored
 from verification.properties.states import compliances
 from verification.properties.textbook import normal_matrix
-from verification.registry import case
 from verification.scenes import pressed
 
 SOURCE = "derivation in refimpl/solution/bounds.py; truth from ball arithmetic, verification/golden"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from functools import cache
 
-from verification.case import Measured
 from verification.contestants import own
 from verification.contestants.broken import BROKEN
 from verification.contestants.check import Fault
 from verification.contestants.suite import run, suite
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SOURCE = "the suite of verification.contestants"
 

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 from verification.scenes import Trial, cross_checks
 
 SOURCE = "principal pivoting on dense matrices (Murty 1974; Judice and Pires 1994)"

@@ -9,11 +9,11 @@ import numpy as np
 
 import refimpl as rf
 import verification.extremes.axes  # noqa: F401  # registers the axes
-from verification.case import Measured
 from verification.extremes import conditioning, positive_definite, precision, uniqueness
 from verification.extremes.state import Verdict, axes, states
 from verification.extremes.study import Row, judged, run, summary
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 CLAIM = "at the extremes a result is right, refused or named a failure: none is wrong and nothing crashes"
 EVERY = 60

@@ -9,10 +9,10 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
-from verification.case import Measured
+from verification.framework.case import Measured
+from verification.framework.registry import case
 from verification.golden.enclosure import prove
 from verification.golden.store import Golden, enclosed, named, relative, stored
-from verification.registry import case
 
 SOURCE = "ball arithmetic (python-flint) on Love's and Cerruti's coefficients: verification/golden"
 METHODS: tuple[Method, ...] = ("dense", "fft")

@@ -9,10 +9,10 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.exact.hertz import UNCERTAINTY, Sphere
-from verification.rates import Order, fit_order
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.rates import Order, fit_order
+from verification.framework.registry import case
 
 SOURCE = "Hertz 1882; Johnson 1985, section 4.2; paper Table 1, P = 70 N"
 SCENE = rf.read_scene("hertz")

@@ -10,7 +10,6 @@ import mpmath as mp
 import numpy as np
 
 from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
-from verification.case import Measured
 from verification.exact import kernel_reference as reference
 from verification.exact.kernel_points import (
     Point,
@@ -18,7 +17,8 @@ from verification.exact.kernel_points import (
     boundary_points,
     random_points,
 )
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 LOVE_SOURCE = "Love 1929; Johnson 1985, Eq. (3.25); paper section 3"
 CERRUTI_SOURCE = "Cerruti 1882; Johnson 1985, section 3.6; paper section 3"

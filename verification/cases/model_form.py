@@ -12,7 +12,6 @@ from appendix_a.contact_fem.sequence import (
     slide,
     slide_on_three_meshes,
 )
-from verification.case import Measured
 from verification.cases.model_form_study import (
     CLIMBING,
     COPPER,
@@ -35,7 +34,8 @@ from verification.cases.model_form_study import (
 )
 from verification.exact.sliding_wave import SlidingWave
 from verification.exact.westergaard import Wave
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 
 def declare(

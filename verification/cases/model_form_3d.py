@@ -15,8 +15,8 @@ from appendix_a.contact_fem.scene import WAVENUMBER, Material, WavyPair
 from appendix_a.contact_fem.sequence import Estimate
 from appendix_a.contact_fem.solid import asperity
 from appendix_a.contact_fem.solid_contact import press
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 COPPER, STEEL = Material(118e9, 0.3), Material(200e9, 0.3)
 BETA, SHARE, SHIFT = 0.08, 0.05, -0.25

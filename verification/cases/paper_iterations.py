@@ -8,9 +8,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.solvers.paper import PAPER_TOLERANCE
-from verification.case import Measured
 from verification.cases.paper_scheme import PRESSURE_TOLERANCE, SOURCE, STEPS_LEFT, TIGHT, traced
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SCENES = ("hertz", "table1-rough")
 LOADS = (7.0, 14.0, 42.0, 70.0, 140.0, 210.0)

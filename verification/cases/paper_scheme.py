@@ -15,8 +15,8 @@ from refimpl.model.problem import pose
 from refimpl.operators.fft import Counter
 from refimpl.planning.plan import make_plan
 from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 from verification.scenes import Trial, cross_checks
 
 SOURCE = "paper section 5 and Fig. 3"

@@ -13,9 +13,9 @@ from refimpl.grid import Grid
 from refimpl.model.problem import Terms, pose
 from refimpl.operators.fft import Counter
 from refimpl.solvers.production.nested_solver import solve_fft
-from verification.case import Measured
 from verification.cli.explain import explained
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SOURCE = "the planner's own promise (README): what a scene does not require is neither built nor applied"
 BARE = Terms(coupled=False, oblique=False, slope_correction=False, tilted=False)

@@ -7,9 +7,9 @@ from functools import cache
 
 import numpy as np
 
-from verification.case import Measured
+from verification.framework.case import Measured
+from verification.framework.registry import case
 from verification.planning import CORRECTION, Trial, trials
-from verification.registry import case
 
 SOURCE = (
     "difference of two solves, with the term and without, on one grid of 256 x 256 (the grid of decision)"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.case import Measured
 from verification.cases.reference_scenes import MODULUS, Array, centres, press
 from verification.exact.punch import UNCERTAINTY_CIRCLE, UNCERTAINTY_SQUARE, CircularPunch, square_stiffness
-from verification.rates import fit_order
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.rates import fit_order
+from verification.framework.registry import case
 
 DEPTH = 1e-3
 """Prescribed approach (m); the elements outside the punch stand off by 1 m and never touch."""

@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 
 import refimpl as rf
-from verification.case import Measured
 from verification.cases.reference_scenes import MODULUS, Array, centres, press
 from verification.exact import greenwood_tripp, rough_plane
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RADIUS, LOAD, SIDE = 0.14, 70.0, 2e-3

@@ -6,14 +6,14 @@ import numpy as np
 from scipy.integrate import quad
 
 import refimpl as rf
-from verification.case import Measured
 from verification.cases.reference_scenes import COUPLING, MODULUS, Array, centres, press
 from verification.cases.reference_waves import AMPLITUDE, WAVELENGTH, ridge
 from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
 from verification.exact.hertz import Sphere
 from verification.exact.sliding_plane import SlidingCylinder
 from verification.exact.sliding_wave import UNCERTAINTY, SlidingWave
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 STAR = np.pi * MODULUS * AMPLITUDE / WAVELENGTH
 BETA = 0.8

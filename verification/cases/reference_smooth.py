@@ -6,15 +6,15 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
-from verification.case import Measured
 from verification.cases.reference_scenes import MODULUS, Array, centres, press
 from verification.exact.hertz import UNCERTAINTY as HERTZ_UNCERTAINTY
 from verification.exact.hertz import Ellipse
 from verification.exact.patch import UNCERTAINTY as PATCH_UNCERTAINTY
 from verification.exact.patch import Patch
 from verification.exact.power_law import Cone, PowerLaw
-from verification.rates import fit_order
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.rates import fit_order
+from verification.framework.registry import case
 
 ELLIPSE = Ellipse(load=1.0, curvature_x=2.0, curvature_y=6.0, modulus=MODULUS)
 CONE = Cone(load=1.0, slope=0.05, modulus=MODULUS)

@@ -7,12 +7,12 @@ from __future__ import annotations
 import numpy as np
 
 import refimpl as rf
-from verification.case import Measured
 from verification.cases.reference_scenes import COUPLING, MODULUS, Array, centres, first_touch_approach, press
 from verification.exact import fourier, jgh, westergaard
 from verification.exact.westergaard import Wave
-from verification.rates import fit_order
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.rates import fit_order
+from verification.framework.registry import case
 
 AMPLITUDE, WAVELENGTH = 1e-3, 1.0
 GRIDS = (32, 48, 64, 96, 128)

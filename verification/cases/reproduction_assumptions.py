@@ -9,12 +9,12 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
+from verification.framework.verdict import Verdict, judged
 from verification.reproduction import assumptions
 from verification.reproduction.table1 import rough
 from verification.reproduction.tiers import in_both_tiers
-from verification.verdict import Verdict, judged
 
 TAGS = ("reproduction", "assumptions")
 GRID = {"quick": 128, "full": 512}

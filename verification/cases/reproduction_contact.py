@@ -6,14 +6,14 @@ from functools import cache
 
 import numpy as np
 
-from verification.case import Measured
 from verification.exact.coupled_indentation import first_order_shift
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
+from verification.framework.verdict import Verdict, judged
 from verification.reproduction import fig5, fig6, fig7
 from verification.reproduction.printed import FIG6_RMS
 from verification.reproduction.table1 import SMOOTH, coupling, hertz
 from verification.reproduction.tiers import in_both_tiers
-from verification.verdict import Verdict, judged
 
 GRID = {"quick": 128, "full": 512}
 SIZES_FIG6 = {"quick": (4, 128), "full": (75, 256)}  # realisations, elements per side

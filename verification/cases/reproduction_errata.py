@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from verification.case import Measured
 from verification.errata import ERRATA, Erratum
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 
 def _declare(erratum: Erratum) -> None:

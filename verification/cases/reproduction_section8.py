@@ -6,14 +6,14 @@ from functools import cache
 
 import numpy as np
 
-from verification.case import Measured
+from verification.framework.case import Measured
+from verification.framework.verdict import Verdict, judged
 from verification.reproduction import fig8, table3
 from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
 from verification.reproduction.printed import LOADS, RESOLUTION, TABLE3
 from verification.reproduction.tiers import in_both_tiers
 from verification.sweep.run import Row
 from verification.sweep.study import read_study
-from verification.verdict import Verdict, judged
 
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
 LOADS_IN_WORDS = ", ".join(f"{load:g}" for load in LOADS) + " N"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.case import Measured
+from verification.framework.case import Measured
+from verification.framework.verdict import Verdict, judged
 from verification.reproduction import slides
 from verification.reproduction.table1 import SMOOTH
 from verification.reproduction.tiers import in_both_tiers
-from verification.verdict import Verdict, judged
 
 
 @in_both_tiers(

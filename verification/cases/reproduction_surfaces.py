@@ -7,11 +7,11 @@ from functools import cache
 
 import numpy as np
 
-from verification.case import Measured
+from verification.framework.case import Measured
+from verification.framework.verdict import Verdict, judged
 from verification.reproduction import fig4, fig11
 from verification.reproduction.printed import CORRELATION_LENGTH, FLAT_RMS, LARGEST_SLOPE, QUOTED_SLOPES, SIDE
 from verification.reproduction.tiers import in_both_tiers
-from verification.verdict import Verdict, judged
 
 SIZES = {"quick": (12, 128), "full": (75, 512)}  # realisations, elements per side
 SIZES_FIG11 = {"quick": (12, 128), "full": (75, 256)}

@@ -12,8 +12,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from verification.case import Measured, Unavailable
-from verification.registry import case
+from verification.framework.case import Measured, Unavailable
+from verification.framework.registry import case
 from verification.sweep.engine import sweep
 from verification.sweep.export import to_csv
 from verification.sweep.study import Study, study_from_dict

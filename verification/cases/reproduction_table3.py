@@ -10,8 +10,9 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.forces import smooth_friction_coefficient
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
+from verification.framework.verdict import Verdict, judged
 from verification.reproduction import table3
 from verification.reproduction.ensemble import column, estimate
 from verification.reproduction.printed import (
@@ -24,7 +25,6 @@ from verification.reproduction.printed import (
 from verification.reproduction.table1 import SMOOTH, rough
 from verification.reproduction.tiers import in_both_tiers
 from verification.sweep.run import Row
-from verification.verdict import Verdict, judged
 
 TAU, BETA = SMOOTH.friction.tau, SMOOTH.friction.beta
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])

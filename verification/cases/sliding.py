@@ -10,9 +10,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.exact.hertz import Sphere
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SOURCE = "paper sections 3 and 7, Fig. 5; Johnson 1985, sections 3.6, 3.7"
 SCENE = rf.read_scene("table1-smooth")

@@ -8,8 +8,8 @@ import numpy as np
 
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import GaussianRoughness, statistics
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 
 @case(

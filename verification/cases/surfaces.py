@@ -10,8 +10,8 @@ import numpy as np
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import GaussianRoughness
 from refimpl.surfaces.statistics import slopes
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SOURCE = "paper Eq. (9)"
 # Section 6.1: sigma, correlation radius, resolution (m) of the ball's roughness; its quoted slope (degrees)

@@ -14,9 +14,9 @@ from refimpl.operators.fft import Counter
 from refimpl.solvers.production.coarse_grids import Start
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.nested_solver import begun
-from verification.case import Measured
 from verification.coverage.scenes import random_scene
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
 
 SCENES = range(2000, 2200)
 AT_64 = (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from verification.case import Measured
-from verification.registry import case
+from verification.framework.case import Measured
+from verification.framework.registry import case
+from verification.framework.verdict import Verdict, judged
 from verification.variational.energy import Array, Energy, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, Minimum, interior_point
 from verification.variational.timing import Contact, growth, measure, table
-from verification.verdict import Verdict, judged
 
 COMMITTED = Path(__file__).resolve().parents[2] / "reports" / "results" / "table2.json"
 SOURCE = "paper Table 2; the principle: Kalker and van Randen 1972, Tian and Bhushan 1996"

@@ -152,7 +152,7 @@ def strip(options: argparse.Namespace) -> int:
 def fem(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem.sinusoid import SOLVES, fem_json, sinusoid
-    from verification.files import Progress
+    from verification.framework.files import Progress
 
     progress = Progress(SOLVES)
     try:
@@ -172,7 +172,7 @@ def coefficient_map(options: argparse.Namespace) -> int:
     """The versioned table of the error of flat coefficients, every Poisson ratio in it."""
     from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
     from refimpl.errors import InputError
-    from verification.files import Progress
+    from verification.framework.files import Progress
 
     if options.jobs < 1:
         raise InputError("--jobs", options.jobs, "at least one worker process")

@@ -13,9 +13,9 @@ from verification.cli.output import columns, emit, judgement, wrapped
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from verification.case import Result
     from verification.contestants.serving import Source
-    from verification.runner import Run
+    from verification.framework.case import Result
+    from verification.framework.runner import Run
 
 ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout")
 
@@ -72,11 +72,11 @@ def chosen(options: argparse.Namespace) -> bool:
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from refimpl.errors import InputError
-    from verification.case import Tier, readable
     from verification.contestants import isolated, suite
     from verification.contestants.ending import Ended, unwinding
-    from verification.files import Progress
-    from verification.runner import Run
+    from verification.framework.case import Tier, readable
+    from verification.framework.files import Progress
+    from verification.framework.runner import Run
 
     try:
         checks = suite.select(options.only)

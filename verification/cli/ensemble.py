@@ -28,7 +28,7 @@ def found(options: argparse.Namespace, study: Study, store: Path, **sweep: Any) 
 
 def told(options: argparse.Namespace, found: Ensemble) -> int:
     """Print and write what was found; status 1 when a run failed or the target was not met."""
-    from verification.provenance import provenance
+    from verification.framework.provenance import provenance
 
     document = {**asdict(found), "cost": found.cost if found.means else None, "provenance": provenance()}
     emit(document, options.json, table(found))

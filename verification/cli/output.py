@@ -12,11 +12,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from verification.files import is_stream, to_json, try_out, write_text
+from verification.framework.files import is_stream, to_json, try_out, write_text
 
 if TYPE_CHECKING:
     from refimpl import Scene
-    from verification.case import Result
+    from verification.framework.case import Result
 
 WIDTH = 100
 """Columns that tables and texts keep within."""

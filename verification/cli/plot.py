@@ -35,7 +35,7 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
     matplotlib.use("Agg")  # no display is needed, or asked for
     import matplotlib.pyplot as plt
 
-    from verification.files import replacing
+    from verification.framework.files import replacing
 
     figure, axes = plt.subplots(2, 2, figsize=(9.5, 8), layout="constrained")
     _map(axes[0, 0], solution, "pressure", "viridis")

@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.errors import InputError
     from reports.generator import render
     from reports.results import ResultFileError
-    from verification.files import write_text
+    from verification.framework.files import write_text
 
     results = read_run(options.results)
     against = None if options.against is None else read_run(options.against, "--against")

@@ -198,7 +198,7 @@ def _refuse_ignored(options: argparse.Namespace) -> None:
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
     """The JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK file."""
-    from verification.provenance import provenance
+    from verification.framework.provenance import provenance
 
     summary = {key: plain(value) for key, value in solution.summary().items()}
     return {"scene": scene, **summary, "provenance": provenance()}

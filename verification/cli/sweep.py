@@ -161,7 +161,7 @@ def _share(text: str) -> float:
 
 def _document(done: Sweep, store: Path) -> dict[str, object]:
     from verification.cli.solve import plain
-    from verification.provenance import provenance
+    from verification.framework.provenance import provenance
 
     return {
         "store": str(store),

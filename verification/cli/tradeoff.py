@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     """Run the study and print the price list."""
     from refimpl.errors import InputError
     from refimpl.scene.scene_file import read_scene
-    from verification.files import Progress
+    from verification.framework.files import Progress
     from verification.tradeoff.settings import inapplicable, settings
     from verification.tradeoff.study import TOLERANCES, study
 

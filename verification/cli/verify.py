@@ -9,7 +9,7 @@ from verification.cli import contestant
 from verification.cli.output import Parsers, add_json, columns, emit, judgement
 
 if TYPE_CHECKING:
-    from verification.runner import Run
+    from verification.framework.runner import Run
 
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
@@ -48,8 +48,8 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run or list the cases; status 1 when one failed or broke, or none passed."""
     from refimpl.errors import InputError
-    from verification import registry, runner
-    from verification.case import Tier
+    from verification.framework import registry, runner
+    from verification.framework.case import Tier
 
     if options.jobs < 1:
         raise InputError("--jobs", options.jobs, "at least one worker process")

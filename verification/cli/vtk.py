@@ -29,7 +29,7 @@ def write(solution: Solution, path: Path) -> None:
     import meshio
     import numpy as np
 
-    from verification.files import replacing
+    from verification.framework.files import replacing
 
     M = solution.grid.M
     x, y = np.meshgrid(solution.grid.centres, solution.grid.centres, indexing="ij")

@@ -9,10 +9,10 @@ from enum import StrEnum
 import numpy as np
 
 from refimpl.grid import Array
-from verification.case import Case, Measured, Metric
 from verification.contestants import referee
 from verification.contestants.asking import ask
 from verification.contestants.protocol import ContactProblem, Contestant, Coupling, abilities_of
+from verification.framework.case import Case, Measured, Metric
 
 MODULUS = 2e9
 """Reduced modulus E* (Pa) of the suite's problems."""

@@ -16,13 +16,13 @@ from typing import Any
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from verification.case import Result, Status
 from verification.contestants.check import Check
 from verification.contestants.command import require_timeout
 from verification.contestants.ending import told
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
 from verification.contestants.serving import PATIENCE, Source, serve
 from verification.contestants.suite import select
+from verification.framework.case import Result, Status
 
 MOST_PROBLEMS = 6
 """No check poses more problems: so many times the time for one is the time for a check."""

@@ -39,7 +39,7 @@ from numpy.typing import ArrayLike
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
-from verification.case import Unavailable
+from verification.framework.case import Unavailable
 
 LARGEST_PRECISION = 1e-6
 """No contestant may claim less. A relative gap g allows pressure errors of sqrt(g) in the energy norm, here

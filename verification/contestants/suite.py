@@ -7,10 +7,10 @@ import pkgutil
 from collections.abc import Iterable
 from fnmatch import fnmatchcase
 
-from verification.case import Result
 from verification.contestants import checks
 from verification.contestants.check import Check, declared
 from verification.contestants.protocol import Contestant
+from verification.framework.case import Result
 
 
 def suite() -> tuple[Check, ...]:

@@ -14,7 +14,7 @@ from verification.coverage.beside import summary as summary_of_bars
 from verification.coverage.judge import moved, summary, verdicts
 from verification.coverage.scenes import CLASSES
 from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb, ladders, solved_at
-from verification.provenance import provenance
+from verification.framework.provenance import provenance
 
 GRIDS = (*OPENING, *(M for M in LADDER if OPENING[-1] < M <= FINEST))
 """What may be asked for: all that `refimpl.accuracy.refinement` has."""

@@ -33,8 +33,8 @@ from refimpl.accuracy.first_contact import TOUCH, first_touch
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.grid import Array
 from verification.coverage.store import ladders, rungs
-from verification.files import to_json, write_text
-from verification.provenance import provenance
+from verification.framework.files import to_json, write_text
+from verification.framework.provenance import provenance
 
 SOLVED = 1e-7
 """Scatter that solves to a certificate of 1e-6 leave, over the number."""

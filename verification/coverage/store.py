@@ -15,7 +15,7 @@ from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.peak import Summit
 from refimpl.accuracy.refinement import OPENING
 from verification.coverage.scenes import random_scene
-from verification.files import Progress
+from verification.framework.files import Progress
 
 NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 FINEST = 512  # elements per side that may be asked for; beyond are references

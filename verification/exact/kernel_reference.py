@@ -20,7 +20,7 @@ import mpmath as mp
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.case import Unavailable
+from verification.framework.case import Unavailable
 
 Array = NDArray[np.float64]
 Corner = Callable[[Any, Any], Any]

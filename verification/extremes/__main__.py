@@ -21,7 +21,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     from verification.extremes import study
     from verification.extremes.state import axes
-    from verification.files import Progress
+    from verification.framework.files import Progress
 
     unknown = [name for name in options.axis if name not in axes()]
     if unknown:

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import verification.extremes.axes  # noqa: F401  # registers the axes
-from verification.case import jsonable
 from verification.extremes import conditioning, precision, uniqueness
 from verification.extremes.limits import LIMITS
 from verification.extremes.state import Extreme, Verdict, axes, states
-from verification.files import to_json, write_text
-from verification.provenance import provenance
+from verification.framework.case import jsonable
+from verification.framework.files import to_json, write_text
+from verification.framework.provenance import provenance
 
 FORMAT = "rough-friction extremes, version 1"
 SAVED_EVERY = 20  # states: what a kill may cost

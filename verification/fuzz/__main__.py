@@ -17,7 +17,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1"))
 
-    from verification.files import Progress, to_json, write_text
+    from verification.framework.files import Progress, to_json, write_text
     from verification.fuzz.campaign import campaign
     from verification.fuzz.targets import targets
 

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from verification.extremes.study import OutOfTime, processor_time
+from verification.framework.provenance import provenance
 from verification.fuzz.mutations import mutated
 from verification.fuzz.targets import Target, targets
-from verification.provenance import provenance
 
 FORMAT = "rough-friction fuzzing, version 1"
 SECONDS = 20.0  # of processor time: the largest lattice of noise that a scene may ask for takes five

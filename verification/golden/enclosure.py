@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from refimpl.model.friction import Mask
-from verification.case import Unavailable
+from verification.framework.case import Unavailable
 from verification.golden.scenes import SIDE, GoldenScene
 
 BITS = 256

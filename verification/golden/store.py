@@ -20,10 +20,10 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.friction import Mask
-from verification.files import to_json, write_text
+from verification.framework.files import to_json, write_text
+from verification.framework.provenance import provenance
 from verification.golden.enclosure import BITS, Ball, Proof, arb
 from verification.golden.scenes import SIDE, GoldenScene
-from verification.provenance import provenance
 
 FORMAT = "rough-friction golden scene, version 1"
 _EPS = float(np.finfo(float).eps)

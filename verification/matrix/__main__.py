@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from verification.files import to_json, write_text
+from verification.framework.files import to_json, write_text
 from verification.matrix.merge import merged
 from verification.matrix.run import CHEAP, Matrix, measure
 

@@ -14,11 +14,11 @@ from types import CodeType, FrameType
 from typing import Any
 
 import refimpl as rf
-from verification.case import Case, Measured, Metric, Tier
+from verification.framework.case import Case, Measured, Metric, Tier
+from verification.framework.registry import load, select
 from verification.properties import INVARIANTS
 from verification.properties.registry import Solver
 from verification.properties.samples import Sample
-from verification.registry import load, select
 
 SECONDS = 4
 """CPU seconds; a check that a fault makes run longer, four times what is cheap, counts as an error."""

@@ -21,7 +21,7 @@ from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.budget import Budget
-from refimpl.solution.solution import bounds, energy_norm, gathered, influence_error
+from refimpl.solution import bounds, energy_norm, gathered, influence_error
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness

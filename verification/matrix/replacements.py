@@ -18,7 +18,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
-from refimpl.solution.solution import bounds, gathered, influence_error
+from refimpl.solution import bounds, gathered, influence_error
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import white_noise
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from verification.files import Progress, to_json, write_text
+from verification.framework.files import Progress, to_json, write_text
+from verification.framework.provenance import provenance
 from verification.multilevel.ensemble import QUANTITIES, TOLERANCE, Ensemble, ensemble
-from verification.provenance import provenance
 from verification.sweep.study import study_from_dict
 
 SCENE = "table1-rough"

@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
 
-from verification.case import Unavailable
-from verification.files import to_json, write_text
+from verification.framework.case import Unavailable
+from verification.framework.files import to_json, write_text
+from verification.framework.provenance import provenance
 from verification.mutation.judging import JUDGES
 from verification.mutation.score import passes, summary
 from verification.mutation.session import in_fair_order, population, run
 from verification.mutation.targets import TARGETS
-from verification.provenance import provenance
 
 ROOT = Path(__file__).resolve().parents[2]
 GROUPS = {"numerics": TARGETS, "judges": JUDGES}

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import islice, permutations
 from typing import Any
 
-from verification.case import Unavailable
+from verification.framework.case import Unavailable
 
 ARITHMETIC = ("Add", "Sub", "Mul", "Div", "FloorDiv", "Mod", "Pow")
 NEW_ARITHMETIC = ("Add", "Sub", "Mul", "Div", "Pow")

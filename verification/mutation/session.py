@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from verification.files import Progress
+from verification.framework.files import Progress
 from verification.mutation.judge import Suite
 from verification.mutation.mutants import Candidate, candidates, mutant
 from verification.mutation.targets import Target

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from verification.files import Progress, to_json, write_text
+from verification.framework.files import Progress, to_json, write_text
+from verification.framework.provenance import provenance
 from verification.properties.check import search
 from verification.properties.registry import INVARIANTS, Solver
-from verification.provenance import provenance
 
 SOLVERS: Mapping[str, Solver] = {
     "fft": partial(rf.solve, method="fft", tolerance=1e-12),

@@ -28,10 +28,10 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
+from verification.framework.threads import one_thread
 from verification.sweep.run import CERTIFIED, Row, Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study
-from verification.threads import one_thread
 
 PER_WORKER = 2  # runs submitted per worker: one at work, one waiting
 CONNECT_SECONDS = 10.0  # for a scheduler to answer

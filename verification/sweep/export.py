@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from refimpl.errors import InputError
-from verification.files import replacing, write_text
+from verification.framework.files import replacing, write_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 import refimpl as rf
-from verification.provenance import provenance
+from verification.framework.provenance import provenance
 from verification.tradeoff import prices
 from verification.tradeoff.measure import QUANTITIES, Run, run
 from verification.tradeoff.settings import inapplicable, settings

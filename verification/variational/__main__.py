@@ -20,7 +20,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     os.environ.update(dict.fromkeys(THREADS, "1"))
 
-    from verification.files import to_json, write_text
+    from verification.framework.files import to_json, write_text
     from verification.variational.document import document
 
     found = document(options.rounds, options.budget, options.grids)

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from refimpl import scene_to_toml
-from verification.case import jsonable
-from verification.provenance import provenance
+from verification.framework.case import jsonable
+from verification.framework.provenance import provenance
 from verification.variational.energy import table2_scene
 from verification.variational.minimisers import GRADIENT_TOLERANCE, INTERIOR_TOLERANCE, MINIMISERS
 from verification.variational.timing import (

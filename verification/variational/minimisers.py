@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import minimize, nnls
 
-from verification.case import Unavailable
+from verification.framework.case import Unavailable
 from verification.variational.energy import Array, Energy
 
 GRADIENT_TOLERANCE = 1e-6  # L-BFGS-B, of the projected gradient: penetration over approach

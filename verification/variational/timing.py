@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 
 import refimpl as rf
-from verification.files import Progress
+from verification.framework.files import Progress
 from verification.variational.energy import Array, Energy, certified, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, Minimum
 

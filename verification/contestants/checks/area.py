@@ -12,12 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.contestants import referee
 from verification.contestants.check import Entrant, Fault, Pressed, check
 from verification.contestants.checks.invariance import LOAD
 from verification.contestants.checks.residuals import wavy
 from verification.contestants.gaps import rough_bump
+from verification.framework.case import Measured
 
 SOURCE = "principal pivoting (Murty 1974), written for this suite"
 BEYOND_DOUBT = "a number of elements; none can change sides within the laxest claim"

@@ -9,11 +9,11 @@ from __future__ import annotations
 import mpmath as mp
 import numpy as np
 
-from verification.case import Measured
 from verification.contestants.beds import FAR, Bed, graded, standing, uneven
 from verification.contestants.check import CLAIMS, MODULUS, Entrant, Fault, check
 from verification.contestants.gaps import centres
 from verification.exact.patch import Patch
+from verification.framework.case import Measured
 
 BOUND = "proven: the squared energy-norm error is at most the relative complementarity gap, 1 claim; "
 TWO_SIDED = BOUND + "a prescribed approach adds as much again for its penetration"

@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.contestants import referee
 from verification.contestants.check import MODULUS, Entrant, Fault, Pressed, check
 from verification.contestants.checks.residuals import wavy
 from verification.contestants.gaps import rough_bump
+from verification.framework.case import Measured
 
 TWICE = "in claims: two answers, each within one of squared energy-norm error (proven), differ by four"
 LOAD = 0.05 * MODULUS

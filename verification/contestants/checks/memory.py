@@ -8,12 +8,12 @@ the sliding beds of pins.) Sixteen elements a side at most: a solver of small pr
 from __future__ import annotations
 
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.contestants.check import CLAIMS, COMPLIANCE, MODULUS, Entrant, Fault, Pressed, check
 from verification.contestants.checks.invariance import LOAD
 from verification.contestants.checks.residuals import ALWAYS, CLAIM, PERIODIC_SOURCE, SOURCE, wavy
 from verification.contestants.gaps import rough_bump
 from verification.contestants.protocol import Coupling
+from verification.framework.case import Measured
 
 KEPT = (*ALWAYS, Fault.SPACING_KEPT, Fault.MODULUS_KEPT)
 """Few other residuals are recomputed on squares this small: what those of large ones catch, these do too."""

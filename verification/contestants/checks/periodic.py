@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.contestants.check import MODULUS, Entrant, Fault, check
 from verification.contestants.checks.smooth import apart
 from verification.contestants.gaps import centres, waves
 from verification.exact import fourier, jgh, rough_plane
 from verification.exact.westergaard import Wave
+from verification.framework.case import Measured
 
 AMPLITUDE = 1e-3
 """Delta (m) on a square of one wavelength of 1 m."""

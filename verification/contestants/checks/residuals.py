@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.contestants import referee
 from verification.contestants.check import CLAIMS, COMPLIANCE, MODULUS, Entrant, Fault, Pressed, check
 from verification.contestants.gaps import rough_bump, waves
 from verification.contestants.protocol import Coupling
+from verification.framework.case import Measured
 
 SOURCE = "the contact conditions themselves, with displacements by dense matrices of the textbook's formulas"
 PERIODIC_SOURCE = "the contact conditions themselves, with displacements by the exact Fourier symbols"

@@ -6,7 +6,6 @@ import numpy as np
 from scipy.integrate import quad
 
 from refimpl.grid import Array
-from verification.case import Measured
 from verification.contestants.check import COMPLIANCE, MODULUS, Entrant, Fault, Pressed, check
 from verification.contestants.checks.invariance import TWICE
 from verification.contestants.checks.periodic import AMPLITUDE, STAR, ridge
@@ -16,6 +15,7 @@ from verification.contestants.protocol import Coupling
 from verification.exact import fourier
 from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
 from verification.exact.sliding_wave import SlidingWave
+from verification.framework.case import Measured
 
 D = float(np.pi * COMPLIANCE * MODULUS)
 """Dundurs' constant of the pair, 0.3."""

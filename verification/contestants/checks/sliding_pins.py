@@ -6,12 +6,12 @@ other support of tau gives a solution is tested for every bed, over all 4096 sup
 
 from __future__ import annotations
 
-from verification.case import Measured
 from verification.contestants.beds import PEAK, Bed, graded, standing
 from verification.contestants.check import COMPLIANCE, Entrant, Fault, check
 from verification.contestants.checks.exact import BOUND, SOURCE, TWO_SIDED
 from verification.contestants.checks.residuals import AND_MEAN
 from verification.contestants.protocol import Coupling
+from verification.framework.case import Measured
 
 TAU, BETA = 0.05 * PEAK, 0.4
 COUPLINGS = (

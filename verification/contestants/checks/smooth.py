@@ -6,12 +6,12 @@ import numpy as np
 
 from refimpl.grid import Array
 from refimpl.model.friction import Mask
-from verification.case import Measured
 from verification.contestants.check import MODULUS, Entrant, Fault, Pressed, check, difference
 from verification.contestants.gaps import centres
 from verification.exact.hertz import UNCERTAINTY, Ellipse, Sphere
 from verification.exact.power_law import Cone, PowerLaw
 from verification.exact.punch import UNCERTAINTY_SQUARE, CircularPunch, square_stiffness
+from verification.framework.case import Measured
 
 M = 32
 SPHERE = Sphere(load=1.0, radius=0.5, modulus=MODULUS)

@@ -4,12 +4,12 @@ solver has to find. The beds of pins have a few elements in contact, and those o
 
 from __future__ import annotations
 
-from verification.case import Measured
 from verification.contestants import referee
 from verification.contestants.check import COMPLIANCE, MODULUS, Entrant, Fault, check
 from verification.contestants.checks.residuals import ALWAYS, CLAIM, PERIODIC_SOURCE, SOURCE, judged, wavy
 from verification.contestants.gaps import waves
 from verification.contestants.protocol import Coupling
+from verification.framework.case import Measured
 
 LOAD = 0.02 * MODULUS
 """Load (N): a fifth of the square touches, with all four corners."""

@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
-from verification.case import Result, Status, Tier
-from verification.files import Progress
-from verification.provenance import provenance
-from verification.registry import CASES_PACKAGE, load, select
-from verification.workers import run_all
+from verification.framework.case import Result, Status, Tier
+from verification.framework.files import Progress
+from verification.framework.provenance import provenance
+from verification.framework.registry import CASES_PACKAGE, load, select
+from verification.framework.workers import run_all
 
 FORMAT = "rough-friction results, version 1"
 ERRATUM = ("equation", "printed", "corrected", "measure", "printed_error", "corrected_error")

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
-from verification import registry
-from verification.case import Case, Result, Status
-from verification.threads import one_thread
+from verification.framework import registry
+from verification.framework.case import Case, Result, Status
+from verification.framework.threads import one_thread
 
 
 class Worker:

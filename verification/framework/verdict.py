@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import StrEnum
 
-from verification.case import Measured
+from verification.framework.case import Measured
 
 
 class Verdict(StrEnum):

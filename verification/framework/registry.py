@@ -7,7 +7,7 @@ import pkgutil
 from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 
-from verification.case import Case, Measured, Metric, Tier
+from verification.framework.case import Case, Measured, Metric, Tier
 
 CASES_PACKAGE = "verification.cases"
 
