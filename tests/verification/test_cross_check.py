@@ -1,4 +1,4 @@
-"""Dense reference and production solver on every scene of `verification.scenes`."""
+"""Dense reference and production solver on every scene of `verification.scenes.cross_checks`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import refimpl as rf
 from refimpl.solvers.production import coarse_grids
 from verification.cases.cross_check import approach_difference, pressure_difference
 from verification.properties import Sample
-from verification.scenes import TOLERANCE, Trial, cross_checks
+from verification.scenes.cross_checks import TOLERANCE, Trial, cross_checks
 
 TRIALS = {trial.name: trial for trial in cross_checks()}
 ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)

@@ -31,7 +31,7 @@ from verification.extremes.__main__ import main
 from verification.extremes.axes.contact_sets import on
 from verification.extremes.oracle import Oracle
 from verification.extremes.state import Extreme, Verdict, axes, number, states
-from verification.scenes import POLYMER, pressed
+from verification.scenes.cross_checks import POLYMER, pressed
 
 ALL = [state for name in axes() for state in states(name)]
 BALL = pressed(lower=POLYMER, load=30.0, direction=0.7, friction=rf.Friction(1e5, 0.3))

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from verification.faults import FAULTS
-from verification.manufactured import manufacture
+from verification.exact.manufactured import manufacture
+from verification.matrix.faults import FAULTS
 from verification.properties import INVARIANTS, Sample
 
 SAMPLES = (

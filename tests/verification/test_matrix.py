@@ -11,11 +11,11 @@ import pytest
 import refimpl as rf
 from refimpl.kernels import normal_integral
 from refimpl.operators import dense
-from verification.faults import FAULTS, Fault
 from verification.framework.case import Case, Measured, Metric
 from verification.matrix import run as running
 from verification.matrix.appendix_faults import IN_APPENDIX
 from verification.matrix.checks import SAMPLES, all_checks, run, traced
+from verification.matrix.faults import FAULTS, Fault
 from verification.matrix.local_faults import IN_REFIMPL
 from verification.matrix.merge import merged
 from verification.matrix.patches import everywhere, fault

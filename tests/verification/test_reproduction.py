@@ -13,9 +13,9 @@ from scipy.integrate import dblquad
 import refimpl as rf
 from verification.cases.appendix_fem3d_answer import STEEPEST
 from verification.cases.reproduction_contact import FIG6_TOLERANCE
-from verification.errata import ERRATA
 from verification.framework import registry
 from verification.reproduction import ensemble, fig6, fig8, slides, table3
+from verification.reproduction.errata import ERRATA
 from verification.reproduction.printed import FIG6_RMS, MESHES, SIDE, TABLE2, TABLE3
 from verification.reproduction.table1 import SMOOTH, hertz, rough
 from verification.reproduction.tangential import displacements, element_integrals

@@ -15,7 +15,7 @@ from refimpl.solvers.paper import _Scheme
 from verification.cases import paper_iterations, paper_scheme, variational
 from verification.framework.case import Status, Unavailable
 from verification.framework.registry import find
-from verification.scenes import Trial, pressed
+from verification.scenes.cross_checks import Trial, pressed
 from verification.variational import __main__ as command
 from verification.variational import timing
 from verification.variational.energy import Array, Energy, Mask, certified, frictionless, table2_scene

@@ -20,7 +20,7 @@ from verification.framework.registry import case
 from verification.golden.store import Golden, named, stored
 from verification.properties.states import compliances
 from verification.properties.textbook import normal_matrix
-from verification.scenes import pressed
+from verification.scenes.cross_checks import pressed
 
 SOURCE = "derivation in refimpl/solution/bounds.py; truth from ball arithmetic, verification/golden"
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)

@@ -1,4 +1,4 @@
-"""Dense reference against production solver on `verification.scenes`: one row per reported quantity."""
+"""Dense reference against production solver on `verification.scenes.cross_checks`: one row per reported quantity."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import refimpl as rf
 from verification.framework.case import Measured
 from verification.framework.registry import case
-from verification.scenes import Trial, cross_checks
+from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "principal pivoting on dense matrices (Murty 1974; Judice and Pires 1994)"
 REASON = "asked of both solvers is 1e-12; a thousand times that is still below what any grid resolves"

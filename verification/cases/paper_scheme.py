@@ -17,7 +17,7 @@ from refimpl.planning.plan import make_plan
 from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
 from verification.framework.case import Measured
 from verification.framework.registry import case
-from verification.scenes import Trial, cross_checks
+from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "paper section 5 and Fig. 3"
 TIGHT = 1e-9

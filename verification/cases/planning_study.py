@@ -9,7 +9,7 @@ import numpy as np
 
 from verification.framework.case import Measured
 from verification.framework.registry import case
-from verification.planning import CORRECTION, Trial, trials
+from verification.scenes.neglected_terms import CORRECTION, Trial, trials
 
 SOURCE = (
     "difference of two solves, with the term and without, on one grid of 256 x 256 (the grid of decision)"

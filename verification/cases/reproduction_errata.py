@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from verification.errata import ERRATA, Erratum
 from verification.framework.case import Measured
 from verification.framework.registry import case
+from verification.reproduction.errata import ERRATA, Erratum
 
 
 def _declare(erratum: Erratum) -> None:

@@ -17,7 +17,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from verification.extremes.exact_operators import normal, tangential
 from verification.extremes.judge import SOLVERS
-from verification.scenes import POLYMER, STEEL
+from verification.scenes.cross_checks import POLYMER, STEEL
 
 M = 3
 TAUS = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)

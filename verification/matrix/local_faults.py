@@ -1,4 +1,4 @@
-"""Faults in one part of `refimpl` each, beside those of `verification.faults` that go through every solve.
+"""Faults in one part of `refimpl` each, beside those of `verification.matrix.faults` that go through every solve.
 
 Most of them leave most results untouched: they show what only a few checks, or a single one, can see.
 """
@@ -25,8 +25,8 @@ from refimpl.solution import bounds, energy_norm, gathered, influence_error
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness
-from verification.faults import Patch
 from verification.matrix import replacements as wrong
+from verification.matrix.faults import Patch
 from verification.matrix.patches import LocalFault, everywhere, wrapped
 
 

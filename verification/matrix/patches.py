@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from verification import faults
-from verification.faults import Fault, Patch
+from verification.matrix import faults
+from verification.matrix.faults import Fault, Patch
 
 LocalFault = tuple[str, Callable[[], Iterable[Patch]]]
 """What is wrong, and its patches once all checks are imported."""

@@ -11,13 +11,13 @@ from multiprocessing.connection import Connection
 from types import CodeType
 from typing import Any, TypeVar
 
-from verification.faults import FAULTS, Fault, Patch
+from verification.exact.manufactured import manufacture
 from verification.framework.case import Case, Status
 from verification.framework.files import Progress
 from verification.framework.provenance import provenance
-from verification.manufactured import manufacture
 from verification.matrix.appendix_faults import IN_APPENDIX
 from verification.matrix.checks import Ended, all_checks, family, run, traced
+from verification.matrix.faults import FAULTS, Fault, Patch
 from verification.matrix.local_faults import IN_REFIMPL
 from verification.matrix.patches import fault as fault_of
 

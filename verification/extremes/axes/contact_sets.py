@@ -13,7 +13,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from verification.extremes.judge import SOLVERS, by_oracle
 from verification.extremes.state import Extreme, axis
-from verification.scenes import POLYMER, TABLE1, pressed
+from verification.scenes.cross_checks import POLYMER, TABLE1, pressed
 
 M = 5
 SIDE = 1e-3

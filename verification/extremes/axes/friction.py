@@ -9,7 +9,7 @@ from functools import partial
 import refimpl as rf
 from verification.extremes.judge import SOLVERS, by_oracle
 from verification.extremes.state import Extreme, axis
-from verification.scenes import POLYMER, STEEL, pressed
+from verification.scenes.cross_checks import POLYMER, STEEL, pressed
 
 M = 5
 TAUS = [10.0**k for k in (-12, -6, -3, -2, -1, -0.5, 0, 0.25, 0.5, 0.75, 1, 1.5, 2, 3, 6)]

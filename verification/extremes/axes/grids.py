@@ -12,7 +12,7 @@ import refimpl as rf
 from verification.exact import hertz
 from verification.extremes.judge import GOOD, SOLVERS, TOLERANCE, by_oracle, guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
-from verification.scenes import POLYMER, STEEL, pressed
+from verification.scenes.cross_checks import POLYMER, STEEL, pressed
 
 TINY, PRIMES, LARGEST = (1, 2, 3, 5, 7), (11, 13, 17, 19, 23), 2048
 LINES = (1, 2, 4, 8, 16)

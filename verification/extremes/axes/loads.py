@@ -11,7 +11,7 @@ import numpy as np
 import refimpl as rf
 from verification.extremes.judge import SOLVERS, by_oracle
 from verification.extremes.state import Extreme, axis
-from verification.scenes import POLYMER, TABLE1, pressed
+from verification.scenes.cross_checks import POLYMER, TABLE1, pressed
 
 M = 5
 PRESSURES = [10.0**k for k in range(-16, 3)]

@@ -10,7 +10,7 @@ import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.extremes.judge import SOLVERS, by_oracle, guarded
 from verification.extremes.state import Extreme, Judged, axis
-from verification.scenes import STEEL, TABLE1, pressed
+from verification.scenes.cross_checks import STEEL, TABLE1, pressed
 
 M = 5
 RATIOS = (

@@ -14,7 +14,7 @@ from refimpl.grid import Array
 from refimpl.planning.plan import Method
 from verification.extremes.judge import GOOD, SOLVERS, TOLERANCE, by_oracle, guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
-from verification.scenes import POLYMER, STEEL, TABLE1
+from verification.scenes.cross_checks import POLYMER, STEEL, TABLE1
 
 M = 5
 SIDE = 1e-3

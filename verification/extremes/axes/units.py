@@ -17,7 +17,7 @@ import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.extremes.judge import guarded, verdict
 from verification.extremes.state import Extreme, Judged, axis
-from verification.scenes import COPPER, STEEL
+from verification.scenes.cross_checks import COPPER, STEEL
 
 TOLERANCE = 1e-12
 LIMIT = 1e-12
