@@ -47,7 +47,7 @@ OTHER = Prior(0.02, 2.0)  # unit: as of friction
 PULLED = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
 """95 % bounds of tau's pull on the edge, over what it does to the depth: of the approach under a load, of the
 others at an approach. Set so that a smooth ball under tau of 0.7 of its pressure stays within its bars, and
-judged on random scenes (`verification.cases.accuracy_pulled`)."""
+judged on random scenes (`verification.cases.error_bars.pulled`)."""
 
 
 class _Grids:

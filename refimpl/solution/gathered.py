@@ -102,7 +102,7 @@ def _spread_by_support(
     """How far mu, F and the areas of the states of tau's cycles lie from the settled ones.
 
     For mu no less than tau on all elements that have it against the law: where tau comes on with pressure,
-    however soon, they bear a share of it (see `verification.cases.tau_shares`).
+    however soon, they bear a share of it (see `verification.cases.sliding.tau_shares`).
     """
     spread = {
         name: max((abs(getattr(v, name) - getattr(found, name)) for v in outcome.visited), default=0.0)

@@ -8,7 +8,7 @@ import pytest
 from appendix_a.contact_fem import solid_contact
 from appendix_a.contact_fem.solid import asperity
 from appendix_a.contact_fem.solid_contact import press
-from verification.cases.model_form_3d import (
+from verification.cases.appendix_a.model_form_3d import (
     BETA,
     COPPER,
     SHIFT,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from verification.cases.appendix_correction import PAIRS, near_field, remedied, scene_of
+from verification.cases.appendix_a.correction import PAIRS, near_field, remedied, scene_of
 
 SIZE = 16
 

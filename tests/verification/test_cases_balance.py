@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import refimpl as rf
-from verification.cases.balance import normal_force
+from verification.cases.contact.balance import normal_force
 
 
 def test_slopes_at_the_border_are_the_problems_whatever_the_approach() -> None:

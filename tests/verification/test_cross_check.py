@@ -7,7 +7,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.solvers.production import coarse_grids
-from verification.cases.cross_check import approach_difference, pressure_difference
+from verification.cases.solvers.cross_check import approach_difference, pressure_difference
 from verification.properties import Sample
 from verification.scenes.cross_checks import TOLERANCE, Trial, cross_checks
 

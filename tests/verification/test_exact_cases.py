@@ -10,17 +10,12 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from verification.cases import (
-    reference_punch,
-    reference_scenes,
-    reference_sliding,
-    reference_smooth,
-    reference_waves,
-)
+from verification.cases.contact import punch, scenes, smooth, waves
+from verification.cases.sliding import reference
 from verification.framework import registry
 from verification.framework.case import Status
 
-MODULES = (reference_smooth, reference_punch, reference_waves, reference_sliding)
+MODULES = (smooth, punch, waves, reference)
 
 Solver = Callable[..., rf.Solution]
 
@@ -87,7 +82,7 @@ def test_a_fault_fails_its_cases(
         def __getattr__(self, name: str) -> Any:
             return fault if name == "solve" else getattr(rf, name)
 
-    monkeypatch.setattr(reference_scenes, "rf", Faulty())
+    monkeypatch.setattr(scenes, "rf", Faulty())
     assert all(verdict(slug) is not Status.PASS for slug in slugs)
 
 
@@ -99,5 +94,5 @@ def test_a_solver_that_does_not_converge_is_no_pass(monkeypatch: pytest.MonkeyPa
         def solve(self, scene: rf.Scene, **options: Any) -> rf.Solution:
             return dataclasses.replace(rf.solve(scene, **options), status=rf.Status.STAGNATED)
 
-    monkeypatch.setattr(reference_scenes, "rf", Stuck())
+    monkeypatch.setattr(scenes, "rf", Stuck())
     assert verdict("westergaard-full") is Status.ERROR

@@ -16,7 +16,7 @@ import verification.extremes.axes  # noqa: F401  # registers the axes
 from appendix_a import wedge
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
-from verification.cases.extremes import told
+from verification.cases.solvers.extremes import told
 from verification.extremes import (
     conditioning,
     exact_operators,

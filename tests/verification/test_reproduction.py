@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import dblquad
 
 import refimpl as rf
-from verification.cases.appendix_fem3d_answer import STEEPEST
-from verification.cases.reproduction_contact import FIG6_TOLERANCE
+from verification.cases.appendix_a.fem3d_answer import STEEPEST
+from verification.cases.paper.contact import FIG6_TOLERANCE
 from verification.framework import registry
 from verification.reproduction import ensemble, fig6, fig8, slides, table3
 from verification.reproduction.errata import ERRATA

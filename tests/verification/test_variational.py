@@ -12,7 +12,8 @@ import pytest
 
 import refimpl as rf
 from refimpl.solvers.paper import _Scheme
-from verification.cases import paper_iterations, paper_scheme, variational
+from verification.cases.paper import iterations, scheme
+from verification.cases.solvers import variational
 from verification.framework.case import Status, Unavailable
 from verification.framework.registry import find
 from verification.scenes.cross_checks import Trial, pressed
@@ -166,8 +167,8 @@ def test_committed_table_is_complete_and_accurate() -> None:
 def test_load_share_is_the_change_of_the_production_state() -> None:
     one_element = pressed(rms=2e-6, load=1e-4, friction=rf.Friction())  # its pressure is the load
     trial = Trial("", "", one_element, 17, {"oblique": False})
-    assert paper_scheme.load_share(trial) == pytest.approx(1e-4, rel=1e-9)
-    assert paper_scheme.load_share(paper_scheme.trials()["approach"]) == 0.0
+    assert scheme.load_share(trial) == pytest.approx(1e-4, rel=1e-9)
+    assert scheme.load_share(scheme.trials()["approach"]) == 0.0
 
 
 def test_trace_case_sees_an_uncorrected_error(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -178,5 +179,5 @@ def test_trace_case_sees_an_uncorrected_error(monkeypatch: pytest.MonkeyPatch) -
         return iterate(self, u, inside, periodic=True)
 
     monkeypatch.setattr(_Scheme, "_iterate", uncorrected)
-    monkeypatch.setattr(paper_iterations, "SCENES", ("hertz",))
+    monkeypatch.setattr(iterations, "SCENES", ("hertz",))
     assert find("paper/periodicity-error").run().status == Status.FAIL

@@ -1,7 +1,7 @@
 """Solvers that are wrong on purpose, each in one way, and all of them sure of themselves.
 
 The suite's own test: every one of them must fail in each case whose description names its fault
-(`verification.cases.contestants`).
+(`verification.cases.solvers.contestants`).
 """
 
 from __future__ import annotations

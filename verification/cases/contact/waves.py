@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 import refimpl as rf
-from verification.cases.reference_scenes import COUPLING, MODULUS, Array, centres, first_touch_approach, press
+from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, first_touch_approach, press
 from verification.exact import fourier, jgh, westergaard
 from verification.exact.westergaard import Wave
 from verification.framework.case import Measured

@@ -6,7 +6,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
-from verification.cases.reference_scenes import MODULUS, Array, centres, press
+from verification.cases.contact.scenes import MODULUS, Array, centres, press
 from verification.exact.hertz import UNCERTAINTY as HERTZ_UNCERTAINTY
 from verification.exact.hertz import Ellipse
 from verification.exact.patch import UNCERTAINTY as PATCH_UNCERTAINTY

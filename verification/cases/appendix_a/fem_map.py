@@ -16,7 +16,7 @@ from appendix_a.leading_order import slope_of_error
 from appendix_a.strip import first_order
 from refimpl import Material
 from refimpl.solution.influence_error import coefficient_error
-from verification.cases.appendix_fem import POINTS, POINTS_REASON, percent
+from verification.cases.appendix_a.fem import POINTS, POINTS_REASON, percent
 from verification.framework.case import Measured
 from verification.framework.registry import case
 

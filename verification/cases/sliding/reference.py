@@ -6,8 +6,8 @@ import numpy as np
 from scipy.integrate import quad
 
 import refimpl as rf
-from verification.cases.reference_scenes import COUPLING, MODULUS, Array, centres, press
-from verification.cases.reference_waves import AMPLITUDE, WAVELENGTH, ridge
+from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, press
+from verification.cases.contact.waves import AMPLITUDE, WAVELENGTH, ridge
 from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
 from verification.exact.hertz import Sphere
 from verification.exact.sliding_plane import SlidingCylinder

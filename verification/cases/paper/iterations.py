@@ -8,7 +8,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.solvers.paper import PAPER_TOLERANCE
-from verification.cases.paper_scheme import PRESSURE_TOLERANCE, SOURCE, STEPS_LEFT, TIGHT, traced
+from verification.cases.paper.scheme import PRESSURE_TOLERANCE, SOURCE, STEPS_LEFT, TIGHT, traced
 from verification.framework.case import Measured
 from verification.framework.registry import case
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.cases.reference_scenes import MODULUS, Array, centres, press
+from verification.cases.contact.scenes import MODULUS, Array, centres, press
 from verification.exact.punch import UNCERTAINTY_CIRCLE, UNCERTAINTY_SQUARE, CircularPunch, square_stiffness
 from verification.framework.case import Measured
 from verification.framework.rates import fit_order

@@ -14,7 +14,7 @@ from refimpl.kernels import multipole, normal_integral, tangential_integral
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.love import LOVE
 from refimpl.kernels.quadrature import ORDERS, across, relative_error_bound
-from verification.cases.kernels import CERRUTI_SOURCE, LOVE_SOURCE
+from verification.cases.kernels.kernels import CERRUTI_SOURCE, LOVE_SOURCE
 from verification.exact import kernel_reference as reference
 from verification.exact.kernel_points import ASPECTS, FARTHEST
 from verification.framework.case import Measured

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 import refimpl as rf
-from verification.cases.reference_scenes import MODULUS, Array, centres, press
+from verification.cases.contact.scenes import MODULUS, Array, centres, press
 from verification.exact import greenwood_tripp, rough_plane
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits
 from verification.framework.case import Measured

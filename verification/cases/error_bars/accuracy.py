@@ -10,8 +10,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import EDGE_SIZE, EDGE_SIZE_SPREAD
-from verification.cases import hertz
-from verification.cases.hertz import mean_radii
+from verification.cases.contact import hertz
+from verification.cases.contact.hertz import mean_radii
 from verification.coverage.judge import verdicts
 from verification.coverage.store import NUMBERS, climb, ladders
 from verification.exact.hertz import UNCERTAINTY, Sphere

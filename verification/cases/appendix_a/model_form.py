@@ -1,4 +1,4 @@
-"""The whole model against finite elements: the cases (see `verification.cases.model_form_study`)."""
+"""The whole model against finite elements: the cases (see `verification.cases.appendix_a.model_form_study`)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from appendix_a.contact_fem.sequence import (
     slide,
     slide_on_three_meshes,
 )
-from verification.cases.model_form_study import (
+from verification.cases.appendix_a.model_form_study import (
     CLIMBING,
     COPPER,
     CREST,
