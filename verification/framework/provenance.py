@@ -32,7 +32,7 @@ def revision() -> dict[str, str | bool | None]:
 
     Only a checkout that this file is part of counts, not whatever repository lies around an environment.
     """
-    root = Path(__file__).resolve().parents[1]
+    root = Path(__file__).resolve().parents[2]
     if not (root / "pyproject.toml").is_file() or _git(root, "rev-parse", "--show-prefix") != "":
         return {"commit": None, "dirty": None}
     changes = _git(root, "status", "--porcelain")

@@ -18,7 +18,11 @@ INVARIANTS = tuple(
 )  # fmt: skip
 """Invariants that recompute a state by other means, or turn it: all 25 would take three times as long."""
 KERNELS = tuple(f"tests/refimpl/test_{name}.py" for name in ("kernels_properties", "kernels", "multipole"))
-OPERATORS = ("tests/refimpl/test_operators.py", "tests/refimpl/test_flexibility.py", *INVARIANTS)
+OPERATORS = (
+    "tests/refimpl/operators/test_operators.py",
+    "tests/refimpl/solvers/production/test_flexibility.py",
+    *INVARIANTS,
+)
 WEDGE = ("tests/appendix_a/test_wedge.py", "tests/appendix_a/test_wedge_enclosure.py")
 STRIP = ("tests/appendix_a/test_strip.py",)
 
@@ -51,7 +55,7 @@ def _tests(*names: str) -> tuple[str, ...]:
 
 PRIORS = "tests/verification/test_coverage_priors.py::test_the_priors_in_use_are_those_of_the_committed_study"
 BARS = ("estimate", "accuracy_summits", "accuracy_climb", "unevenness", "first_touch", "accuracy_estimates")
-REFUSED = "tests/refimpl/test_input.py::test_refused_by_one_line_that_names_the_field"
+REFUSED = "tests/refimpl/scene/test_input.py::test_refused_by_one_line_that_names_the_field"
 SURFACES = _alone("surfaces", "surfaces_statistics", "surfaces_gaussian", "surfaces_measured")
 
 
@@ -65,7 +69,7 @@ TARGETS = (
     *(Target("operators", f"refimpl/operators/{name}.py", OPERATORS)
       for name in ("dense", "periodic", "tables", "fft", "window")),
     *(Target("operators", f"refimpl/operators/{name}.py",
-             ("tests/refimpl/test_fourier.py", "tests/refimpl/test_operators.py"))
+             ("tests/refimpl/operators/test_transforms.py", "tests/refimpl/operators/test_operators.py"))
       for name in ("fourier", "symmetric")),
     Target("contact", "refimpl/solvers/pivoting.py", _tests("active_set", "dense_solver")),
     Target("contact", "refimpl/model/certificate.py", _tests("certificate", "solve")),
@@ -75,9 +79,9 @@ TARGETS = (
     Target("equilibrium", "refimpl/model/slopes.py", _tests("slopes")),
     Target("equilibrium", "refimpl/solvers/dense.py", _tests("dense_solver", "tau_cycle", "solve")),
     Target("equilibrium", "refimpl/solvers/paper.py",
-           ("tests/refimpl/test_paper_scheme.py", "tests/refimpl/test_paper.py")),
+           ("tests/refimpl/solvers/test_paper_scheme.py", "tests/refimpl/solvers/test_paper.py")),
     Target("contact", "refimpl/operators/preconditioner.py", _tests("preconditioner", "projected_cg")),
-    Target("contact", "refimpl/operators/extension.py", ("tests/refimpl/test_extension.py",)),
+    Target("contact", "refimpl/operators/extension.py", ("tests/refimpl/operators/test_extension.py",)),
     Target("contact", "refimpl/solvers/production/projected_cg.py",
            _tests("projected_cg", "projected_cg_steps", "solve")),
     Target("contact", "refimpl/model/gap.py", _tests("projected_cg")),

@@ -15,7 +15,7 @@ from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.peak import Summit
 from refimpl.accuracy.refinement import LADDER, OPENING, ambiguous, climb, next_grid, relative_bar
 from refimpl.solution.solution import REPORTED
-from tests.refimpl.made_up import AREA_LIMIT, PEAK, made_up
+from tests.refimpl.accuracy.made_up import AREA_LIMIT, PEAK, made_up
 
 
 def test_the_climb_jumps_to_the_grid_that_does() -> None:

@@ -11,7 +11,7 @@ import refimpl as rf
 from refimpl.accuracy import discretisation_error
 from refimpl.accuracy.discretisation_error import OTHER, SUMMIT, SUMMIT_SPREAD, estimates
 from refimpl.accuracy.peak import Summit
-from tests.refimpl.made_up import PEAK, SIDE, made_up, peaked
+from tests.refimpl.accuracy.made_up import PEAK, SIDE, made_up, peaked
 
 
 def test_a_peak_that_grows_with_the_grid_is_not_known() -> None:

@@ -10,7 +10,7 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.sensitivities.fixed_contact import FixedSet
-from tests.refimpl.test_sensitivity import sliding
+from tests.refimpl.sensitivities.test_sensitivity import sliding
 
 M = 48
 

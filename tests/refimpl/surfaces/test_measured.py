@@ -17,7 +17,7 @@ from refimpl.surfaces import MeasuredSurface, SurfaceWarning
 from refimpl.surfaces.crop import Window
 from refimpl.surfaces.detrending import DEGREES, fit
 from refimpl.surfaces.missing_points import fill
-from tests.refimpl.measured import (
+from tests.refimpl.surfaces.measured import (
     DX,
     DY,
     NX,

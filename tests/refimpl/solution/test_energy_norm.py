@@ -12,7 +12,7 @@ import refimpl as rf
 from refimpl.grid import Array, Grid
 from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
-from tests.refimpl.frozen import M, posed, scene
+from tests.refimpl.solution.frozen import M, posed, scene
 
 
 def test_smallest_symbol_is_enclosed_from_below() -> None:

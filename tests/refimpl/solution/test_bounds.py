@@ -18,7 +18,7 @@ from refimpl.solution.bounds import (
     proven_bounds,
 )
 from refimpl.solution.energy_norm import EnergyNorm
-from tests.refimpl.frozen import POLYMER, SIDE, STEEL, M, assert_true, frozen_solution, scene
+from tests.refimpl.solution.frozen import POLYMER, SIDE, STEEL, M, assert_true, frozen_solution, scene
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -15,7 +15,7 @@ from refimpl.model.problem import Terms, pose
 from refimpl.solvers.production import level
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.updates import Updates
-from tests.refimpl.levels import BALL, coupled, level, posed, press
+from tests.refimpl.solvers.production.levels import BALL, coupled, level, posed, press
 
 
 class Falling:

@@ -17,7 +17,7 @@ from refimpl.model.problem import Terms, pose
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
 from refimpl.solvers.production import nested_solver
-from tests.refimpl.levels import BALL, coupled, level, posed, press
+from tests.refimpl.solvers.production.levels import BALL, coupled, level, posed, press
 
 ONE_OF_EIGHT = np.eye(8, dtype=bool)
 

@@ -23,7 +23,7 @@ from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.refinement import OPENING, relative_bar, uncertainty
 from refimpl.solution.limits import Limit
 from refimpl.solution.solution import REPORTED
-from tests.refimpl.made_up import AREA_LIMIT, BETA, PEAK, SIDE, SLIP, made_up, told
+from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, PEAK, SIDE, SLIP, made_up, told
 
 HERTZ_GRIDS = (80, 96, 112, 128, 160, 192, 224, 256, 320, 384, 448, 512)
 

@@ -10,7 +10,7 @@ import pytest
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import PULLED, estimates
 from refimpl.accuracy.grid_features import GridResult, depth, pull
-from tests.refimpl.made_up import made_up
+from tests.refimpl.accuracy.made_up import made_up
 
 SOFT, HARD = rf.Material(E=1e9, nu=0.1), rf.Material(E=1e12, nu=0.3)
 RADIUS, CONTACT, SIDE = 1e-2, 2e-4, 1e-3

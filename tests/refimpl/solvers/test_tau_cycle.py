@@ -22,7 +22,7 @@ from refimpl.solvers.production.anderson import Mixing
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.nested_solver import solve_fft
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from tests.refimpl.levels import BALL, level, posed
+from tests.refimpl.solvers.production.levels import BALL, level, posed
 from verification.coverage import scenes as study
 
 

@@ -18,7 +18,7 @@ from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.solvers.production import flexibility
 from refimpl.solvers.production.flexibility import Flexibility
-from tests.refimpl.levels import coupled, posed
+from tests.refimpl.solvers.production.levels import coupled, posed
 
 M = 12
 ROUNDING = 1e-14  # of the largest displacement: transforms of a few hundred points

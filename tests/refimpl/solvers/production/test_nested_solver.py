@@ -17,7 +17,7 @@ from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.nested_solver import _beyond, _certified, _widened, solve_fft
 from refimpl.solvers.production.projected_cg import Apply
-from tests.refimpl.levels import BALL, coupled, level, posed
+from tests.refimpl.solvers.production.levels import BALL, coupled, level, posed
 
 
 @pytest.mark.parametrize("sigma", [0.5, 2.0])

@@ -22,8 +22,8 @@ from refimpl.solvers.production.coarse_grids import (
     touching,
 )
 from refimpl.solvers.production.level import LevelSolver, influence
-from tests.refimpl.levels import BALL
-from tests.refimpl.levels import posed as level_posed
+from tests.refimpl.solvers.production.levels import BALL
+from tests.refimpl.solvers.production.levels import posed as level_posed
 
 SIDE = 2.0**-9
 

@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import refimpl as rf
-from tests.refimpl.levels import BALL
+from tests.refimpl.solvers.production.levels import BALL
 from verification.properties import Sample, samples
 from verification.properties.states import same_pressure
 

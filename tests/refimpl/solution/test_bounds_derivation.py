@@ -17,7 +17,7 @@ from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.bounds import UNPROVEN, _Frozen, _shear_row, proven_bounds
 from refimpl.solution.energy_norm import EnergyNorm
-from tests.refimpl.frozen import assert_true, frozen_solution, posed
+from tests.refimpl.solution.frozen import assert_true, frozen_solution, posed
 
 
 class Derived:
