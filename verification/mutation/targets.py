@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 INVARIANTS = tuple(
-    f"tests/verification/test_properties.py::test_invariant[{name}-{solver}]"
+    f"tests/verification/properties/test_properties.py::test_invariant[{name}-{solver}]"
     for name in (
         "displacements", "load_balance", "complementarity", "local_friction_law", "area_and_peak",
         "agrees_with_the_dense_reference", "load_and_approach", "quarter_turn",
@@ -53,7 +53,7 @@ def _tests(*names: str) -> tuple[str, ...]:
     return (*_alone(*names), *INVARIANTS)
 
 
-PRIORS = "tests/verification/test_coverage_priors.py::test_the_priors_in_use_are_those_of_the_committed_study"
+PRIORS = "tests/verification/coverage/test_priors.py::test_the_priors_in_use_are_those_of_the_committed_study"
 BARS = ("estimate", "accuracy_summits", "accuracy_climb", "unevenness", "first_touch", "accuracy_estimates")
 REFUSED = "tests/refimpl/scene/test_input.py::test_refused_by_one_line_that_names_the_field"
 SURFACES = _alone("surfaces", "surfaces_statistics", "surfaces_gaussian", "surfaces_measured")

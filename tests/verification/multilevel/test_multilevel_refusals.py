@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.drawn import TABLE, spied
+from tests.verification.multilevel.drawn import TABLE, spied
 from verification.multilevel.ensemble import PILOT, ensemble
 from verification.sweep.study import study_from_dict
 

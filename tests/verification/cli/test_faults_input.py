@@ -15,7 +15,7 @@ import pytest
 import refimpl as rf
 from reports.generator import render
 from tests.reports.sample import case, results
-from tests.verification.children import STUDY, Ended, one_line, small
+from tests.verification.cli.children import STUDY, Ended, one_line, small
 from verification.cli import main
 from verification.sweep import engine
 

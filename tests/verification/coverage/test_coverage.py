@@ -12,7 +12,7 @@ import refimpl as rf
 from refimpl.accuracy.refinement import OPENING
 from reports.drawing import svg
 from reports.studies import exhibit
-from tests.verification.rungs import GRIDS, rung
+from tests.verification.coverage.rungs import GRIDS, rung
 from verification.coverage import beside, document
 from verification.coverage.document import grids_of, reference_check, solves
 from verification.coverage.judge import (

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.children import rows
+from tests.verification.cli.children import rows
 from verification.cli import main
 from verification.sweep import engine
 from verification.sweep.export import to_csv

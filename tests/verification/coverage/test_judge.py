@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from refimpl.accuracy.peak import LEVEL, Summit
-from tests.verification.rungs import GRIDS, rung
+from tests.verification.coverage.rungs import GRIDS, rung
 from verification.coverage import beside
 from verification.coverage.judge import (
     EDGE_SIZE,

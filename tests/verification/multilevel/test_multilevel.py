@@ -13,7 +13,7 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from reports.studies.multilevel import build
-from tests.verification.drawn import TABLE, spied
+from tests.verification.multilevel.drawn import TABLE, spied
 from verification.cli import main
 from verification.cli.ensemble import table
 from verification.multilevel.__main__ import document

@@ -18,7 +18,7 @@ from PIL import Image
 import refimpl
 from refimpl.accuracy.refinement import QUANTITIES
 from refimpl.planning.plan import METHODS
-from tests.verification.test_cli import Capture, refused
+from tests.verification.cli.test_cli import Capture, refused
 from verification.cli import main, plot, solve
 from verification.cli.plot import hertz_of
 

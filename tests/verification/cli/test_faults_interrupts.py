@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.verification.children import LONG, STUDY, Ended, forked, rows, started
+from tests.verification.cli.children import LONG, STUDY, Ended, forked, rows, started
 from verification.cli import main
 from verification.sweep import engine
 from verification.sweep.study import study_from_dict

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.verification.children import forked, started
+from tests.verification.cli.children import forked, started
 from verification.contestants.ending import Ended, unwinding
 
 needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks processes up in /proc")

@@ -24,7 +24,7 @@ import pytest
 
 import refimpl as rf
 from tests.reports.sample import case, results
-from tests.verification.children import LONG, STUDY, Ended, forked, one_line, rows, small
+from tests.verification.cli.children import LONG, STUDY, Ended, forked, one_line, rows, small
 from verification.cli import main, plot
 from verification.framework import files
 from verification.sweep import engine
