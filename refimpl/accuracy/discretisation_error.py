@@ -1,16 +1,17 @@
 """How far the numbers found on grids are from the continuous problem's: the discretisation's error bars.
 
-Each number is the intercept q of a line over the grids (`refimpl.accuracy.bayesian_line`), ``y_k = q + c e_k + r_k``. In
-an area ``e_k`` is what whole elements add along the contact's edge (Yastrebov, Anciaux and Molinari 2017),
-and ``r_k`` which elements the edge happens to catch: the count of n edge elements varies as sqrt(n), and n
-goes as 1 / h, so ``w`` falls as h^(3/2). Friction takes its edge's share from the area, by ``tau / N``. The
-highest pressure is that of a parabola through the peak, and ``e_k`` its drop to the neighbours
-(`refimpl.accuracy.peak`); approaches count from first touch, a summit as well (`refimpl.accuracy.first_contact`). Where bodies
-differ, tau on whole elements pulls at more than the contact, which falls as h only (`PULLED`). Every other
-number's ``w`` is told by the grids themselves: by how much of the contact is edge, by how slopes bend from
-element to element. These fall as powers of h where a surface is resolved; where it is not they do not, and
-bars stay wide. Where elements that bear half of the highest pressure stand alone nothing bounds what finer
-grids find there, and where spots are single elements nothing but the number itself bounds area and friction.
+Each number is the intercept q of a line over the grids (`refimpl.accuracy.bayesian_line`), ``y_k = q + c e_k
++ r_k``. In an area ``e_k`` is what whole elements add along the contact's edge (Yastrebov, Anciaux and
+Molinari 2017), and ``r_k`` which elements the edge happens to catch: the count of n edge elements varies as
+sqrt(n), and n goes as 1 / h, so ``w`` falls as h^(3/2). Friction takes its edge's share from the area, by
+``tau / N``. The highest pressure is that of a parabola through the peak, and ``e_k`` its drop to the
+neighbours (`refimpl.accuracy.peak`); approaches count from first touch, a summit as well
+(`refimpl.accuracy.first_contact`). Where bodies differ, tau on whole elements pulls at more than the contact,
+which falls as h only (`PULLED`). Every other number's ``w`` is told by the grids themselves: by how much of
+the contact is edge, by how slopes bend from element to element. These fall as powers of h where a surface is
+resolved; where it is not they do not, and bars stay wide. Where elements that bear half of the highest
+pressure stand alone nothing bounds what finer grids find there, and where spots are single elements nothing
+but the number itself bounds area and friction.
 
 The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1199; by
 likelihood in `verification.coverage.priors`); what they promise was judged on the scenes of other seeds. How

@@ -1,8 +1,8 @@
 """Numbers at a prescribed approach, as if it counted from where the surfaces themselves touch first.
 
 Approaches count from first touch, of which a grid knows its highest elements only. The gap's summit lies
-higher (`refimpl.accuracy.peak`), so at the approach prescribed the bodies are less far into one another than on
-the grid. What that takes of a number is foretold by its power of the approach in Hertz' contact.
+higher (`refimpl.accuracy.peak`), so at the approach prescribed the bodies are less far into one another than
+on the grid. What that takes of a number is foretold by its power of the approach in Hertz' contact.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Error bars: how far each reported number may be from the exact solution of the model, in parts.
 
-Parts are absolute, in the number's unit, and meant as 95 % bounds that add. ``iteration`` follows
-from the certificate; ``tau support`` from the states of a settled cycle, and from tau on contacts that it
-is withheld from; ``discretisation`` from one grid or a sequence of grids (`refimpl.accuracy.discretisation_error`).
+Parts are absolute, in the number's unit, and meant as 95 % bounds that add. ``iteration`` follows from the
+certificate; ``tau support`` from the states of a settled cycle, and from tau on contacts that it is withheld
+from; ``discretisation`` from one grid or a sequence of grids (`refimpl.accuracy.discretisation_error`).
 """
 
 from __future__ import annotations

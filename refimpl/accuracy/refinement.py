@@ -1,7 +1,7 @@
 """Grids refined until the error bar of a chosen number is as short as asked for.
 
-Two coarse grids open; the bar they give (`refimpl.accuracy.discretisation_error`) also foretells the bar of finer
-grids, so that the next one is, as a rule, the last. All grids but the last together then cost a share
+Two coarse grids open; the bar they give (`refimpl.accuracy.discretisation_error`) also foretells the bar of
+finer grids, so that the next one is, as a rule, the last. All grids but the last together then cost a share
 of it only.
 """
 

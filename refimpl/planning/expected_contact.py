@@ -66,7 +66,8 @@ class Outlook:
     def edge_error(self) -> float:
         """Relative error of A that whole elements make along the edges of the spots.
 
-        On a circle of radius r the excess of `refimpl.model.forces.perimeter_corrected_area` is 0.30 spacing / r.
+        On a circle of radius r the excess of `refimpl.model.forces.perimeter_corrected_area` is 0.30 spacing
+        / r.
         """
         return 8 / math.pi * EDGE_SHARE * math.sqrt(math.pi * self.spots / self.elements)
 

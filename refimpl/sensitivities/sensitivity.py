@@ -1,13 +1,13 @@
 """What a solution's numbers change by when the scene's numbers change.
 
-Pressures answer smoothly while the contact set stays as it is, so that friction, binormal force and
-peak pressure follow from one linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does not: at a
-fixed set it is constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` is added
+Pressures answer smoothly while the contact set stays as it is, so that friction, binormal force and peak
+pressure follow from one linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does not:
+at a fixed set it is constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` is added
 to friction.
 
 - Load, moduli and friction leave the surfaces alone, and the edges of the contact move by what the
-  linear answer grows like there (`refimpl.sensitivities.edge_motion`), up to one factor. That is taken from the load, for
-  which the area is differenced over two full solves.
+  linear answer grows like there (`refimpl.sensitivities.edge_motion`), up to one factor. That is taken from
+  the load, for which the area is differenced over two full solves.
 - Shapes and roughness bring contact to new places, which no fixed set foresees: the area is differenced
   over two full solves for each.
 

@@ -1,10 +1,10 @@
-"""What surfaces or refinement have to say about a solution, beside the limits of `refimpl.solution.limits`."""
+"""Notes of surfaces and of the refinement about a solution, beside the model limits of `limits`."""
 
 from __future__ import annotations
 
 
 class Remark(str):
-    """A text that is read like a `refimpl.solution.limits.Caution`, of the one ``limit`` "remark", without numbers.
+    """A text with the fields of a `Caution`: ``limit`` is "remark", ``number`` and ``allowed`` are None.
 
     >>> Remark("3 points filled in").limit
     'remark'

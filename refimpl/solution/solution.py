@@ -38,15 +38,15 @@ class Cost:
 class Solution:
     """A solved scene. Forces in N, lengths in m, areas in m^2, pressures in Pa, arrays ``(M, M)``.
 
-    ``approach`` counts from first touch, or from the mean planes when periodic. ``pressure`` is the
-    local ``f`` and ``traction`` the local ``r`` of Eq. (1). ``surface_lower`` and ``surface_upper``
-    are the deformed heights; ``separation`` is the gap left between them, and ``clearance`` what
-    Eq. (6) asks to be zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``.
-    ``uncertainty`` maps each reported number to its parts, absolute, in the number's unit.
-    ``slope_error`` quotes what Appendix A's table says of flat-surface influence coefficients at this
-    contact's slopes. ``problem`` is what was solved: the scene on its grid. ``left_out`` holds, for each
-    term that the plan left out as small, its effect as the found contact has it; ``warnings`` are texts
-    with ``limit``, ``number`` and ``allowed``: those of `refimpl.solution.limits`, and remarks without numbers.
+    ``approach`` counts from first touch, or from the mean planes when periodic. ``pressure`` is the local
+    ``f`` and ``traction`` the local ``r`` of Eq. (1). ``surface_lower`` and ``surface_upper`` are the
+    deformed heights; ``separation`` is the gap left between them, and ``clearance`` what Eq. (6) asks to be
+    zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``. ``uncertainty`` maps each reported
+    number to its parts, absolute, in the number's unit. ``slope_error`` quotes what Appendix A's table says
+    of flat-surface influence coefficients at this contact's slopes. ``problem`` is what was solved: the scene
+    on its grid. ``left_out`` holds, for each term that the plan left out as small, its effect as the found
+    contact has it; ``warnings`` are texts with ``limit``, ``number`` and ``allowed``: those of
+    `refimpl.solution.limits`, and remarks without numbers.
     """
 
     status: Status

@@ -75,7 +75,8 @@ def materials(reduced_modulus: float, shear_compliance: float) -> tuple[rf.Mater
 
     For a rigid partner ``pi c0 E* = (1 - 2 nu)/(2 (1 - nu))``, which is solved for nu.
 
-    >>> pair = rf.materials.Pair(*materials(1e9, -1e-10))
+    >>> from refimpl.model.materials import Pair
+    >>> pair = Pair(*materials(1e9, -1e-10))
     >>> round(pair.reduced_modulus / 1e9, 12), round(pair.shear_compliance * 1e10, 12)
     (1.0, -1.0)
     """

@@ -1,9 +1,9 @@
 """``python -m verification.coverage.priors --store FILE --json FILE``: what training scenes ask of priors.
 
-`refimpl.accuracy.discretisation_error` models a number found on nested grids as ``y_k = q + c e_k + r_k``. Nothing is known
-of q beforehand, so the likelihood of the other parameters is that of the numbers' differences from grid to
-grid: no reference is needed, and none can be wrong. It is greatest at the values written here, beside those
-adopted and the logarithm of the likelihood that these give away.
+`refimpl.accuracy.discretisation_error` models a number found on nested grids as ``y_k = q + c e_k + r_k``.
+Nothing is known of q beforehand, so the likelihood of the other parameters is that of the numbers'
+differences from grid to grid: no reference is needed, and none can be wrong. It is greatest at the values
+written here, beside those adopted and the logarithm of the likelihood that these give away.
 """
 
 from __future__ import annotations

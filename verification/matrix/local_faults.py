@@ -1,4 +1,4 @@
-"""Faults in one part of `refimpl` each, beside those of `verification.matrix.faults` that go through every solve.
+"""Faults in one part of `refimpl` each, beside those of `faults` that go through every solve.
 
 Most of them leave most results untouched: they show what only a few checks, or a single one, can see.
 """

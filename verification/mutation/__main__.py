@@ -11,10 +11,9 @@ from pathlib import Path
 from verification.framework.case import Unavailable
 from verification.framework.files import to_json, write_text
 from verification.framework.provenance import provenance
-from verification.mutation.judging import JUDGES
 from verification.mutation.score import passes, summary
 from verification.mutation.session import in_fair_order, population, run
-from verification.mutation.targets import TARGETS
+from verification.mutation.targets import JUDGES, TARGETS
 
 ROOT = Path(__file__).resolve().parents[2]
 GROUPS = {"numerics": TARGETS, "judges": JUDGES}

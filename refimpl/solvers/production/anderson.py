@@ -1,11 +1,11 @@
 """Anderson's mixing: successive approximations that would not contract by themselves.
 
-What is held while CG works (`refimpl.solvers.production.level`) is a field x, and the pressure that CG finds asks for
-another, g(x). Slopes ask for the cosines of a surface that the pressure itself has moved: their feedback
-grows with displacement over spacing, so that on fine grids x <- g(x) leads away from the solution, and
-relaxed as far as it must be leads nowhere in sensible time. Close to the solution g is all but linear. So the
-last differences of x say how what x lacks, g(x) - x, changes; the combination of them that cancels most of
-it is taken back, and a share of the rest is added (Anderson 1965, J. ACM 12, 547). On a linear g this is
+What is held while CG works (`refimpl.solvers.production.level`) is a field x, and the pressure that CG finds
+asks for another, g(x). Slopes ask for the cosines of a surface that the pressure itself has moved: their
+feedback grows with displacement over spacing, so that on fine grids x <- g(x) leads away from the solution,
+and relaxed as far as it must be leads nowhere in sensible time. Close to the solution g is all but linear. So
+the last differences of x say how what x lacks, g(x) - x, changes; the combination of them that cancels most
+of it is taken back, and a share of the rest is added (Anderson 1965, J. ACM 12, 547). On a linear g this is
 GMRES (Walker and Ni 2011, SIAM J. Numer. Anal. 49, 1715), which a skew feedback above one does not stop.
 """
 

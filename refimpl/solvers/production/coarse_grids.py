@@ -21,7 +21,8 @@ class Start(NamedTuple):
     """One grid's answer: pressure (Pa) and the pair's displacement ``v - h`` (m), both ``(M, M)``.
 
     ``approach`` (m) is None where heights were sampled anew: grids differ in where they see first touch.
-    ``strong`` says that updates had to be mixed (`refimpl.solvers.production.level`): finer grids feed back even more.
+    ``strong`` says that updates had to be mixed (`refimpl.solvers.production.level`): finer grids feed back
+    even more.
     """
 
     pressure: Array

@@ -1,8 +1,8 @@
 """One grid of the production solver: projected CG on the contact's window, with the rest lagged.
 
-CG inverts ``a f``, and weak coupling with it (`refimpl.solvers.production.flexibility`). The rest of the problem is held
-(`refimpl.solvers.production.lagged_terms`) while CG reduces the residual as far as that lets it, and is then brought up to date. Where
-its own feedback is weak few updates suffice; where it is not they are mixed (`refimpl.solvers.production.anderson`).
+CG inverts ``a f``, and weak coupling with it (`flexibility`). The rest is held (`lagged_terms`) while CG
+reduces the residual as far as that lets it, and is then brought up to date. Where its own feedback is weak
+few updates suffice; where it is not they are mixed (`anderson`).
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class LevelSolver:
         self.held = Held(self.problem, self.flexibility, self.cg)
         self._nowhere = self.held.support
         self._withheld: Mask | None = None
-        # of an element against its neighbours: `a` at a grid's highest frequency, as in `refimpl.solvers.production.coarse_grids`
+        # of an element against its neighbours: `a` at a grid's highest frequency, as in `coarse_grids`
         self._stiffness = 0.5 / (problem.pair.normal_compliance * problem.grid.spacing)
         self.stuck = False
         self._updates = Updates(math.inf, lags=True, strong=strong)

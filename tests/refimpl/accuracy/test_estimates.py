@@ -21,6 +21,7 @@ from refimpl.accuracy.discretisation_error import (
 )
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.refinement import OPENING, relative_bar, uncertainty
+from refimpl.model.forces import perimeter_corrected_area
 from refimpl.solution.limits import Limit
 from refimpl.solution.solution import REPORTED
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, PEAK, SIDE, SLIP, made_up, told
@@ -244,5 +245,5 @@ def test_bars_hold_against_hertz() -> None:
 def test_constants_agree_with_the_perimeter_correction() -> None:
     contact = np.zeros((8, 8), dtype=bool)
     contact[2:5, 3:6] = True  # 12 edges
-    corrected = rf.forces.perimeter_corrected_area(contact, 1.0)  # type: ignore[attr-defined]  # submodule
+    corrected = perimeter_corrected_area(contact, 1.0)
     assert 9 - corrected == pytest.approx(12 * discretisation_error.EDGE_SHARE)

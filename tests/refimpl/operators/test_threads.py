@@ -46,9 +46,9 @@ import sys
 if sys.argv[2] == "SciPy":
     sys.modules["ducc0"] = None
 import refimpl as rf
-from refimpl.operators import fourier
-assert type(fourier.fourier).__name__ == sys.argv[2]
-fourier.fourier.worthwhile = 1
+from refimpl.operators.transforms import fourier
+assert type(fourier).__name__ == sys.argv[2]
+fourier.worthwhile = 1
 sys.stdout.buffer.write(rf.solve(rf.read_scene(sys.argv[1]), 48).pressure.tobytes())
 """
 

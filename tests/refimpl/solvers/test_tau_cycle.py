@@ -22,7 +22,7 @@ from refimpl.solvers.production.anderson import Mixing
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.nested_solver import solve_fft
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from tests.refimpl.solvers.production.levels import BALL, level, posed
+from tests.refimpl.solvers.production.levels import BALL, level_solver, posed
 from verification.coverage import scenes as study
 
 
@@ -61,7 +61,7 @@ FAINT = replace(
 def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
     """Contact that met the edge of a window between two ends of the path took another one."""
     problem = posed(FAINT, 80, oblique=oblique)
-    everywhere = level(problem).solve(1e-8)
+    everywhere = level_solver(problem).solve(1e-8)
     outcome, state = solve_fft(problem, 1e-8, Counter())
     assert everywhere.status is outcome.status is rf.Status.CYCLED
     assert np.array_equal(outcome.withheld, everywhere.withheld)
@@ -72,9 +72,9 @@ def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
 @pytest.mark.parametrize(("margin", "cramped"), [(0, True), (12, False)])
 def test_a_path_that_meets_the_windows_edge_ends_there(margin: int, cramped: bool) -> None:
     problem = posed(FAINT, 40)
-    first = level(problem)
+    first = level_solver(problem)
     first.settle(1e-8, np.zeros((40, 40), dtype=bool))
-    solver = level(problem, Window.around(first.cg.pressure > 0, margin))
+    solver = level_solver(problem, Window.around(first.cg.pressure > 0, margin))
     outcome = solver.solve(1e-8)
     assert solver.window.shape < (40, 40)
     assert solver.cramped is cramped
@@ -126,7 +126,7 @@ def test_states_on_the_way_end_where_their_contact_is_beyond_doubt(monkeypatch: 
     monkeypatch.setattr(projected_cg, "_DOUBT", 1.0)
     told_early = []
     for seed in range(24):
-        solver, off = level(posed(random_scene(seed), 48, oblique=bool(seed % 2))), list[float]()
+        solver, off = level_solver(posed(random_scene(seed), 48, oblique=bool(seed % 2))), list[float]()
 
         def compared(
             tolerance: float,
@@ -153,10 +153,10 @@ def test_states_on_the_way_end_where_their_contact_is_beyond_doubt(monkeypatch: 
 @pytest.mark.parametrize("scene", [FAINT, random_scene(3), random_scene(5)])
 def test_the_path_is_that_of_settled_states(scene: rf.Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     problem = posed(scene, 64)
-    quick = level(problem)
+    quick = level_solver(problem)
     short = quick.solve(1e-8)
     monkeypatch.setattr(ProjectedCG, "beyond_doubt", lambda cg, stiffness: False)
-    thorough = level(problem)
+    thorough = level_solver(problem)
     long = thorough.solve(1e-8)
     assert short.status is long.status
     assert np.array_equal(short.withheld, long.withheld)
@@ -169,7 +169,7 @@ def test_the_path_is_that_of_settled_states(scene: rf.Scene, monkeypatch: pytest
 
 def test_nothing_leads_on_between_mixed_updates(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is held then is nobody's, and so is the contact; after an update it is the state's own."""
-    solver = level(posed(replace(BALL, friction=rf.Friction(tau=1e6, beta=0.1)), 16))
+    solver = level_solver(posed(replace(BALL, friction=rf.Friction(tau=1e6, beta=0.1)), 16))
     nothing = np.zeros((16, 16), dtype=bool)
     solver.settle(1e-8, nothing, nothing)
     assert solver._leads_on()
@@ -185,7 +185,7 @@ def test_what_tau_moves_leads_on(coupled: int, oblique: int, leads: bool) -> Non
     """Common slopes alone are moved as well; where nothing is, the next state is the same one."""
     terms = Terms(coupled=bool(coupled), oblique=bool(oblique), slope_correction=False)
     scene = replace(BALL, friction=rf.Friction(tau=1e6, beta=0.0))
-    solver = level(pose(scene, rf.Grid(scene.side, 16), terms, None))
+    solver = level_solver(pose(scene, rf.Grid(scene.side, 16), terms, None))
     nothing = np.zeros((16, 16), dtype=bool)
     solver.settle(1e-8, nothing, nothing)
     assert solver._leads_on() is leads

@@ -293,7 +293,7 @@ def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_the_committed_study_has_no_wrong_number() -> None:
-    path = Path(__file__).parents[2] / "reports" / "results" / "extremes.json"
+    path = Path(__file__).parents[3] / "reports" / "results" / "extremes.json"
     found = json.loads(path.read_text())
     assert found["complete"]
     assert len(found["states"]) >= 400

@@ -14,11 +14,10 @@ import pytest
 from reports.studies import exhibit
 from verification.mutation import mutants, score, session
 from verification.mutation.__main__ import main
-from verification.mutation.judging import JUDGES
 from verification.mutation.mutants import Candidate, mutant, without_statements
-from verification.mutation.targets import TARGETS
+from verification.mutation.targets import JUDGES, TARGETS
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 SUM_OF_SQUARES = '''
 def total(values: list[float], scale: float | None = None) -> float:
@@ -173,7 +172,7 @@ def test_verdicts_on_a_small_tree(tmp_path: Path) -> None:
 
 def test_what_the_parent_has_of_the_tree_is_forgotten(tmp_path: Path) -> None:
     """A mutant of the judge's own package, which the parent runs, is seen by the child all the same."""
-    for package in ("refimpl", "verification"):
+    for package in ("refimpl", "verification", "verification/framework"):
         (tmp_path / package).mkdir()
         (tmp_path / package / "__init__.py").write_text("")
     (tmp_path / "verification/framework/case.py").write_text("ONE = 1\n")

@@ -225,7 +225,7 @@ def test_a_cell_compares_ours_with_print() -> None:
 
 def test_numbers_that_one_case_takes_from_another_are_those_of_the_committed_run() -> None:
     """The steepest slope of fem3d/less-than-two-percent takes 75 surfaces of 512 elements to measure."""
-    committed = Path(__file__).parents[2] / "reports" / "results" / "reproduction.json"
+    committed = Path(__file__).parents[3] / "reports" / "results" / "reproduction.json"
     cases = {case["id"]: case for case in json.loads(committed.read_text(encoding="utf-8"))["cases"]}
     measured = cases["reproduction/largest-slope-full"]["data"]["largest gradient (deg)"]
     assert round(measured, 2) == STEEPEST

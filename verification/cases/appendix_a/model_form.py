@@ -1,4 +1,4 @@
-"""The whole model against finite elements: the cases (see `verification.cases.appendix_a.model_form_study`)."""
+"""The whole model against finite elements: the cases of `model_form_study`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Dense reference against production solver on `verification.scenes.cross_checks`: one row per reported quantity."""
+"""Dense reference against production solver: one case per reported quantity, on all cross-check scenes."""
 
 from __future__ import annotations
 

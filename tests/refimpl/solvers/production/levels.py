@@ -36,7 +36,7 @@ def posed(scene: rf.Scene, M: int, *, oblique: bool = False, approach: float | N
     return pose(scene, rf.Grid(scene.side, M), terms, approach)
 
 
-def level(problem: Problem, window: Window | None = None) -> LevelSolver:
+def level_solver(problem: Problem, window: Window | None = None) -> LevelSolver:
     window = window or Window.full(problem.grid.M)
     start = foundation_pressure(problem)[window.slices]
     operator = influence(problem, window, Counter())

@@ -15,7 +15,7 @@ from refimpl.model.problem import Terms, pose
 from refimpl.solvers.production import level
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.updates import Updates
-from tests.refimpl.solvers.production.levels import BALL, coupled, level, posed, press
+from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, posed, press
 
 
 class Falling:
@@ -42,7 +42,7 @@ class Falling:
 def test_cg_goes_on_while_it_gets_on(
     factor: float, budget: int, steps: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solver = level(posed(BALL, 4))
+    solver = level_solver(posed(BALL, 4))
     solver._budget = budget
     monkeypatch.setattr(solver, "cg", Falling(factor))
     assert solver._reduce(0.1) == solver.cg.residuals()[1]
@@ -67,7 +67,7 @@ def settled(
     monkeypatch: pytest.MonkeyPatch, *residuals: float, sigma: float = 0.4
 ) -> tuple[bool, LevelSolver, Script]:
     """What `settle` says where updates have those residuals, and CG leaves nothing; the solver."""
-    solver, updates = level(posed(coupled(sigma), 4)), Script(*residuals)
+    solver, updates = level_solver(posed(coupled(sigma), 4)), Script(*residuals)
     monkeypatch.setattr(solver.held, "update", updates)
     monkeypatch.setattr(solver.held, "mix", lambda mixing: None)
     monkeypatch.setattr(solver.cg, "residuals", lambda: (1.0, 1.0))
@@ -104,7 +104,7 @@ def test_updates_are_as_far_apart_as_they_bring_little_back(
     feedback: float, next_share: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """CG leaves a tenth at first, then what the last update brought back, a thousandth at least."""
-    solver = level(posed(coupled(0.4), 4))
+    solver = level_solver(posed(coupled(0.4), 4))
     residuals, goals = [1.0], []
 
     def reduce(goal: float) -> float:
@@ -129,7 +129,7 @@ def test_the_certificate_may_round_otherwise(
     share: float, met: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A residual counts as met a hundredth below the tolerance: 1e-12 leaves rounding a thousandth."""
-    solver = level(posed(BALL, 4))
+    solver = level_solver(posed(BALL, 4))
     monkeypatch.setattr(solver.held, "update", lambda step: share * 1e-12)
     monkeypatch.setattr(solver, "_reduce", lambda goal: share * 1e-12)
     monkeypatch.setattr(solver.held, "mix", lambda mixing: None)
@@ -141,7 +141,7 @@ def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
     last: Mask, status: rf.Status, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Contact grows from one set and back to it, which withholds all that changed from tau."""
-    solver = level(posed(coupled(0.3, tau=0.5), 4))
+    solver = level_solver(posed(coupled(0.3, tau=0.5), 4))
     contacts = iter((ONE, ONE | OTHER, ONE, last))
 
     def settle(tolerance: float, support: Mask, withheld: Mask | None = None) -> bool:
@@ -165,7 +165,7 @@ def test_where_nothing_lags_no_step_is_taken_below_the_tolerance(
     """But for a tenth of it that is left to rounding."""
     terms = Terms(coupled=False, oblique=False, slope_correction=False)
     frictionless = pose(replace(BALL, load=20.0), rf.Grid(BALL.side, 64), terms, None)
-    solver = level(frictionless)
+    solver = level_solver(frictionless)
     before: list[float] = []
     iterate = solver.cg.iterate
 
@@ -189,7 +189,7 @@ def test_where_nothing_lags_no_step_is_taken_below_the_tolerance(
     ],
 )
 def test_how_a_settling_ended(residual: float, steps: int, status: rf.Status) -> None:
-    solver = level(posed(BALL, 4))
+    solver = level_solver(posed(BALL, 4))
     solver.residual, solver._tolerance = residual, 1e-8
     solver.cg_iterations, solver._budget = steps, 10
     assert solver._ended() is status
@@ -197,7 +197,7 @@ def test_how_a_settling_ended(residual: float, steps: int, status: rf.Status) ->
 
 @pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=0.0, beta=0.1), rf.Friction(tau=1.0)])
 def test_without_tau_one_settling_is_all(friction: rf.Friction, monkeypatch: pytest.MonkeyPatch) -> None:
-    solver = level(posed(replace(BALL, friction=friction), 8))
+    solver = level_solver(posed(replace(BALL, friction=friction), 8))
     settlings: list[Mask | None] = []
     settle = solver.settle
 
@@ -215,7 +215,7 @@ def test_without_tau_one_settling_is_all(friction: rf.Friction, monkeypatch: pyt
 
 
 def test_a_whole_grid_needs_no_product_to_answer() -> None:
-    solver = level(posed(BALL, 16))
+    solver = level_solver(posed(BALL, 16))
     solver.settle(1e-3)
     before = dict(solver.counter.tally)
     solver.answer()
@@ -226,7 +226,7 @@ def test_between_mixed_updates_cg_leaves_a_tenth_of_what_mixing_has_left(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Without a step of CG an update would tell nothing new; a tenth of the tolerance is enough of all."""
-    solver = level(posed(BALL, 4))
+    solver = level_solver(posed(BALL, 4))
     solver._updates = Updates(1.0, lags=True, strong=True)
     for residual, left, goal in ((1e-2, 1e-3, 1e-4), (1e-3, 1e-2, 1e-4), (2e-8, 1e-8, 1e-9)):
         solver.residual = residual
@@ -238,6 +238,6 @@ def test_between_mixed_updates_cg_leaves_a_tenth_of_what_mixing_has_left(
 def test_only_states_on_taus_way_must_keep_off_a_windows_edge(tau: float, cramped: bool) -> None:
     """Without tau there is one state, and the check on the whole grid tells what its window lacks."""
     problem = posed(coupled(0.3, tau=tau), 16)
-    solver = level(problem, Window(4, 8, 4, 12))
+    solver = level_solver(problem, Window(4, 8, 4, 12))
     press(solver.cg, np.ones((4, 8)))
     assert solver.cramped is cramped

@@ -17,14 +17,14 @@ from refimpl.model.problem import Terms, pose
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
 from refimpl.solvers.production import nested_solver
-from tests.refimpl.solvers.production.levels import BALL, coupled, level, posed, press
+from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, posed, press
 
 ONE_OF_EIGHT = np.eye(8, dtype=bool)
 
 
 def test_without_a_support_tau_is_nowhere() -> None:
     """As on coarse grids: tau's rule begins so, and there only."""
-    solver = level(posed(coupled(0.3, tau=1e6), 16))
+    solver = level_solver(posed(coupled(0.3, tau=1e6), 16))
     assert solver.settle(1e-9)
     pressure, friction = solver.cg.pressure, solver.problem.friction
     assert 1 < np.count_nonzero(pressure) < 16**2
@@ -35,9 +35,9 @@ def test_without_a_support_tau_is_nowhere() -> None:
 def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() -> None:
     """A ball's gap is below the approach as far as 1.41 contact radii; its displacement parts them there."""
     coarse, fine = (posed(replace(BALL, load=20.0), M) for M in (32, 64))
-    whole = level(coarse)
+    whole = level_solver(coarse)
     assert whole.settle(1e-6)
-    solver = level(coarse, Window.around(whole.cg.pressure > 0, 1))
+    solver = level_solver(coarse, Window.around(whole.cg.pressure > 0, 1))
     assert solver.settle(1e-6)
     beside = np.ones((32, 32), dtype=bool)
     beside[solver.window.slices] = False
@@ -62,7 +62,7 @@ class Between:
 @pytest.mark.parametrize(("sigma", "oblique"), [(0.4, True), (0.4, False), (0.2, True)])
 def test_what_lags_is_mixed_without_units(sigma: float, oblique: bool) -> None:
     """Shear where CG has not taken it in, in displacements, and cosines where there are slopes."""
-    solver = level(posed(coupled(sigma), 16, oblique=oblique))
+    solver = level_solver(posed(coupled(sigma), 16, oblique=oblique))
     held = solver.held
     held.update(0)
     held.mix(None)  # nothing to mix yet
@@ -93,7 +93,7 @@ class Beyond:
 
 
 def test_mixed_cosines_stay_cosines() -> None:
-    solver = level(posed(BALL, 16, oblique=True))
+    solver = level_solver(posed(BALL, 16, oblique=True))
     solver.held.update(0)
     solver.held.mix(None)
     solver.held.mix(Beyond())
@@ -108,18 +108,18 @@ def test_what_lags(friction: rf.Friction, coupled: bool, oblique: bool, slope_co
     """Slopes, and tractions on them; tau is constant on its support."""
     terms = Terms(coupled=coupled, oblique=oblique, slope_correction=slope_correction)
     problem = pose(replace(BALL, friction=friction), rf.Grid(BALL.side, 4), terms, None)
-    assert level(problem).held.lags is max(oblique, slope_correction)
+    assert level_solver(problem).held.lags is max(oblique, slope_correction)
 
 
 @pytest.mark.parametrize("tau", [0.0, 1e6])
 @pytest.mark.parametrize(("sigma", "lags"), [(0.29, False), (0.31, True)])
 def test_strong_coupling_lags(sigma: float, lags: bool, tau: float) -> None:
-    assert level(posed(coupled(sigma, tau=tau), 4)).held.lags is lags
+    assert level_solver(posed(coupled(sigma, tau=tau), 4)).held.lags is lags
 
 
 def test_any_pressure_is_contact() -> None:
     """However small in pascals: it carries tau, and its slopes count."""
-    solver = level(posed(replace(BALL, friction=rf.Friction(tau=1.0, beta=0.0)), 8))
+    solver = level_solver(posed(replace(BALL, friction=rf.Friction(tau=1.0, beta=0.0)), 8))
     press(solver.cg, np.where(ONE_OF_EIGHT, 1e-3, 0.0))
     assert np.array_equal(solver.contact, ONE_OF_EIGHT)
     solver.held.support = solver.contact
@@ -129,7 +129,7 @@ def test_any_pressure_is_contact() -> None:
 @pytest.mark.parametrize(("inside", "seen"), [(True, True), (False, False)])
 def test_slopes_of_facets_that_are_out_of_date_count_where_there_is_contact(inside: bool, seen: bool) -> None:
     facets = Terms(coupled=True, oblique=True, slope_correction=True)
-    solver = level(replace(posed(BALL, 16), terms=facets))
+    solver = level_solver(replace(posed(BALL, 16), terms=facets))
     assert solver.settle(1e-8)
     where = (solver.cg.pressure > 0) == inside
     assert 1 < np.count_nonzero(where) < 16**2
@@ -139,7 +139,7 @@ def test_slopes_of_facets_that_are_out_of_date_count_where_there_is_contact(insi
 
 def test_a_load_that_shear_on_slopes_exceeds_leaves_some_contact() -> None:
     """A thousandth of the load, more or less: enough to go on from, and too little to balance."""
-    solver = level(posed(replace(BALL, friction=rf.Friction(tau=1e9, beta=0.0)), 8, oblique=True))
+    solver = level_solver(posed(replace(BALL, friction=rf.Friction(tau=1e9, beta=0.0)), 8, oblique=True))
     solver.held.support = np.ones((8, 8), dtype=bool)
     solver.held.slopes = Slopes(np.full((8, 8), -0.5), np.zeros((8, 8)))  # downhill: tau takes from the load
     target, balance = solver.held._target(solver.held.slopes.obliqueness)
@@ -152,10 +152,10 @@ def test_a_load_that_shear_on_slopes_exceeds_leaves_some_contact() -> None:
 @pytest.mark.parametrize("approach", [None, 1e-6])
 def test_a_finer_grid_starts_with_nearly_the_answer(approach: float | None) -> None:
     coarse, fine = (posed(BALL, M, approach=approach) for M in (32, 64))
-    solver = level(coarse)
+    solver = level_solver(coarse)
     assert solver.settle(1e-6)
     refined = nested_solver.begun(fine, solver.answer(), solver.counter)
-    answer = level(fine)
+    answer = level_solver(fine)
     assert answer.settle(1e-8)
     exact, start = answer.cg.pressure, refined.full(refined.cg.pressure)
     assert refined.window == Window.around(exact > 0, nested_solver.MARGIN).filling(64)
@@ -172,7 +172,7 @@ def test_a_solver_that_is_dropped_is_gone_at_once() -> None:
     """No cycle of references keeps a level's arrays until the garbage is collected."""
     gc.disable()
     try:
-        solver = level(posed(BALL, 16))
+        solver = level_solver(posed(BALL, 16))
         solver.settle(1e-3)
         gone = weakref.ref(solver.cg)
         del solver
@@ -182,7 +182,7 @@ def test_a_solver_that_is_dropped_is_gone_at_once() -> None:
 
 
 def test_without_facet_tractions_an_update_applies_no_pressure() -> None:
-    solver = level(posed(coupled(0.2), 16))
+    solver = level_solver(posed(coupled(0.2), 16))
     before = dict(solver.counter.tally)
     solver.held.update(solver.cg_iterations)
     assert solver.counter.tally == before
@@ -197,7 +197,7 @@ def test_the_residual_is_what_the_certificate_finds(slope_correction: bool) -> N
     steep = replace(BALL, upper=replace(BALL.upper, surface=rf.Sphere(radius=4e-3)), load=50.0)
     terms = Terms(coupled=True, oblique=True, slope_correction=slope_correction)
     problem = pose(steep, rf.Grid(steep.side, 32), terms, None)
-    solver = level(problem)
+    solver = level_solver(problem)
     outcome = solver.solve(1e-4)
     operator = FFTInfluence(problem.grid, problem.direction)
     state = certify(problem, operator, outcome.pressure, outcome.traction, outcome.slopes)

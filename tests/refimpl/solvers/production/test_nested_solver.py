@@ -17,7 +17,7 @@ from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.nested_solver import _beyond, _certified, _widened, solve_fft
 from refimpl.solvers.production.projected_cg import Apply
-from tests.refimpl.solvers.production.levels import BALL, coupled, level, posed
+from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, posed
 
 
 @pytest.mark.parametrize("sigma", [0.5, 2.0])
@@ -56,7 +56,7 @@ def test_steep_slopes_converge_on_fine_grids() -> None:
 
 def test_what_feeds_back_strongly_does_so_on_finer_grids() -> None:
     problem = posed(STEEP, 128, oblique=True)
-    solver = level(problem)
+    solver = level_solver(problem)
     solver.settle(1e-3)
     assert solver.strong
     assert solver.answer().strong
@@ -74,7 +74,7 @@ def test_residuals_are_continued_beyond_the_contact_that_a_grid_begins_with(
         return precondition
 
     monkeypatch.setattr(nested_solver, "extended", recorded)
-    coarse = level(posed(BALL, 16))
+    coarse = level_solver(posed(BALL, 16))
     coarse.settle(1e-3)
     finer = nested_solver.begun(posed(BALL, 32), coarse.answer(), Counter())
     assert finer.contact.any()
@@ -108,10 +108,10 @@ def test_the_certificate_knows_all_tractions_and_transforms_no_more(rows: slice)
 def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
     M, tolerance = 48, 1e-8
     problem = posed(BALL, M)
-    whole = level(problem)
+    whole = level_solver(problem)
     expected = whole.solve(tolerance).pressure
 
-    solver = level(problem, Window(22, 27, 21, 26))
+    solver = level_solver(problem, Window(22, 27, 21, 26))
     for _ in range(20):
         outcome = solver.solve(tolerance)
         state = _certified(problem, outcome, Counter())
@@ -131,7 +131,7 @@ def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
 
 def test_a_wider_window_holds_the_contact_and_what_penetrates_beside_it() -> None:
     M = 48
-    solver = level(posed(BALL, M), Window(18, 30, 18, 30))
+    solver = level_solver(posed(BALL, M), Window(18, 30, 18, 30))
     outcome = solver.solve(1e-8)
     outside = np.zeros((M, M), dtype=bool)
     outside[24, 31] = True
@@ -155,7 +155,7 @@ def test_steps_are_reported_of_every_grid_and_the_finest_has_little_left_to_do()
 
 def test_what_just_touches_outside_a_window_is_no_penetration() -> None:
     problem = posed(BALL, 16)
-    state = _certified(problem, level(problem).solve(1e-8), Counter())
+    state = _certified(problem, level_solver(problem).solve(1e-8), Counter())
     touching = replace(state, separation=np.full((16, 16), state.approach))
     assert not _beyond(problem, touching, Window(7, 9, 7, 9), 1e-8).any()
 
@@ -175,7 +175,7 @@ def test_facet_tractions_are_the_dense_solvers() -> None:
 def test_contact_on_a_windows_edge_has_outgrown_it_where_slopes_count() -> None:
     """One-sided on the edge, they are central on the whole grid."""
     problem = posed(replace(BALL, load=20.0), 16, oblique=True)
-    state = _certified(problem, level(problem).solve(1e-8), Counter())
+    state = _certified(problem, level_solver(problem).solve(1e-8), Counter())
     contact = state.pressure > 0
     tight = Window.around(contact, margin=0)
     assert 0 < tight.i0 < tight.i1 < 16
@@ -192,7 +192,7 @@ def test_contact_on_a_windows_edge_has_outgrown_it_where_slopes_count() -> None:
 
 def test_without_friction_the_certificate_transforms_no_more_than_the_contact_needs() -> None:
     problem = posed(replace(BALL, friction=rf.Friction()), 32)
-    outcome = level(problem).solve(1e-6)
+    outcome = level_solver(problem).solve(1e-6)
     found, everything = Counter(), Counter()
     _certified(problem, outcome, found)
     _certified(problem, replace(outcome, pressure=np.ones((32, 32))), everything)
