@@ -12,9 +12,10 @@
 from refimpl.driver.solve import solve
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.model.friction import Friction
 from refimpl.model.materials import Material
 from refimpl.model.state import Status
-from refimpl.scene.scene import Body, Friction, Scene
+from refimpl.scene.scene import Body, Scene
 from refimpl.scene.scene_file import read_scene, scene_to_toml, shipped_scenes
 from refimpl.sensitivities.sensitivity import Sensitivity, sensitivity
 from refimpl.solution.solution import Solution

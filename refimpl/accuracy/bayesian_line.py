@@ -19,19 +19,19 @@ from scipy import optimize, special
 
 from refimpl.grid import Array
 
-DECAY = 1.5  # order of what is left of a number that knows no other
+DEFAULT_ORDER = 1.5  # at which the scatter of a number falls, where nothing else is known
 _TWO_SIDED, _ONE_SIDED = 1.959964, 1.644854  # a normal distribution's 95 %
 
 
 class Prior(NamedTuple):
-    """Of a scatter: sigma on the finest grid in the number's unit, and how many grids that is worth."""
+    """Prior of sigma: its value on the finest grid in the number's unit, and its weight in grids."""
 
     scatter: float
     weight: float
 
 
 class Bias(NamedTuple):
-    """What each grid's number is off by (``sizes``), times a factor of that mean and spread."""
+    """Bias of each grid's number: ``sizes`` times a factor of that mean and standard deviation."""
 
     sizes: Array
     mean: float
@@ -41,49 +41,50 @@ class Bias(NamedTuple):
 class Estimate(NamedTuple):
     """A number of the continuous problem, and the 95 % bound of its error.
 
-    ``orders`` say how a number found nears it on finer grids, and how the bound falls.
+    ``orders`` are those at which a grid's number approaches it and at which the bound falls, in element size.
     """
 
     value: float
-    spread: float
-    orders: tuple[float, float] = (1.0, DECAY)
+    half_width: float
+    orders: tuple[float, float] = (1.0, DEFAULT_ORDER)
 
     def widened(self, bound: float) -> Estimate:
-        """The same with an independent error of that 95 % bound."""
-        return self._replace(spread=math.hypot(self.spread, bound))
+        """Return the estimate with an independent error of that 95 % bound added."""
+        return self._replace(half_width=math.hypot(self.half_width, bound))
 
-    def foretold(self, found: float, finer: float) -> float:
-        """The bar of a grid with elements ``finer`` times the size, from the number found on this one.
+    def predicted_bound(self, found: float, finer: float) -> float:
+        """Return the error bound on a grid with elements ``finer`` times the size, from this grid's number.
 
-        >>> Estimate(1.0, 0.0).foretold(1.5, 0.5), Estimate(1.0, 0.0, (2.0, 2.0)).foretold(1.5, 0.5)
+        >>> first, second = Estimate(1.0, 0.0), Estimate(1.0, 0.0, orders=(2.0, 2.0))
+        >>> first.predicted_bound(1.5, 0.5), second.predicted_bound(1.5, 0.5)
         (0.25, 0.125)
         """
-        nearing, settling = self.orders
-        return Estimate(self.value, self.spread * finer**settling).bar(
-            self.value + (found - self.value) * finer**nearing
+        approaching, falling = self.orders
+        return Estimate(self.value, self.half_width * finer**falling).error_bound(
+            self.value + (found - self.value) * finer**approaching
         )
 
-    def bar(self, found: float) -> float:
+    def error_bound(self, found: float) -> float:
         """95 % bound of the error of a number found on a grid.
 
         A normal distribution's, of which the bound needs one side alone where the number found is far off.
-        Of the wider tails that make ``spread`` one side is shorter still.
+        Of the wider tails that make ``half_width`` one side is shorter still.
 
-        >>> [round(Estimate(1.0, 0.1).bar(found), 6) for found in (1.0, 1.05, 1.5)]
+        >>> [round(Estimate(1.0, 0.1).error_bound(found), 6) for found in (1.0, 1.05, 1.5)]
         [0.1, 0.134, 0.583923]
         """
-        distance, deviation = abs(found - self.value), self.spread / _TWO_SIDED
+        distance, deviation = abs(found - self.value), self.half_width / _TWO_SIDED
         if not distance < 3 * deviation:
             return distance + _ONE_SIDED * deviation
         return deviation * math.sqrt(special.chndtrix(0.95, 1.0, (distance / deviation) ** 2))
 
 
-def line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) -> Estimate:
-    """``q`` of the model above, from ``values`` on grids coarse to fine with ``w_k = weights``.
+def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) -> Estimate:
+    """Return the estimate of ``q`` from ``values`` on grids coarse to fine with ``w_k = weights``.
 
     ``prior.scatter`` is sigma of the finest grid in the number's unit.
 
-    >>> line(np.array([1.04, 1.02, 1.01]), np.array([8.0, 2.8, 1.0]), Prior(0.001, 1.0)).value < 1.015
+    >>> fit_line(np.array([1.04, 1.02, 1.01]), np.array([8.0, 2.8, 1.0]), Prior(0.001, 1.0)).value < 1.015
     True
     """
     if not np.any(values):
@@ -104,7 +105,7 @@ def line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) 
 
 
 def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> float:
-    """What a mixture of Student's distributions exceeds, either way together, with 5 %."""
+    """The bound that a mixture of Student distributions exceeds, in either direction, with 5 %."""
     widest = float(np.max(np.abs(centres)) + np.max(scales) * special.stdtrit(freedom, 0.975))
     if len(shares) == 1:
         return widest
@@ -117,7 +118,7 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
 
     if not beyond(1.0) < 0:
         return widest
-    # of a share, which knows no unit: the root is sought to an absolute bound as well
+    # in a dimensionless share, as the root is sought to an absolute tolerance
     return widest * float(optimize.brentq(beyond, 0.0, 1.0, xtol=1e-6, rtol=1e-4))
 
 

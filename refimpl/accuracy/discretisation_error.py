@@ -1,22 +1,25 @@
-"""How far the numbers found on grids are from the continuous problem's: the discretisation's error bars.
+"""Discretisation error bars: how far the numbers found on grids are from those of the continuous problem.
 
-Each number is the intercept q of a line over the grids (`refimpl.accuracy.bayesian_line`), ``y_k = q + c e_k
-+ r_k``. In an area ``e_k`` is what whole elements add along the contact's edge (Yastrebov, Anciaux and
-Molinari 2017), and ``r_k`` which elements the edge happens to catch: the count of n edge elements varies as
-sqrt(n), and n goes as 1 / h, so ``w`` falls as h^(3/2). Friction takes its edge's share from the area, by
-``tau / N``. The highest pressure is that of a parabola through the peak, and ``e_k`` its drop to the
-neighbours (`refimpl.accuracy.peak`); approaches count from first touch, a summit as well
-(`refimpl.accuracy.first_contact`). Where bodies differ, tau on whole elements pulls at more than the contact,
-which falls as h only (`PULLED`). Every other number's ``w`` is told by the grids themselves: by how much of
-the contact is edge, by how slopes bend from element to element. These fall as powers of h where a surface is
-resolved; where it is not they do not, and bars stay wide. Where elements that bear half of the highest
-pressure stand alone nothing bounds what finer grids find there, and where spots are single elements nothing
-but the number itself bounds area and friction.
+Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k = q + c e_k + r_k``.
+
+- Areas: ``e_k`` is the excess of whole elements along the contact's edge (Yastrebov, Anciaux and Molinari
+  2017), and ``r_k`` depends on which elements the edge happens to contain: the count of n edge elements
+  varies as sqrt(n), and n as 1 / h, so its scatter falls as h^(3/2). Friction takes its edge's share from the
+  area, by ``tau / N``.
+- Maximum pressure: that of a parabola through the peak, with its curvature drop for ``e_k`` (`peak`).
+  Approaches count from first contact, which is a peak as well (`first_contact`).
+- Where the bodies differ, tau on whole elements displaces more than tau on the contact; this falls as h only
+  (`SHEAR_BOUNDS`).
+- The scatter of every other number comes from the grids themselves: from the edge fraction of the contact,
+  and from how slopes bend from element to element. These fall as powers of h where a surface is resolved.
+  Where it is not they do not fall, and the bars stay wide. Where elements with half of the maximum pressure
+  stand alone, nothing bounds it; where patches are single elements, only the number itself bounds area and
+  friction.
 
 The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1199; by
-likelihood in `verification.coverage.priors`); what they promise was judged on the scenes of other seeds. How
-bars open where nothing is resolved was chosen on surfaces of noise and on measured ones as well
-(`test_accuracy_estimates.py`).
+likelihood in `verification.coverage.priors`); their coverage was judged on the scenes of other seeds. How
+bars widen where nothing is resolved was chosen on surfaces of noise and on measured ones as well
+(`test_estimates.py`).
 """
 
 from __future__ import annotations
@@ -26,71 +29,86 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from refimpl.accuracy.bayesian_line import DECAY, Bias, Estimate, Prior, line
-from refimpl.accuracy.first_contact import POWERS, first_touch, missed, missed_share, touched
-from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Bias, Estimate, Prior, fit_line
+from refimpl.accuracy.first_contact import (
+    HERTZ_EXPONENTS,
+    at_first_contact,
+    first_contact_bounds,
+    first_contact_error,
+    first_contact_share,
+)
+from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
-SINGLES = 1.5  # what a lone element's edge counts more than an edge
-SUMMIT, SUMMIT_SPREAD = 0.028, 0.009  # c0, s_c: of its drop, as a pressure's parabola peaks too high
-_RAN_OFF = 1e100  # of any number in SI units: squares still fit a double
-_ROUNDING = 1e-6  # instead of zero
-_SLOPES, _AREAS = 2, 8  # powers of what spots that are not single elements let grids know of either
-_UNKNOWN = 0.15  # of an area, at most, as sigma: with its edge's share a bar then reaches down to none
+SINGLE_EXCESS = 1.5  # further bias of single elements, over that of an edge
+PEAK_BIAS, PEAK_BIAS_SPREAD = (
+    0.028,
+    0.009,
+)  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
+_DIVERGED = 1e100  # in SI units; squares are still doubles
+_LEAST_SHARE = 1e-6  # in place of zero
+_SLOPES, _AREAS = 2, 8  # powers of the resolved share that divide the scatter of slopes and areas
+_MOST_AREA = 0.15  # largest sigma over the area: with the edge bias the bar then reaches zero area
 
-AREA = Prior(0.18, 6.0)  # unit: element area times the root of number and `alike` of the edge elements
-BULK = Prior(0.003, 1.0)  # friction without tau's share; unit of this and the last: value (edge / area)^1.5
-PEAK = Prior(0.008, 2.5)  # unit: the summit's drop
-BINORMAL = Prior(0.0002, 1.0)  # unit: normal force, else as the next
-OTHER = Prior(0.02, 2.0)  # unit: as of friction
-PULLED = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
-"""95 % bounds of tau's pull on the edge, over what it does to the depth: of the approach under a load, of the
-others at an approach. Set so that a smooth ball under tau of 0.7 of its pressure stays within its bars, and
-judged on random scenes (`verification.cases.error_bars.pulled`)."""
+AREA = Prior(
+    0.18, 6.0
+)  # unit: element area times the root of number and symmetry multiplicity of the edge elements
+BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
+PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
+BINORMAL = Prior(0.0002, 1.0)  # unit: normal force (edge / area)^1.5
+OTHER = Prior(0.02, 2.0)  # unit: value (edge / area)^1.5
+SHEAR_BOUNDS = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
+"""95 % bounds of the change by tau on the contact's edge, over its change of the depth: of the approach under
+a load, of the others at an approach. Set so that a smooth ball under tau of 0.7 of its pressure stays within
+its bars, and judged on random scenes (`verification.cases.error_bars.pulled`)."""
 
 
 class _Grids:
-    """What a sequence of grids found, coarse to fine."""
+    """The features of a sequence of grids, coarse to fine, as arrays."""
 
-    def __init__(self, results: Sequence[GridResult]) -> None:
+    def __init__(self, results: Sequence[GridFeatures]) -> None:
         self.results = results
-        self.thin, self.spacing = thinness(results), self.each(lambda result: result.spacing)
+        self.edge_scatter = edge_scatter(results)
+        self.spacing = self.each(lambda result: result.grid.element_size)
 
-    def each(self, number: Callable[[GridResult], float]) -> Array:
-        """A number of each grid."""
+    def each(self, number: Callable[[GridFeatures], float]) -> Array:
+        """Return one feature of each grid."""
         return np.array([number(result) for result in self.results])
 
     def found(self, name: str) -> Array:
-        """A reported number of each grid."""
+        """Return one reported number of each grid."""
         return self.each(lambda result: result.numbers[name])
 
     def finest(self, name: str) -> float:
-        """The finest grid's, without its sign."""
+        """Return the magnitude of the finest grid's number."""
         return abs(self.results[-1].numbers[name])
 
-    def hung(self, unit: float) -> Array:
-        """Sizes of a scatter that hangs on the highest peak, less than its pressure does."""
-        return np.array([r.peak.widened(t * unit, 0.5) for r, t in zip(self.results, self.thin, strict=True)])
+    def peak_scatter(self, unit: float) -> Array:
+        """Return sizes of a scatter that grows with the root of the peak's error factor."""
+        return np.array(
+            [r.peak.widened(t * unit, 0.5) for r, t in zip(self.results, self.edge_scatter, strict=True)]
+        )
 
     def smooth(self, values: Array, prior: Prior, *sizes: Array, bias: Bias | None = None) -> Estimate:
-        """From ``values`` that scatter by ``prior.scatter`` times the first of ``sizes``, and the others."""
+        """Estimate from ``values`` that scatter by ``prior.scatter`` times the first of ``sizes``, and the
+        others."""
         size = np.hypot.reduce([prior.scatter * sizes[0], *sizes[1:]])
         if math.isinf(size[-1]):
             return Estimate(float(values[-1]), math.inf)
-        return line(values, _weights(size, self.spacing), prior._replace(scatter=float(size[-1])), bias)
+        return fit_line(values, _weights(size, self.spacing), prior._replace(scatter=float(size[-1])), bias)
 
 
-def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
-    """Estimates of the reported numbers, from grids coarse to fine (one at least)."""
-    grids = _Grids([touched(result) for result in results])
+def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
+    """Return estimates of the reported numbers, from grids coarse to fine (one at least)."""
+    grids = _Grids([at_first_contact(result) for result in results])
     area, load = _area(grids.results), grids.finest("normal_force")
-    slip = grids.each(lambda result: result.slip)
-    across = grids.thin * load, unevenness(grids.results) * load
+    dmu_dA = grids.each(lambda result: result.dmu_dA)
+    across = grids.edge_scatter * load, slope_scatter(grids.results) * load
     found = {
-        "friction_coefficient": _sheared(grids, "friction_coefficient", area, slip, 1.0),
-        "friction_force": _sheared(grids, "friction_force", area, slip * grids.found("normal_force"), load),
+        "friction_coefficient": _sheared(grids, "friction_coefficient", area, dmu_dA, 1.0),
+        "friction_force": _sheared(grids, "friction_force", area, dmu_dA * grids.found("normal_force"), load),
         "contact_area": area,
         "contact_area_corrected": area,
         "max_pressure": _peak(grids),
@@ -98,128 +116,140 @@ def estimates(results: Sequence[GridResult]) -> dict[str, Estimate]:
     }
     last = grids.results[-1]
     if last.loaded:
-        return found | {"approach": _approach(grids).widened(PULLED["approach"] * last.pulled * last.depth)}
-    bounds = missed(last)
+        by_shear = SHEAR_BOUNDS["approach"] * last.shear_by_edge * last.depth
+        return found | {"approach": _approach(grids).widened(by_shear)}
+    bounds = first_contact_bounds(last)
     widened = {name: estimate.widened(bounds[name]) for name, estimate in found.items()}
     widened["normal_force"] = _force(grids)
     for name in ("normal_force", "max_pressure"):
-        widened[name] = widened[name].widened(PULLED[name] * last.pulled * grids.finest(name))
+        widened[name] = widened[name].widened(SHEAR_BOUNDS[name] * last.shear_by_edge * grids.finest(name))
     return widened
 
 
 def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float) -> Estimate:
     """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
     values = grids.found(name) - share * grids.found("contact_area")
-    rest = grids.smooth(values, BULK, grids.thin * grids.finest(name), unevenness(grids.results) * unit)
-    slipping = float(share[-1])
-    return Estimate(rest.value + slipping * area.value, rest.spread).widened(slipping * area.spread)
+    rest = grids.smooth(
+        values, BULK, grids.edge_scatter * grids.finest(name), slope_scatter(grids.results) * unit
+    )
+    per_area = float(share[-1])
+    return Estimate(rest.value + per_area * area.value, rest.half_width).widened(per_area * area.half_width)
 
 
 def _peak(grids: _Grids) -> Estimate:
-    """The highest pressure: that of the parabola, which peaks too high by a share of its drop.
+    """The maximum pressure: that of the parabola, minus its bias, a share of the curvature drop.
 
-    Elements of even pressure give way by less than the waves they stand for, ``q^2 h^2 / 24`` of it: of a
-    wave that alone would be a 24th of the drop. A periodic scene's operator gives way as waves do.
+    Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
+    for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
     """
-    drop = grids.each(lambda result: result.peak.drop)
-    bias = Bias(drop, 0.0 if grids.results[-1].periodic else SUMMIT, SUMMIT_SPREAD)
-    size = grids.each(lambda result: result.peak.widened(result.peak.drop))
+    drop = grids.each(lambda result: result.peak.curvature_drop)
+    bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)
+    size = grids.each(lambda result: result.peak.widened(result.peak.curvature_drop))
     return grids.smooth(grids.each(lambda result: result.peak.height), PEAK, size, bias=bias)._replace(
         orders=(2.0, 2.0)
     )
 
 
 def _approach(grids: _Grids) -> Estimate:
-    """The approach under a load, counted from the surfaces' own first touch."""
-    values = grids.found("approach") + grids.each(lambda result: result.touch.height)
-    return grids.smooth(values, OTHER, grids.hung(grids.finest("approach")), grids.each(first_touch))
+    """The approach under a load, counted from the first contact of the surfaces themselves."""
+    values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
+    scatter = grids.peak_scatter(grids.finest("approach"))
+    return grids.smooth(values, OTHER, scatter, grids.each(first_contact_error))
 
 
 def _force(grids: _Grids) -> Estimate:
-    """The force at an approach, which the first touch moves by its power of the approach."""
+    """The force at an approach, with the error of first contact by its exponent of the approach."""
     load = grids.finest("normal_force")
-    size = POWERS["normal_force"] * load * grids.each(missed_share)
-    return grids.smooth(grids.found("normal_force"), OTHER, grids.hung(load), size)
+    size = HERTZ_EXPONENTS["normal_force"] * load * grids.each(first_contact_share)
+    return grids.smooth(grids.found("normal_force"), OTHER, grids.peak_scatter(load), size)
 
 
-def thinness(results: Sequence[GridResult]) -> Array:
-    """How much of each grid's contact is edge, to the order at which an area's scatter falls."""
-    return np.array([min(1.0, result.edge_share) for result in results]) ** DECAY
+def edge_scatter(results: Sequence[GridFeatures]) -> Array:
+    """Return each grid's edge fraction to the power 3/2, the order at which an area's scatter falls."""
+    return np.array([min(1.0, result.edge_fraction) for result in results]) ** DEFAULT_ORDER
 
 
-def unevenness(results: Sequence[GridResult]) -> Array:
-    """How far slopes within elements leave mu open; all of it where spots are single elements."""
-    uneven = np.array([result.unevenness for result in results])
+def slope_scatter(results: Sequence[GridFeatures]) -> Array:
+    """Return how far slopes within elements leave mu open: all of mu where patches are single elements."""
+    uneven = np.array([result.slope_sampling_error for result in results])
     whole = abs(results[-1].numbers["friction_coefficient"])
-    wider: Array = np.maximum(uneven, np.minimum(uneven / _known(results, _SLOPES), whole))
+    wider: Array = np.maximum(uneven, np.minimum(uneven / _resolved(results, _SLOPES), whole))
     return wider
 
 
-def _known(results: Sequence[GridResult], power: int) -> Array:
-    """How well grids know beside what they say: not at all where all spots are single elements.
+def _resolved(results: Sequence[GridFeatures], power: int) -> Array:
+    """The share of the contact that is not single elements, to a power; it divides a scatter.
 
-    Powers are measures, not laws, of surfaces of noise: bars of slopes missed by a tenth with 1, of corrected
-    areas by a sixth with 4.
+    The powers are empirical, from surfaces of noise: with 1 bars of slopes were too short by a tenth, with 4
+    those of corrected areas by a sixth.
     """
-    known: Array = np.maximum(1 - singleness(results) ** 2, _ROUNDING) ** power
-    return known
+    share: Array = np.maximum(1 - single_element_share(results) ** 2, _LEAST_SHARE) ** power
+    return share
 
 
-def singleness(results: Sequence[GridResult]) -> Array:
-    """How far spots are single elements: the edge's share of the contact over a lone element's."""
-    return np.array([result.edge_share for result in results]) / (4 * EDGE_SHARE)
+def single_element_share(results: Sequence[GridFeatures]) -> Array:
+    """Return each grid's edge fraction over that of a single element: 1 where all patches are single
+    elements."""
+    return np.array([result.edge_fraction for result in results]) / (4 * EDGE_SHARE)
 
 
 def _weights(size: Array, spacing: Array) -> Array:
-    """``w_k``: each grid's own size of the scatter over the finest's; none counts for more than a finer one.
+    """``w_k``: each grid's size of the scatter over the finest grid's, and not less than a finer grid's.
 
-    So numbers that a surface keeps changing below the elements' size are not thought to settle. Where the
-    finest grid knows of no scatter, that of the others is the area's.
+    So a number that keeps changing with ever finer elements is not taken as converged. Where the finest grid
+    has no scatter, the weights are those of an area.
     """
     if not size[-1] > 0:
-        steps: Array = (spacing / spacing[-1]) ** DECAY
+        steps: Array = (spacing / spacing[-1]) ** DEFAULT_ORDER
         return steps
     weights: Array = np.maximum.accumulate(size[::-1])[::-1] / size[-1]
     return weights
 
 
-def discretisation(results: Sequence[GridResult]) -> dict[str, dict[str, float]]:
-    """Discretisation parts of the finest numbers: none without contact, no bound where a state ran off."""
+def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float]]:
+    """Return the discretisation parts of the finest grid's numbers: none without contact, infinite where it
+    diverged."""
     found = results[-1].numbers
     if not results[-1].touching:
         return {}
-    if not all(abs(value) < _RAN_OFF for value in found.values()):
+    if not all(abs(value) < _DIVERGED for value in found.values()):
         given = "normal_force" if results[-1].loaded else "approach"
         return {name: {"discretisation": math.inf} for name in found if name != given}
-    return {
-        name: {"discretisation": estimate.bar(found[name])} for name, estimate in estimates(results).items()
-    }
+    bounds = {name: estimate.error_bound(found[name]) for name, estimate in estimates(results).items()}
+    return {name: {"discretisation": bound} for name, bound in bounds.items()}
 
 
-def _area(results: Sequence[GridResult]) -> Estimate:
-    """Contact area: the edge's mean share is a regressor, its scatter that of a count.
+def _area(results: Sequence[GridFeatures]) -> Estimate:
+    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count.
 
-    A lone element's edge counts for more: finer grids find less of it than of an edge. On the training
-    scenes once more is likeliest, on surfaces of noise and on measured ones 1.5 to 2 times.
+    Single elements have a larger bias: on finer grids less of their area remains. The likeliest excess is 1
+    on the training scenes, 1.5 to 2 on surfaces of noise and on measured ones.
     """
     area, edge = np.transpose([(result.numbers["contact_area"], result.edge) for result in results])
     scatter = area_scatter(results)
     prior = AREA._replace(scatter=AREA.scatter * scatter[-1])
-    bias = Bias(edge * (1 + SINGLES * singleness(results) ** 2), EDGE_SIZE, EDGE_SIZE_SPREAD)
-    return line(area, scatter / scatter[-1], prior, bias)
+    bias = Bias(edge * (1 + SINGLE_EXCESS * single_element_share(results) ** 2), EDGE_SIZE, EDGE_SIZE_SPREAD)
+    return fit_line(area, scatter / scatter[-1], prior, bias)
 
 
-def area_scatter(results: Sequence[GridResult]) -> Array:
-    """Each grid's unit of the area's scatter (m^2): a count's, and of single elements' spots more.
+def area_scatter(results: Sequence[GridFeatures]) -> Array:
+    """Return each grid's unit of the area's scatter (m^2): that of a count, and more for single elements.
 
-    Of those no more than what makes the bar reach down to no area.
+    For single elements it is at most what makes the bar reach zero area.
     """
-    edge, area, spacing, alike = np.transpose(
-        [(result.edge, result.numbers["contact_area"], result.spacing, result.alike) for result in results]
+    edge, area, dA, multiplicity = np.transpose(
+        [
+            (
+                result.edge,
+                result.numbers["contact_area"],
+                result.grid.element_area,
+                result.symmetry_multiplicity,
+            )
+            for result in results
+        ]
     )
-    elements = np.maximum(edge / (EDGE_SHARE * spacing**2), 1.0)
-    counted = np.sqrt(elements * alike) * spacing**2
+    counted = np.sqrt(np.maximum(edge / (EDGE_SHARE * dA), 1.0) * multiplicity) * dA
     scatter: Array = np.maximum(
-        counted, np.minimum(counted / _known(results, _AREAS), _UNKNOWN * area / AREA.scatter)
+        counted, np.minimum(counted / _resolved(results, _AREAS), _MOST_AREA * area / AREA.scatter)
     )
     return scatter

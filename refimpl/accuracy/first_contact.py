@@ -1,8 +1,8 @@
-"""Numbers at a prescribed approach, as if it counted from where the surfaces themselves touch first.
+"""Numbers at a prescribed approach, as if it counted from where the surfaces themselves first touch.
 
-Approaches count from first touch, of which a grid knows its highest elements only. The gap's summit lies
-higher (`refimpl.accuracy.peak`), so at the approach prescribed the bodies are less far into one another than
-on the grid. What that takes of a number is foretold by its power of the approach in Hertz' contact.
+Approaches count from first contact, of which a grid sees its highest elements only. The peak of the gap
+turned over lies higher (`peak`), so at the prescribed approach the bodies indent each other less than on the
+grid. The effect on a number is that of its power of the approach in Hertz contact.
 """
 
 from __future__ import annotations
@@ -11,59 +11,62 @@ import math
 import sys
 from dataclasses import replace
 
-from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.grid_features import GridFeatures
 
-TOUCH = 0.02  # of its drop: how far off the summit of a gap is found (one standard deviation)
-POWERS = {
+PEAK_ERROR = 0.02  # standard deviation of the peak of a gap, over its curvature drop
+HERTZ_EXPONENTS = {
     "normal_force": 1.5,
     "binormal_force": 1.5,
     "contact_area": 1.0,
     "contact_area_corrected": 1.0,
     "max_pressure": 0.5,
 }
-"""Of the approach (Hertz 1882); friction goes as the area with tau's share, as the force with the rest."""
+"""Exponents of the approach (Hertz 1882); friction is tau times the area plus a share of the force."""
 
 
-def touched(result: GridResult) -> GridResult:
-    """A result at a prescribed approach, less what the grid's first touch lies below the surfaces' own."""
-    if result.loaded or not result.numbers["normal_force"] > 0:
-        return result
-    approach = result.numbers["approach"]
-    share = approach / (approach + result.touch.height)
-    return _at(result, share) if _presses(result, share) else result
+def at_first_contact(features: GridFeatures) -> GridFeatures:
+    """Return features at a prescribed approach, corrected by how far the grid's first contact lies too
+    low."""
+    if features.loaded or not features.numbers["normal_force"] > 0:
+        return features
+    approach = features.numbers["approach"]
+    share = approach / (approach + features.first_contact.height)
+    return _at(features, share) if _presses(features, share) else features
 
 
-def missed(result: GridResult) -> dict[str, float]:
-    """95 % bounds of what numbers at a prescribed approach may be off by for it."""
-    share = 2 * missed_share(result)
-    if math.isinf(share) or not _presses(result, 1 / (1 + share)):
-        return dict.fromkeys(result.numbers, math.inf)
-    less = _at(result, 1 / (1 + share)).numbers
-    return {name: abs(value - less[name]) for name, value in result.numbers.items()}
+def first_contact_bounds(features: GridFeatures) -> dict[str, float]:
+    """Return 95 % bounds of the errors that first contact causes at a prescribed approach."""
+    share = 2 * first_contact_share(features)
+    if math.isinf(share) or not _presses(features, 1 / (1 + share)):
+        return dict.fromkeys(features.numbers, math.inf)
+    less = _at(features, 1 / (1 + share)).numbers
+    return {name: abs(value - less[name]) for name, value in features.numbers.items()}
 
 
-def missed_share(result: GridResult) -> float:
-    """Standard deviation of the first touch, over the approach."""
-    return first_touch(result) / abs(result.numbers["approach"])
+def first_contact_share(features: GridFeatures) -> float:
+    """Return the standard deviation of the first contact, over the approach."""
+    return first_contact_error(features) / abs(features.numbers["approach"])
 
 
-def first_touch(result: GridResult) -> float:
-    """Standard deviation of the first touch (m)."""
-    return result.touch.widened(TOUCH * result.touch.drop)
+def first_contact_error(features: GridFeatures) -> float:
+    """Return the standard deviation of the height of first contact (m)."""
+    return features.first_contact.widened(PEAK_ERROR * features.first_contact.curvature_drop)
 
 
-def _presses(result: GridResult, share: float) -> bool:
-    """Whether a force that numbers can hold is left at that share of the approach."""
-    force: float = result.numbers["normal_force"] * share ** POWERS["normal_force"]
+def _presses(features: GridFeatures, share: float) -> bool:
+    """Whether the force at that share of the approach is a normal double."""
+    force: float = features.numbers["normal_force"] * share ** HERTZ_EXPONENTS["normal_force"]
     return force > sys.float_info.min
 
 
-def _at(result: GridResult, share: float) -> GridResult:
-    """The result at that share of its approach, by Hertz' powers."""
-    numbers = {name: value * share ** POWERS.get(name, 0.0) for name, value in result.numbers.items()}
-    force, tau = result.numbers["normal_force"], result.slip * result.numbers["normal_force"]
-    rest = result.numbers["friction_force"] - tau * result.numbers["contact_area"]
+def _at(features: GridFeatures, share: float) -> GridFeatures:
+    """The features at that share of the approach, by the exponents of Hertz contact."""
+    numbers = {
+        name: value * share ** HERTZ_EXPONENTS.get(name, 0.0) for name, value in features.numbers.items()
+    }
+    force, tau = features.numbers["normal_force"], features.dmu_dA * features.numbers["normal_force"]
+    rest = features.numbers["friction_force"] - tau * features.numbers["contact_area"]
     numbers["friction_force"] = tau * numbers["contact_area"] + rest * numbers["normal_force"] / force
     numbers["friction_coefficient"] = numbers["friction_force"] / numbers["normal_force"]
-    peak = replace(result.peak, height=result.peak.height * share ** POWERS["max_pressure"])
-    return replace(result, numbers=numbers, peak=peak, slip=tau / numbers["normal_force"])
+    peak = replace(features.peak, height=features.peak.height * share ** HERTZ_EXPONENTS["max_pressure"])
+    return replace(features, numbers=numbers, peak=peak, dmu_dA=tau / numbers["normal_force"])

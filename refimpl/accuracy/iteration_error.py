@@ -1,8 +1,8 @@
-"""Error bars: how far each reported number may be from the exact solution of the model, in parts.
+"""Error bars of what a grid's own solution leaves open: unfinished iterations, and tau's active set.
 
 Parts are absolute, in the number's unit, and meant as 95 % bounds that add. ``iteration`` follows from the
-certificate; ``tau support`` from the states of a settled cycle, and from tau on contacts that it is withheld
-from; ``discretisation`` from one grid or a sequence of grids (`refimpl.accuracy.discretisation_error`).
+certificate; ``active set`` from the states of an alternating contact edge, and from tau on elements in
+contact that carry none.
 """
 
 from __future__ import annotations
@@ -12,69 +12,106 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from refimpl.solution.solution import Solution
+from refimpl.model.certificate import State
+from refimpl.model.friction import friction_per_area
+from refimpl.model.problem import Problem
+from refimpl.model.state import SolverResult
 
-AREAS = "contact_area", "contact_area_corrected"  # open by the same elements
+AREAS = "contact_area", "contact_area_corrected"  # the same elements leave both open
+NUMBERS = (
+    "friction_coefficient",
+    *AREAS,
+    "max_pressure",
+    "approach",
+    "normal_force",
+    "friction_force",
+    "binormal_force",
+)
+"""The numbers that a solution reports, by their names there."""
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 
+_MARGIN = 10  # times the largest residual, within which of zero a pressure or clearance may change its sign
 
-def iteration_parts(solution: Solution) -> Uncertainty:
-    """What the certificate leaves open.
 
-    Forces and lengths are uncertain by the worst residual: of the approach from first touch, of the normal
-    force, which slopes turn to friction and to Q. The area is uncertain by the elements whose pressure or
-    clearance is within ten worst residuals of zero, and friction by tau on them; the highest pressure by what
-    the highest elements would press by themselves for what their separation is off, where that is more.
+def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
+    """Return all reported numbers of a state (SI); the approach counts from the problem's datum."""
+    return {
+        "friction_coefficient": state.friction_coefficient,
+        "contact_area": state.contact_area,
+        "contact_area_corrected": state.contact_area_corrected,
+        "max_pressure": state.max_pressure,
+        "approach": state.approach - problem.datum,
+        "normal_force": state.forces.normal,
+        "friction_force": state.forces.friction,
+        "binormal_force": state.forces.binormal,
+    }
+
+
+def iteration_parts(problem: Problem, state: State) -> Uncertainty:
+    """Return what the certificate leaves open.
+
+    Forces and lengths are uncertain by the largest residual: of the approach from first contact, and of the
+    normal force, which slopes turn to friction and to Q. The area is uncertain by the elements whose pressure
+    or clearance is within ten residuals of zero, and friction by tau on them. The maximum pressure is
+    uncertain by the pressure that would close what is left of the gap at the highest elements, where that is
+    more.
     """
-    worst = solution.certificate.worst
-    margin = 10 * worst
-    marginal = (solution.pressure > 0) & (solution.pressure <= margin * solution.max_pressure)
-    lift = from_first_touch(solution) or solution.grid.spacing
-    marginal |= (solution.pressure == 0) & (solution.clearance <= margin * lift)
-    area = float(np.count_nonzero(marginal)) * solution.grid.element_area
-    normal = abs(solution.normal_force)
+    residual = state.certificate.largest
+    margin = _MARGIN * residual
+    marginal = state.contact & (state.pressure <= margin * state.max_pressure)
+    lift = abs(state.approach) or problem.grid.element_size
+    marginal |= (state.pressure == 0) & (state.clearance <= margin * lift)
+    area = float(np.count_nonzero(marginal)) * problem.grid.element_area
+    normal = abs(state.forces.normal)
     sizes = dict.fromkeys(("normal_force", "binormal_force"), normal) | {"approach": lift}
-    parts: Uncertainty = {name: {"iteration": worst * size} for name, size in sizes.items()}
-    parts["max_pressure"] = {"iteration": max(worst * solution.max_pressure, _misplaced(solution))}
+    parts: Uncertainty = {name: {"iteration": residual * size} for name, size in sizes.items()}
+    parts["max_pressure"] = {"iteration": max(residual * state.max_pressure, _peak_misfit(problem, state))}
     parts |= {name: {"iteration": area} for name in AREAS}
-    turned = math.tan(solution.slope_error.rms_slope) * normal
-    friction = worst * (abs(solution.friction_force) + turned) + solution.friction.tau * area
+    turned = math.sqrt(state.slopes.mean_square(state.pressure)) * normal
+    friction = residual * (abs(state.forces.friction) + turned) + problem.friction.jump * area
     parts["friction_force"] = {"iteration": friction}
-    share = worst * (abs(solution.friction_coefficient) + (turned / normal if normal else 0.0))
-    parts["friction_coefficient"] = {"iteration": share + adhesive_share(solution) * area}
+    share = residual * (abs(state.friction_coefficient) + (turned / normal if normal else 0.0))
+    per_area = friction_per_area(problem.friction, state.forces.normal)
+    parts["friction_coefficient"] = {"iteration": share + per_area * area}
     return parts
 
 
-def _misplaced(solution: Solution) -> float:
-    """Pressure (Pa) that takes the highest elements back where they should be, each by itself.
+def _peak_misfit(problem: Problem, state: State) -> float:
+    """Pressure (Pa) that closes the clearance of the highest elements, each by itself.
 
-    Those with half of the highest pressure; at edges separations are off by more, and no peak is there.
+    Those are elements with half of the maximum pressure; at edges clearances are larger, and no peak is
+    there.
     """
-    if solution.max_pressure == 0:
+    if state.max_pressure == 0:
         return 0.0
-    off = float(np.abs(solution.clearance[solution.pressure >= 0.5 * solution.max_pressure]).max())
-    return 0.5 * off / (solution.problem.pair.normal_compliance * solution.grid.spacing)
+    misfit = float(np.abs(state.clearance[state.pressure >= 0.5 * state.max_pressure]).max())
+    return misfit / problem.elasticity.element_compliance(problem.grid)
 
 
-def from_first_touch(solution: Solution) -> float:
-    """The approach counted from first touch, also of periodic scenes, which count from mean planes (m)."""
-    problem = solution.problem
-    return abs(solution.approach + (float(problem.gap.mean()) if problem.periodic else 0.0))
+def active_set_parts(problem: Problem, result: SolverResult, state: State) -> Uncertainty:
+    """Return how far mu, F and the areas of the states of tau's cycles lie from the returned ones.
 
-
-def adhesive_share(solution: Solution) -> float:
-    """``d mu / d A = tau / N`` of Eq. (10): what a change of area does to friction (1/m^2)."""
-    return solution.friction.tau / solution.normal_force if solution.normal_force > 0 else 0.0
-
-
-def edge_excess(solution: Solution) -> float:
-    """Area that whole elements add along the contact's edge, ``A - A_corrected`` (m^2)."""
-    return solution.contact_area - solution.contact_area_corrected
+    For mu it is at least tau on all elements that violate the law: a law that turns tau on with pressure,
+    however soon, leaves such elements a share of it (the case ``tau/shares``).
+    """
+    load = problem.nominal_load(state.forces.normal)
+    violating = state.certificate.law_violations * problem.grid.element_area
+    spread = {
+        name: max(
+            (abs(getattr(other, name) - getattr(state, name)) for other in result.cycle_states), default=0.0
+        )
+        for name in ("friction_coefficient", "contact_area")
+    }
+    by_violation = problem.friction.jump * violating / load if load else 0.0
+    spread["friction_coefficient"] = max(spread["friction_coefficient"], by_violation)
+    spread["friction_force"] = spread["friction_coefficient"] * load
+    spread |= dict.fromkeys(AREAS, spread["contact_area"])
+    return {name: {"active set": width} for name, width in spread.items() if width > 0}
 
 
 def merged(*several: Mapping[str, Mapping[str, float]]) -> Uncertainty:
-    """All parts of all numbers; of parts with one name the last is kept.
+    """Return all parts of all numbers; of parts with one name the last is kept.
 
     >>> merged({"approach": {"iteration": 1.0}}, {"approach": {"discretisation": 2.0}})
     {'approach': {'iteration': 1.0, 'discretisation': 2.0}}

@@ -1,8 +1,9 @@
-"""The summit of a field as its elements know it: where parabolas through them peak, and how well they fit.
+"""The peak of a field between its elements: where parabolas through them peak, and how well they fit.
 
-The highest element lies up to half an element beside the summit, along either axis. The parabola through it
-and its neighbours knows by how much; fourth differences tell whether there is one. Where a field is resolved
-drop and roughness fall as h^2; of an element that stands alone the roughness is 1 on every grid.
+The highest element lies up to half an element beside the peak, along either axis. The parabola through it and
+its neighbours gives the peak; fourth differences tell whether the field is parabolic there. Where a field is
+resolved, curvature drop and non-parabolicity fall as h^2; of an element that stands alone the
+non-parabolicity is 1 on every grid.
 """
 
 from __future__ import annotations
@@ -13,117 +14,108 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.grid import Array
-from refimpl.grid.window import Window
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Grid, Mask
 
-_RIVAL = 0.5  # of the highest element: lower maxima have no say in how well a summit is known
-_NEAR = np.arange(-2, 3)[:, None]
+_RIVAL = 0.5  # of the highest element: lower maxima do not count for how well the peak is resolved
+_REACH = 2  # elements on either side of a maximum that fourth differences need
 
 
 @dataclass(frozen=True)
-class Summit:
-    """A field's summit; ``height`` and ``drop`` have the field's unit.
+class Peak:
+    """A field's peak; ``height`` and ``curvature_drop`` have the field's unit.
 
     height : of the parabola through the highest elements and their neighbours along x and y
-    drop : how far the four neighbours together fall short of that element: minus h^2 times the Laplacian
-    roughness : fourth differences over three times the drop: 0 on a parabola, 1 of elements that stand alone
+    curvature_drop : four times the highest element minus its four neighbours: minus h^2 times the Laplacian
+    non_parabolicity : fourth differences over three times the drop: 0 on a parabola, 1 of single elements
     """
 
     height: float
-    drop: float
-    roughness: float
+    curvature_drop: float
+    non_parabolicity: float
 
     @property
-    def openness(self) -> float:
-        """How many times less is known of it than of a parabola's summit; infinite if nothing is.
+    def error_factor(self) -> float:
+        """By how much the error exceeds that of a parabola's peak; infinite if nothing is known.
 
-        A measure, not a law: on the training scenes, on surfaces of noise and on measured ones what the
-        parabola misses, over the drop, grows about as this does.
+        An empirical measure: on the training scenes, on surfaces of noise and on measured ones the error of
+        the parabola, over the drop, grows about as this factor does.
 
-        >>> [round(Summit(1.0, 1.0, roughness).openness, 1) for roughness in (0.0, 0.5, 0.8, 1.0)]
+        >>> [round(Peak(1.0, 1.0, q).error_factor, 1) for q in (0.0, 0.5, 0.8, 1.0)]
         [1.0, 3.2, 59.5, inf]
         """
-        known = (1 - self.roughness**2) ** 4
-        return 1 / known if known > 0 else math.inf
+        resolved = (1 - self.non_parabolicity**2) ** 4
+        return 1 / resolved if resolved > 0 else math.inf
 
     def widened(self, size: float, power: float = 1.0) -> float:
-        """Size of an error that goes with a power of the openness; infinite where that is, even if it is 0.
+        """Return the size of an error times a power of the error factor; infinite where the factor is.
 
-        >>> Summit(1.0, 1.0, 0.0).widened(2.0), Summit(1.0, 1.0, 1.0).widened(0.0, 0.5)
+        >>> Peak(1.0, 1.0, 0.0).widened(2.0), Peak(1.0, 1.0, 1.0).widened(0.0, 0.5)
         (2.0, inf)
         """
-        return math.inf if math.isinf(self.openness) else size * self.openness**power
+        return math.inf if math.isinf(self.error_factor) else size * self.error_factor**power
 
 
-LEVEL = Summit(0.0, 0.0, 0.0)
+NO_PEAK = Peak(0.0, 0.0, 0.0)
 """Of a field without relief."""
 
 
-def highest(field: Array, *, periodic: bool = False) -> Summit:
-    """The summit of a field ``(M, M)``, not negative; beyond its border it repeats itself or stays as it is.
+def highest(field: Array, grid: Grid) -> Peak:
+    """Return the peak of a field that is not negative; `NO_PEAK` of one that vanishes or is not finite.
 
-    A field without relief, or one that ran off to infinity, has `LEVEL`. Fewer than three elements a side
-    know of no parabola: their roughness is 1.
-    The roughness is the largest of all maxima that reach half of the highest: a summit that is resolved says
-    nothing of one beside it that is not.
+    The non-parabolicity is the largest of all maxima that reach half of the highest: a resolved peak says
+    nothing about one beside it that is not. Along an axis of fewer than three elements there is no parabola,
+    and the non-parabolicity is 1.
 
     >>> x = np.arange(7.0) - 2.75
-    >>> found = highest(50 - x[:, None] ** 2 - 0 * x)
-    >>> round(found.height, 12), round(found.drop, 12), round(found.roughness, 12)
+    >>> found = highest(50 - x[:, None] ** 2 - 0 * x, Grid.square(1.0, 7))
+    >>> round(found.height, 12), round(found.curvature_drop, 12), round(found.non_parabolicity, 12)
     (50.0, 2.0, 0.0)
-    >>> highest(np.pad([[3.0]], 3))
-    Summit(height=3.0, drop=12.0, roughness=1.0)
+    >>> highest(np.pad([[3.0]], 3), Grid.square(1.0, 7))
+    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0)
     """
     top = float(field.max())
     if not 0 < top < math.inf:
-        return LEVEL
-    if len(field) < 3:
-        return Summit(top, 0.0, 1.0)
-    high = field >= _RIVAL * top
-    if not periodic:
-        box = Window.around(high, margin=2).slices  # all that is looked at
-        field, high = field[box], high[box]
-    i, j = np.nonzero(_maxima(field, periodic) & high)
-    heights, drops, roughness = _parabolas(_lines(field, i, j, periodic))
-    best = int(np.argmax(heights))
-    return Summit(float(heights[best]), float(drops[best]), float(roughness.max()))
+        return NO_PEAK
+    if min(field.shape) < 3:
+        return Peak(top, 0.0, 1.0)
+    box = grid.window_around(field >= _RIVAL * top, margin=_REACH).slices
+    return _peak(np.pad(field[box], _REACH, mode="wrap" if grid.periodic else "edge"), _RIVAL * top)
 
 
-def deepest(field: Array) -> Summit:
-    """The summit of the field turned over, of which no other one counts.
+def deepest(field: Array) -> Peak:
+    """Return the peak of the field turned over, without regard to others.
 
-    >>> deepest(-np.pad([[3.0]], 3)) == highest(np.pad([[3.0]], 3))
+    >>> deepest(-np.pad([[3.0]], 3)) == highest(np.pad([[3.0]], 3), Grid.square(1.0, 7))
     True
     """
-    i, j = np.unravel_index([np.argmin(field)], field.shape)
-    height, drop, roughness = (float(value[0]) for value in _parabolas(-_lines(field, i, j, periodic=False)))
-    return Summit(height, drop, roughness)
+    i, j = (index + _REACH for index in np.unravel_index([np.argmin(field)], field.shape))
+    lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j)
+    height, drop, rest = (float(value[0]) for value in _parabolas(lines))
+    return Peak(height, drop, rest)
 
 
-def _maxima(field: Array, periodic: bool) -> Mask:
-    """Elements that no neighbour along x or y exceeds."""
-    found = np.ones(field.shape, dtype=bool)
-    for values, kept in ((field, found), (field.T, found.T)):
-        kept[1:] &= values[1:] >= values[:-1]
-        kept[:-1] &= values[:-1] >= values[1:]
-        if periodic:
-            kept[0] &= values[0] >= values[-1]
-            kept[-1] &= values[-1] >= values[0]
-    return found
+def _peak(padded: Array, least: float) -> Peak:
+    """The peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements."""
+    inner, back, ahead = slice(2, -2), slice(1, -3), slice(3, -1)
+    field = padded[inner, inner]
+    maxima: Mask = field >= least
+    for neighbour in (padded[back, inner], padded[ahead, inner], padded[inner, back], padded[inner, ahead]):
+        maxima &= field >= neighbour
+    i, j = np.nonzero(maxima)
+    heights, drops, rests = _parabolas(_lines(padded, i + _REACH, j + _REACH))
+    best = int(np.argmax(heights))
+    return Peak(float(heights[best]), float(drops[best]), float(rests.max()))
 
 
-def _lines(field: Array, i: NDArray[np.intp], j: NDArray[np.intp], periodic: bool) -> Array:
+def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp]) -> Array:
     """The five elements about each place, along x and along y: shape ``(2, 5, n)``."""
-    n, m = field.shape
-    rows, columns = i + _NEAR, j + _NEAR
-    rows = rows % n if periodic else rows.clip(0, n - 1)
-    columns = columns % m if periodic else columns.clip(0, m - 1)
-    return np.array([field[rows, j], field[i, columns]])
+    near = np.arange(-_REACH, _REACH + 1)[:, None]
+    return np.array([padded[i + near, j], padded[i, j + near]])
 
 
 def _parabolas(lines: Array) -> tuple[Array, Array, Array]:
-    """Height, drop and roughness of each place with ``lines`` (2, 5, n) about it, a maximum along both."""
+    """Height, drop and non-parabolicity of each place with ``lines`` (2, 5, n) about it, a maximum along
+    both."""
     farther_back, back, top, ahead, farther = lines.swapaxes(0, 1)
     bends, rise = 2 * top - back - ahead, ahead - back
     gains = np.zeros_like(bends)
@@ -131,6 +123,6 @@ def _parabolas(lines: Array) -> tuple[Array, Array, Array]:
     gains *= rise  # in this order no number leaves its range
     drops = bends.sum(axis=0)
     rest = np.abs(farther_back + farther - 4 * (back + ahead) + 6 * top).sum(axis=0)
-    roughness = np.zeros_like(drops)
-    np.divide(rest, 3 * drops, out=roughness, where=drops > 0)
-    return top[0] + gains.sum(axis=0), drops, np.minimum(roughness, 1.0)
+    shares = np.zeros_like(drops)
+    np.divide(rest, 3 * drops, out=shares, where=drops > 0)
+    return top[0] + gains.sum(axis=0), drops, np.minimum(shares, 1.0)

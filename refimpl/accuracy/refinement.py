@@ -1,24 +1,20 @@
-"""Grids refined until the error bar of a chosen number is as short as asked for.
+"""Grids refined until the error bar of a chosen number is as short as requested.
 
-Two coarse grids open; the bar they give (`refimpl.accuracy.discretisation_error`) also foretells the bar of
-finer grids, so that the next one is, as a rule, the last. All grids but the last together then cost a share
-of it only.
+Two coarse grids open the sequence. Their error bar (`discretisation_error`) also predicts the bars of finer
+grids, so the next grid is usually the last, and all earlier grids together cost a fraction of it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 from refimpl.accuracy.discretisation_error import discretisation, estimates
-from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import Uncertainty, merged
 from refimpl.errors import InputError, require_number
-from refimpl.model.state import Status
-from refimpl.solution.remark import Remark
-from refimpl.solution.solution import Cost, Solution
 
 Quantity = Literal["friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure"]
 QUANTITIES: tuple[Quantity, ...] = (
@@ -28,11 +24,11 @@ QUANTITIES: tuple[Quantity, ...] = (
     "max_pressure",
 )
 
-OPENING = (32, 64)
-LADDER = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
-_FARTHEST = 8  # times finer than the last grid: what two coarse grids foretell beyond is worth little
-_BLIND = 2  # the same where the bar is longer than the number, and foretells nothing
-_MARGIN = 0.95  # share of the accuracy that a foretold bar may take
+FIRST_GRIDS = (32, 64)  # elements along the longer side
+GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
+MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids are poor beyond
+MAX_BLIND_REFINEMENT = 2  # the same where the bar is longer than the number, and predicts nothing
+_MARGIN = 0.95  # share of the accuracy that a predicted bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
 
@@ -47,137 +43,107 @@ def check_quantity(quantity: str) -> None:
         raise InputError("quantity", quantity, f"one of {', '.join(QUANTITIES)}")
 
 
-def deserved_tolerance(accuracy: float) -> float:
-    """Certificate tolerance that an accuracy deserves: a small share of it, and no tighter than 1e-8.
+def tolerance_for(accuracy: float) -> float:
+    """Return the certificate tolerance for an accuracy: a small share of it, and at least 1e-8.
 
-    >>> deserved_tolerance(0.01)
+    >>> tolerance_for(0.01)
     1e-05
     """
     return min(1e-5, max(1e-8, _ITERATION_SHARE * accuracy))
 
 
 @dataclass(frozen=True)
-class Climb:
-    """The grids solved, coarse to fine; ``refusal`` says why a finer one was not to be had, if so."""
+class Refinement:
+    """The grids solved, coarse to fine; ``refusal`` is the reason why no finer one was solved, or empty."""
 
-    results: tuple[GridResult, ...]
+    results: tuple[GridFeatures, ...]
     refusal: str
 
 
-def climb(
-    result_at: Callable[[int], GridResult], accuracy: float, quantity: str, ladder: Iterable[int] = LADDER
-) -> Climb:
+def refine_until(
+    features_at: Callable[[int], GridFeatures],
+    accuracy: float,
+    quantity: str,
+    grid_sizes: Iterable[int] = GRID_SIZES,
+) -> Refinement:
     """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
 
-    A grid that ``result_at`` refuses by `InputError` (memory) is replaced by the next coarser one of
-    the ladder, as long as that is finer than the last. What tau's support leaves open need not get less on
-    finer grids: where it has not, and is more than the accuracy asked for, the climb ends.
+    A grid that ``features_at`` refuses by `InputError` (memory) is replaced by the next coarser one, as long
+    as that is finer than the last. The part that tau's active set leaves open need not fall on finer grids:
+    where it has not fallen and exceeds the accuracy, the refinement ends.
     """
-    results = [result_at(M) for M in OPENING]
-    remaining, refusal = list(ladder), ""
-    while results[-1].touching and relative_bar(results, quantity) > accuracy:
-        if ambiguous(results, accuracy, quantity):
-            return Climb(
-                tuple(results), "tau's support leaves more than that open, and no less on finer grids"
-            )
-        remaining = [M for M in remaining if M > results[-1].M]
+    results = [features_at(M) for M in FIRST_GRIDS]
+    remaining, refusal = list(grid_sizes), ""
+    while results[-1].touching and relative_bound(results, quantity) > accuracy:
+        if active_set_dominates(results, accuracy, quantity):
+            reason = "tau's active set leaves more than that open, and no less on finer grids"
+            return Refinement(tuple(results), reason)
+        last = size_of(results[-1])
+        remaining = [M for M in remaining if last < M]
         if not remaining:
-            return Climb(tuple(results), refusal or f"at most {results[-1].M} elements a side are tried")
+            return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
         M = next_grid(results, accuracy, quantity, remaining)
         try:
-            results.append(result_at(M))
+            results.append(features_at(M))
         except InputError as refused:
-            remaining, refusal = [grid for grid in remaining if grid < M], str(refused)
-    return Climb(tuple(results), "")
+            remaining, refusal = [size for size in remaining if size < M], str(refused)
+    return Refinement(tuple(results), "")
 
 
-def next_grid(results: Sequence[GridResult], accuracy: float, quantity: str, ladder: Sequence[int]) -> int:
-    """The coarsest grid of the ladder whose bar is foretold to do, within reach of the last grid."""
+def size_of(features: GridFeatures) -> int:
+    """Return the number of elements along the longer side of a grid."""
+    return max(features.grid.shape)
+
+
+def next_grid(
+    results: Sequence[GridFeatures], accuracy: float, quantity: str, grid_sizes: Sequence[int]
+) -> int:
+    """Return the coarsest size whose predicted bar is short enough, within reach of the last grid."""
     fine = results[-1]
     found = fine.numbers[quantity]
     estimate = estimates(results)[quantity]
-    farthest = fine.M * (_FARTHEST if estimate.spread < abs(found) else _BLIND)
-    reach = [grid for grid in ladder if grid <= farthest] or ladder[:1]
-    own, order = _own(fine, quantity), _order(results, quantity)
+    ratio = MAX_REFINEMENT if estimate.half_width < abs(found) else MAX_BLIND_REFINEMENT
+    reach = [size for size in grid_sizes if size <= ratio * size_of(fine)] or grid_sizes[:1]
+    own, order = _own_bound(fine, quantity), _own_order(results, quantity)
     for M in reach:
-        finer = fine.M / M
-        bar = estimate.foretold(found, finer) + own * finer**order
-        if bar <= _MARGIN * accuracy * abs(found):
+        finer = size_of(fine) / M
+        bound = estimate.predicted_bound(found, finer) + own * finer**order
+        if bound <= _MARGIN * accuracy * abs(found):
             return M
     return reach[-1]
 
 
-def _own(result: GridResult, quantity: str) -> float:
+def _own_bound(features: GridFeatures, quantity: str) -> float:
     """What a grid's own solution leaves open of a number."""
-    return sum(result.parts.get(quantity, {}).values())
+    return sum(features.parts.get(quantity, {}).values())
 
 
-def _order(results: Sequence[GridResult], quantity: str) -> float:
-    """The order at which that falls: as to the last grid climbed to, from none to the first."""
-    coarse, fine = (_own(result, quantity) for result in results[-2:])
-    if len(results) == len(OPENING) or not min(coarse, fine) > 0:
+def _own_order(results: Sequence[GridFeatures], quantity: str) -> float:
+    """Order at which that falls, from the last two grids, between 0 and 1; 1 for the first two grids."""
+    coarse, fine = (_own_bound(result, quantity) for result in results[-2:])
+    if len(results) == len(FIRST_GRIDS) or not min(coarse, fine) > 0:
         return 1.0
-    return min(max(math.log(coarse / fine) / math.log(results[-1].M / results[-2].M), 0.0), 1.0)
+    refinement = size_of(results[-1]) / size_of(results[-2])
+    return min(max(math.log(coarse / fine) / math.log(refinement), 0.0), 1.0)
 
 
-def ambiguous(results: Sequence[GridResult], accuracy: float, quantity: str) -> bool:
-    """Whether tau's support leaves more than that open on a grid climbed to, and no less than before."""
-    if len(results) == len(OPENING):
+def active_set_dominates(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> bool:
+    """Return whether tau's active set leaves more than the accuracy open, and no less than on the grid
+    before."""
+    if len(results) == len(FIRST_GRIDS):
         return False
-    coarse, fine = (result.parts.get(quantity, {}).get("tau support", 0.0) for result in results[-2:])
+    coarse, fine = (result.parts.get(quantity, {}).get("active set", 0.0) for result in results[-2:])
     return fine >= coarse and fine > accuracy * abs(results[-1].numbers[quantity])
 
 
-def relative_bar(results: Sequence[GridResult], quantity: str) -> float:
-    """The sum of the finest grid's parts over its value; infinite for a zero that is not exact."""
-    value, bar = abs(results[-1].numbers[quantity]), sum(uncertainty(results)[quantity].values())
-    if bar == 0:
+def relative_bound(results: Sequence[GridFeatures], quantity: str) -> float:
+    """Return the sum of the finest grid's parts over its value; infinite for a zero that is not exact."""
+    value, bound = abs(results[-1].numbers[quantity]), sum(uncertainty(results)[quantity].values())
+    if bound == 0:
         return 0.0
-    return bar / value if value > 0 else float("inf")
+    return bound / value if value > 0 else float("inf")
 
 
-def uncertainty(results: Sequence[GridResult]) -> Uncertainty:
-    """All parts of the finest grid's numbers."""
+def uncertainty(results: Sequence[GridFeatures]) -> Uncertainty:
+    """Return all parts of the finest grid's numbers."""
     return merged(results[-1].parts, discretisation(results))
-
-
-def refine(solve_at: Callable[[int], Solution], accuracy: float, quantity: Quantity) -> Solution:
-    """The finest grid's solution of a climb, with its uncertainty and the summed cost.
-
-    When finer grids do not fit into memory or exceed the ladder, the finest solved is returned as
-    `ITERATION_LIMIT` with a warning that states the accuracy reached.
-    """
-    solved: list[Solution] = []
-
-    def result_at(M: int) -> GridResult:
-        solved.append(solve_at(M))
-        return GridResult.of(solved[-1])
-
-    climbed = climb(result_at, accuracy, quantity)
-    fine = replace(solved[-1], cost=total_cost(solution.cost for solution in solved))
-    if not climbed.results[-1].touching:
-        return fine
-    fine = replace(fine, uncertainty=uncertainty(climbed.results))
-    if not climbed.refusal:
-        return fine
-    bar = relative_bar(climbed.results, quantity)
-    known = f"known to {bar:.2g}, not" if math.isfinite(bar) else "not bounded, let alone"
-    reached = Remark(f"{quantity} is {known} to {accuracy:.2g}: {climbed.refusal}")
-    return replace(fine, status=Status.ITERATION_LIMIT, warnings=(*fine.warnings, reached))
-
-
-def total_cost(costs: Iterable[Cost]) -> Cost:
-    """What several solves cost together."""
-    total = Cost(0.0, {}, 0.0, {})
-    for cost in costs:
-        total = Cost(
-            seconds=total.seconds + cost.seconds,
-            applications=_added(total.applications, cost.applications),
-            point_logs=total.point_logs + cost.point_logs,
-            iterations=_added(total.iterations, cost.iterations),
-        )
-    return total
-
-
-def _added(first: Mapping[str, int], second: Mapping[str, int]) -> dict[str, int]:
-    return {key: first.get(key, 0) + second.get(key, 0) for key in {**first, **second}}

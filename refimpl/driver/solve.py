@@ -1,35 +1,33 @@
-"""From a scene to a solution: plan, pose, solve, certify, report."""
+"""From a scene to a solution: plan, discretise, solve, certify, error bars, record."""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from refimpl.accuracy.grid_features import GridResult
-from refimpl.accuracy.refinement import Quantity, refine, total_cost, uncertainty
-from refimpl.driver.options import Request
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.refinement import Quantity, refine_until, relative_bound, uncertainty
+from refimpl.driver.options import Options
 from refimpl.errors import InputError
-from refimpl.grid import Grid
-from refimpl.grid.window import Window
+from refimpl.grid import Array, Grid, Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
-from refimpl.model.state import Outcome, Status
-from refimpl.operators.dense import DenseInfluence
-from refimpl.operators.fft import Counter, WholeGridInfluence
-from refimpl.planning.effects_after import effects_left_out
+from refimpl.model.state import SolverResult, Status
+from refimpl.operators.fft import Counter
+from refimpl.operators.influence import whole_grid_influence
 from refimpl.planning.plan import Method, Plan
-from refimpl.scene.discretise import Posing
+from refimpl.planning.term_effects import effects_in
+from refimpl.planning.terms import RequestedTerms
+from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
-from refimpl.solution.gathered import gathered
-from refimpl.solution.limits import cautions
-from refimpl.solution.remark import Remark
-from refimpl.solution.solution import Cost, Solution
+from refimpl.solution.limits import Notice
+from refimpl.solution.solution import Cost, Solution, Solved, assemble, total_cost
 from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
-from refimpl.solvers.production.coarse_grids import Start
+from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.nested_solver import solve_fft
 from refimpl.surfaces import GaussianRoughness
 
@@ -62,142 +60,168 @@ def solve(
     quantity : "friction_coefficient" (the default with friction), "contact_area" (without),
         "contact_area_corrected" or "max_pressure"
     approach : prescribe the approach (m) instead of the scene's load
-    oblique : False drops every slope term; None lets the scene decide
+    oblique : False neglects every slope term (the classical small-slope theory); None lets the scene decide
     slope_correction : exact facet tractions in Eq. (7): `refimpl.model.forces`
-    coupled, tilted : force in or out what shear does to the gap, and to the slopes of the common surface;
+    coupled, tilted : request or exclude what shear does to the gap, and to the slopes of the common surface;
         None lets the scene decide
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
-        1e-8 (with ``accuracy``, what that deserves), and for "paper" its own load tolerance of 1e-4
+        1e-8 (with ``accuracy``, a share of it), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
     start : a certified solution on a grid of the same side that is not finer, for "fft" to start from: nested
-        grids no finer are passed over, and the answer is the same. Best this scene's own on a coarser grid;
-        after another load the nested grids get there sooner
-    progress : is called with a line of text at every step of the work
+        grids no finer are skipped, and the solution is the same. Best this scene's own on a coarser grid;
+        after another load the nested grids are faster
+    progress : called with a line of text at every step of the work
 
     Raises `InputError` for input that is out of range, before anything large is allocated; and, by "dense"
-    alone, `ArithmeticError` where a problem that it meets on its way has no solution: shear on slopes bears
-    more than the load, say, so that no approach balances it. Other methods end with a status then.
+    alone, `ArithmeticError` where a problem on its way has no solution: if shear on slopes bears more than
+    the load, for example, no approach balances it. Other methods end with a status then.
     """
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "a function of one line of text")
-    request = Request(
+    options = Options(
         scene=scene,
         grid=grid,
         method=method,
         accuracy=accuracy,
         quantity=quantity,
         approach=approach,
-        oblique=oblique,
-        slope_correction=slope_correction,
-        coupled=coupled,
-        tilted=tilted,
+        requested=RequestedTerms(coupled, oblique, tilted, slope_correction),
         tolerance=tolerance,
         start=start,
     )
-    posing = Posing(scene, request.approach)
-    plan = request.plan(posing)
-    if request.accuracy is not None:
-        planned = _Planned(scene, plan, posing, request.residual, progress)
-        return refine(planned.solve_at, request.accuracy, request.judged)
-    solution = _solve_planned(scene, plan, posing, request.residual, progress, start)
-    return replace(solution, uncertainty=uncertainty([GridResult.of(solution)]))
+    discretiser = Discretiser(scene, options.approach)
+    plan = options.plan(discretiser)
+    if options.accuracy is not None:
+        return _refined(options, plan, discretiser, progress)
+    guess = None if start is None else _guess(start.problem, start.pressure, start.clearance, start.approach)
+    solved = _solve_on_grid(plan, discretiser, options.residual_tolerance, progress, guess)
+    notes = _notes(scene, solved.problem.grid, discretiser.notes)
+    return assemble(scene, solved, uncertainty([solved.features]), notes)
 
 
-class _Planned:
-    """A plan made once for all grids of a refinement; terms that turn out to matter are put back for good."""
+class _Refinement:
+    """Solves of one scene on finer and finer grids; terms that turn out to matter are restored for good."""
 
     def __init__(
-        self, scene: Scene, plan: Plan, posing: Posing, tolerance: float, progress: Progress | None
+        self, scene: Scene, plan: Plan, discretiser: Discretiser, tolerance: float, progress: Progress | None
     ) -> None:
         self.scene, self.plan = scene, plan
-        self.asked = posing, tolerance, progress
-        self._last: Solution | None = None
+        self.costs: list[Cost] = []
+        self.last: Solved | None = None
+        self._discretiser, self._tolerance, self._progress = discretiser, tolerance, progress
 
-    def solve_at(self, M: int) -> Solution:
-        """The solution on a grid, no coarser than the last; again if terms left out exceed their budget."""
-        solution = _solve_planned(self.scene, self.plan.on(self.scene, M), *self.asked, self._last)
-        self._last = solution if solution.converged else None
-        plan = self.plan
-        changes = effects_left_out(
-            plan.left_out, solution.problem, solution.pressure, plan.outlook, plan.decided_on
+    def features_at(self, M: int) -> GridFeatures:
+        """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget."""
+        start = self.last if self.last is not None and self.last.status in _CONVERGED else None
+        guess = None
+        if start is not None:
+            state = start.state
+            guess = _guess(
+                start.problem, state.pressure, state.clearance, state.approach - start.problem.datum
+            )
+        plan = self.plan.on(self.scene.grid(M))
+        solved = _solve_on_grid(plan, self._discretiser, self._tolerance, self._progress, guess)
+        self.costs.append(solved.cost)
+        self.last = solved
+        effects = effects_in(
+            plan.neglected, solved.problem, solved.state.pressure, plan.contact, plan.decided_on
         )
-        sizes = {name: effect.larger for name, effect in changes.items()}
-        if sum(sizes.values()) <= self.plan.budget:
-            return solution
-        self.plan = self.plan.put_back(self.scene, max(sizes, key=lambda name: sizes[name]))
-        again = self.solve_at(M)
-        return replace(again, cost=total_cost((solution.cost, again.cost)))
+        sizes = {name: effect.larger for name, effect in effects.items()}
+        if sum(sizes.values()) > self.plan.budget:
+            largest = max(sizes, key=lambda name: sizes[name])
+            self.plan = self.plan.restore(solved.problem, largest)
+            return self.features_at(M)
+        return solved.features
+
+    def solved(self) -> Solved:
+        """Return what was solved last."""
+        assert self.last is not None
+        return self.last
 
 
-class _Watched(Counter):
-    """A counter that tells someone who waits how often operators were applied on this grid."""
+_CONVERGED = (Status.CONVERGED, Status.CYCLED)
 
-    def __init__(self, M: int, tell: Progress) -> None:
+
+def _refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None) -> Solution:
+    """The finest grid's solution of a refinement, with the uncertainty from all grids and the summed cost.
+
+    When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
+    `ITERATION_LIMIT` with a warning that states the accuracy reached.
+    """
+    scene, quantity = options.scene, options.target_quantity
+    assert options.accuracy is not None
+    grids = _Refinement(scene, plan, discretiser, options.residual_tolerance, progress)
+    ended = refine_until(grids.features_at, options.accuracy, quantity)
+    solved, cost = grids.solved(), total_cost(grids.costs)
+    notes = _notes(scene, solved.problem.grid, discretiser.notes)
+    if not ended.results[-1].touching:
+        return assemble(scene, solved, uncertainty([ended.results[-1]]), notes, cost=cost)
+    shortfall = None
+    if ended.refusal:
+        bound = relative_bound(ended.results, quantity)
+        reached = f"known to {bound:.2g}, not" if math.isfinite(bound) else "not bounded, let alone"
+        shortfall = Notice(f"{quantity} is {reached} to {options.accuracy:.2g}: {ended.refusal}")
+    return assemble(scene, solved, uncertainty(ended.results), notes, shortfall=shortfall, cost=cost)
+
+
+class _ReportingCounter(Counter):
+    """A counter that reports the progress on one grid."""
+
+    def __init__(self, grid: Grid, report: Progress) -> None:
         super().__init__()
-        self._M, self._tell = M, tell
+        self._grid, self._report = grid, report
 
     def add(self, what: str, points: int) -> None:
-        """Count, and tell."""
+        """Count an application, and report the number so far."""
         super().add(what, points)
-        self._tell(f"{self._M} x {self._M} elements, {sum(self.tally.values())} transforms")
+        self._report(f"{self._grid} elements, {sum(self.tally.values())} transforms")
 
 
-def _solve_planned(
-    scene: Scene,
+def _solve_on_grid(
     plan: Plan,
-    posing: Posing,
+    discretiser: Discretiser,
     tolerance: float,
     progress: Progress | None,
-    start: Solution | None,
-) -> Solution:
-    """Pose, solve, certify and gather on one grid."""
+    guess: InitialGuess | None,
+) -> Solved:
+    """Discretise, solve and certify on one grid."""
     started = time.perf_counter()
-    counter = Counter() if progress is None else _Watched(plan.M, progress)
-    problem = posing.take(Grid(scene.side, plan.M), plan.switches)
-    outcome, state = _solve_posed(problem, plan, tolerance, counter, _answer(start))
-    cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, outcome.iterations)
-    solution = gathered(problem, plan, outcome, state, tolerance, cost)
-    del outcome, state  # the displacements are in the surfaces now
-    remarks = _remarks(scene, problem.grid, posing.remarks)
-    return replace(solution, warnings=remarks + cautions(solution, scene))
+    counter = Counter() if progress is None else _ReportingCounter(plan.grid, progress)
+    problem = discretiser.problem(plan.grid, plan.switches)
+    result, state = _solve_problem(problem, plan.method, tolerance, counter, guess)
+    cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, result.iterations)
+    return Solved(problem, plan, result, state, tolerance, cost)
 
 
-def _remarks(scene: Scene, grid: Grid, lines: Sequence[str]) -> tuple[Remark, ...]:
-    """What surfaces had to remark; unresolved roughness is told by name (`refimpl.solution.limits`)."""
-    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    told = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
-    return tuple(Remark(line) for line in lines if line not in told)
-
-
-def _solve_posed(
-    problem: Problem, plan: Plan, tolerance: float, counter: Counter, start: Start | None
-) -> tuple[Outcome, State]:
+def _solve_problem(
+    problem: Problem, method: Method, tolerance: float, counter: Counter, guess: InitialGuess | None
+) -> tuple[SolverResult, State]:
     if problem.approach is not None and problem.approach <= 0:
-        return _apart(problem)
-    if plan.method == "dense":
-        operator = DenseInfluence(problem.grid, problem.direction, periodic=problem.periodic)
-        return solve_dense(problem, operator)
-    if plan.method == "paper":
-        outcome, state, _ = solve_paper(problem, tolerance, counter)
-        return outcome, state
-    return solve_fft(problem, tolerance, counter, start)
+        return _without_contact(problem)
+    if method == "dense":
+        return solve_dense(problem)
+    if method == "paper":
+        result, state, _ = solve_paper(problem, tolerance, counter)
+        return result, state
+    return solve_fft(problem, tolerance, counter, guess)
 
 
-def _answer(solution: Solution | None) -> Start | None:
-    """What a solution has to say to a grid that is not coarser."""
-    if solution is None:
-        return None
-    problem = solution.problem
-    approach = solution.approach + (float(problem.gap.mean()) if problem.periodic else 0.0)
-    return Start(solution.pressure, solution.clearance + approach - problem.gap, None)
-
-
-def _apart(problem: Problem) -> tuple[Outcome, State]:
-    """The state of surfaces that the approach leaves apart: nothing is loaded."""
+def _without_contact(problem: Problem) -> tuple[SolverResult, State]:
+    """The state of surfaces that do not touch at the approach: nothing is loaded."""
     zero = np.zeros(problem.gap.shape)
     slopes = problem.slopes(zero, zero)
-    unloaded = WholeGridInfluence(
-        problem.grid, problem.direction, source=Window(0, 1, 0, 1), target=Window.full(problem.grid.M)
-    )
-    free = Outcome(zero, zero, slopes, Status.NO_CONTACT, zero > 0, ())
-    return free, certify(problem, unloaded, zero, zero, slopes)
+    operator = whole_grid_influence(problem.grid, problem.direction, Window(0, 1, 0, 1))
+    result = SolverResult(zero, zero, slopes, Status.NO_CONTACT, zero > 0, ())
+    return result, certify(problem, operator, zero, zero, slopes)
+
+
+def _guess(problem: Problem, pressure: Array, clearance: Array, approach: float) -> InitialGuess:
+    """The initial guess for a grid that is not coarser, from a state and its reported approach (m)."""
+    return InitialGuess(pressure, clearance + (approach + problem.datum) - problem.gap, None)
+
+
+def _notes(scene: Scene, grid: Grid, lines: Sequence[str]) -> tuple[Notice, ...]:
+    """Notes of the surfaces; unresolved roughness has a named warning of its own."""
+    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
+    named = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
+    return tuple(Notice(line) for line in lines if line not in named)

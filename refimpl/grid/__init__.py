@@ -1,5 +1,17 @@
 """The grid of traction elements, windows of it, and fields on it."""
 
-from refimpl.grid.grid import Array, Grid, differences, inner, resampled
+from refimpl.grid.fields import Array, Mask, differences, inner, resampled, second_differences
+from refimpl.grid.grid import Grid
+from refimpl.grid.window import Shape, Window
 
-__all__ = ["Array", "Grid", "differences", "inner", "resampled"]
+__all__ = [
+    "Array",
+    "Grid",
+    "Mask",
+    "Shape",
+    "Window",
+    "differences",
+    "inner",
+    "resampled",
+    "second_differences",
+]

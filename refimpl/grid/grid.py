@@ -1,109 +1,160 @@
-"""The square grid of traction elements; element centres at (i + 1/2) side / M."""
+"""The grid of traction elements: its shape, lengths and topology. Everything else asks it for these."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from refimpl.errors import InputError, keep_doubles, require_size
-
-Array = NDArray[np.float64]
-
-_ONE_THREAD = 10_000  # numbers whose product OpenBLAS sums by one thread
-
-
-def inner(a: Array, b: Array) -> float:
-    """``sum a b`` of two fields: the same to the last bit on any number of threads.
-
-    BLAS is quickest, but splits long sums over its threads, which changes the last bits: those go row by row.
-
-    >>> inner(np.ones((2, 3)), np.full((2, 3), 2.0))
-    12.0
-    """
-    if a.size <= _ONE_THREAD:
-        return float(np.vdot(a, b))
-    rows = np.vecdot(a, b) if a.shape[1] <= _ONE_THREAD else np.einsum("ij,ij->i", a, b)
-    return float(rows.sum())
+from refimpl.errors import InputError, require_size
+from refimpl.grid.fields import Array, Mask, differences
+from refimpl.grid.window import Window
 
 
 @dataclass(frozen=True)
 class Grid:
-    """``M x M`` square elements on a square of edge ``side`` (m).
+    """``Mx x My`` equal elements on a rectangle ``Lx x Ly`` (m), free or doubly periodic.
 
-    >>> Grid(side=1.0, M=4).centres
-    array([0.125, 0.375, 0.625, 0.875])
+    Element ``[i, j]`` has its centre at ``((i + 1/2) dx, (j + 1/2) dy)``.
+
+    Raises `InputError` unless both counts are whole and positive and both lengths positive.
+
+    >>> grid = Grid((4, 2), (1.0, 1.0))
+    >>> grid.x, grid.y
+    (array([0.125, 0.375, 0.625, 0.875]), array([0.25, 0.75]))
     """
 
-    side: float
-    M: int
+    shape: tuple[int, int]
+    lengths: tuple[float, float]
+    periodic: bool = False
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.M, int | np.integer) and not isinstance(self.M, bool) and self.M >= 1):
-            raise InputError("grid", self.M, "a whole number of elements per side, at least 1")
-        require_size("side", self.side, "a positive length in m")
-        keep_doubles(self, "side")
-        object.__setattr__(self, "M", int(self.M))
+        for count in self.shape:
+            whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
+            if not (whole and count >= 1):
+                raise InputError("grid", count, "a whole number of elements per side, at least 1")
+        for length in self.lengths:
+            require_size("side", length, "a positive length in m")
+        object.__setattr__(self, "shape", tuple(int(count) for count in self.shape))
+        object.__setattr__(self, "lengths", tuple(float(length) for length in self.lengths))
+
+    @classmethod
+    def square(cls, side: float, M: int, *, periodic: bool = False) -> Grid:
+        """Return ``M x M`` elements on a square of edge ``side`` (m).
+
+        >>> Grid.square(1.0, 4).spacings
+        (0.25, 0.25)
+        """
+        return cls((M, M), (side, side), periodic)
 
     @property
-    def spacing(self) -> float:
-        """Edge of one element (m)."""
-        return self.side / self.M
+    def spacings(self) -> tuple[float, float]:
+        """Edges ``(dx, dy)`` of an element (m)."""
+        return self.lengths[0] / self.shape[0], self.lengths[1] / self.shape[1]
 
     @property
     def element_area(self) -> float:
         """Area dA of one element (m^2)."""
-        return self.spacing**2
+        dx, dy = self.spacings
+        return dx * dy
 
     @property
-    def centres(self) -> Array:
-        """Element centres along one axis, shape ``(M,)`` (m)."""
-        return (np.arange(self.M, dtype=np.float64) + 0.5) * self.spacing
+    def element_size(self) -> float:
+        """``sqrt(dx dy)``: the edge of a square element of the same area (m)."""
+        return math.sqrt(self.element_area)
 
+    @property
+    def size(self) -> float:
+        """``sqrt(Lx Ly)``: the edge of a square of the same area (m)."""
+        return math.sqrt(self.lengths[0] * self.lengths[1])
 
-def resampled(values: Array, M: int) -> Array:
-    """Bilinear interpolation from element centres to those of M per side, level beyond the outermost.
+    @property
+    def nominal_area(self) -> float:
+        """Area of the domain A0 (m^2)."""
+        return self.lengths[0] * self.lengths[1]
 
-    >>> resampled(np.array([[0.0, 8.0], [0.0, 8.0]]), 4)[0]
-    array([0., 2., 6., 8.])
-    """
-    n = len(values)
-    if n == M:
-        return values
-    if n == 2 * M:
-        return _halved(_halved(values).T).T
-    place = np.clip((np.arange(M) + 0.5) * (n / M) - 0.5, 0, n - 1)
-    left = np.minimum(place.astype(np.intp), n - 2)
-    share = place - left
-    rows = (1 - share)[:, None] * values[left]
-    rows += share[:, None] * values[left + 1]
-    found: Array = (1 - share) * rows.take(left, axis=1)
-    found += share * rows.take(left + 1, axis=1)
-    return found
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return self.shape[0] * self.shape[1]
 
+    @property
+    def x(self) -> Array:
+        """Element centres along x, shape ``(Mx,)`` (m)."""
+        return self._centres(0)
 
-def _halved(values: Array) -> Array:
-    """Means of pairs of rows."""
-    found: Array = values[::2] + values[1::2]
-    found *= 0.5
-    return found
+    @property
+    def y(self) -> Array:
+        """Element centres along y, shape ``(My,)`` (m)."""
+        return self._centres(1)
 
+    def _centres(self, axis: int) -> Array:
+        return (np.arange(self.shape[axis], dtype=np.float64) + 0.5) * self.spacings[axis]
 
-def differences(values: Array, axis: int) -> Array:
-    """Central differences from element to element, one-sided at the border; zero where there is one.
+    def refined(self, shape: tuple[int, int]) -> Grid:
+        """Return the same domain with another number of elements."""
+        return replace(self, shape=shape)
 
-    NumPy's gradient to the last bit, at a quarter of its seconds along both axes of 256 x 256 elements.
+    @property
+    def zeros(self) -> Array:
+        """A field of zeros."""
+        return np.zeros(self.shape)
 
-    >>> differences(np.array([[0.0, 1.0, 4.0, 9.0]]), axis=1)
-    array([[1., 2., 4., 5.]])
-    """
-    if values.shape[axis] == 1:
-        return np.zeros_like(values)
-    found = np.empty_like(values)
-    z, d = (values, found) if axis == 0 else (values.T, found.T)
-    np.subtract(z[2:], z[:-2], out=d[1:-1])
-    d[1:-1] *= 0.5
-    np.subtract(z[1], z[0], out=d[0])
-    np.subtract(z[-1], z[-2], out=d[-1])
-    return found
+    @property
+    def window(self) -> Window:
+        """The whole grid."""
+        return Window.full(self.shape)
+
+    def window_around(self, where: Mask, margin: int) -> Window:
+        """Return the bounding box of the marked elements with a margin; the whole grid if it is periodic."""
+        return self.window if self.periodic else Window.around(where, margin)
+
+    def gradient(self, heights: Array) -> tuple[Array, Array]:
+        """Return ``(dz/dx, dz/dy)`` by central differences, one-sided at a free border.
+
+        ``heights`` (m) may be a window of the grid if the grid is free.
+
+        >>> Grid((2, 3), (2.0, 6.0)).gradient(np.array([[0.0, 2, 4], [1.0, 3, 5]]))[1]
+        array([[1., 1., 1.],
+               [1., 1., 1.]])
+        """
+        along_x, along_y = (differences(heights, axis, periodic=self.periodic) for axis in (0, 1))
+        along_x /= self.spacings[0]
+        along_y /= self.spacings[1]
+        return along_x, along_y
+
+    def faces(self, contact: Mask) -> int:
+        """Return the number of element faces between contact and no contact.
+
+        The border of a free domain is no such face: where contact ends there it ends exactly.
+
+        >>> corner = np.array([[True, False], [False, False]])
+        >>> Grid((2, 2), (1.0, 1.0)).faces(corner), Grid((2, 2), (1.0, 1.0), periodic=True).faces(corner)
+        (2, 4)
+        """
+        count = 0
+        for rows in (contact, contact.T):
+            count += int(np.count_nonzero(rows[1:] != rows[:-1]))
+            count += int(np.count_nonzero(rows[0] != rows[-1])) if self.periodic else 0
+        return count
+
+    def on_border(self, where: Mask) -> int:
+        """Return how many of the marked elements lie on the border of a free domain; 0 if periodic."""
+        if self.periodic:
+            return 0
+        return int(np.count_nonzero(where)) - int(np.count_nonzero(where[1:-1, 1:-1]))
+
+    @property
+    def continuation(self) -> Literal["wrap", "constant"]:
+        """How NumPy and SciPy continue a contact beyond the domain: repeated, or by nothing."""
+        return "wrap" if self.periodic else "constant"
+
+    @property
+    def band_limited(self) -> bool:
+        """Whether element values stand for their band-limited interpolant instead of constant pressures."""
+        return self.periodic
+
+    def __str__(self) -> str:
+        return f"{self.shape[0]} x {self.shape[1]}"

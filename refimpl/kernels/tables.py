@@ -31,8 +31,8 @@ _SERIES = {LOVE: multipole.LOVE, CERRUTI: multipole.CERRUTI}
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
     """``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of ``dx``.
 
-    ``dy = dx`` by default; ``known`` is a smaller square table of the same elements, to go on from: the
-    result is the same to the last bit. Extend evenly to negative offsets. Same accuracy and errors as
+    ``dy = dx`` by default; ``known`` is a smaller table of the same elements, to start from: the result is
+    the same to the last bit. Extend evenly to negative offsets. Same accuracy and errors as
     ``normal_integral``.
 
     >>> table = normal_table(3, 3, 1.0)
@@ -44,7 +44,7 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: A
     if dx != dy:
         table = _table(LOVE, n, m, dx, dy, known)
     elif n < m:
-        table = _symmetric_table(LOVE, m, n, dx, known).T
+        table = _symmetric_table(LOVE, m, n, dx, None if known is None else known.T).T
     else:
         table = _symmetric_table(LOVE, n, m, dx, known)
     table *= unit
@@ -109,8 +109,8 @@ def _begun(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | 
     The corner is what is known, or as much as the closed form serves.
     """
     table = np.full((n, m), np.nan)
-    if known is not None and len(known) >= _NEAR_COUNT:
-        rows, columns = min(len(known), n), min(len(known), m)
+    if known is not None and min(known.shape) >= _NEAR_COUNT:
+        rows, columns = min(known.shape[0], n), min(known.shape[1], m)
         table[:rows, :columns] = known[:rows, :columns]
         return table, min(rows, columns)
     x, y = _offsets(0, min(n, _NEAR_COUNT), dx), _offsets(0, min(m, _NEAR_COUNT), dy)

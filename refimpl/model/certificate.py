@@ -1,4 +1,4 @@
-"""How well a state satisfies the problem, recomputed from its pressure and traction alone."""
+"""How well a solver's result satisfies the problem, recomputed from its pressure and traction alone."""
 
 from __future__ import annotations
 
@@ -7,53 +7,64 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.grid import Array, inner
-from refimpl.grid.window import Window
-from refimpl.model.forces import Forces, resultants
-from refimpl.model.friction import Mask, local_friction
-from refimpl.model.gap import relative_gap
+from refimpl.grid import Array, Mask, Window, inner
+from refimpl.model.elasticity import Influence
+from refimpl.model.forces import (
+    Forces,
+    contact_area,
+    friction_coefficient,
+    perimeter_corrected_area,
+    resultants,
+)
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.operators.base import Influence
 
 
 @dataclass(frozen=True)
 class Certificate:
     """Residuals of contact, all dimensionless; zero for an exact discrete solution.
 
-    gap : ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``
+    gap : complementarity gap ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``
     penetration : ``max(0, approach - min v) / approach``
     negative_pressure : largest negative pressure over the peak
-    balance : ``|N - P| / P`` under a load; ``|sum f (v - approach)| dA`` over the energy at an approach, of
-        which a unit in its last place is always missed
-    slope : change of the slopes' tangents that the state's own displacements ask for
-    unlawful : number of elements whose traction is not ``tau + beta f`` in contact and 0 outside (as a
-        settled cycle leaves)
+    load_error : ``|N - P| / P`` under a load; ``|sum f (v - approach)| dA`` over the energy at an approach,
+        to which one unit in the last place of the approach is added
+    slope : change of the slopes' tangents between the given ones and those of the recomputed displacements
+    law_violations : number of elements whose traction is not the friction law's in contact and 0 outside (as
+        an alternating contact edge leaves)
     """
 
     gap: float
     penetration: float
     negative_pressure: float
-    balance: float
+    load_error: float
     slope: float
-    unlawful: int
+    law_violations: int
 
     @property
-    def worst(self) -> float:
+    def largest(self) -> float:
         """The largest of the residuals that must meet the tolerance; NaN counts as infinite."""
-        values = np.array([self.gap, self.penetration, self.negative_pressure, self.balance, self.slope])
+        values = np.array([self.gap, self.penetration, self.negative_pressure, self.load_error, self.slope])
         return float(np.where(np.isnan(values), np.inf, values).max())
 
-    def meets(self, tolerance: float) -> bool:
-        """Whether every residual is within the tolerance."""
-        return self.worst <= tolerance
+    def satisfies(self, tolerance: float) -> bool:
+        """Return whether every residual is within the tolerance."""
+        return self.largest <= tolerance
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A solved state with what follows from it: displacements, slopes, approach (m, from first touch).
+    """A state with everything that follows from its pressure and traction; arrays of the problem's shape.
 
-    ``separation`` is ``v`` of Eq. (6) from the undeformed gap (m): the approach where there is contact.
+    pressure, traction : f and r (Pa)
+    displacement_lower, displacement_upper : normal displacements into each body (m)
+    slopes : of the common surface
+    v : ``u / (cos theta_x cos theta_y) + h`` of Eq. (6) (m): the approach where there is contact
+    approach : from first contact (m)
+    forces : N, F and Q (N)
+    friction_coefficient : mu, Eq. (4)
+    contact_area, contact_area_corrected : real contact area, and less the excess along its edge (m^2)
+    certificate : residuals
     """
 
     pressure: Array
@@ -61,60 +72,84 @@ class State:
     displacement_lower: Array
     displacement_upper: Array
     slopes: Slopes
-    separation: Array
+    v: Array
     approach: float
     forces: Forces
+    friction_coefficient: float
+    contact_area: float
+    contact_area_corrected: float
     certificate: Certificate
+
+    @property
+    def contact(self) -> Mask:
+        """Elements with ``f > 0``."""
+        return self.pressure > 0
+
+    @property
+    def max_pressure(self) -> float:
+        """Maximum contact pressure p_max (Pa)."""
+        return float(self.pressure.max())
 
     @property
     def clearance(self) -> Array:
         """``v - approach`` (m): zero in contact, not negative outside."""
-        return self.separation - self.approach
+        return self.v - self.approach
+
+
+def relative_gap(gap: float, energy: float) -> float:
+    """Return the complementarity gap over the elastic energy; 0 for an exact state without energy."""
+    if gap == 0:
+        return 0.0
+    return gap / energy if energy > 0 else math.inf
 
 
 def certify(problem: Problem, operator: Influence, pressure: Array, traction: Array, slopes: Slopes) -> State:
-    """Recompute displacements, slopes, approach and every residual from the returned arrays.
+    """Recompute displacements, slopes, approach, forces and every residual from the returned arrays.
 
-    ``slopes`` enter only through the facet tractions of the slope correction and through the
-    residual ``slope``; the cosines are those of the recomputed displacements.
+    ``slopes`` enter only through the facet tractions of the slope correction and through the residual
+    ``slope``; the cosines are those of the recomputed displacements.
     """
-    product = operator.normal(pressure)
-    down = None if problem.terms.slope_correction else product
-    lower, upper = problem.displacements(operator, pressure, traction, slopes, product=down)
+    normal = problem.elasticity.normal(operator, pressure)
+    lower, upper = problem.displacements(operator, pressure, traction, slopes, normal=normal)
     found = problem.slopes(lower, upper)
     v = found.per_obliqueness(lower + upper)
     v += problem.gap
-    box = Window.around((pressure != 0) | (traction != 0), margin=0)  # sums need look no further
+    box = Window.around((pressure != 0) | (traction != 0), margin=0)  # elsewhere the summands vanish
     f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
-    dA, total, lowest = problem.grid.element_area, float(f.sum()), float(v.min())
-    in_contact: Mask = f > 0
-    shares = f / total if total > 0 else f  # with faint pressures themselves products would vanish
+    total, lowest = float(f.sum()), float(v.min())
+    contact: Mask = f > 0
+    shares = f / total if total > 0 else f  # products of very small pressures would underflow
     mean_v = inner(shares, v[box.slices]) if total > 0 else lowest
     approach = mean_v if problem.approach is None else problem.approach
-    forces = resultants(f, r, on_slopes, dA)
-    energy = 0.5 * inner(shares, problem.pair.normal_compliance * product[box.slices])
-    duality = inner(shares, v[box.slices] - lowest)
+    forces = resultants(f, r, on_slopes, problem.grid.element_area)
+    energy = 0.5 * inner(shares, normal[box.slices])
+    gap = inner(shares, v[box.slices] - lowest)
     if problem.load is not None:
-        balance = abs(forces.normal - problem.load) / problem.load
+        load_error = abs(forces.normal - problem.load) / problem.load
     else:
-        missed = abs(mean_v - approach) + math.ulp(approach)  # least numbers have no digits to agree in
-        balance = relative_gap(missed, energy) if total > 0 else 0.0
-    peak = max(float(f.max()), float(np.finfo(float).tiny))
+        missed = abs(mean_v - approach) + math.ulp(
+            approach
+        )  # the least approaches have no digits to agree in
+        load_error = relative_gap(missed, energy) if total > 0 else 0.0
+    everywhere = pressure > 0
     return State(
         pressure=pressure,
         traction=traction,
         displacement_lower=lower,
         displacement_upper=upper,
         slopes=found,
-        separation=v,
+        v=v,
         approach=approach,
         forces=forces,
+        friction_coefficient=friction_coefficient(forces.friction, problem.nominal_load(forces.normal)),
+        contact_area=contact_area(everywhere, problem.grid),
+        contact_area_corrected=perimeter_corrected_area(everywhere, problem.grid),
         certificate=Certificate(
-            gap=relative_gap(duality, energy),
+            gap=relative_gap(gap, energy),
             penetration=max(0.0, approach - lowest) / (abs(approach) or 1.0),
-            negative_pressure=max(0.0, -float(f.min())) / peak,
-            balance=balance,
-            slope=on_slopes.distance(slopes.windowed(box), in_contact),
-            unlawful=int(np.count_nonzero(r != local_friction(problem.friction, f, in_contact))),
+            negative_pressure=max(0.0, -float(f.min())) / max(float(f.max()), float(np.finfo(float).tiny)),
+            load_error=load_error,
+            slope=on_slopes.distance(slopes.windowed(box), contact),
+            law_violations=int(np.count_nonzero(r != problem.friction.traction(f, contact))),
         ),
     )

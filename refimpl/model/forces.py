@@ -1,4 +1,4 @@
-"""Resultant forces and areas from the contact's tractions: Eqs (2)-(4), Q, and (10)-(12)."""
+"""Resultant forces and areas from the contact's tractions: Eqs (2)-(4), Q, and (12)."""
 
 from __future__ import annotations
 
@@ -6,16 +6,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from refimpl.grid import Array
+from refimpl.grid import Array, Grid, Mask
 from refimpl.model.slopes import Slopes
 
-EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # of an edge element, in `perimeter_corrected_area`
+EDGE_SHARE = (math.pi - 1 + math.log(2)) / 24  # area per face over dA, in `perimeter_corrected_area`
 
 
 class Forces(NamedTuple):
-    """Normal force N, friction force F and binormal force Q (N)."""
+    """Normal force N, friction force F and transverse (binormal) force Q (N)."""
 
     normal: float
     friction: float
@@ -23,7 +22,7 @@ class Forces(NamedTuple):
 
 
 def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: float) -> Forces:
-    """Sums of the local tractions ``f`` and ``r`` over the contact, with the cosines as printed.
+    """Sum the local tractions ``f`` and ``r`` (Pa) over the contact, with the cosines as printed.
 
     ``N = sum (f cos theta_x - r sin theta_x) cos theta_y dA``, Eq. (2);
     ``F = sum (f sin theta_x + r cos theta_x) cos theta_y dA``, Eq. (3);
@@ -41,11 +40,11 @@ def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: f
 
 
 def facet_resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: float) -> Forces:
-    """The same sums with the exact tractions of a facet per projected area.
+    """Sum the exact tractions of a facet per projected area over the contact.
 
     Down ``f - r tan theta_x``, along ``r + f tan theta_x``, across ``f tan theta_y``. They
-    differ from the printed ones at second order in the slope. The binormal sum has the printed one's
-    sign: a pressure on a surface that rises across the sliding direction counts positive.
+    differ from the printed ones at second order in the slope. The transverse sum has the sign of the
+    printed one: a pressure on a surface that rises across the sliding direction counts positive.
     """
     return Forces(
         normal=float(np.sum(pressure - traction * slopes.tan_x)) * element_area,
@@ -54,29 +53,27 @@ def facet_resultants(pressure: Array, traction: Array, slopes: Slopes, element_a
     )
 
 
-def perimeter_corrected_area(contact: NDArray[np.bool_], spacing: float, *, periodic: bool = False) -> float:
-    """Contact area (m^2) less the mean excess that whole elements add along the contact's edge.
+def friction_coefficient(friction_force: float, normal_load: float) -> float:
+    """Return Eq. (4): ``mu = F / P``, with the normal force N where no load is prescribed; NaN without load.
 
-    ``A - (pi - 1 + ln 2) / 24 * S * spacing`` with ``S`` the length of the element edges between
-    contact and no contact (Yastrebov, Anciaux and Molinari 2017, Tribology International 114, 161). The
-    border of a square that does not repeat is none: where contact ends there it ends exactly.
+    >>> friction_coefficient(7.0, 70.0)
+    0.1
     """
-    edges = 0
-    for rows in (contact, contact.T):
-        edges += int(np.count_nonzero(rows[1:] != rows[:-1]))
-        edges += int(np.count_nonzero(rows[0] != rows[-1])) if periodic else 0
-    perimeter = edges * spacing
-    raw = int(np.count_nonzero(contact)) * spacing**2
-    return raw - EDGE_SHARE * perimeter * spacing
+    return friction_force / normal_load if normal_load else math.nan
 
 
-def smooth_friction_coefficient(tau: float, beta: float, mean_pressure: float) -> float:
-    """Eq. (10): ``mu = tau / f_m + beta`` for contact at flat tips; Eq. (11) with ``f_m = H``.
+def contact_area(contact: Mask, grid: Grid) -> float:
+    """Return the real contact area (m^2): the number of elements in contact times dA."""
+    return float(np.count_nonzero(contact)) * grid.element_area
 
-    >>> smooth_friction_coefficient(15e6, 0.08, 800e6)    # the paper's H of copper
-    0.09875
+
+def perimeter_corrected_area(contact: Mask, grid: Grid) -> float:
+    """Return the contact area (m^2) less the mean excess that whole elements add along the contact's edge.
+
+    ``A - (pi - 1 + ln 2) / 24 * S dx dy`` with ``S`` the number of element faces between contact and no
+    contact (Yastrebov, Anciaux and Molinari 2017, Tribology International 114, 161).
     """
-    return tau / mean_pressure + beta
+    return contact_area(contact, grid) - EDGE_SHARE * grid.faces(contact) * grid.element_area
 
 
 def plasticity_index(reduced_modulus: float, hardness: float, rms: float, length: float) -> float:

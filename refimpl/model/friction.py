@@ -1,89 +1,102 @@
-"""Local friction, Eqs (1) and (8), and the rule for which elements carry tau.
-
-``r = tau + beta f`` switches tau on where contact begins. Because tau moves the surfaces next to
-it, the support of tau can chase the contact set in a cycle. The rule, for every solver: start from
-no tau anywhere; solve; give tau to the elements in contact; repeat. When a support returns, the
-elements that changed within that cycle are withheld from tau for good, and the iteration goes on.
-So are those that leave the support for the third time: where many elements flip by themselves, each at
-its own pace, the support as a whole hardly ever returns. Between two such events supports only grow, so
-it ends. Where tau would be withheld from most of the contact nothing is left of the law, and the rule is
-given up.
-"""
+"""Local friction, Eqs (1) and (8): the law that gives the shear traction from the contact pressure."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Protocol
+
 import numpy as np
-from numpy.typing import NDArray
 
-from refimpl.grid import Array
-from refimpl.scene.scene import Friction
-
-Mask = NDArray[np.bool_]
-
-_MOST = 0.5  # of the contact; tau of two to three times the highest pressure comes there
-_OFTEN = 3  # times that an element leaves tau's support; in cycles of two it is mostly noticed before
+from refimpl.errors import keep_doubles, require_number
+from refimpl.grid import Array, Mask
 
 
-def local_friction(friction: Friction, pressure: Array, support: Mask) -> Array:
-    """Eq. (8): ``tau`` on its support plus ``beta f`` (Pa).
+class FrictionLaw(Protocol):
+    """What solvers and judges ask of a law ``r(f)`` on elements in contact.
 
-    >>> local_friction(Friction(tau=2.0, beta=0.5), np.array([0.0, 4.0]), np.array([False, True]))
+    ``jump`` is ``r`` at vanishing pressure (Pa); ``slope`` is the part of ``dr/df`` that solvers may take
+    into their linear systems. The rest, ``r - slope f``, is the held traction. It is constant on the active
+    set if the law ``is_linear``; otherwise solvers update it together with the slopes of the surface.
+    """
+
+    @property
+    def jump(self) -> float:
+        """``r`` of an element in contact at vanishing pressure (Pa)."""
+
+    @property
+    def slope(self) -> float:
+        """Dimensionless coefficient of the pressure in the linear part of the law."""
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether ``r - slope f`` does not depend on the pressure."""
+
+    def traction(self, pressure: Array, active: Mask) -> Array:
+        """Return r (Pa): the law on the active set, and ``slope f`` outside."""
+
+    def held_traction(self, pressure: Array, active: Mask) -> Array:
+        """Return ``r - slope f`` (Pa): zero outside the active set."""
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Local friction ``r = tau + beta f`` on contact, Eq. (1): ``tau`` in Pa, ``beta`` dimensionless.
+
+    Raises `InputError` for a negative or infinite number.
+
+    >>> law = Friction(tau=2.0, beta=0.5)
+    >>> law.traction(np.array([0.0, 4.0]), np.array([False, True]))
     array([0., 4.])
     """
-    return friction.tau * support + friction.beta * pressure
+
+    tau: float = 0.0
+    beta: float = 0.0
+    is_linear = True
+
+    def __post_init__(self) -> None:
+        require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
+        allowed = "a finite number, not negative, at most 1e6"
+        require_number("friction.beta", self.beta, allowed, at_least=0, at_most=1e6)
+        keep_doubles(self, "tau", "beta")
+
+    @property
+    def jump(self) -> float:
+        """``tau`` (Pa)."""
+        return self.tau
+
+    @property
+    def slope(self) -> float:
+        """``beta``."""
+        return self.beta
+
+    def traction(self, pressure: Array, active: Mask) -> Array:
+        """Return Eq. (8): ``tau`` on the active set plus ``beta f`` (Pa)."""
+        return self.tau * active + self.beta * pressure
+
+    def held_traction(self, pressure: Array, active: Mask) -> Array:
+        """Return ``tau`` on the active set, zero outside (Pa)."""
+        return self.tau * active.astype(np.float64)
 
 
-class TauSupport:
-    """The sequence of tau's supports, with cycles found and settled by the rule above.
+def is_frictionless(law: FrictionLaw) -> bool:
+    """Return whether no shear acts at all."""
+    return law.jump == 0 and law.slope == 0 and law.is_linear
 
-    >>> rule = TauSupport((2,))
-    >>> a, b = np.array([True, False]), np.array([True, True])
-    >>> for contact in (a, b, a):
-    ...     support = rule.next(contact)
-    >>> rule.withheld, support
-    (array([False,  True]), array([ True, False]))
+
+def friction_coefficient_at(law: FrictionLaw, mean_pressure: float) -> float:
+    """Return ``r / f`` at a pressure (Pa): Eq. (10), ``tau / f_m + beta``, of the paper's law.
+
+    >>> friction_coefficient_at(Friction(tau=15e6, beta=0.08), 800e6)    # the paper's H of copper
+    0.09875
     """
+    return shear_at(law, mean_pressure) / mean_pressure
 
-    def __init__(self, shape: tuple[int, ...]) -> None:
-        self.current: Mask = np.zeros(shape, dtype=bool)
-        self.withheld: Mask = np.zeros(shape, dtype=bool)
-        self.settled = self.given_up = False
-        self.cycle: tuple[Mask, ...] = ()
-        self._left = np.zeros(shape, dtype=np.uint8)
-        self._history: list[Mask] = [self.current]
 
-    def next(self, contact: Mask) -> Mask:
-        """The support for the next solve, given the contact set of the last.
+def shear_at(law: FrictionLaw, pressure: float) -> float:
+    """Return ``r`` at a pressure (Pa)."""
+    return float(law.traction(np.array([pressure]), np.array([True]))[0])
 
-        Sets ``settled`` when it is the last one again, and ``cycle`` to the supports, the present one last,
-        that elements withheld from now on were part of (to none, if none are): a cycle's that this contact
-        set closes, or the one that they leave once too often. Where it is ``given_up`` nothing changes.
-        """
-        self.cycle = ()
-        support = contact & ~self.withheld
-        self.settled = bool(np.array_equal(support, self.current))
-        if self.settled:
-            return support
-        leaving = self.current & ~support
-        self._left += leaving
-        flipping = leaving & (self._left == _OFTEN)
-        returned = self._first_seen(support)
-        if returned is not None:
-            self.cycle = tuple(self._history[returned:])
-            flipping = np.any(self.cycle, axis=0) & ~np.all(self.cycle, axis=0)
-        elif flipping.any():
-            self.cycle = (self.current,)
-        if self.cycle:
-            withheld = self.withheld | flipping
-            if np.count_nonzero(withheld & contact) > _MOST * np.count_nonzero(contact):
-                self.given_up, self.cycle = True, ()
-                return self.current
-            self.withheld, self._history = withheld, []
-            support = contact & ~withheld
-        self._history.append(support)
-        self.current = support
-        return support
 
-    def _first_seen(self, support: Mask) -> int | None:
-        """When this support was current before, since elements were last withheld."""
-        return next((k for k, seen in enumerate(self._history) if np.array_equal(support, seen)), None)
+def friction_per_area(law: FrictionLaw, normal_force: float) -> float:
+    """Return ``d mu / d A = tau / N`` of Eq. (10): what a change of the contact area does to mu (1/m^2)."""
+    return law.jump / normal_force if normal_force > 0 else 0.0

@@ -76,6 +76,26 @@ class Pair:
         return self.lower.shear_compliance - self.upper.shear_compliance
 
     @property
+    def upper_share(self) -> float:
+        """Share of the closing of the gap that the upper body takes."""
+        return self.upper.normal_compliance / self.normal_compliance
+
+    @property
+    def coupling_ratio(self) -> float:
+        """``c / a``: closing of the gap by unit shear over that by unit pressure."""
+        return self.shear_compliance / self.normal_compliance
+
+    @property
+    def shear_ratio(self) -> float:
+        """``(|c_lower| + |c_upper|) / a``: the same of both bodies, without regard to sign."""
+        return (abs(self.lower.shear_compliance) + abs(self.upper.shear_compliance)) / self.normal_compliance
+
+    def tilts(self, shear: float) -> tuple[float, float]:
+        """Return the slopes of both surfaces, each of its own body, right under a shear (Pa): ``pi c r``."""
+        lower, upper = self.lower.shear_compliance, self.upper.shear_compliance
+        return math.pi * lower * shear, math.pi * upper * shear
+
+    @property
     def reduced_modulus(self) -> float:
         """``E* = 1 / sum((1 - nu^2) / E)`` (Pa)."""
         return 1 / (1 / self.lower.plane_strain_modulus + 1 / self.upper.plane_strain_modulus)

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from refimpl.grid import Array, differences
-from refimpl.grid.window import Window
+from refimpl.grid import Array, Grid, Mask, Window
 
 
 @dataclass(frozen=True)
@@ -26,7 +24,7 @@ class Slopes:
 
     @classmethod
     def flat(cls, shape: tuple[int, ...]) -> Slopes:
-        """Zero slopes: every cosine is 1 and every sine is 0. One zero, broadcast: no array is held."""
+        """Return zero slopes: every cosine is 1 and every sine is 0. One zero is broadcast to the shape."""
         zero = np.broadcast_to(0.0, shape)
         return cls(zero, zero)
 
@@ -36,23 +34,24 @@ class Slopes:
         return not any(self.tan_x.strides)
 
     @classmethod
-    def of_surface(
-        cls, heights: Array, spacing: float, direction: float, *, periodic: bool = False
-    ) -> Slopes:
-        """Central differences of ``heights`` (m), one-sided at the border, wrapped when periodic.
+    def of_surface(cls, heights: Array, grid: Grid, direction: float) -> Slopes:
+        """Return the slopes of ``heights`` (m) on a grid or on a window of it, by central differences.
 
         >>> ramp = np.arange(4.0)[:, None] * np.ones(4)
-        >>> float(Slopes.of_surface(ramp, 1.0, math.pi).tan_x[0, 0])
+        >>> float(Slopes.of_surface(ramp, Grid.square(4.0, 4), math.pi).tan_x[0, 0])
         -1.0
         """
-        along_i, along_j = (_difference(heights, axis, periodic) for axis in (0, 1))
-        along_i /= spacing
-        along_j /= spacing
+        along_x, along_y = grid.gradient(heights)
         cos, sin = math.cos(direction), math.sin(direction)
-        return cls(cos * along_i + sin * along_j, cos * along_j - sin * along_i)
+        return cls(cos * along_x + sin * along_y, cos * along_y - sin * along_x)
 
-    def distance(self, other: Slopes, where: NDArray[np.bool_]) -> float:
-        """Largest difference of the tangents on the marked elements."""
+    def mean_square(self, weights: Array) -> float:
+        """Return the weighted mean of ``tan^2 theta_x + tan^2 theta_y``; 0 where the weights vanish."""
+        total = float(np.sum(weights))
+        return float(np.sum((self.tan_x**2 + self.tan_y**2) * weights)) / total if total > 0 else 0.0
+
+    def distance(self, other: Slopes, where: Mask) -> float:
+        """Return the largest difference of the tangents on the marked elements."""
         if (self.is_flat and other.is_flat) or not where.any():
             return 0.0
         pairs = ((self.tan_x, other.tan_x), (self.tan_y, other.tan_y))
@@ -92,22 +91,15 @@ class Slopes:
         return self.cos_x if self.is_flat else self.cos_x * self.cos_y
 
     def per_obliqueness(self, values: Array) -> Array:
-        """``values / obliqueness``, in place where that is 1 everywhere."""
+        """Return ``values / obliqueness``, in place where that is 1 everywhere."""
         return values if self.is_flat else values / self.obliqueness
 
     def windowed(self, window: Window) -> Slopes:
-        """The slopes on a window of their grid."""
+        """Return the slopes on a window of their grid."""
         return Slopes(self.tan_x[window.slices], self.tan_y[window.slices])
 
-    def spread(self, window: Window, M: int) -> Slopes:
-        """The slopes of a window on its whole ``M x M`` grid, zero elsewhere."""
+    def spread(self, window: Window, grid: Grid) -> Slopes:
+        """Return the slopes of a window on its whole grid, zero elsewhere."""
         if self.is_flat:
-            return Slopes.flat((M, M))
-        return Slopes(window.spread(self.tan_x, M), window.spread(self.tan_y, M))
-
-
-def _difference(heights: Array, axis: int, periodic: bool) -> Array:
-    """Differences per element: central, and wrapped or one-sided at the border."""
-    if periodic and heights.shape[axis] > 1:
-        return 0.5 * (np.roll(heights, -1, axis) - np.roll(heights, 1, axis))
-    return differences(heights, axis)
+            return Slopes.flat(grid.shape)
+        return Slopes(window.spread(self.tan_x, grid.shape), window.spread(self.tan_y, grid.shape))

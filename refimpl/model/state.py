@@ -1,4 +1,4 @@
-"""What a solver hands back before certification: the state, how its loops ended, and what they visited."""
+"""What a solver returns before certification: the fields, how its loops ended, and the states of cycles."""
 
 from __future__ import annotations
 
@@ -6,18 +6,21 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
 
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
+from refimpl.model.forces import contact_area, friction_coefficient, resultants
+from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
 
 class Status(Enum):
     """How a solve ended.
 
-    CONVERGED: the certificate meets the tolerance. STAGNATED: it stopped improving above it.
-    ITERATION_LIMIT: a loop's limit came first. CYCLED: the support of tau cycled and was settled by
-    the rule of `refimpl.model.friction`; the certificate holds for the settled traction. NO_CONTACT: the
-    approach leaves the surfaces apart.
+    CONVERGED : the certificate meets the tolerance
+    STAGNATED : not converged; the residual no longer falls
+    ITERATION_LIMIT : not converged; a loop's limit came first
+    CYCLED : converged, with an alternating contact edge: some elements in contact carry no adhesive shear
+        (`refimpl.solvers.tau_active_set`); the certificate holds for the returned traction
+    NO_CONTACT : at the prescribed approach the surfaces do not touch
     """
 
     CONVERGED = "converged"
@@ -27,7 +30,7 @@ class Status(Enum):
     NO_CONTACT = "no contact"
 
 
-class Visited(NamedTuple):
+class CycleState(NamedTuple):
     """Summary of one state of a cycle: friction coefficient and contact area (m^2)."""
 
     friction_coefficient: float
@@ -35,17 +38,28 @@ class Visited(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
-    """A solver's state: ``pressure``, ``traction`` (Pa) and ``slopes``, shapes ``(M, M)``.
+class SolverResult:
+    """A solver's result; arrays have the shape of the grid.
 
-    ``withheld`` marks the elements that tau's rule denied; ``visited`` holds the states of all
-    cycles; ``iterations`` counts per loop.
+    pressure, traction : f and r (Pa)
+    slopes : those that the facet tractions of the slope correction were taken at
+    status : how the loops ended
+    excluded : elements that the rule for tau's active set leaves without adhesive shear
+    cycle_states : summaries of the states of all cycles
+    iterations : counts by loop
     """
 
     pressure: Array
     traction: Array
     slopes: Slopes
     status: Status
-    withheld: Mask
-    visited: tuple[Visited, ...]
+    excluded: Mask
+    cycle_states: tuple[CycleState, ...]
     iterations: dict[str, int] = field(default_factory=dict)
+
+
+def cycle_state(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> CycleState:
+    """Return the summary of a state, by Eqs (2) to (4)."""
+    forces = resultants(pressure, traction, slopes, problem.grid.element_area)
+    load = problem.nominal_load(forces.normal)
+    return CycleState(friction_coefficient(forces.friction, load), contact_area(pressure != 0, problem.grid))

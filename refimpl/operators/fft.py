@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.grid import Array, Grid
-from refimpl.grid.window import Window, padded_length
+from refimpl.grid import Array, Grid, Window
+from refimpl.grid.window import padded_length
 from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.symmetric import even_hat, odd_hat
 from refimpl.operators.transforms import Complex, factors, fourier, threads
@@ -46,6 +46,8 @@ class FFTInfluence:
     otherwise. Arguments have the source's shape, results the target's.
     """
 
+    displaces_mean = True
+
     def __init__(
         self,
         grid: Grid,
@@ -57,7 +59,7 @@ class FFTInfluence:
     ) -> None:
         self.grid = grid
         self.direction = direction
-        self.source = source or Window.full(grid.M)
+        self.source = source or grid.window
         self.target = target or self.source
         self.counter = counter if counter is not None else Counter()
         self._padded = _padded(self.source, self.target)
@@ -101,7 +103,7 @@ class FFTInfluence:
     def symbol(self) -> Array:
         """The normal kernel's transform on `circle` (m), half along the first axis, for a window onto itself.
 
-        Every second frequency of the padded circle's: real, and no less than 1.8 spacings (a test).
+        Every second frequency of the padded circle's: real and positive (a test).
         """
         return self._normal_hat.real[::2, ::2]
 
@@ -118,14 +120,18 @@ class FFTInfluence:
         points = self._points
         if not all(map(_is_even, self._offsets)):
             self.counter.add("normal kernel", points // 2)
-            return self._transformed(signed_table("normal", *self._offsets))
+            return self._transformed(self._signed("normal"))
         self.counter.add("normal kernel", points // 8)
-        N, K = self._padded
-        return self._kept(even_hat(self._quarter("normal", N // 2, K // 2), threads(points)))
+        return self._kept(even_hat(self._quarter("normal"), threads(points)))
 
-    def _quarter(self, kind: str, rows: int, columns: int) -> Array:
-        """The kernel at the offsets from 0 up to those (m)."""
-        return unit_table(kind, max(rows, columns) + 1)[: rows + 1, : columns + 1] * self.grid.spacing
+    def _quarter(self, kind: str, axis: int = 0) -> Array:
+        """A kernel at the offsets from 0 to half of each circle (m): that along an axis if it is tangential.
+
+        Rows are offsets along that axis.
+        """
+        halves = [n // 2 + 1 for n in self._padded]
+        edge, other = self.grid.spacings[axis], self.grid.spacings[1 - axis]
+        return unit_table(kind, (halves[axis], halves[1 - axis]), other / edge) * edge
 
     def _kept(self, hat: Array) -> Array | Complex:
         return factors(hat)
@@ -145,17 +151,21 @@ class FFTInfluence:
         rows, columns = _farthest(self.source, self.target)
         if all(map(_is_even, self._offsets)) and rows < N // 2 and columns < K // 2:
             self.counter.add("shear kernel", points // 8 * (2 if sin else 1))
-            along_x = cos * self._quarter("tangential", N // 2, K // 2)
-            along_y = sin * self._quarter("tangential", K // 2, N // 2).T if sin else None
+            along_x = cos * self._quarter("tangential")
+            along_y = sin * self._quarter("tangential", axis=1).T if sin else None
             return odd_hat(along_x, along_y, threads(points))
-        i, j = self._offsets
-        along_x = signed_table("tangential", i, j)
-        along_y = signed_table("tangential", j, i).T
         self.counter.add("shear kernel", points // 2)
-        return self._transformed(cos * along_x + sin * along_y)
+        return self._transformed(
+            cos * self._signed("tangential") + sin * self._signed("tangential", axis=1).T
+        )
 
-    def _transformed(self, unit_kernel: Array) -> Complex:
-        return fourier.plane(unit_kernel * self.grid.spacing, self._padded, threads(self._points))
+    def _signed(self, kind: str, axis: int = 0) -> Array:
+        """A kernel at all offsets around the circles (m), rows along an axis."""
+        edge, other = self.grid.spacings[axis], self.grid.spacings[1 - axis]
+        return signed_table(kind, self._offsets[axis], self._offsets[1 - axis], other / edge) * edge
+
+    def _transformed(self, kernel: Array) -> Complex:
+        return fourier.plane(kernel, self._padded, threads(self._points))
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
         spectrum = self._forward(source)

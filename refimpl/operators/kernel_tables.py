@@ -1,9 +1,12 @@
-"""Influence coefficients of the unit grid, tabulated once and shared by every grid and level.
+"""Influence integrals at all offsets of a grid, tabulated once and shared by every grid and level.
 
-The integrals are homogeneous of degree one in length, so one table of unit elements serves all.
+The integrals are homogeneous of degree one in length, so one table of elements ``1 x aspect`` serves all
+grids with that ratio of edges.
 """
 
 from __future__ import annotations
+
+from collections import OrderedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,25 +15,35 @@ from refimpl.grid import Array
 from refimpl.kernels import normal_table, tangential_table
 
 _TABLES = {"normal": normal_table, "tangential": tangential_table}
-_cache: dict[str, Array] = {}
+_SHARED = 4  # ratio of sides up to which a table is square: windows of all these shapes share it
+_KEPT = 8  # tables kept, the last used ones; a square grid needs two
+_cache: OrderedDict[tuple[str, float, bool], Array] = OrderedDict()
 
 
-def unit_table(kind: str, n: int) -> Array:
-    """Read-only ``(n, n)`` table of ``I[1/rho]`` ("normal") or ``I[x/rho^2]`` ("tangential").
+def unit_table(kind: str, shape: tuple[int, int], aspect: float = 1.0) -> Array:
+    """Return a read-only table of ``I[1/rho]`` ("normal") or ``I[x/rho^2]`` ("tangential").
 
-    Entry ``[i, j]`` belongs to the offset ``(i, j)`` from a unit square element. The largest table
-    asked for so far is kept, and smaller ones are views of it.
+    Entry ``[i, j]`` belongs to the offset ``(i, j aspect)`` from an element of edges ``1 x aspect``. The
+    largest table so far is kept, and smaller ones are views of it.
     """
-    table = _cache.get(kind)
-    if table is None or len(table) < n:
-        table = _TABLES[kind](n, n, 1.0, known=table)
+    n, m = shape
+    if max(n, m) <= _SHARED * min(n, m):
+        n = m = max(n, m)
+    key = kind, aspect, n >= m
+    table = _cache.pop(key, None)
+    if table is None or table.shape[0] < n or table.shape[1] < m:
+        if table is not None:
+            n, m = max(n, table.shape[0]), max(m, table.shape[1])
+        table = _TABLES[kind](n, m, 1.0, aspect, known=table)
         table.flags.writeable = False
-        _cache[kind] = table
-    return table[:n, :n]
+    _cache[key] = table
+    while len(_cache) > _KEPT:
+        _cache.popitem(last=False)
+    return table[: shape[0], : shape[1]]
 
 
-def signed_table(kind: str, rows: NDArray[np.int_], columns: NDArray[np.int_]) -> Array:
-    """The table's values at signed integer offsets ``rows[:, None], columns[None, :]``."""
-    n = 1 + int(max(np.abs(rows).max(), np.abs(columns).max()))
-    values: Array = unit_table(kind, n)[np.ix_(np.abs(rows), np.abs(columns))]
+def signed_table(kind: str, rows: NDArray[np.int_], columns: NDArray[np.int_], aspect: float = 1.0) -> Array:
+    """Return the table's values at signed integer offsets ``rows[:, None], columns[None, :]``."""
+    i, j = np.abs(rows), np.abs(columns)
+    values: Array = unit_table(kind, (1 + int(i.max()), 1 + int(j.max())), aspect)[np.ix_(i, j)]
     return values * np.sign(rows)[:, None].astype(np.float64) if kind == "tangential" else values

@@ -15,33 +15,34 @@ import numpy as np
 import scipy.fft as sfft
 
 from refimpl.grid import Array, Grid
-from refimpl.grid.window import Window
 from refimpl.operators.fft import Counter
 from refimpl.operators.transforms import Complex, fourier, threads
 
 
 class PeriodicInfluence:
-    """Influence convolutions on the periodic square, shapes ``(M, M)``."""
+    """Influence convolutions on the periodic rectangle; arrays of the grid's shape."""
+
+    displaces_mean = False
 
     def __init__(self, grid: Grid, direction: float, *, counter: Counter | None = None) -> None:
         self.grid = grid
         self.direction = direction
-        self.source = Window.full(grid.M)
+        self.source = grid.window
         self.counter = counter if counter is not None else Counter()
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""
-        self.counter.add("normal", self.grid.M**2)
+        self.counter.add("normal", self.grid.elements)
         return self._filter(pressure, self._normal_symbol)
 
     def shear(self, traction: Array) -> Array:
         """``I[s/rho^2]`` applied to a traction along the sliding direction."""
-        self.counter.add("shear", self.grid.M**2)
+        self.counter.add("shear", self.grid.elements)
         return self._filter(traction, self._tangential_symbol(self.direction))
 
     def shear_across(self, traction: Array) -> Array:
         """``I[t/rho^2]`` applied to a traction across the sliding direction."""
-        self.counter.add("shear", self.grid.M**2)
+        self.counter.add("shear", self.grid.elements)
         return self._filter(traction, self._tangential_symbol(self.direction + math.pi / 2))
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
@@ -49,15 +50,15 @@ class PeriodicInfluence:
         symbol = self._normal_symbol + ratio * self._tangential_symbol(self.direction)
 
         def product(pressure: Array) -> Array:
-            self.counter.add("normal and shear", self.grid.M**2)
+            self.counter.add("normal and shear", self.grid.elements)
             return self._filter(pressure, symbol)
 
         return product
 
     @property
     def circle(self) -> tuple[int, int]:
-        """Elements a side."""
-        return self.grid.M, self.grid.M
+        """The grid's shape."""
+        return self.grid.shape
 
     @property
     def symbol(self) -> Array:
@@ -67,9 +68,9 @@ class PeriodicInfluence:
     @cached_property
     def _wavevectors(self) -> tuple[Array, Array, Array]:
         """``q_x`` (column), ``q_y`` (row) and ``q^2`` with its zero replaced by infinity (1/m)."""
-        M, spacing = self.grid.M, self.grid.spacing
-        q_x = 2 * np.pi * sfft.rfftfreq(M, spacing)[:, None]
-        q_y = 2 * np.pi * sfft.fftfreq(M, spacing)[None, :]
+        (n, m), (dx, dy) = self.grid.shape, self.grid.spacings
+        q_x = 2 * np.pi * sfft.rfftfreq(n, dx)[:, None]
+        q_y = 2 * np.pi * sfft.fftfreq(m, dy)[None, :]
         squared = q_x**2 + q_y**2
         squared[0, 0] = np.inf
         return q_x, q_y, squared
@@ -80,10 +81,11 @@ class PeriodicInfluence:
 
     def _tangential_symbol(self, angle: float) -> Complex:
         q_x, q_y, squared = self._wavevectors
-        if self.grid.M % 2 == 0:  # a real field has no sine at the Nyquist frequency
-            half = self.grid.M // 2
-            q_x, q_y = q_x.copy(), q_y.copy()
-            q_x[half], q_y[0, half] = 0.0, 0.0
+        (n, m), q_x, q_y = self.grid.shape, q_x.copy(), q_y.copy()
+        if n % 2 == 0:  # a real field has no sine at the Nyquist frequency
+            q_x[n // 2] = 0.0
+        if m % 2 == 0:
+            q_y[0, m // 2] = 0.0
         q_s: Array = math.cos(angle) * q_x + math.sin(angle) * q_y
         return np.complex128(-2j * np.pi) * q_s / squared
 

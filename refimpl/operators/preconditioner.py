@@ -1,28 +1,47 @@
-"""Spectral preconditioner: the influence of a window on itself, inverted on a circle without padding."""
+"""Preconditioners: the inverse of the influence of elements on one another, approximately.
+
+`SpectralPreconditioner` is one over the symbol, on a circle without padding. `ExtendedPreconditioner` adds
+what happens at the contact's edge: the best preconditioner on a contact set S, the inverse of ``a``
+restricted to S, is ``E' W E``, with ``W`` the inverse on the whole plane and ``E`` the continuation of a
+field from S to the plane that has the least energy ``e.(W e)``. A mask is the continuation by zero, which
+jumps at every edge. Here an element outside takes the weighted mean of its neighbours in S, reduced by its
+neighbours outside.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import NamedTuple
 
-from refimpl.grid import Array
-from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.periodic import PeriodicInfluence
+import numpy as np
+from numpy.typing import NDArray
+
+from refimpl.grid import Array, Mask
+from refimpl.operators.influence import WindowInfluence
 from refimpl.operators.transforms import factors, fourier, threads
+
+Apply = Callable[[Array], Array]
+"""A linear map of fields on a window."""
+
+_REACH = 2  # elements; the eight nearest alone save three quarters of the CG steps that two rings save
+_WORTHWHILE = 8_000  # elements of a window: on fewer, set-up and passes cost as much as the CG steps saved
+_AMPLE = 16_000  # elements from which 5 % fewer CG steps pay for twenty neighbours instead of twelve
 
 
 class SpectralPreconditioner:
-    """Approximates the inverse of ``compliance * I[1/rho]`` between elements, by one over its symbol.
+    """Approximate inverse of ``a`` between the elements of a window, by one over its symbol.
 
-    Restricted to a contact set on both sides it stays symmetric positive definite; the mean pressure, which
-    displaces nothing in a periodic scene, gets half of the longest wave's stiffness.
+    ``symbol`` is the displacement per pressure on the operator's circle (m/Pa), half along the first axis.
+    Restricted to a contact set on both sides the map stays symmetric positive definite. The mean pressure,
+    which displaces nothing in a periodic scene, is given half of the longest wave's stiffness.
     """
 
-    def __init__(self, operator: FFTInfluence | PeriodicInfluence, compliance: float) -> None:
+    def __init__(self, operator: WindowInfluence, symbol: Array) -> None:
         self._circle, self._counter = operator.circle, operator.counter
-        flexibility = compliance * operator.symbol
-        if flexibility[0, 0] == 0:
-            flexibility[0, 0] = 2 * flexibility.max() or 1.0
-        self._symbol = factors(1 / flexibility)
+        if symbol[0, 0] == 0:
+            symbol[0, 0] = 2 * symbol.max() or 1.0
+        self._symbol = factors(1 / symbol)
 
     def __call__(self, residual: Array) -> Array:
         """The preconditioned residual, same shape; the caller masks argument and result."""
@@ -33,3 +52,93 @@ class SpectralPreconditioner:
         spectrum *= self._symbol
         n, m = residual.shape
         return fourier.plane_back(spectrum, self._circle, workers)[:n, :m]
+
+
+class _Neighbours(NamedTuple):
+    """Who is asked: steps ``(2, n)`` in elements, weights ``(n,)``, and what those outside hold back.
+
+    ``held`` is the share of what neighbours outside would hold back if they stayed at zero.
+    """
+
+    steps: NDArray[np.intp]
+    weights: Array
+    held: float
+
+    @classmethod
+    def within(cls, squared: int, held: float) -> _Neighbours:
+        """Those up to a squared distance, by one over the distance."""
+        along, across = np.indices((2 * _REACH + 1,) * 2).reshape(2, -1) - _REACH
+        squares = along**2 + across**2
+        near = (squares > 0) & (squares <= squared)
+        distances: Array = np.sqrt(squares[near], dtype=np.float64)
+        return cls(np.array([along[near], across[near]]), 1 / distances, held)
+
+
+_TWELVE = _Neighbours.within(4, held=0.5)  # 0.5 to 0.7 take as many steps
+_TWENTY = _Neighbours.within(5, held=0.3)  # 0.25 to 0.5, or weights by its square, do within 2 %
+
+
+def extended(precondition: Apply, contact: Mask) -> Apply:
+    """The preconditioner with residuals continued beyond a contact, where that is worthwhile."""
+    return ExtendedPreconditioner(precondition, contact) if contact.size >= _WORTHWHILE else precondition
+
+
+class ExtendedPreconditioner:
+    """``E' W E`` for a contact set; ``precondition`` is W.
+
+    Symmetric and positive definite on any other set as well, so CG may exchange elements: ``E`` differs from
+    the identity by what goes from S out of it, which leaves it invertible. It is kept as pairs of an element
+    of S at its edge and one beyond: a sparse matrix takes longer to make than all its products.
+    """
+
+    def __init__(self, precondition: Apply, contact: Mask) -> None:
+        self._precondition = precondition
+        steps, weights, held = _TWENTY if contact.size >= _AMPLE else _TWELVE
+        n, m = contact.shape
+        width = m + 2 * _REACH
+        inside, outside = np.zeros((2, n + 2 * _REACH, width), dtype=bool)
+        window = slice(_REACH, n + _REACH), slice(_REACH, m + _REACH)
+        inside[window], outside[window] = contact, ~contact
+        edge = np.flatnonzero(inside.ravel() & _near(outside.ravel(), width))
+        around = edge[:, None] + (steps[0] * width + steps[1])
+        paired = np.flatnonzero(outside.take(around))
+        outer = around.take(paired)
+        self._from, step = np.divmod(paired, weights.size)
+        asking = weights.take(step)
+        asked = np.bincount(outer, asking, minlength=outside.size)
+        beyond = np.flatnonzero(asked > 0)
+        number = np.empty(outside.size, dtype=np.intp)
+        number[beyond] = np.arange(beyond.size)
+        self._to = number.take(outer)
+        asking /= ((1 - held) * asked + held * weights.sum()).take(outer)
+        self._weights = asking
+        self._edge, self._beyond = (
+            place - (width - m) * (place // width) - _REACH * (m + 1) for place in (edge, beyond)
+        )
+        self._source = self._edge.take(self._from)
+
+    def __call__(self, residual: Array) -> Array:
+        """The preconditioned residual, same shape; the caller masks argument and result.
+
+        An element that has come into contact since has a residual of its own, and goes on with that.
+        """
+        own = residual.take(self._beyond)
+        free = own == 0
+        own += free * np.bincount(self._to, self._weights * residual.take(self._source))
+        continued = residual.copy()
+        continued.put(self._beyond, own)
+        found = np.ascontiguousarray(self._precondition(continued))
+        back = (free * found.take(self._beyond)).take(self._to)
+        found.ravel()[self._edge] += np.bincount(self._from, self._weights * back, self._edge.size)
+        return found
+
+
+def _near(marked: Mask, width: int) -> Mask:
+    """Within a square's reach of something marked, in rows this long; a frame as wide is not marked."""
+    for stride in (1, width):
+        near = marked.copy()
+        for step in range(stride, _REACH * stride + 1, stride):
+            near[step:] |= marked[:-step]
+            near[:-step] |= marked[step:]
+        marked = near
+    return marked

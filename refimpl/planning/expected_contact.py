@@ -1,7 +1,7 @@
-"""The contact to expect, from the heights alone; and the same description of a contact that was found.
+"""The contact to expect, from the heights alone; and the same description of a solved contact.
 
-A glance at 64 x 64 heights is enough for what is expected: on random scenes the estimates that follow from
-it scatter far less about those from all heights than these about the effects (a test, `test_outlook.py`).
+64 x 64 heights are enough for the expectation: on random scenes the estimates from them differ from those of
+all heights far less than the latter differ from the effects (`test_expected_contact.py`).
 
 Elements touch in the order of their gap until they carry the load. A patch whose gap has the rms
 gradient g carries the mean pressure ``0.6 E* g``: of Hertz's paraboloid this is exact
@@ -23,34 +23,32 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.grid import Array, Grid, resampled
-from refimpl.grid.contact_patches import spot_sizes
-from refimpl.grid.window import Window
+from refimpl.grid import Array, Mask, Window, resampled
+from refimpl.grid.contact_patches import patch_sizes
 from refimpl.model.forces import EDGE_SHARE
-from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
-_GLANCE = 64  # elements a side from which the contact to expect is told
-_MOSTLY_ENOUGH = 4  # a contact mostly takes less than this part of the elements
+_COARSE = 64  # elements per side from which the contact is estimated
+_SORTED_SHARE = 4  # a quarter of the elements holds the contact of most scenes
 _LEAST = 1e-12  # mean pressure over E*, of a contact at an approach that hardly loads it
 _ROUNDING = 1e-9  # of a surface's range: heights that differ by less are mirror images of each other
 
 
 @dataclass(frozen=True)
-class Outlook:
-    """A contact in a dozen numbers; pressures in Pa, lengths in m, slopes as tangents.
+class ExpectedContact:
+    """A contact in twelve numbers; pressures in Pa, lengths in m, slopes as tangents.
 
-    ``elements`` in contact, in ``spots`` of equal weight; ``mean_pressure``, and ``pressure`` weighted by
+    ``elements`` in contact, in ``patches`` of equal weight; ``mean_pressure``, and ``pressure`` weighted by
     itself; ``approach`` from first touch; ``slope_squared`` mean square of the common surface's;
     ``least_slope`` and ``least_mean_slope`` are the smaller of both bodies' rms and mean slopes along the
     sliding direction; ``border`` share of the contact that lies on the domain's border.
     """
 
     elements: int
-    spots: float
+    patches: float
     mean_pressure: float
     pressure: float
     approach: float
@@ -64,53 +62,54 @@ class Outlook:
 
     @property
     def edge_error(self) -> float:
-        """Relative error of A that whole elements make along the edges of the spots.
+        """Relative error of A by whole elements along the edges of the patches.
 
         On a circle of radius r the excess of `refimpl.model.forces.perimeter_corrected_area` is 0.30 spacing
         / r.
         """
-        return 8 / math.pi * EDGE_SHARE * math.sqrt(math.pi * self.spots / self.elements)
+        return 8 / math.pi * EDGE_SHARE * math.sqrt(math.pi * self.patches / self.elements)
 
 
-def expected(problem: Problem) -> Outlook:
-    """The contact to expect of a problem under its load, or at its approach."""
-    glance = _glance(problem)
-    gap, dA = glance.gap, glance.grid.element_area
+def expected_contact(problem: Problem) -> ExpectedContact:
+    """Return the contact to expect of a problem under its load, or at its approach."""
+    coarse = _coarse(problem)
+    gap, dA = coarse.gap, coarse.grid.element_area
     modulus = problem.pair.reduced_modulus
     stiffness = _STIFFNESS * modulus * dA
     if problem.load is not None:
-        contact = _touched(glance, stiffness, problem.load)
+        contact = _bearing(coarse, stiffness, problem.load)
         elements = int(np.count_nonzero(contact))
         mean_pressure = problem.load / (elements * dA)
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
         contact = _first(_rising(gap, elements), elements, gap)
-        squares = float(_gradient_squared(glance)[contact].sum())
+        squares = float(_gradient_squared(coarse)[contact].sum())
         mean_pressure = stiffness * math.sqrt(squares * elements) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
     # a sphere's gap at the contact's edge is half the approach
     approach = problem.approach or 2 * float(gap[contact].max())
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
-    seen = _Seen(approach, *_symmetries(glance, problem), window)
-    outlook = _described(glance, contact, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
-    finer = problem.grid.M / glance.grid.M
-    rows, columns = (math.ceil(finer * n) for n in window)
-    return replace(outlook, elements=round(finer**2 * elements), window=(rows, columns))
+    seen = _FromHeights(approach, *_symmetries(coarse, problem), window)
+    expectation = _described(coarse, contact, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
+    finer = [n / m for n, m in zip(problem.grid.shape, coarse.grid.shape, strict=True)]
+    rows, columns = (math.ceil(f * n) for f, n in zip(finer, window, strict=True))
+    return replace(expectation, elements=round(math.prod(finer) * elements), window=(rows, columns))
 
 
-def _glance(problem: Problem) -> Problem:
+def _coarse(problem: Problem) -> Problem:
     """The problem's heights at fewer points, if there are more than it takes."""
-    M = min(problem.grid.M, _GLANCE)
-    gap, mean_surface = resampled(problem.gap, M), resampled(problem.mean_surface, M)
-    return replace(problem, grid=Grid(problem.grid.side, M), gap=gap, mean_surface=mean_surface)
+    n, m = problem.grid.shape
+    grid = problem.grid.refined((min(n, _COARSE), min(m, _COARSE)))
+    gap, mean_surface = (resampled(z, grid.shape) for z in (problem.gap, problem.mean_surface))
+    return replace(problem, grid=grid, gap=gap, mean_surface=mean_surface)
 
 
-def _touched(problem: Problem, stiffness: float, load: float) -> Mask:
-    """The fewest of the lowest elements that carry the load, or all."""
+def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
+    """The smallest number of lowest elements that carry the load, or all."""
     gap, gradient_squared = problem.gap, _gradient_squared(problem).ravel()
-    sorted_out = gap.size // _MOSTLY_ENOUGH
+    sorted_out = gap.size // _SORTED_SHARE
     while True:
         order = _rising(gap, sorted_out)
         carried = stiffness * np.sqrt(np.cumsum(gradient_squared[order]) * np.arange(1, order.size + 1))
@@ -142,18 +141,19 @@ def _gradient_squared(problem: Problem) -> Array:
     return squared
 
 
-def found(problem: Problem, pressure: Array, before: Outlook) -> Outlook:
-    """The same description of a solved contact; what the heights alone say is taken from ``before``."""
+def solved_contact(problem: Problem, pressure: Array, before: ExpectedContact) -> ExpectedContact:
+    """Return the description of a solved contact; what follows from the heights alone is that of
+    ``before``."""
     contact: Mask = pressure > 0
     loaded = pressure[contact]
     total = float(loaded.sum())
-    seen = _Seen(before.approach, before.symmetric, before.mirrored, before.window)
+    seen = _FromHeights(before.approach, before.symmetric, before.mirrored, before.window)
     weighted = float(np.sum(loaded**2)) / total
     return _described(problem, contact, loaded, total / loaded.size, weighted, seen)
 
 
-class _Seen(NamedTuple):
-    """What does not depend on where contact is."""
+class _FromHeights(NamedTuple):
+    """What does not depend on the contact set."""
 
     approach: float
     symmetric: bool
@@ -162,28 +162,27 @@ class _Seen(NamedTuple):
 
 
 def _described(
-    problem: Problem, contact: Mask, loads: Array, mean_pressure: float, pressure: float, seen: _Seen
-) -> Outlook:
+    problem: Problem, contact: Mask, loads: Array, mean_pressure: float, pressure: float, seen: _FromHeights
+) -> ExpectedContact:
     """``loads`` weighs the elements in contact, in their order. Sums are not BLAS's: bits vary there."""
-    window = Window.full(len(contact)) if problem.periodic else Window.around(contact, margin=1)
+    window = problem.grid.window_around(contact, margin=1)
     near, where = problem.windowed(window), contact[window.slices]
     lower, upper = near.heights
     weights = loads / loads.sum()
-    share = problem.pair.upper.normal_compliance / problem.pair.normal_compliance
+    share = problem.pair.upper_share
     slopes = [_on(where, near, z) for z in (lower, upper)]
     along, across = (share * below + (1 - share) * above for below, above in zip(*slopes, strict=True))
     tangents = [tan for tan, _ in slopes]
     elements = loads.size
-    border = int(np.count_nonzero(contact)) - int(np.count_nonzero(contact[1:-1, 1:-1]))
-    return Outlook(
+    return ExpectedContact(
         elements=elements,
-        spots=_spots(where, problem.periodic),
+        patches=_patches(where, problem.grid.periodic),
         mean_pressure=mean_pressure,
         pressure=pressure,
         slope_squared=float(np.sum(weights * (along**2 + across**2))),
         least_slope=min(math.sqrt(float(np.sum(weights * tan**2))) for tan in tangents),
         least_mean_slope=min(abs(float(np.sum(weights * tan))) for tan in tangents),
-        border=0.0 if problem.periodic else border / elements,
+        border=problem.grid.on_border(contact) / elements,
         **seen._asdict(),
     )
 
@@ -194,22 +193,23 @@ def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
     return slopes.tan_x[where], slopes.tan_y[where]
 
 
-def _symmetries(glance: Problem, problem: Problem) -> tuple[bool, bool]:
+def _symmetries(coarse: Problem, problem: Problem) -> tuple[bool, bool]:
     """Whether both surfaces are their own images after half a turn, and across the sliding line.
 
-    So they are if gap and mean surface are; a glance tells what is not before all heights are asked.
+    So they are if gap and mean surface are; the coarse heights rule most scenes out before all heights are
+    compared.
     """
-    seen = [z for p in (glance, problem) for z in (p.gap, p.mean_surface)]
+    seen = [z for p in (coarse, problem) for z in (p.gap, p.mean_surface)]
     return all(_alike(z, z[::-1, ::-1]) for z in seen), _mirrored(problem.direction, seen)
 
 
 def _slopes(problem: Problem, heights: Array) -> Slopes:
-    return Slopes.of_surface(heights, problem.grid.spacing, problem.direction, periodic=problem.periodic)
+    return Slopes.of_surface(heights, problem.grid, problem.direction)
 
 
-def _spots(contact: Mask, periodic: bool) -> float:
-    """How many spots of equal size weigh as much: ``(sum n)^2 / sum n^2`` over the connected ones."""
-    sizes = spot_sizes(contact, periodic=periodic).astype(np.float64)
+def _patches(contact: Mask, periodic: bool) -> float:
+    """Number of patches of equal size with the same weight: ``(sum n)^2 / sum n^2`` over the patches."""
+    sizes = patch_sizes(contact, periodic=periodic).astype(np.float64)
     return float(sizes.sum() ** 2 / np.sum(sizes**2))
 
 

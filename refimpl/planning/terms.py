@@ -1,88 +1,189 @@
-"""Which terms enter: those that the user forces, those that are not exactly zero and not small enough."""
+"""Which terms enter: those that are requested, and those whose effect is neither zero nor negligible."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from refimpl.errors import InputError
-from refimpl.planning import term_effects
-from refimpl.planning.expected_contact import Outlook
-from refimpl.planning.term_effects import NONE, Effect, Scales
-from refimpl.scene.scene import Scene
+from refimpl.model.friction import is_frictionless
+from refimpl.model.problem import Problem
+from refimpl.planning.expected_contact import ExpectedContact
+from refimpl.planning.term_effects import ESTIMATES, NONE, Effect, Scales
 
-_BUDGET = 0.5  # share of the demand that all terms left out may add up to
-_OF_THE_GRID = 0.01  # of the grid's own error: what may be left out where no friction force is at stake
+_SHARE_OF_DEMAND = 0.5  # of the accuracy, for all neglected terms together
+_SHARE_OF_EDGE_ERROR = 0.01  # of the grid's own error of A, where no friction force is at stake
 
-
-@dataclass(frozen=True)
-class Term:
-    """One piece of physics: whether it is modelled, why, and what leaving it out changes (an estimate)."""
-
-    name: str
-    included: bool
-    reason: str
-    effect: Effect = NONE
-    small: bool = False
+LABELS = {
+    "coupled": "normal-tangential coupling",
+    "oblique": "slope terms",
+    "tilted": "slope change by shear",
+    "slope_correction": "slope correction",
+    "active_set": "active set of tau",
+}
+"""The terms of a plan, by the names of their switches, as people read them."""
 
 
 @dataclass(frozen=True)
-class Forced:
-    """What the user says of each term: in, out, or nothing (None)."""
+class RequestedTerms:
+    """What the user requests of each term: True, False, or None to let planning decide."""
 
     coupled: bool | None = None
     oblique: bool | None = None
     tilted: bool | None = None
     slope_correction: bool = False
 
-    def check(self) -> None:
-        """Raise `InputError` for terms that exclude each other."""
+    def __post_init__(self) -> None:
+        for name in ("oblique", "coupled", "tilted"):
+            if not isinstance(getattr(self, name), bool | None):
+                raise InputError(name, getattr(self, name), "True, False, or None to let the scene decide")
+        if not isinstance(self.slope_correction, bool):
+            raise InputError("slope_correction", self.slope_correction, "True or False")
         if self.slope_correction and self.oblique is False:
             raise InputError("oblique", self.oblique, "true or unset: the slope correction needs the slopes")
         if self.slope_correction and self.coupled is False:
             raise InputError("coupled", self.coupled, "true or unset: facet tractions include shear")
 
 
-def affordable(scene: Scene, outlook: Outlook, demand: float) -> float:
-    """What all terms left out may add up to: half the demand.
+@dataclass(frozen=True)
+class Term:
+    """One term of a plan.
 
-    Without friction, symmetric surfaces have neither F nor Q, and slopes enter by their squares alone,
-    as a change of A and f: there it is a hundredth of the grid's own error of A, if that is more.
+    name : its switch, or "active_set"
+    included : whether it is modelled
+    reason : why, or why not
+    effect : estimated effect of neglecting it
+    negligible : whether it is neglected because its effect is small, but not zero
     """
-    if scene.friction.is_zero and outlook.symmetric:
-        return max(_BUDGET * demand, _OF_THE_GRID * outlook.edge_error)
-    return _BUDGET * demand
+
+    name: str
+    included: bool
+    reason: str
+    effect: Effect = NONE
+    negligible: bool = False
+
+    @property
+    def label(self) -> str:
+        """The name as people read it."""
+        return LABELS[self.name]
+
+
+def budget_of(problem: Problem, contact: ExpectedContact, demand: float) -> float:
+    """Return the sum that the effects of all neglected terms may reach: half the demand.
+
+    Without friction, symmetric surfaces have neither F nor Q, and slopes enter by their squares alone, as a
+    change of A and f. There the budget is a hundredth of the grid's own error of A, if that is more.
+    """
+    if is_frictionless(problem.friction) and contact.symmetric:
+        return max(_SHARE_OF_DEMAND * demand, _SHARE_OF_EDGE_ERROR * contact.edge_error)
+    return _SHARE_OF_DEMAND * demand
 
 
 def choose(
-    scene: Scene, outlook: Outlook, forced: Forced, budget: float, *, of_mu: bool = False
+    problem: Problem,
+    contact: ExpectedContact,
+    requested: RequestedTerms,
+    budget: float,
+    *,
+    for_mu: bool = False,
 ) -> tuple[Term, ...]:
-    """All terms in a fixed order; those left out as small add up to no more than the budget.
+    """Return all terms in a fixed order; the effects of the negligible ones add up to at most the budget.
 
-    Where the budget is ``of_mu`` and there is no friction, slopes are all of mu and never small.
+    Where the budget is one of mu (``for_mu``) and there is no friction, slopes are all of mu and are kept.
     """
-    scales = Scales(outlook, scene.materials, scene.friction)
-    coupling, slopes = term_effects.shear_coupling(scales), term_effects.obliqueness(scales)
-    open_terms: dict[str, float] = {}
-    if forced.coupled is None and coupling != NONE and not forced.slope_correction:
-        open_terms["shear coupling"] = coupling.larger
-    if forced.oblique is None and not forced.slope_correction and not (of_mu and slopes.bare > 0):
-        open_terms["obliqueness"] = slopes.larger
-    small, budget = _smallest(open_terms, budget)
-    coupled = _coupling(scene, forced, coupling, small)
-    oblique = _obliqueness(forced, slopes, small)
-    tilted = _tilt(scene, forced, scales, coupled, oblique, budget)
-    moved = coupled.included or oblique.included
-    correction = Term(
-        "slope correction",
-        forced.slope_correction,
-        "asked for" if forced.slope_correction else "not asked for: Eq. (7) as printed",
-        term_effects.slope_correction(scales),
-    )
-    return coupled, oblique, tilted, correction, _tau_support(scene, moved or correction.included)
+    choice = _Choice(problem, Scales(contact, problem.pair, problem.friction), requested)
+    return choice.terms(budget, for_mu)
+
+
+class _Choice:
+    """What the choice of every term looks at."""
+
+    def __init__(self, problem: Problem, scales: Scales, requested: RequestedTerms) -> None:
+        self.problem, self.pair = problem, problem.pair
+        self.requested = requested
+        self.frictionless = scales.frictionless
+        self.effects = {name: estimate(scales) for name, estimate in ESTIMATES.items()}
+
+    def terms(self, budget: float, for_mu: bool) -> tuple[Term, ...]:
+        """All terms; the budget is spent on coupling and slope terms first."""
+        requested, effects = self.requested, self.effects
+        open_terms: dict[str, float] = {}
+        if requested.coupled is None and effects["coupled"] != NONE and not requested.slope_correction:
+            open_terms["coupled"] = effects["coupled"].larger
+        slopes_are_mu = for_mu and effects["oblique"].bare > 0
+        if requested.oblique is None and not requested.slope_correction and not slopes_are_mu:
+            open_terms["oblique"] = effects["oblique"].larger
+        negligible, left = _smallest(open_terms, budget)
+        coupled = self._coupled(negligible)
+        oblique = self._oblique(negligible)
+        tilted = self._tilted(coupled, oblique, left)
+        correction = self._slope_correction()
+        moved = coupled.included or oblique.included or correction.included
+        return coupled, oblique, tilted, correction, self._active_set(moved)
+
+    def _coupled(self, negligible: set[str]) -> Term:
+        name, effect = "coupled", self.effects["coupled"]
+        if self.requested.coupled is not None:
+            return Term(
+                name, self.requested.coupled, "requested" if self.requested.coupled else "excluded", effect
+            )
+        if self.pair.coupling_ratio == 0:
+            return Term(name, False, self._why_uncoupled())
+        if self.frictionless and not self.requested.slope_correction:
+            return Term(name, False, "no friction")
+        if name in negligible:
+            return Term(name, False, "negligible", effect, negligible=True)
+        return Term(name, True, "shear compliances of the bodies differ", effect)
+
+    def _why_uncoupled(self) -> str:
+        if self.pair.shear_ratio == 0:
+            return "nu = 0.5 on both: shear does not displace"
+        return "lower and upper shear compliances cancel exactly"
+
+    def _oblique(self, negligible: set[str]) -> Term:
+        name, effect = "oblique", self.effects["oblique"]
+        if self.requested.oblique is not None:
+            reason = "requested" if self.requested.oblique else "excluded: small-slope approximation"
+            return Term(name, self.requested.oblique, reason, effect)
+        if name in negligible:
+            reason = "negligible: small-slope approximation"
+            return Term(name, False, reason, effect, negligible=effect != NONE)
+        return Term(name, True, "slopes enter Eqs (2), (3) and (6)", effect)
+
+    def _tilted(self, coupled: Term, oblique: Term, budget: float) -> Term:
+        """With coupling the kernel of shear is there, and this term costs nothing more."""
+        name, effect, correction = "tilted", self.effects["tilted"], self.requested.slope_correction
+        if not oblique.included:
+            return Term(name, False, "no slope terms")
+        if self.requested.tilted is not None:
+            return Term(
+                name, self.requested.tilted, "requested" if self.requested.tilted else "excluded", effect
+            )
+        if self.frictionless and not correction:
+            return Term(name, False, "no friction")
+        if self.pair.shear_ratio == 0:
+            return Term(name, False, self._why_uncoupled())
+        if correction or coupled.included:
+            return Term(name, True, "comes with the coupling's kernel", effect)
+        if effect.larger <= budget:
+            return Term(name, False, "negligible", effect, negligible=True)
+        return Term(name, True, "shear moves the common surface", effect)
+
+    def _slope_correction(self) -> Term:
+        included = self.requested.slope_correction
+        reason = "requested" if included else "not requested: Eq. (7) as printed"
+        return Term("slope_correction", included, reason, self.effects["slope_correction"])
+
+    def _active_set(self, moved: bool) -> Term:
+        name = "active_set"
+        if self.problem.friction.jump == 0:
+            return Term(name, False, "tau is zero")
+        if not moved:
+            return Term(name, False, "tau moves nothing: it acts where contact is")
+        return Term(name, True, "tau > 0 moves the contact that it acts on")
 
 
 def _smallest(effects_of: dict[str, float], budget: float) -> tuple[set[str], float]:
-    """The names whose effects, smallest first, add up to no more than the budget; and what is left of it."""
+    """The names whose effects, smallest first, add up to at most the budget; and what is left of it."""
     names: set[str] = set()
     for name, effect in sorted(effects_of.items(), key=lambda item: item[1]):
         if effect > budget:
@@ -90,61 +191,3 @@ def _smallest(effects_of: dict[str, float], budget: float) -> tuple[set[str], fl
         names.add(name)
         budget -= effect
     return names, budget
-
-
-def _coupling(scene: Scene, forced: Forced, effect: Effect, small: set[str]) -> Term:
-    name = "shear coupling"
-    if forced.coupled is not None:
-        return Term(name, forced.coupled, "forced in" if forced.coupled else "forced out", effect)
-    if scene.materials.shear_compliance == 0:
-        return Term(name, False, _why_uncoupled(scene))
-    if scene.friction.is_zero and not forced.slope_correction:
-        return Term(name, False, "no friction")
-    if name in small:
-        return Term(name, False, "too small to matter", effect, small=True)
-    return Term(name, True, "shear compliances of the bodies differ", effect)
-
-
-def _why_uncoupled(scene: Scene) -> str:
-    if scene.materials.lower.shear_compliance == 0:
-        return "nu = 0.5 on both: shear does not displace"
-    return "lower and upper shear compliances cancel exactly"
-
-
-def _obliqueness(forced: Forced, effect: Effect, small: set[str]) -> Term:
-    name = "obliqueness"
-    if forced.oblique is not None:
-        reason = "forced in" if forced.oblique else "forced out: cosines 1, sines 0"
-        return Term(name, forced.oblique, reason, effect)
-    if name in small:
-        return Term(name, False, "flat tips: cosines 1, sines 0", effect, small=effect != NONE)
-    return Term(name, True, "slopes enter Eqs (2), (3) and (6)", effect)
-
-
-def _tilt(scene: Scene, forced: Forced, scales: Scales, coupled: Term, oblique: Term, budget: float) -> Term:
-    """Shear's motion of the common surface: with coupling in, its kernel is there and costs nothing more."""
-    name = "shear tilt"
-    effect = term_effects.shear_tilt(scales)
-    if not oblique.included:
-        return Term(name, False, "no slopes to tilt")
-    if forced.tilted is not None:
-        return Term(name, forced.tilted, "forced in" if forced.tilted else "forced out", effect)
-    if scene.friction.is_zero and not forced.slope_correction:
-        return Term(name, False, "no friction")
-    lower, upper = scene.materials.lower, scene.materials.upper
-    if lower.shear_compliance + upper.shear_compliance == 0:
-        return Term(name, False, _why_uncoupled(scene))
-    if forced.slope_correction or coupled.included:
-        return Term(name, True, "comes with the coupling's kernel", effect)
-    if effect.larger <= budget:
-        return Term(name, False, "too small to matter", effect, small=True)
-    return Term(name, True, "shear moves the common surface", effect)
-
-
-def _tau_support(scene: Scene, moved: bool) -> Term:
-    name = "tau support"
-    if scene.friction.tau == 0:
-        return Term(name, False, "tau is zero")
-    if not moved:
-        return Term(name, False, "tau moves nothing: it acts where contact is")
-    return Term(name, True, "tau > 0 moves the contact that it acts on")

@@ -1,35 +1,71 @@
-"""A scene's problems on grids: heights are sampled once where the grid that decides is the one solved on."""
+"""From a scene and a grid to the problem that solvers solve: heights are sampled once a grid."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import numpy as np
 
-from refimpl.grid import Grid
-from refimpl.model.problem import Problem, Terms, pose
+from refimpl.grid import Array, Grid
+from refimpl.model.elasticity import Elasticity
+from refimpl.model.problem import Problem, Terms
 from refimpl.scene.scene import Scene
 
-EVERYTHING = Terms(coupled=True, oblique=True, slope_correction=False)
+
+def discretise(
+    scene: Scene, grid: Grid, terms: Terms | None = None, approach: float | None = None
+) -> Problem:
+    """Return the scene's problem on a grid, with all terms but the slope correction by default.
+
+    ``approach`` replaces the load if given: it counts from first contact, or from the mean planes when the
+    scene is periodic (m). The datum, the difference of both, is defined here.
+    """
+    lower, upper = scene.sampled(grid)
+    gap = upper - lower
+    gap -= gap.min()
+    datum = float(gap.mean()) if grid.periodic else 0.0
+    return Problem(
+        grid=grid,
+        gap=gap,
+        mean_surface=_raised(lower, gap, upper),
+        elasticity=Elasticity(scene.materials),
+        friction=scene.friction,
+        direction=scene.sliding_direction,
+        terms=Terms(),
+        load=scene.load if approach is None else None,
+        approach=None if approach is None else approach + datum,
+        datum=datum,
+    ).with_terms(terms or Terms())
 
 
-class Posing:
-    """Poses a scene under its load or at an approach (m), and keeps what its surfaces had to remark."""
+def _raised(lower: Array, gap: Array, spent: Array) -> Array:
+    """``lower + gap / 2``, in the memory of heights that are no longer needed."""
+    np.multiply(gap, 0.5, out=spent)
+    spent += lower
+    return spent
+
+
+class Discretiser:
+    """Problems of one scene under its load or at an approach (m), with the notes of its surfaces.
+
+    The grid on which terms are decided is mostly the grid to solve on: its heights are sampled once.
+    """
 
     def __init__(self, scene: Scene, approach: float | None) -> None:
         self._scene, self._approach = scene, approach
         self._last: Problem | None = None
-        self.remarks: tuple[str, ...] = ()
+        self.notes: tuple[str, ...] = ()
 
-    def whole(self, grid: Grid) -> Problem:
-        """With all terms, for a plan to look at."""
-        self._last = self._posed(grid, EVERYTHING)
+    def with_all_terms(self, grid: Grid) -> Problem:
+        """Return the problem with all terms, for planning, and keep it."""
+        self._last = self._problem(grid)
         return self._last
 
-    def take(self, grid: Grid, terms: Terms) -> Problem:
-        """With these terms, from the heights last seen if they are this grid's; these are not kept."""
-        seen, self._last = self._last, None
-        return replace(seen, terms=terms) if seen and seen.grid == grid else self._posed(grid, terms)
+    def problem(self, grid: Grid, terms: Terms) -> Problem:
+        """Return the problem with these terms; heights kept from the same grid are used, and then dropped."""
+        kept, self._last = self._last, None
+        problem = kept if kept and kept.grid == grid else self._problem(grid)
+        return problem.with_terms(terms)
 
-    def _posed(self, grid: Grid, terms: Terms) -> Problem:
-        problem = pose(self._scene, grid, terms, self._approach)
-        self.remarks = self._scene.cautions(grid)
+    def _problem(self, grid: Grid) -> Problem:
+        problem = discretise(self._scene, grid, approach=self._approach)
+        self.notes = self._scene.cautions(grid)
         return problem

@@ -11,30 +11,12 @@ import numpy as np
 
 from refimpl.errors import MOST, InputError, keep_doubles, require_number, require_size
 from refimpl.grid import Array, Grid
+from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
 from refimpl.surfaces import Surface, SurfaceWarning, as_surface
 
 # What a surface is asked with, by the names that the scene has for it.
 _ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
-
-
-@dataclass(frozen=True)
-class Friction:
-    """Local friction ``r = tau + beta f`` on contact, Eq. (1): ``tau`` in Pa, ``beta`` dimensionless."""
-
-    tau: float = 0.0
-    beta: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
-        allowed = "a finite number, not negative, at most 1e6"
-        require_number("friction.beta", self.beta, allowed, at_least=0, at_most=1e6)
-        keep_doubles(self, "tau", "beta")
-
-    @property
-    def is_zero(self) -> bool:
-        """Whether no shear acts at all."""
-        return self.tau == 0 and self.beta == 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +79,29 @@ class Scene:
         """The two materials with their combined compliances."""
         return Pair(lower=self.lower.material, upper=self.upper.material)
 
+    @property
+    def lengths(self) -> tuple[float, float]:
+        """Lengths of the domain along x and y (m)."""
+        return self.side, self.side
+
+    def grid(self, M: int) -> Grid:
+        """Return the grid of M elements along the longer side.
+
+        Raises `InputError` unless M is a whole number of elements.
+        """
+        return Grid((M, M), self.lengths, self.periodic)
+
+    def check_approach(self, approach: float) -> None:
+        """Raise `InputError` unless a prescribed approach (m) is finite, and below 0 in a periodic scene.
+
+        There it counts from the mean planes.
+        """
+        if self.periodic:
+            require_number("approach", approach, "an approach below 0 m (mean planes)", below=0)
+        require_number("approach", approach, "a finite approach in m")
+
     def heights(self, grid: Grid) -> tuple[Array, Array]:
-        """Heights ``(z_lower, z_upper)`` at the element centres, each about its own mid-height (m).
+        """Return heights ``(z_lower, z_upper)`` at the element centres, each about its own mid-height (m).
 
         Mid-heights are taken off because only the gap enters: heights may come with any datum.
 
@@ -126,10 +129,10 @@ class Scene:
     def _summed(self, name: str, grid: Grid, offset: tuple[float, float]) -> Array:
         """The sum of a body's parts (m); a refusal names the part, or the field of the scene that is why."""
         body: Body = getattr(self, name)
-        z = np.zeros((grid.M, grid.M))
+        z = grid.zeros
         for k, part in enumerate(body.surface.parts):
             try:
-                z += part.sample(grid, offset, periodic=self.periodic)
+                z += part.sample(grid, offset)
             except InputError as refused:
                 field, value = f"{name}.surface[{k}].{refused.field}", refused.value
                 if refused.field in _ASKED_OF_SURFACES:
@@ -144,11 +147,12 @@ def _centred(name: str, heights: Array, grid: Grid) -> Array:
     if not np.all(np.isfinite(heights)):
         raise InputError(f"{name}.surface", "NaN or infinite heights", "finite heights in m")
     low, high = float(heights.min()), float(heights.max())
-    if high - low > grid.side:
+    side = max(grid.lengths)
+    if high - low > side:
         raise InputError(
             f"{name}.surface",
             f"peak-to-valley {high - low:.3g} m",
-            f"heights in m whose peak-to-valley is at most the side, {grid.side:.3g} m (wrong unit?)",
+            f"heights in m whose peak-to-valley is at most the side, {side:.3g} m (wrong unit?)",
         )
     heights -= low + 0.5 * (high - low)
     return heights

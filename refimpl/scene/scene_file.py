@@ -12,9 +12,10 @@ from typing import Any
 import tomli_w
 
 from refimpl.errors import InputError, within
+from refimpl.model.friction import Friction
 from refimpl.model.materials import Material
 from refimpl.scene.parameters import check_tolerances
-from refimpl.scene.scene import Body, Friction, Scene
+from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceSum
 

@@ -2,7 +2,8 @@
 
 Every entry is a half-width in the number's unit that holds with 95 %.
 
-- numerical: the sum of the solution's parts (iteration, tau support, discretisation), which are bounds.
+- numerical: the sum of the solution's parts (iteration, active set, neglected terms, discretisation), which
+  are bounds.
 - input: ``sqrt(sum (dq/dp U_p)^2)`` over the scene's parameters with a stated tolerance, by the
   derivatives of `refimpl.sensitivity` (V&V 20, section 3-2).
 - sampling: of a mean over realisations of roughness; of one realisation there is none to state.

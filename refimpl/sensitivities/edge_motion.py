@@ -13,7 +13,7 @@ import numpy as np
 from scipy.ndimage import binary_erosion, uniform_filter
 
 from refimpl.grid import Array
-from refimpl.sensitivities.fixed_contact import FixedSet
+from refimpl.sensitivities.fixed_contact import FixedContact
 
 _WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
 
@@ -21,9 +21,9 @@ _WIDTHS = 5, 9  # elements over which the change at an edge is compared with tha
 class EdgeMotion:
     """Motion of the contact's edge, calibrated by the load: the area's derivative from a pressure's."""
 
-    def __init__(self, fixed: FixedSet, over_load: tuple[float, float], loaded: Array) -> None:
+    def __init__(self, fixed: FixedContact, over_load: tuple[float, float], loaded: Array) -> None:
         self.fixed = fixed
-        wrapped = np.pad(fixed.contact, 1, mode="wrap" if fixed.problem.periodic else "constant")
+        wrapped = np.pad(fixed.contact, 1, mode=fixed.problem.grid.continuation)
         self.elements = (wrapped & ~binary_erosion(wrapped, border_value=1))[1:-1, 1:-1]
         derivative, counted = over_load
         self.everywhere = np.ones(fixed.contact.shape)
@@ -44,7 +44,7 @@ class EdgeMotion:
 
         The difference is blind to pressures that scale as they are, which moves no edge.
         """
-        mode = "wrap" if self.fixed.problem.periodic else "constant"
+        mode = self.fixed.problem.grid.continuation
 
         def ratio(where: Array, width: int) -> Array:
             change, level = (

@@ -15,16 +15,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from refimpl.grid import Array
-from refimpl.grid.window import Window
+from refimpl.grid import Array, Mask
 from refimpl.model.forces import Forces, resultants
-from refimpl.model.friction import Mask, local_friction
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.operators.extension import ExtendedPreconditioner
-from refimpl.operators.fft import FFTInfluence
-from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.operators.preconditioner import SpectralPreconditioner
+from refimpl.operators.influence import window_influence
+from refimpl.operators.preconditioner import ExtendedPreconditioner, SpectralPreconditioner
 
 _MARGIN = 2  # elements around the contact: its slopes are central differences
 _STEP = 1e-4  # of the quotient, in peaks: the model is nonlinear by slopes^2 only, rounding costs 1e-12
@@ -41,21 +37,16 @@ class Response(NamedTuple):
     residual: float
 
 
-class FixedSet:
+class FixedContact:
     """A solved state's contact set and its support of tau, on the window of the grid that holds them."""
 
-    def __init__(self, problem: Problem, pressure: Array, support: Mask, slopes: Slopes) -> None:
-        M, grid = problem.grid.M, problem.grid
-        self.window = Window.full(M) if problem.periodic else Window.around(pressure > 0, margin=_MARGIN)
+    def __init__(self, problem: Problem, pressure: Array, active: Mask, slopes: Slopes) -> None:
+        self.window = problem.grid.window_around(pressure > 0, margin=_MARGIN)
         cut = self.window.slices
-        self.pressure, self.support = pressure[cut], support[cut]
+        self.pressure, self.active = pressure[cut], active[cut]
         self.contact = self.pressure > 0
         self.peak = float(self.pressure.max())
-        self.operator: FFTInfluence | PeriodicInfluence = (
-            PeriodicInfluence(grid, problem.direction)
-            if problem.periodic
-            else FFTInfluence(grid, problem.direction, source=self.window)
-        )
+        self.operator = window_influence(problem.grid, problem.direction, self.window)
         self.problem = problem.windowed(self.window)
         self._slopes = Slopes(slopes.tan_x[cut], slopes.tan_y[cut])
         u, K, _ = self._state(self.problem, self.pressure)
@@ -105,7 +96,7 @@ class FixedSet:
 
     @cached_property
     def _precondition(self) -> ExtendedPreconditioner:
-        spectral = SpectralPreconditioner(self.operator, self.problem.pair.normal_compliance)
+        spectral = SpectralPreconditioner(self.operator, self.problem.elasticity.symbol(self.operator.symbol))
         return ExtendedPreconditioner(spectral, self.contact)
 
     @cached_property
@@ -124,7 +115,7 @@ class FixedSet:
 
         Facet tractions take the slopes that they leave themselves: from the base state's, a few times over.
         """
-        traction, slopes = local_friction(problem.friction, pressure, self.support), self._slopes
+        traction, slopes = problem.friction.traction(pressure, self.active), self._slopes
         for _ in range(_FACETS if problem.terms.slope_correction else 1):
             lower, upper = problem.displacements(self.operator, pressure, traction, slopes)
             slopes = problem.slopes(lower, upper)

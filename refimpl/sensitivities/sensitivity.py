@@ -25,16 +25,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from refimpl.accuracy.discretisation_error import AREA, area_scatter
-from refimpl.accuracy.grid_features import GridResult
 from refimpl.driver.solve import solve
 from refimpl.errors import LEAST, InputError
 from refimpl.grid import Array
+from refimpl.model.friction import friction_per_area
 from refimpl.model.materials import RIGID
-from refimpl.model.problem import Problem, Terms, pose
+from refimpl.model.problem import Problem, Terms
+from refimpl.scene.discretise import discretise
 from refimpl.scene.parameters import moving, parameters, with_parameter
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.edge_motion import EdgeMotion
-from refimpl.sensitivities.fixed_contact import FixedSet
+from refimpl.sensitivities.fixed_contact import FixedContact
 from refimpl.solution.solution import Solution
 
 NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")
@@ -86,9 +87,9 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     linear or full solve does not converge.
     """
     _check(scene, solution)
-    base = replace(solution.problem, terms=_terms(solution))
-    support = solution.contact & ~solution.withheld
-    fixed = FixedSet(base, solution.pressure, support, solution.slopes)
+    base = solution.problem.with_terms(_terms(solution))
+    active = solution.contact & ~solution.excluded
+    fixed = FixedContact(base, solution.pressure, active, solution.slopes)
     values = moving(scene)
     answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
     solved = {
@@ -118,12 +119,13 @@ def _check(scene: Scene, solution: Solution) -> None:
     if not solution.certified:
         raise InputError("solution", solution.status.value, "a solution whose certificate holds")
     problem = solution.problem
-    if problem.periodic and not problem.gap.any():
-        raise InputError("solution", "two flats that repeat", "one whose approach is not zero")
+    if problem.grid.periodic and not problem.gap.any():
+        raise InputError("solution", "two periodic flats", "one whose approach is not zero")
     if problem.load != scene.load:
         raise InputError("solution", problem.load, f"one under the scene's load of {scene.load:g} N")
-    found = problem.pair, problem.friction, problem.direction, problem.grid.side, problem.periodic
-    own = scene.materials, scene.friction, scene.sliding_direction, scene.side, scene.periodic
+    grid = problem.grid
+    found = problem.pair, problem.friction, problem.direction, grid.lengths, grid.periodic
+    own = scene.materials, scene.friction, scene.sliding_direction, scene.lengths, scene.periodic
     if found != own:
         raise InputError("solution", "another scene's", "the scene's own")
 
@@ -133,8 +135,8 @@ def _terms(solution: Solution) -> Terms:
 
     Where two bodies' compliances cancel it is left out of the solve, and comes in with the first change.
     """
-    forced = solution.plan.forced
-    coupled, tilted = (choice is not False for choice in (forced.coupled, forced.tilted))
+    requested = solution.plan.requested
+    coupled, tilted = (choice is not False for choice in (requested.coupled, requested.tilted))
     return replace(solution.problem.terms, coupled=coupled, tilted=tilted)
 
 
@@ -153,7 +155,7 @@ class _Answer:
     residual: float
 
 
-def _answer(scene: Scene, base: Problem, fixed: FixedSet, name: str, value: float) -> _Answer:
+def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float) -> _Answer:
     low, high = sorted((value * (1 - _STEP), value * (1 + _STEP)))
     least, most = next((ends for key, ends in _RANGES.items() if name.endswith(key)), (low, high))
     low, high = max(low, least), min(high, most)
@@ -181,8 +183,9 @@ def _answer(scene: Scene, base: Problem, fixed: FixedSet, name: str, value: floa
 def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
     """The changed scene's problem; surfaces are sampled again only where they changed."""
     if changed.upper.surface is scene.upper.surface and changed.lower.surface is scene.lower.surface:
-        return replace(base, pair=changed.materials, friction=changed.friction, load=changed.load)
-    return pose(changed, base.grid, base.terms, None)
+        elasticity = replace(base.elasticity, pair=changed.materials)
+        return replace(base, elasticity=elasticity, friction=changed.friction, load=changed.load)
+    return discretise(changed, base.grid, base.terms)
 
 
 def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> dict[str, float]:
@@ -191,7 +194,7 @@ def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> d
     below, above = (
         solve(
             with_parameter(scene, name, value * factor),
-            solution.grid.M,
+            max(solution.grid.shape),
             oblique=terms.oblique,
             slope_correction=terms.slope_correction,
             coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
@@ -210,13 +213,13 @@ def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> d
 
 def _stride(scene: Scene, name: str, value: float) -> float:
     if name.endswith("correlation_length"):  # stretches the whole surface about its corner
-        return min(_STRIDE, _SHIFT * value / scene.side)
+        return min(_STRIDE, _SHIFT * value / max(scene.lengths))
     return _STRIDE
 
 
 def _scatter(scene: Scene, solution: Solution, name: str, value: float) -> float:
     """95 % bound of what counting elements twice does to ``dA/dp``: as the error bars have it of one grid."""
-    one = AREA.scatter * float(area_scatter([GridResult.of(solution)])[0])
+    one = AREA.scatter * float(area_scatter([solution.features])[0])
     return math.sqrt(2) * one / (_stride(scene, name, value) * abs(value))
 
 
@@ -227,16 +230,16 @@ def _gathered(
     areas: Mapping[str, tuple[float, float]],
     solved: Mapping[str, Mapping[str, float]],
 ) -> Sensitivity:
-    load, slip = scene.load, scene.friction.tau / scene.load
+    load, dmu_dA = scene.load, friction_per_area(scene.friction, scene.load)
     derivatives: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     scatter: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     for name, answer in answers.items():
         area, loose = areas[name]
-        friction = answer.friction / load + slip * area
+        friction = answer.friction / load + dmu_dA * area
         if name == "load":
             friction -= solution.friction_coefficient / load
         found = (friction, area, answer.peak, answer.binormal)
-        spreads = slip * loose, loose, answer.torn, 0.0
+        spreads = dmu_dA * loose, loose, answer.torn, 0.0
         for number, derivative, spread in zip(NUMBERS, found, spreads, strict=True):
             # what changes meets elsewhere, which no fixed set knows: where there are two solves they tell
             apart = abs(derivative - solved[name][number]) if name in solved else 0.0

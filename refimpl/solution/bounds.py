@@ -49,10 +49,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.grid import Array
+from refimpl.grid import Array, Mask
 from refimpl.model.forces import resultants
-from refimpl.model.friction import Mask
-from refimpl.model.problem import Problem
+from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
 from refimpl.solution.energy_norm import EnergyNorm
 
@@ -95,7 +94,7 @@ def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Sl
     """
     if problem.terms.slope_correction:
         return _none(problem, NO_BOUND_CORRECTED)
-    if problem.periodic and problem.approach is not None:
+    if problem.grid.periodic and problem.approach is not None:
         return _none(problem, NO_BOUND_PERIODIC)
     norm = EnergyNorm(problem, slopes.obliqueness)
     if norm.floor <= 0:
@@ -115,9 +114,9 @@ class _Frozen:
     ) -> None:
         self.problem, self.norm, self.slopes = problem, norm, slopes
         self.pressure, self.traction = pressure, traction
-        self.beta = problem.friction.beta
+        self.beta = problem.friction.slope
         self.K = slopes.obliqueness
-        self.coupling = self.beta * problem.pair.shear_compliance if problem.terms.coupled else 0.0
+        self.coupled = self.beta > 0 and problem.elasticity.coupling_ratio != 0
         self._set(np.maximum(pressure, 0.0))
         spurious = (self.f > 0) & (self.w >= norm.diagonal * self.f)
         if spurious.any():
@@ -164,8 +163,9 @@ class _Frozen:
             return math.inf, math.inf
         norm = self.norm
         stiffness = norm.norm(self.f)
-        if self.coupling:
-            stiffness += abs(self.coupling) * norm.dual_norm(norm.operator.shear(self.f), everywhere)
+        if self.coupled:
+            shear = problem.elasticity.gap_by_shear(norm.operator.shear(beta * self.f))
+            stiffness += norm.dual_norm(shear, everywhere)
         lowest = min(self.total, least_total)
         c0 = max(float(np.vdot(self.f, self.w)), -float(np.vdot(self.f, self.r)), 0.0) / lowest
         c0 += float(np.linalg.norm(self.f)) * self.noise / lowest
@@ -184,7 +184,7 @@ def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
     """What ``||e|| <= x`` says of each reported number."""
     problem, norm, slopes, beta = frozen.problem, frozen.norm, frozen.slopes, frozen.beta
     dA, root = problem.grid.element_area, math.sqrt(norm.floor)
-    moved = x * (math.sqrt(norm.diagonal) + abs(frozen.coupling) * _shear_row(frozen) / root)
+    moved = x * (math.sqrt(norm.diagonal) + _shear_row(frozen) / root)
     out: Mask = frozen.w > moved + frozen.K * approach + frozen.noise
     inside: Mask = frozen.f > x / root
     total = x + frozen.clipped
@@ -218,13 +218,15 @@ def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
 
 
 def _shear_row(frozen: _Frozen) -> float:
-    """2-norm of a row of ``I[s/rho^2]`` from above: an element in each corner meets every offset (m)."""
-    if not frozen.coupling:
+    """2-norm of a row of ``beta c`` from above: an element in each corner meets every offset (m/Pa)."""
+    if not frozen.coupled:
         return 0.0
-    corners = np.zeros((4, *frozen.K.shape))
-    for corner, (i, j) in zip(corners, ((0, 0), (0, -1), (-1, 0), (-1, -1)), strict=True):
-        corner[i, j] = 1.0
-    return float(np.linalg.norm([frozen.norm.operator.shear(corner) for corner in corners]))
+    rows = []
+    for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
+        corner = np.zeros(frozen.K.shape)
+        corner[i, j] = frozen.beta
+        rows.append(frozen.problem.elasticity.gap_by_shear(frozen.norm.operator.shear(corner)))
+    return float(np.linalg.norm(rows))
 
 
 def _largest_root(quadratic: float, linear: float, constant: float) -> float:
@@ -239,7 +241,7 @@ def _largest_root(quadratic: float, linear: float, constant: float) -> float:
 
 
 def _none(problem: Problem, why: str) -> Bounds:
-    nowhere = np.zeros(problem.gap.shape, dtype=bool)
+    nowhere = no_elements(problem)
     whole = nowhere.size * problem.grid.element_area
     return Bounds(
         energy=math.inf,

@@ -20,7 +20,8 @@ from scipy.interpolate import BSpline, RegularGridInterpolator, make_interp_spli
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
-from refimpl.model.materials import Material
+from refimpl.model.materials import Material, Pair
+from refimpl.model.slopes import Slopes
 
 _VERSION = 1
 _NEIGHBOUR = 2.0  # offset of the next element in half-widths
@@ -74,22 +75,20 @@ def coefficient_error(
     return float(_errors(np.array([slope]), wavelength, positions, lower, upper)[0])
 
 
-def slope_error(tan_x: Array, tan_y: Array, pressure: Array, lower: Material, upper: Material) -> SlopeError:
-    """The error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
+def slope_error(slopes: Slopes, pressure: Array, pair: Pair) -> SlopeError:
+    """Return the error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
     loaded = pressure > 0
-    squared, weights = tan_x[loaded] ** 2 + tan_y[loaded] ** 2, pressure[loaded]
+    squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2
     if not squared.any():
         return SlopeError(0.0, 0.0, 0.0, 0.0)
-    rms = math.atan(math.sqrt(float(np.sum(squared * weights) / np.sum(weights))))
+    rms = math.atan(math.sqrt(slopes.mean_square(np.maximum(pressure, 0.0))))
     steepest = math.atan(math.sqrt(float(squared.max())))
     table = _table()
     top = math.radians(table["slope_deg"][-1])
-    slopes = np.array([rms, steepest])
-    found = _errors(
-        np.minimum(slopes, top), table["wavelength"][-1], np.array(table["position"]), lower, upper
-    )
+    angles, positions = np.array([rms, steepest]), np.array(table["position"])
+    found = _errors(np.minimum(angles, top), table["wavelength"][-1], positions, pair.lower, pair.upper)
     at_rms, at_max = (
-        float(error) if slope <= top else None for slope, error in zip(slopes, found, strict=True)
+        float(error) if angle <= top else None for angle, error in zip(angles, found, strict=True)
     )
     return SlopeError(rms, steepest, at_rms, at_max)
 

@@ -1,34 +1,39 @@
-"""Where the model stops being one: named warnings about a solution, each with its number and its limit."""
+"""Where a solution leaves the range of the model: named warnings, each with its number and its limit."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from refimpl.grid.contact_patches import spot_sizes
-from refimpl.grid.window import Window
+from refimpl.grid import Grid, Mask
+from refimpl.grid.contact_patches import patch_sizes
+from refimpl.model.certificate import State
 from refimpl.model.materials import Pair
+from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.planning.plan import Plan
+from refimpl.planning.term_effects import Effect
+from refimpl.planning.terms import LABELS
+from refimpl.scene.resolution import resolution
 from refimpl.scene.scene import Body, Scene
 from refimpl.solution.influence_error import SlopeError, slope_error
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.crop import ROUNDING
 from refimpl.surfaces.statistics import rms_slopes
 
-if TYPE_CHECKING:
-    from refimpl.solution.solution import Solution
-
 _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (Greenwood and Williamson 1966)
 _COEFFICIENT_ERROR = 0.02  # section 4: what the paper accepts of flat-surface influence coefficients
-_CORRELATION = 4.0  # elements: a quarter of the length is where slopes count as resolved (refimpl.surfaces)
+_CORRELATION = 4.0  # elements: slopes are resolved from four elements per correlation length (surfaces)
 _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle of radius r, here a tenth
 
 
 class Limit(StrEnum):
-    """What a solution can leave."""
+    """The limits of the model."""
 
     PLASTICITY = "plasticity index"
     HARDNESS = "peak pressure"
@@ -38,14 +43,15 @@ class Limit(StrEnum):
     CORRELATION = "correlation length"
     DATA = "points of data"
     RADIUS = "contact radius"
-    TAU_SUPPORT = "tau support"
-    LEFT_OUT = "left out"
+    ACTIVE_SET = "active set of tau"
+    NEGLECTED = "neglected"
 
 
-class Caution(str):
-    """A warning: its text, with the ``limit`` that was left, the ``number`` found and the ``allowed`` one.
+class ModelWarning(str):
+    """A warning: its text, with the ``limit`` that was exceeded, the ``number`` found and the ``allowed``
+    one.
 
-    >>> Caution(Limit.RADIUS, 1.5, 3.0, "few elements").number
+    >>> ModelWarning(Limit.RADIUS, 1.5, 3.0, "few elements").number
     1.5
     """
 
@@ -53,7 +59,7 @@ class Caution(str):
     number: float
     allowed: float
 
-    def __new__(cls, limit: Limit, number: float, allowed: float, text: str) -> Caution:
+    def __new__(cls, limit: Limit, number: float, allowed: float, text: str) -> ModelWarning:
         self = super().__new__(cls, text)
         self.limit, self.number, self.allowed = limit, number, allowed
         return self
@@ -62,180 +68,220 @@ class Caution(str):
         return self.limit, self.number, self.allowed, str(self)
 
 
+class Notice(str):
+    """A note of a surface or of the refinement, with the fields of a `ModelWarning` but without numbers.
+
+    >>> Notice("3 points filled in").limit
+    'note'
+    """
+
+    limit = "note"
+    number = None
+    allowed = None
+
+
 def plain_warning(text: str) -> dict[str, Any]:
-    """A warning for JSON; those without a limit say what surfaces or refinement had to remark."""
-    if isinstance(text, Caution):
+    """Return a warning as plain values for JSON."""
+    if isinstance(text, ModelWarning):
         return {"name": text.limit.value, "number": text.number, "limit": text.allowed, "text": str(text)}
-    return {"name": "remark", "number": None, "limit": None, "text": text}
+    return {"name": Notice.limit, "number": None, "limit": None, "text": text}
 
 
-def cautions(solution: Solution, scene: Scene) -> tuple[Caution, ...]:
-    """Every limit that a solution leaves; none for one without contact."""
-    if not solution.contact.any():
+@dataclass(frozen=True)
+class Evidence:
+    """What the limits of a model are compared with.
+
+    scene, problem, plan, state : what was posed, solved and found
+    excluded : elements that the rule for tau's active set leaves without adhesive shear
+    slope_error : coefficient error at the contact's slopes
+    neglected : effects of the neglected terms, from the solved contact
+    """
+
+    scene: Scene
+    problem: Problem
+    plan: Plan
+    state: State
+    excluded: Mask
+    slope_error: SlopeError
+    neglected: Mapping[str, Effect]
+
+    @property
+    def grid(self) -> Grid:
+        """The grid of the problem."""
+        return self.problem.grid
+
+
+def model_warnings(evidence: Evidence) -> tuple[ModelWarning, ...]:
+    """Return a warning for every limit that a solution exceeds; none without contact."""
+    if not evidence.state.contact.any():
         return ()
     found = (
-        _plasticity(solution, scene),
-        _hardness(solution),
-        *_slopes(solution),
-        _border(solution, scene),
-        _correlation(solution),
-        _data(solution, scene),
-        _radius(solution),
-        _tau_support(solution),
-        *_left_out(solution),
+        _plasticity(evidence),
+        _hardness(evidence),
+        *_slopes(evidence),
+        _border(evidence),
+        _correlation(evidence),
+        _data(evidence),
+        _radius(evidence),
+        _active_set(evidence),
+        *_neglected(evidence),
     )
-    return tuple(caution for caution in found if caution is not None)
+    return tuple(warning for warning in found if warning is not None)
 
 
 def softer_hardness(pair: Pair) -> float | None:
-    """The smaller of the hardnesses given (Pa); None when neither is."""
+    """Return the smaller of the hardnesses given (Pa); None when neither is."""
     given = [h for h in (pair.lower.hardness, pair.upper.hardness) if h is not None]
     return min(given, default=None)
 
 
-def roughness_slope(scene: Scene, solution: Solution) -> float:
-    """Root of both bodies' summed mean square slopes along an axis, of all but spheres and flats."""
+def roughness_slope(scene: Scene, grid: Grid) -> float:
+    """Return the root of both bodies' summed mean square slopes along an axis, without spheres and flats."""
     total = 0.0
     for body in (scene.lower, scene.upper):
         rough = [part for part in body.surface.parts if not isinstance(part, Sphere | Flat)]
-        z = np.zeros((solution.grid.M, solution.grid.M))
+        z = grid.zeros
         for part in rough:
-            z += part.sample(solution.grid, periodic=scene.periodic)
-        if rough and solution.grid.M > 1:
-            along_x, along_y = rms_slopes(z, solution.grid.spacing)
+            z += part.sample(grid)
+        if rough and min(grid.shape) > 1:
+            along_x, along_y = rms_slopes(z, grid.spacings)
             total += 0.5 * (along_x**2 + along_y**2)
     return math.sqrt(total)
 
 
-def _plasticity(solution: Solution, scene: Scene) -> Caution | None:
+def _plasticity(evidence: Evidence) -> ModelWarning | None:
     """Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9)'s roughness (``sqrt(4.6) = 2.14``)."""
-    pair = solution.problem.pair
+    pair = evidence.problem.pair
     hardness = softer_hardness(pair)
     if hardness is None:
         return None
-    index = pair.reduced_modulus / hardness * roughness_slope(scene, solution)
+    index = pair.reduced_modulus / hardness * roughness_slope(evidence.scene, evidence.grid)
     text = f"plasticity index {index:.3g} of Eq. (12) reaches 1: contact is no longer purely elastic"
-    return Caution(Limit.PLASTICITY, index, _PLASTICITY, text) if index >= _PLASTICITY else None
+    return ModelWarning(Limit.PLASTICITY, index, _PLASTICITY, text) if index >= _PLASTICITY else None
 
 
-def _hardness(solution: Solution) -> Caution | None:
-    hardness = softer_hardness(solution.problem.pair)
-    if hardness is None or solution.max_pressure <= hardness:
+def _hardness(evidence: Evidence) -> ModelWarning | None:
+    hardness, largest = softer_hardness(evidence.problem.pair), evidence.state.max_pressure
+    if hardness is None or largest <= hardness:
         return None
     text = (
-        f"largest pressure, {solution.max_pressure / 1e6:.4g} MPa, exceeds the softer body's hardness, "
+        f"maximum contact pressure, {largest / 1e6:.4g} MPa, exceeds the softer body's hardness, "
         f"{hardness / 1e6:.4g} MPa"
     )
-    return Caution(Limit.HARDNESS, solution.max_pressure, hardness, text)
+    return ModelWarning(Limit.HARDNESS, largest, hardness, text)
 
 
-def _slopes(solution: Solution) -> list[Caution | None]:
-    error = _error_at_slopes(solution)
+def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
+    error = _error_at_slopes(evidence)
     return [
         _slope(Limit.RMS_SLOPE, error.rms_slope, error.at_rms),
         _slope(Limit.MAX_SLOPE, error.max_slope, error.at_max),
     ]
 
 
-def _error_at_slopes(solution: Solution) -> SlopeError:
-    """As quoted by the solution; where the user forced the slopes out, that of the returned surfaces."""
-    term = solution.plan.term("obliqueness")
-    if term.included or term.small:
-        return solution.slope_error
-    near = Window.around(solution.contact, margin=1)  # slopes in contact take no heights from farther away
-    if solution.problem.periodic:
-        near = Window.full(solution.grid.M)
-    surface = 0.5 * (solution.surface_lower[near.slices] + solution.surface_upper[near.slices])
-    slopes = Slopes.of_surface(surface, solution.grid.spacing, 0.0, periodic=solution.problem.periodic)
-    pair = solution.problem.pair
-    return slope_error(slopes.tan_x, slopes.tan_y, solution.pressure[near.slices], pair.lower, pair.upper)
+def _error_at_slopes(evidence: Evidence) -> SlopeError:
+    """As quoted by the solution; where the user excluded the slope terms, that of the deformed surfaces."""
+    term = evidence.plan.term("oblique")
+    if term.included or term.negligible:
+        return evidence.slope_error
+    problem, state = evidence.problem, evidence.state
+    near = problem.grid.window_around(state.contact, margin=1).slices
+    moved = 0.5 * (state.displacement_upper - state.displacement_lower)
+    surface = (problem.mean_surface + moved)[near]
+    slopes = Slopes.of_surface(surface, problem.grid, 0.0)
+    return slope_error(slopes, state.pressure[near], problem.pair)
 
 
-def _slope(limit: Limit, slope: float, error: float | None) -> Caution | None:
+def _slope(limit: Limit, slope: float, error: float | None) -> ModelWarning | None:
     if error is not None and error <= _COEFFICIENT_ERROR:
         return None
     size = "beyond Appendix A's table" if error is None else f"by {error:.1%}, above 2 %, by Appendix A"
     text = f"{limit.value} {math.degrees(slope):.3g} degrees: influence coefficients of a flat are off {size}"
-    return Caution(limit, math.inf if error is None else error, _COEFFICIENT_ERROR, text)
+    return ModelWarning(limit, math.inf if error is None else error, _COEFFICIENT_ERROR, text)
 
 
-def _border(solution: Solution, scene: Scene) -> Caution | None:
-    if solution.problem.periodic:
-        return None
-    border = solution.contact.copy()
-    border[1:-1, 1:-1] = False
-    touching = int(np.count_nonzero(border))
-    bowls = [name for name, sign in (("lower", 1), ("upper", -1)) if _is_bowl(getattr(scene, name), sign)]
+def _border(evidence: Evidence) -> ModelWarning | None:
+    touching = evidence.grid.on_border(evidence.state.contact)
+    scene = evidence.scene
+    concave = [
+        name for name, sign in (("lower", 1), ("upper", -1)) if _is_concave(getattr(scene, name), sign)
+    ]
     advice = (
-        f"the {' and '.join(bowls)} body is a bowl (sign of its radius?)" if bowls else "enlarge the side"
+        f"the {' and '.join(concave)} body is concave (sign of its radius?)"
+        if concave
+        else "enlarge the side"
     )
     text = f"contact reaches the border of the domain on {touching} elements: {advice}"
-    return Caution(Limit.BORDER, touching, 0, text) if touching else None
+    return ModelWarning(Limit.BORDER, touching, 0, text) if touching else None
 
 
-def _is_bowl(body: Body, sign: int) -> bool:
+def _is_concave(body: Body, sign: int) -> bool:
     """Whether its paraboloids together are hollow: a positive radius below, a negative one above."""
     return sign * sum(1 / part.radius for part in body.surface.parts if isinstance(part, Sphere)) > 0
 
 
-def _correlation(solution: Solution) -> Caution | None:
-    asked = solution.plan.resolution
-    if asked is None or asked.elements >= _CORRELATION:
+def _correlation(evidence: Evidence) -> ModelWarning | None:
+    found = resolution(evidence.scene, evidence.grid, evidence.plan.demand)
+    if found is None or found.elements >= _CORRELATION:
         return None
     text = (
-        f"{asked.elements:.2g} elements per correlation length, {asked.correlation_length:.3g} m: "
+        f"{found.elements:.2g} elements per correlation length, {found.correlation_length:.3g} m: "
         "slopes of the roughness are not resolved below 4"
     )
-    return Caution(Limit.CORRELATION, asked.elements, _CORRELATION, text)
+    return ModelWarning(Limit.CORRELATION, found.elements, _CORRELATION, text)
 
 
-def _data(solution: Solution, scene: Scene) -> Caution | None:
-    """Of measured heights and arrays, which are sampled and not averaged."""
+def _data(evidence: Evidence) -> ModelWarning | None:
+    """Measured heights and arrays are sampled, not averaged."""
+    scene, grid = evidence.scene, evidence.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    pitches = [pitch for part in parts if (pitch := part.pitch(scene.side)) is not None]
-    points = solution.grid.spacing / min(pitches, default=math.inf)
+    pitches = [pitch for part in parts if (pitch := part.pitch(grid.lengths)) is not None]
+    points = max(grid.spacings) / min(pitches, default=math.inf)
     text = (
-        f"{points:.2g} points of a surface's data per element: those between the elements' centres are not "
-        "seen, and error bars do not know of them"
+        f"{points:.2g} points of a surface's data per element: points between the elements' centres are not "
+        "sampled, and error bars do not include them"
     )
-    return Caution(Limit.DATA, points, 1, text) if points > 1 + ROUNDING else None
+    return ModelWarning(Limit.DATA, points, 1, text) if points > 1 + ROUNDING else None
 
 
-def _radius(solution: Solution) -> Caution | None:
-    """Of a mean circle; full contact has no edge to resolve."""
-    if solution.contact.all():
+def _radius(evidence: Evidence) -> ModelWarning | None:
+    """Mean radius of circles; full contact has no edge to resolve."""
+    contact, grid = evidence.state.contact, evidence.grid
+    if contact.all():
         return None
-    periodic = solution.problem.periodic
-    box = Window.full(solution.grid.M) if periodic else Window.around(solution.contact, margin=0)
-    spots = spot_sizes(solution.contact[box.slices], periodic=periodic).size
-    radius = math.sqrt(np.count_nonzero(solution.contact) / (math.pi * spots))
+    box = grid.window_around(contact, margin=0)
+    patches = patch_sizes(contact[box.slices], periodic=grid.periodic).size
+    radius = math.sqrt(np.count_nonzero(contact) / (math.pi * patches))
     text = (
-        f"spots of contact have a mean radius of {radius:.2g} elements: below 3 areas are coarse, and bars "
-        "of areas, peaks and approaches may be too short where they have an end"
+        f"contact patches have a mean radius of {radius:.2g} elements: below 3 areas are coarse, and error "
+        "bars of areas, peaks and approaches may be too short where they are finite"
     )
-    return Caution(Limit.RADIUS, radius, _RADIUS, text) if radius < _RADIUS else None
+    return ModelWarning(Limit.RADIUS, radius, _RADIUS, text) if radius < _RADIUS else None
 
 
-def _tau_support(solution: Solution) -> Caution | None:
-    withheld = int(np.count_nonzero(solution.withheld & solution.contact))
-    text = f"tau's support is ambiguous: {withheld} elements in contact are settled without it"
-    return Caution(Limit.TAU_SUPPORT, withheld, 0, text) if withheld else None
+def _active_set(evidence: Evidence) -> ModelWarning | None:
+    excluded = int(np.count_nonzero(evidence.excluded & evidence.state.contact))
+    text = (
+        f"the contact edge alternates under tau: {excluded} elements in contact carry no adhesive shear; "
+        "mu's error bar includes them"
+    )
+    return ModelWarning(Limit.ACTIVE_SET, excluded, 0, text) if excluded else None
 
 
-def _left_out(solution: Solution) -> list[Caution | None]:
-    """Terms left out as small whose estimate, made again from the solution, exceeds what was asked for.
+def _neglected(evidence: Evidence) -> list[ModelWarning | None]:
+    """Neglected terms whose effect, estimated again from the solution, exceeds the demand.
 
-    Without friction the plan may allow more than that: a share of what the grid leaves open.
+    Without friction the plan may allow more than the demand: a share of the grid's own error.
     """
-    demand = max(solution.plan.demand, solution.plan.budget)
+    demand = max(evidence.plan.demand, evidence.plan.budget)
     return [
-        Caution(
-            Limit.LEFT_OUT,
+        ModelWarning(
+            Limit.NEGLECTED,
             effect.larger,
             demand,
-            f"{name} was left out, but may change a result by {effect.larger:.2g}, more than {demand:.2g}: "
-            "force it in",
+            f"{LABELS[name]} neglected, but may change a result by {effect.larger:.2g}, more than "
+            f"{demand:.2g}: request it ({name} = true)",
         )
-        for name, effect in solution.left_out.items()
+        for name, effect in evidence.neglected.items()
         if effect.larger > demand
     ]

@@ -1,27 +1,39 @@
-"""What a solve returns: the numbers, the arrays, how well it converged and what it cost."""
+"""The record that a solve returns: numbers, arrays, how well it converged, and what it cost."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from refimpl.grid import Array, Grid
-from refimpl.model.certificate import Certificate
-from refimpl.model.friction import Mask
+from refimpl.accuracy.first_contact import HERTZ_EXPONENTS
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.iteration_error import (
+    AREAS,
+    NUMBERS,
+    Uncertainty,
+    active_set_parts,
+    iteration_parts,
+    merged,
+)
+from refimpl.grid import Array, Grid, Mask
+from refimpl.model.certificate import Certificate, State
+from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import Status
+from refimpl.model.state import SolverResult, Status
 from refimpl.planning.plan import Plan
-from refimpl.planning.term_effects import Effect
-from refimpl.scene.scene import Friction
+from refimpl.planning.term_effects import Effect, effects_in, neglected_parts
+from refimpl.scene.scene import Scene
 from refimpl.solution.bounds import Bounds, proven_bounds
-from refimpl.solution.influence_error import SlopeError
-from refimpl.solution.limits import Caution, plain_warning
-from refimpl.solution.remark import Remark
+from refimpl.solution.influence_error import SlopeError, slope_error
+from refimpl.solution.limits import Evidence, ModelWarning, Notice, model_warnings, plain_warning
+
+REPORTED = NUMBERS
+"""The numbers of a solution, each with an error bar."""
 
 
 @dataclass(frozen=True)
@@ -34,19 +46,51 @@ class Cost:
     iterations: Mapping[str, int]
 
 
+def total_cost(costs: Iterable[Cost]) -> Cost:
+    """Return the cost of several solves together."""
+    total = Cost(0.0, {}, 0.0, {})
+    for cost in costs:
+        total = Cost(
+            seconds=total.seconds + cost.seconds,
+            applications=_added(total.applications, cost.applications),
+            point_logs=total.point_logs + cost.point_logs,
+            iterations=_added(total.iterations, cost.iterations),
+        )
+    return total
+
+
+def _added(first: Mapping[str, int], second: Mapping[str, int]) -> dict[str, int]:
+    return {key: first.get(key, 0) + second.get(key, 0) for key in {**first, **second}}
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A solved scene. Forces in N, lengths in m, areas in m^2, pressures in Pa, arrays ``(M, M)``.
+    """A solved scene. Forces in N, lengths in m, areas in m^2, pressures in Pa, arrays in the grid's shape.
 
-    ``approach`` counts from first touch, or from the mean planes when periodic. ``pressure`` is the local
-    ``f`` and ``traction`` the local ``r`` of Eq. (1). ``surface_lower`` and ``surface_upper`` are the
-    deformed heights; ``separation`` is the gap left between them, and ``clearance`` what Eq. (6) asks to be
-    zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``. ``uncertainty`` maps each reported
-    number to its parts, absolute, in the number's unit. ``slope_error`` quotes what Appendix A's table says
-    of flat-surface influence coefficients at this contact's slopes. ``problem`` is what was solved: the scene
-    on its grid. ``left_out`` holds, for each term that the plan left out as small, its effect as the found
-    contact has it; ``warnings`` are texts with ``limit``, ``number`` and ``allowed``: those of
-    `refimpl.solution.limits`, and remarks without numbers.
+    status : how the solve ended
+    approach : from first contact, or from the mean planes when periodic
+    normal_force, friction_force, binormal_force : N, F and the transverse (binormal) force Q
+    friction_coefficient : mu
+    contact_area, contact_area_corrected : real contact area, and less the excess along its edge
+    max_pressure : maximum contact pressure p_max
+    pressure, traction : local f and r of Eq. (1)
+    slopes : of the deformed common surface
+    surface_lower, surface_upper : deformed heights
+    separation : deformed upper minus lower height
+    clearance : what Eq. (6) asks to be zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``
+    excluded : elements that the rule for tau's active set leaves without adhesive shear
+    slope_error : error of flat-surface influence coefficients at this contact's slopes, by Appendix A's table
+    grid : shape and lengths
+    friction : the friction law
+    sliding_direction : phi (rad)
+    certificate : residuals, and ``tolerance`` what they must meet
+    uncertainty : for each reported number its parts, absolute, in the number's unit
+    plan : what was modelled, what was neglected, why
+    neglected : effects of the neglected terms, from the solved contact
+    problem : the scene on its grid
+    warnings : texts with ``limit``, ``number`` and ``allowed``; notes have no numbers
+    cost : work done
+    features : what error bars look at on this grid, for studies of several grids
     """
 
     status: Status
@@ -65,19 +109,20 @@ class Solution:
     surface_upper: Array
     separation: Array
     clearance: Array
-    withheld: Mask
+    excluded: Mask
     slope_error: SlopeError
     grid: Grid
-    friction: Friction
+    friction: FrictionLaw
     sliding_direction: float
     certificate: Certificate
     tolerance: float
     uncertainty: Mapping[str, Mapping[str, float]]
     plan: Plan
-    left_out: Mapping[str, Effect]
+    neglected: Mapping[str, Effect]
     problem: Problem
-    warnings: tuple[Caution | Remark, ...]
+    warnings: tuple[ModelWarning | Notice, ...]
     cost: Cost
+    features: GridFeatures
 
     @property
     def contact(self) -> Mask:
@@ -96,41 +141,42 @@ class Solution:
 
     @property
     def converged(self) -> bool:
-        """Whether the loops ended well and the certificate holds; a settled cycle of tau is certified too."""
+        """Whether the loops ended well and the certificate holds; an alternating contact edge is certified
+        too."""
         return self.status in (Status.CONVERGED, Status.CYCLED)
 
     @property
     def certified(self) -> bool:
-        """Whether the certificate holds; so it may where an accuracy asked for was not reached."""
-        return self.certificate.meets(self.tolerance)
+        """Whether the certificate holds, as it may where a requested accuracy was not reached."""
+        return self.certificate.satisfies(self.tolerance)
 
     @cached_property
     def bounds(self) -> Bounds:
-        """Proven bounds at the state's slopes and support of tau; computed when first asked for."""
+        """Proven bounds at the state's slopes and active set of tau; computed when first used."""
         return proven_bounds(self.problem, self.pressure, self.traction, self.slopes)
 
     def summary(self) -> dict[str, Any]:
-        """Everything but the arrays, as plain values for JSON."""
+        """Return everything but the arrays, as plain values for JSON."""
         numbers = {name: getattr(self, name) for name in REPORTED}
         return {
             "status": self.status.value,
             **numbers,
-            "grid": self.grid.M,
-            "side": self.grid.side,
+            "grid": max(self.grid.shape),
+            "side": max(self.grid.lengths),
             "tolerance": self.tolerance,
             "certificate": asdict(self.certificate),
             "uncertainty": {name: dict(parts) for name, parts in self.uncertainty.items()},
             "slope_error": asdict(self.slope_error),
             "plan": [
                 {
-                    "term": term.name,
+                    "term": term.label,
                     "included": term.included,
                     "reason": term.reason,
                     "effect": asdict(term.effect),
                 }
                 for term in self.plan.terms
             ],
-            "left_out": {name: asdict(effect) for name, effect in self.left_out.items()},
+            "neglected": {name: asdict(effect) for name, effect in self.neglected.items()},
             "method": self.plan.method,
             "warnings": [plain_warning(text) for text in self.warnings],
             "cost": {
@@ -141,13 +187,107 @@ class Solution:
         }
 
 
-REPORTED = (
-    "friction_coefficient",
-    "contact_area",
-    "contact_area_corrected",
-    "max_pressure",
-    "approach",
-    "normal_force",
-    "friction_force",
-    "binormal_force",
-)
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A solved and certified problem on one grid, before it becomes a `Solution`."""
+
+    problem: Problem
+    plan: Plan
+    result: SolverResult
+    state: State
+    tolerance: float
+    cost: Cost
+
+    @property
+    def status(self) -> Status:
+        """The loops' status; a loop that ended well still fails on a certificate that does not hold."""
+        ended_well = self.result.status in (Status.CONVERGED, Status.CYCLED)
+        if ended_well and not self.state.certificate.satisfies(self.tolerance):
+            return Status.STAGNATED
+        return self.result.status
+
+    @cached_property
+    def neglected(self) -> dict[str, Effect]:
+        """Effects of the neglected terms, from the solved contact."""
+        return effects_in(self.plan.neglected, self.problem, self.state.pressure, self.plan.contact)
+
+    @cached_property
+    def features(self) -> GridFeatures:
+        """What error bars look at on this grid."""
+        return GridFeatures.of(self.problem, self.state, self.own_parts)
+
+    @property
+    def own_parts(self) -> Uncertainty:
+        """Parts of the uncertainty that this grid's own solution leaves: iteration, active set, neglected
+        terms."""
+        problem, state = self.problem, self.state
+        forces, total = state.forces, float(state.pressure.sum())
+        moved = (
+            {"approach": state.approach}
+            if problem.load is not None
+            else {"normal_force": HERTZ_EXPONENTS["normal_force"] * forces.normal}
+        )
+        return merged(
+            iteration_parts(problem, state),
+            active_set_parts(problem, self.result, state),
+            neglected_parts(
+                self.neglected,
+                float(state.traction.sum()) / total if total else 0.0,
+                problem.nominal_load(forces.normal),
+                dict.fromkeys(AREAS, state.contact_area) | {"max_pressure": state.max_pressure} | moved,
+            ),
+        )
+
+
+def assemble(
+    scene: Scene,
+    solved: Solved,
+    uncertainty: Mapping[str, Mapping[str, float]],
+    notes: tuple[Notice, ...] = (),
+    *,
+    shortfall: Notice | None = None,
+    cost: Cost | None = None,
+) -> Solution:
+    """Return the solution of a solved problem, with its error bars, notes and warnings.
+
+    ``shortfall`` says why a requested accuracy was not reached; ``cost`` is that of all grids.
+    """
+    problem, state, result = solved.problem, solved.state, solved.result
+    surface_lower, surface_upper = problem.heights
+    surface_lower -= state.displacement_lower
+    surface_upper += state.displacement_upper
+    surface_upper -= state.approach
+    error = slope_error(state.slopes, state.pressure, problem.pair)
+    evidence = Evidence(scene, problem, solved.plan, state, result.excluded, error, solved.neglected)
+    return Solution(
+        status=Status.ITERATION_LIMIT if shortfall else solved.status,
+        approach=state.approach - problem.datum,
+        normal_force=state.forces.normal,
+        friction_force=state.forces.friction,
+        binormal_force=state.forces.binormal,
+        friction_coefficient=state.friction_coefficient,
+        contact_area=state.contact_area,
+        contact_area_corrected=state.contact_area_corrected,
+        max_pressure=state.max_pressure,
+        pressure=state.pressure,
+        traction=state.traction,
+        slopes=state.slopes,
+        surface_lower=surface_lower,
+        surface_upper=surface_upper,
+        separation=surface_upper - surface_lower,
+        clearance=state.clearance,
+        excluded=result.excluded,
+        slope_error=error,
+        grid=problem.grid,
+        friction=problem.friction,
+        sliding_direction=problem.direction,
+        certificate=state.certificate,
+        tolerance=solved.tolerance,
+        uncertainty=uncertainty,
+        plan=solved.plan,
+        neglected=solved.neglected,
+        problem=problem,
+        warnings=(*notes, *model_warnings(evidence), *((shortfall,) if shortfall else ())),
+        cost=cost or solved.cost,
+        features=solved.features,
+    )

@@ -16,31 +16,30 @@ excluded too early are taken back when they break inequality (6b). The approach 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft as sfft
 from scipy.ndimage import map_coordinates
 
-from refimpl.grid import Array, inner
+from refimpl.grid import Array, Mask, inner, resampled
 from refimpl.model.certificate import State, certify
-from refimpl.model.friction import Mask, TauSupport, local_friction
-from refimpl.model.problem import Problem, visit
+from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import Outcome, Status, Visited
+from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.kernel_tables import unit_table
-from refimpl.solvers.production.coarse_grids import coarsened
+from refimpl.solvers.tau_active_set import iterate
 
 PAPER_TOLERANCE = 1e-4  # |(P - N) / P|, section 5
 _PRESSURE_SHARE = 0.1  # |df| / |f| may be this share of the load tolerance: 1e-5, section 5
-_STEPS, _PASSES, _APPROACHES, _SUPPORTS = 2000, 60, 60, 100
+_STEPS, _PASSES, _APPROACHES = 2000, 60, 60
 _BUDGET = 20_000  # steps and passes on one grid, of which the shipped scenes take 630 at most (128 x 128)
 
 
 @dataclass(eq=False)
 class Trace:
-    """What the scheme went through on one grid of ``M x M`` elements; ``coarser`` are the grids before it.
+    """Counts and residuals of the scheme on one grid of a shape; ``coarser`` are the grids before it.
 
     ``approaches`` counts iteration two, ``passes`` iteration one, and the steps are those within it.
     ``periodicity_before`` and ``periodicity_after`` are the relative residuals ``|u - a f| / |u|`` of
@@ -49,7 +48,7 @@ class Trace:
     belong to the last approach.
     """
 
-    M: int
+    shape: tuple[int, int]
     approaches: int = 0
     passes: int = 0
     periodic_steps: int = 0
@@ -60,10 +59,10 @@ class Trace:
     coarser: tuple[Trace, ...] = ()
 
 
-def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[Outcome, State, Trace]:
-    """Outcome, certified state and the finest grid's trace.
+def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[SolverResult, State, Trace]:
+    """Return the result, its certified state and the finest grid's trace.
 
-    ``tolerance`` is the load's, the pressure's is a tenth of it.
+    ``tolerance`` is that of the load; the pressure's is a tenth of it.
     """
     pressure: Array | None = None
     approach = problem.approach
@@ -71,66 +70,66 @@ def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[O
     *coarse, finest = _refinements(problem)
     for level in coarse:  # (3) iteration three: from coarse to fine
         scheme = _Scheme(level, tolerance, counter, pressure)
-        approach = scheme.balance(approach, support=None)
+        approach = scheme.balance(approach, active=None)
         pressure = _interpolated(scheme.pressure)
         traces.append(scheme.trace)
-    scheme = _Scheme(finest, tolerance, counter, pressure)
+    scheme = _Scheme(finest, tolerance, counter, pressure, approach)
     scheme.trace.coarser = tuple(traces)
-    outcome = scheme.settle_tau(approach)
-    state = certify(finest, scheme.operator, outcome.pressure, outcome.traction, outcome.slopes)
-    return outcome, state, scheme.trace
+    result = scheme.result()
+    state = certify(finest, scheme.operator, result.pressure, result.traction, result.slopes)
+    return result, state, scheme.trace
 
 
 def _refinements(problem: Problem) -> list[Problem]:
     """The problem on M/4, M/2 and M elements per side, as far as they divide (128, 256, 512)."""
     levels = [problem]
-    while len(levels) < 3 and levels[0].grid.M % 2 == 0 and levels[0].grid.M >= 32:
-        levels.insert(0, coarsened(levels[0]))
+    while len(levels) < 3 and all(n % 2 == 0 and n >= 32 for n in levels[0].grid.shape):
+        n, m = levels[0].grid.shape
+        grid = problem.grid.refined((n // 2, m // 2))
+        gap, mean_surface = (resampled(z, grid.shape) for z in (levels[0].gap, levels[0].mean_surface))
+        levels.insert(0, replace(problem, grid=grid, gap=gap, mean_surface=mean_surface))
     return levels
 
 
 def _interpolated(coarse: Array) -> Array:
     """Cubic interpolation to the twice finer element centres; negative overshoot is cut off."""
-    at = (np.arange(2 * len(coarse)) + 0.5) / 2 - 0.5
-    fine: Array = map_coordinates(coarse, np.meshgrid(at, at, indexing="ij"), order=3, mode="nearest")
+    at = ((np.arange(2 * n) + 0.5) / 2 - 0.5 for n in coarse.shape)
+    fine: Array = map_coordinates(coarse, np.meshgrid(*at, indexing="ij"), order=3, mode="nearest")
     return np.maximum(fine, 0.0)
 
 
 class _Scheme:
-    """Iterations one and two on one grid."""
+    """Iterations one and two on one grid; a `TauSolver`."""
 
-    def __init__(self, problem: Problem, tolerance: float, counter: Counter, pressure: Array | None) -> None:
+    stagnated = window_too_small = False  # it has no window, and its budget alone ends it early
+    residual = 0.0  # the scheme has no residual of the whole problem, only its own tolerances
+
+    def __init__(
+        self,
+        problem: Problem,
+        tolerance: float,
+        counter: Counter,
+        pressure: Array | None,
+        approach: float | None = None,
+    ) -> None:
         self.problem = problem
         self.tolerance = tolerance
-        self.trace = Trace(problem.grid.M)
+        self.trace = Trace(problem.grid.shape)
         self.operator = FFTInfluence(problem.grid, problem.direction, counter=counter)
         self.pressure = np.zeros(problem.gap.shape) if pressure is None else pressure
+        self.traction = np.zeros(problem.gap.shape)
         self.slopes = Slopes.flat(problem.gap.shape)
         self.settled = True
-        self._compliance = problem.pair.normal_compliance
+        self._approach = approach
         # (1) [a] by the moving-grid argument: one row of it, translated; here on the FFT's circle
-        steps = np.arange(problem.grid.M)
-        circle = np.minimum(steps, problem.grid.M - steps)
-        row = unit_table("normal", 1 + problem.grid.M // 2)[np.ix_(circle, circle)] * problem.grid.spacing
-        self._periodic_hat: Array = self._compliance * sfft.rfft2(row).real
+        (n, m), (dx, dy) = problem.grid.shape, problem.grid.spacings
+        circle = [np.minimum(np.arange(count), count - np.arange(count)) for count in (n, m)]
+        row = unit_table("normal", (1 + n // 2, 1 + m // 2), dy / dx)[np.ix_(*circle)] * dx
+        self._periodic_hat: Array = problem.elasticity.symbol(sfft.rfft2(row).real)
 
-    def settle_tau(self, approach: float | None) -> Outcome:
-        """Balance under the rule for tau's support that all solvers share (`refimpl.model.friction`)."""
-        rule = TauSupport(self.problem.gap.shape)
-        states: list[Visited] = []
-        in_cycles: list[Visited] = []
-        tau = self.problem.friction.tau
-        for _ in range(_SUPPORTS):
-            approach = self.balance(approach, support=rule.current)
-            traction = local_friction(self.problem.friction, self.pressure, rule.current)
-            states.append(visit(self.problem, self.pressure, traction, self.slopes))
-            if tau > 0:
-                rule.next(self.pressure > 0)
-                in_cycles += states[len(states) - len(rule.cycle) :]
-            if tau == 0 or rule.settled or rule.given_up or self._spent:
-                break
-        lawful = not np.any(rule.withheld & (self.pressure > 0))
-        ended = self.settled and (tau == 0 or rule.settled)
+    def result(self) -> SolverResult:
+        """Balance under the rule for tau's active set that all solvers share."""
+        ended = iterate(self, self.problem.friction, self.tolerance)
         every = (*self.trace.coarser, self.trace)
         counts = {
             "periodic": sum(t.periodic_steps for t in every),
@@ -138,29 +137,50 @@ class _Scheme:
             "passes": sum(t.passes for t in every),
             "approaches": sum(t.approaches for t in every),
         }
-        return Outcome(
+        return SolverResult(
             pressure=self.pressure,
-            traction=traction,
+            traction=self.traction,
             slopes=self.slopes,
-            status=Status.ITERATION_LIMIT if not ended else Status.CONVERGED if lawful else Status.CYCLED,
-            withheld=rule.withheld,
-            visited=tuple(in_cycles),
-            iterations=counts | {"tau supports": len(states)},
+            status=ended.status(self.contact) if self.settled else Status.ITERATION_LIMIT,
+            excluded=ended.excluded,
+            cycle_states=ended.cycle_states,
+            iterations=counts | {"active sets": ended.solves},
         )
 
-    def balance(self, approach: float | None, support: Mask | None) -> float:
+    @property
+    def exhausted(self) -> bool:
+        """Whether more was done on this grid than any state that settles takes: limits of loops multiply."""
+        trace = self.trace
+        return trace.periodic_steps + trace.correction_steps + trace.passes >= _BUDGET
+
+    @property
+    def contact(self) -> Mask:
+        """Where the present pressure is positive."""
+        return self.pressure > 0
+
+    def cycle_state(self) -> CycleState:
+        """Return the numbers of the present state."""
+        return cycle_state(self.problem, self.pressure, self.traction, self.slopes)
+
+    def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
+        """Balance with tau on an active set."""
+        self._approach = self.balance(self._approach, active)
+        self.traction = self.problem.friction.traction(self.pressure, active)
+        return self.settled
+
+    def balance(self, approach: float | None, active: Mask | None) -> float:
         """(2) Iteration two: the approach at which N = P, by secants within a bracket; returns it (m)."""
         if self.problem.approach is not None:
-            self.contact(self.problem.approach, support)
+            self.normal_force(self.problem.approach, active)
             return self.problem.approach
         assert self.problem.load is not None
         load = self.problem.load
-        approach = approach or 0.05 * float(self.problem.gap.max()) or self.problem.grid.spacing
+        approach = approach or 0.05 * float(self.problem.gap.max()) or self.problem.grid.element_size
         low, high, last = 0.0, math.inf, None
         for _ in range(_APPROACHES):
-            if self._spent:
+            if self.exhausted:
                 break
-            normal = self.contact(approach, support)
+            normal = self.normal_force(approach, active)
             if abs(load - normal) <= self.tolerance * load:
                 return approach
             low, high = (approach, high) if normal < load else (low, approach)
@@ -173,7 +193,7 @@ class _Scheme:
         self.settled = False
         return approach
 
-    def contact(self, approach: float, support: Mask | None) -> float:
+    def normal_force(self, approach: float, active: Mask | None) -> float:
         """(1) Iteration one: the contact at an assumed approach; returns N, Eq. (2)."""
         self.trace.approaches += 1
         self.settled, problem = True, self.problem  # what an approach on the way left open is not this one's
@@ -183,7 +203,7 @@ class _Scheme:
         before = self.pressure
         for first in (True, *(_PASSES - 1) * (False,)):
             self.trace.passes += 1
-            shear, tau_on = self._bring_up_to_date(support)
+            shear, held = self._update(active)
             u = self.slopes.obliqueness * (approach - problem.gap) - shear  # Eqs (6a), (7)
             if first:  # later passes only mend: the periodic contact would throw returned elements out again
                 inside = self._iterate(u, inside, periodic=True)
@@ -192,33 +212,28 @@ class _Scheme:
             inside = self._iterate(u, inside, periodic=False)
             self.trace.periodicity_after = self._residual(u, inside)
             # (1d) inequality (6b): what penetrates comes back
-            returning = ~inside & (self._compliance * self.operator.normal(self.pressure) < u)
+            returning = ~inside & (self._apply(self.pressure) < u)
             inside = inside | returning
             change = float(np.abs(self.pressure - before).max()) / max(float(self.pressure.max()), 1e-300)
             before = self.pressure
             if not returning.any() and change <= _PRESSURE_SHARE * self.tolerance:
                 break
-            if self._spent:
+            if self.exhausted:
                 self.settled = False
                 break
         else:
             self.settled = False
-        weights, offset = problem.load_weights(self.slopes, tau_on)
+        weights, offset = problem.load_weights(self.slopes, held)
         return inner(weights, self.pressure) * problem.grid.element_area - offset
 
-    @property
-    def _spent(self) -> bool:
-        """Whether more was done on this grid than any state that settles takes: limits of loops multiply."""
-        trace = self.trace
-        return trace.periodic_steps + trace.correction_steps + trace.passes >= _BUDGET
-
-    def _bring_up_to_date(self, support: Mask | None) -> tuple[Array, Mask]:
-        """Slopes, and the displacement of everything but ``a f``, from the pressure so far."""
-        tau_on = self.pressure > 0 if support is None else support
-        traction = local_friction(self.problem.friction, self.pressure, tau_on)
+    def _update(self, active: Mask | None) -> tuple[Array, Array]:
+        """Slopes; returned are all displacements but ``a f`` (m), and the held traction (Pa)."""
+        law = self.problem.friction
+        tau_on = self.contact if active is None else active
+        traction = law.traction(self.pressure, tau_on)
         lower, upper = self.problem.displacements(self.operator, self.pressure, traction, self.slopes)
         self.slopes = self.problem.slopes(lower, upper)
-        return lower + upper - self._compliance * self.operator.normal(self.pressure), tau_on
+        return lower + upper - self._apply(self.pressure), law.held_traction(self.pressure, tau_on)
 
     def _iterate(self, u: Array, inside: Mask, *, periodic: bool) -> Mask:
         """(1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact left."""
@@ -244,7 +259,7 @@ class _Scheme:
             self.trace.correction_steps += not periodic
             if change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found)):
                 break
-            if self._spent:
+            if self.exhausted:
                 self.settled = False
                 break
         else:
@@ -257,7 +272,7 @@ class _Scheme:
         return float(np.linalg.norm((u - self._apply(self.pressure)) * inside)) / norm if norm > 0 else 0.0
 
     def _apply(self, pressure: Array) -> Array:
-        return self._compliance * self.operator.normal(pressure)
+        return self.problem.elasticity.normal(self.operator, pressure)
 
     def _apply_periodic(self, pressure: Array) -> Array:
         self.operator.counter.add("periodic", pressure.size)

@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 
 _PATIENCE = 10  # block exchanges without progress before single ones; Judice and Pires use 10
 

@@ -31,36 +31,35 @@ class ArraySurface(Surface):
     def __post_init__(self) -> None:
         object.__setattr__(self, "data", _checked(self.data))
 
-    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        square = (grid.M, grid.M)
-        if self.data.shape == square and offset == (0.0, 0.0):
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        if self.data.shape == grid.shape and offset == (0.0, 0.0):
             return self.data.copy()
         if min(self.data.shape) < 4:
             shape = f"array of shape {self.data.shape}"
-            raise InputError("heights", shape, f"the grid's shape {square}, or at least 4 points an axis")
-        if not periodic:
+            raise InputError("heights", shape, f"the grid's shape {grid.shape}, or at least 4 points an axis")
+        if not grid.periodic:
             _refuse_leaving(grid, offset)
-        (x, y) = (
-            (grid.centres + o) * (n / grid.side) - 0.5 for o, n in zip(offset, self.data.shape, strict=True)
-        )
-        return resample_periodic(self.data, x, y) if periodic else resample(self.data, x, y)
+        (nx, ny), (Lx, Ly) = self.data.shape, grid.lengths
+        x, y = (grid.x + offset[0]) * (nx / Lx) - 0.5, (grid.y + offset[1]) * (ny / Ly) - 0.5
+        return resample_periodic(self.data, x, y) if grid.periodic else resample(self.data, x, y)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        if self.data.shape == (grid.M, grid.M):
+        if self.data.shape == grid.shape:
             return (f"the array of {_by(self.data.shape)} heights is used as it is",)
         return (
-            f"the array of {_by(self.data.shape)} heights is resampled bicubically to {_by((grid.M,) * 2)}",
+            f"the array of {_by(self.data.shape)} heights is resampled bicubically to {grid}",
             *self.cautions(grid),
         )
 
-    def pitch(self, side: float) -> float:
-        return side / float(max(self.data.shape))
+    def pitch(self, lengths: tuple[float, float]) -> float:
+        nx, ny = self.data.shape
+        return float(min(lengths[0] / nx, lengths[1] / ny))
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        if min(self.data.shape) >= grid.M:
+        if all(points >= n for points, n in zip(self.data.shape, grid.shape, strict=True)):
             return ()
         return (
-            f"the grid of {_by((grid.M,) * 2)} is finer than the array of {_by(self.data.shape)} heights: "
+            f"the grid of {grid} is finer than the array of {_by(self.data.shape)} heights: "
             "what lies between them is interpolated",
         )
 
@@ -94,9 +93,10 @@ def _checked(data: NDArray[Any]) -> Array:
 
 
 def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:
-    room = grid.spacing / 2.0  # the outermost element centres stand this far inside the square
-    if max(map(abs, offset)) > room * (1.0 + 1e-9):  # 1e-9: far above the rounding of an offset of just h / 2
-        raise InputError("offset", offset, f"at most {room:.6g} m either way: the array ends with the square")
+    room = tuple(edge / 2.0 for edge in grid.spacings)  # from the border to the outermost element centres
+    if any(abs(o) > r * (1.0 + 1e-9) for o, r in zip(offset, room, strict=True)):  # 1e-9: rounding of h / 2
+        allowed = f"at most {min(room):.6g} m either way: the array ends with the domain"
+        raise InputError("offset", offset, allowed)
 
 
 def _by(shape: tuple[int, ...]) -> str:

@@ -1,4 +1,4 @@
-"""The square window that a scene cuts from measured heights."""
+"""The window that a scene cuts from measured heights."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ ROUNDING = 1e-9  # relative slack of lengths: far above double rounding, far bel
 
 
 @dataclass(frozen=True)
-class Window:
-    """The square of edge ``side`` (m) about the middle of the measured area, moved by ``offset`` (m).
+class Crop:
+    """The rectangle of ``lengths`` (m) about the middle of the measured area, moved by ``offset`` (m).
 
     Each point counts as one pixel, so n points measure n pixels. Raises InputError where the window leaves
     the measured area, or holds fewer than four points an axis. Positions are in pixels: point ``[i, j]`` sits
@@ -26,31 +26,31 @@ class Window:
     """
 
     reading: Reading
-    side: float
+    lengths: tuple[float, float]
     offset: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        area, slack = self.reading.area, ROUNDING * self.side
-        if self.side > min(area) + slack:
-            raise InputError("side", self.side, f"at most the measured {by(area)} m of {self.reading.name}")
-        room = tuple((length - self.side) / 2.0 for length in area)
+        area, slack = self.reading.area, ROUNDING * max(self.lengths)
+        room = tuple((measured - length) / 2.0 for measured, length in zip(area, self.lengths, strict=True))
+        if min(room) < -slack / 2:
+            allowed = f"at most the measured {by(area)} m of {self.reading.name}"
+            raise InputError("side", max(self.lengths), allowed)
         if any(abs(o) > r + slack for o, r in zip(self.offset, room, strict=True)):
             raise InputError("offset", self.offset, f"at most {by(room)} m either way in {self.reading.name}")
         if min(s.stop - s.start for s in self.points) < 4:
             least = f"at least 4 pixels of {self.reading.name}, each {by(self.reading.pixel)} m"
-            raise InputError("side", self.side, least)
+            raise InputError("side", min(self.lengths), least)
 
     def positions(self, along: Array, axis: int) -> Array:
         """Pixel positions of points ``along`` an axis (m from the window's edge)."""
-        corner = (self.reading.area[axis] - self.side) / 2.0 + self.offset[axis]
+        corner = (self.reading.area[axis] - self.lengths[axis]) / 2.0 + self.offset[axis]
         return np.asarray((corner + along) / self.reading.pixel[axis] - 0.5)
 
     @property
     def points(self) -> tuple[slice, slice]:
         """The points whose centres lie in the window."""
-        slack = ROUNDING * self.side
-        ends = np.array([-slack, self.side + slack])
-        i, j = (self.positions(ends, axis) for axis in (0, 1))
+        slack = ROUNDING * max(self.lengths)
+        i, j = (self.positions(np.array([-slack, self.lengths[axis] + slack]), axis) for axis in (0, 1))
         return slice(math.ceil(i[0]), math.floor(i[1]) + 1), slice(math.ceil(j[0]), math.floor(j[1]) + 1)
 
     @property

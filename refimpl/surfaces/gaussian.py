@@ -78,15 +78,14 @@ class GaussianRoughness(Surface):
         """Ensemble rms of dz/dx: ``sqrt(-R''(0)) = rms sqrt(2 * 2.3) / l``."""
         return self.rms * math.sqrt(2.0 * DECAY) / self.correlation_length
 
-    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        period = grid.side if periodic else None
-        z = self._field(grid.centres + offset[0], grid.centres + offset[1], period)
-        return z * self._scale(grid.side, period)
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        return self._field(grid.x + offset[0], grid.y + offset[1], grid) * self._scale(grid)
 
-    def _field(self, x: Array, y: Array, period: float | None) -> Array:
+    def _field(self, x: Array, y: Array, grid: Grid) -> Array:
         """Ensemble heights (m) at all pairs of ``x``, ``y``."""
-        nodes_x, smooth_x = self.smoothing(x, period)
-        nodes_y, smooth_y = self.smoothing(y, period)
+        periods = grid.lengths if grid.periodic else (None, None)
+        nodes_x, smooth_x = self.smoothing(x, periods[0])
+        nodes_y, smooth_y = self.smoothing(y, periods[1])
         noise = white_noise(self.seed, nodes_x, nodes_y)
         return self.rms * np.ascontiguousarray((smooth_y @ (smooth_x @ noise).T).T)
 
@@ -127,34 +126,38 @@ class GaussianRoughness(Surface):
         if farthest / h > MAX_FAR:
             raise InputError("offset", farthest, f"within {MAX_FAR:.3g} x {h:.3g} m: beyond, digits are lost")
 
-    def _scale(self, side: float, period: float | None) -> float:
-        return self.rms / self._realised_rms(side, period) if self.normalise else 1.0
+    def _scale(self, grid: Grid) -> float:
+        return self.rms / self._realised_rms(grid) if self.normalise else 1.0
 
-    def _realised_rms(self, side: float, period: float | None) -> float:
-        """Standard deviation (m) of the unscaled field over the square of edge ``side``: Gauss-Legendre, 10
-        points on each panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
-        if side < self.correlation_length:
+    def _realised_rms(self, grid: Grid) -> float:
+        """Standard deviation (m) of the unscaled field over the domain: Gauss-Legendre with 10 points on each
+        panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
+        if min(grid.lengths) < self.correlation_length:
             least = f"false, or a side of at least one correlation length, {self.correlation_length:.6g} m"
             raise InputError("normalise", True, least)
-        panels = math.ceil(2.0 * side / self.correlation_length)
+        (x, along), (y, across) = (self._panels(length) for length in grid.lengths)
+        z = self._field(x, y, grid)
+        mean = along @ z @ across
+        return math.sqrt(along @ (z - mean) ** 2 @ across)
+
+    def _panels(self, length: float) -> tuple[Array, Array]:
+        """Quadrature points (m) and weights, which add up to 1, along one side."""
+        panels = math.ceil(2.0 * length / self.correlation_length)
         node, weight = np.polynomial.legendre.leggauss(10)
-        x = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (side / panels)).ravel()
-        w = np.tile(weight / (2.0 * panels), panels)
-        z = self._field(x, x, period)
-        mean = w @ z @ w
-        return math.sqrt(w @ (z - mean) ** 2 @ w)
+        points = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (length / panels)).ravel()
+        return points, np.tile(weight / (2.0 * panels), panels)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        over = f"over the square of {grid.side:.6g} m" if self.normalise else "in the ensemble"
+        over = f"over the domain of {_by(grid.lengths)} m" if self.normalise else "in the ensemble"
         said = f"rms {self.rms:.6g} m {over}, correlation length {self.correlation_length:.6g} m"
         return (f"Gaussian roughness of seed {self.seed}: {said}", *self.cautions(grid))
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        if grid.spacing <= self.correlation_length / 4.0:
+        if max(grid.spacings) <= self.correlation_length / 4.0:
             return ()
         return (
-            f"the element, {grid.spacing:.3g} m, exceeds a quarter of the roughness's correlation length, "
-            f"{self.correlation_length:.3g} m: its slopes are not resolved",
+            f"the element, {max(grid.spacings):.3g} m, exceeds a quarter of the roughness's correlation "
+            f"length, {self.correlation_length:.3g} m: its slopes are not resolved",
         )
 
 
@@ -162,3 +165,7 @@ def _images(ratio: float) -> float:
     """``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: one axis's variance with images."""
     m = np.arange(1, 6)  # the sixth image would add exp(-2.3 * 36) = 1e-36
     return float(1.0 + 2.0 * np.exp(-DECAY * (m * ratio) ** 2).sum())
+
+
+def _by(lengths: tuple[float, float]) -> str:
+    return " x ".join(f"{length:.6g}" for length in lengths)

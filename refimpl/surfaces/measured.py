@@ -12,7 +12,7 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.bicubic import resample
-from refimpl.surfaces.crop import ROUNDING, Window, by
+from refimpl.surfaces.crop import ROUNDING, Crop, by
 from refimpl.surfaces.detrending import DEGREES, Form, fit
 from refimpl.surfaces.readers import UNITS, Reading, read
 from refimpl.surfaces.surface import Surface, finite, positive
@@ -69,25 +69,25 @@ class MeasuredSurface(Surface):
         """What the file holds, as it is (read once)."""
         return read(self._file, self.unit, None if self.pixel_size is None else _pixel(self.pixel_size))
 
-    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        if periodic:
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        if grid.periodic:
             raise InputError("periodic", True, f"false: {self._file.name} does not repeat")
-        window = self._window(grid.side, offset)
+        window = self._crop(grid.lengths, offset)
         heights, (i, j) = window.filled()
-        x, y = (window.positions(grid.centres, axis) for axis in (0, 1))
-        return resample(heights, x - i.start, y - j.start) - self._central(grid.side)[1](x, y)
+        x, y = window.positions(grid.x, 0), window.positions(grid.y, 1)
+        return resample(heights, x - i.start, y - j.start) - self._central(grid.lengths)[1](x, y)
 
-    def _window(self, side: float, offset: tuple[float, float] = (0.0, 0.0)) -> Window:
-        window = Window(self.reading, side, offset)
+    def _crop(self, lengths: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)) -> Crop:
+        window = Crop(self.reading, lengths, offset)
         allowed = self.max_missing if self.missing == "fill" else 0.0
         if window.lost > allowed * window.size:
             said = f"{window.lost} of {window.size} points of the window in {self._file.name}"
             raise InputError("missing", said, f"at most a fraction of {allowed:.3g}")
         return window
 
-    def _central(self, side: float) -> tuple[Array, Form, Array]:
+    def _central(self, lengths: tuple[float, float]) -> tuple[Array, Form, Array]:
         """At offset 0: the window's points with gaps filled, their form, and what is left of them."""
-        window = self._window(side)
+        window = self._crop(lengths)
         (i, j), (heights, (around_i, around_j)) = window.points, window.filled()
         z = heights[i.start - around_i.start :, j.start - around_j.start :]
         z = z[: i.stop - i.start, : j.stop - j.start]
@@ -97,30 +97,30 @@ class MeasuredSurface(Surface):
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, reading = self._file.name, self.reading
-        z, form, rest = self._central(grid.side)
+        z, form, rest = self._central(grid.lengths)
         tilt = by(tuple(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True)))
         return (
             f"{name}: {by(reading.heights.shape)} points on {by(reading.area)} m, read {reading.source}",
-            f"{name}: the central square of {grid.side:.6g} m is used, {by(z.shape)} points, "
-            f"resampled bicubically to {grid.M} x {grid.M} elements",
-            f"{name}: level {self.level!r} fitted in that square (slopes {tilt}) and taken off; "
+            f"{name}: the central window of {by(grid.lengths)} m is used, {by(z.shape)} points, "
+            f"resampled bicubically to {grid} elements",
+            f"{name}: level {self.level!r} fitted in that window (slopes {tilt}) and subtracted; "
             f"rms height there {z.std():.4g} m before, {rest.std():.4g} m after",
             *self.cautions(grid),
         )
 
-    def pitch(self, side: float) -> float:
+    def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self.reading.pixel)
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        name, window = self._file.name, Window(self.reading, grid.side)
+        name, window = self._file.name, Crop(self.reading, grid.lengths)
         said = []
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"
             )
-        if grid.spacing < max(self.reading.pixel) * (1.0 - ROUNDING):
+        if min(e / p for e, p in zip(grid.spacings, self.reading.pixel, strict=True)) < 1.0 - ROUNDING:
             said.append(
-                f"{name}: the element, {grid.spacing:.4g} m, is finer than the measured pixel, "
+                f"{name}: the element, {min(grid.spacings):.4g} m, is finer than the measured pixel, "
                 f"{by(self.reading.pixel)} m: what lies between the points is interpolated"
             )
         return tuple(said)

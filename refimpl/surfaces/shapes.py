@@ -18,8 +18,8 @@ class Flat(Surface):
 
     kind: ClassVar[str] = "flat"
 
-    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        return np.zeros((grid.M, grid.M))
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        return grid.zeros
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Sphere(Surface):
     the centre of the square. A ball as the lower body has a negative one. Periodic: the paraboloid of the
     nearest image.
 
-    >>> Sphere(radius=0.5).heights(Grid(side=4.0, M=2))
+    >>> Sphere(radius=0.5).heights(Grid.square(4.0, 2))
     array([[2., 2.], [2., 2.]])
     """
 
@@ -43,10 +43,14 @@ class Sphere(Surface):
             raise InputError("radius", self.radius, allowed)
         object.__setattr__(self, "radius", float(self.radius))
 
-    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        # (2i + 1 - M) h / 2 is symmetric about the centre to the last bit; (i + 1/2) h - side / 2 is not
-        from_centre = (2.0 * np.arange(grid.M) + 1.0 - grid.M) * (grid.spacing / 2.0)
-        x, y = from_centre + offset[0], from_centre + offset[1]
-        if periodic:
-            x, y = x - grid.side * np.round(x / grid.side), y - grid.side * np.round(y / grid.side)
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        x, y = (_from_centre(grid, axis) + offset[axis] for axis in (0, 1))
+        if grid.periodic:
+            x, y = (s - L * np.round(s / L) for s, L in zip((x, y), grid.lengths, strict=True))
         return np.asarray((x[:, None] ** 2 + y[None, :] ** 2) / (2.0 * self.radius))
+
+
+def _from_centre(grid: Grid, axis: int) -> Array:
+    """Element centres from the domain's centre (m), symmetric to the last bit: ``(2 i + 1 - M) h / 2``."""
+    count = grid.shape[axis]
+    return np.asarray((2.0 * np.arange(count) + 1.0 - count) * (grid.spacings[axis] / 2.0))

@@ -1,6 +1,7 @@
-"""Statistics of heights on equidistant points: pure functions of ``z[i, j]`` (m) and the spacing (m).
+"""Statistics of heights on equidistant points: pure functions of ``z[i, j]`` (m) and the spacings (m).
 
 Moments are about the mean of the points given. Slopes are central differences, one-sided at the border.
+One spacing stands for both axes.
 """
 
 from __future__ import annotations
@@ -29,18 +30,19 @@ def kurtosis(z: Array) -> float:
     return _moment(z, 4)
 
 
-def slopes(z: Array, spacing: float) -> tuple[Array, Array]:
-    """``dz/dx, dz/dy`` at every point, each of z's shape."""
-    return np.asarray(np.gradient(z, spacing, axis=0)), np.asarray(np.gradient(z, spacing, axis=1))
+def slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array]:
+    """Return ``dz/dx, dz/dy`` at every point, each of z's shape."""
+    dx, dy = spacing if isinstance(spacing, tuple) else (spacing, spacing)
+    return np.asarray(np.gradient(z, dx, axis=0)), np.asarray(np.gradient(z, dy, axis=1))
 
 
-def slope_angles(z: Array, spacing: float) -> tuple[Array, Array]:
+def slope_angles(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array]:
     """Angles ``atan(dz/dx), atan(dz/dy)`` (rad)."""
     dz_dx, dz_dy = slopes(z, spacing)
     return np.arctan(dz_dx), np.arctan(dz_dy)
 
 
-def rms_slopes(z: Array, spacing: float) -> tuple[float, float]:
+def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, float]:
     """Root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts).
 
     On Eq. (9) and spacing h the central difference sees ``(R(0) - R(2h)) / (2 h^2)`` in place of ``-R''(0)``:

@@ -30,30 +30,26 @@ class Surface(ABC):
     __array_ufunc__ = None  # so that `array + surface` asks the surface, not each number of the array
 
     @abstractmethod
-    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array: ...
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array: ...
 
-    def heights(
-        self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0), *, periodic: bool = False
-    ) -> Array:
-        """Heights (m, positive upwards) at ``(x_i + offset_x, y_j + offset_y)``, shape ``(M, M)``.
+    def heights(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
+        """Return heights (m, positive upwards) at ``(x_i + offset_x, y_j + offset_y)``, in the grid's shape.
 
-        ``x_i`` are the element centres ``(i + 1/2) side / M``; ``offset`` in m. ``periodic=True`` asks for
-        heights that repeat with the period ``side`` along both axes. Raises InputError where the surface
-        cannot be had there; warns (SurfaceWarning) of everything in ``cautions(grid)``.
+        ``x_i`` and ``y_j`` are the element centres; ``offset`` in m. On a periodic grid heights repeat with
+        the grid's lengths. Raises `InputError` where the surface is not defined there; warns
+        (`SurfaceWarning`) of everything in ``cautions(grid)``.
         """
-        z = self.sample(grid, offset, periodic=periodic)
+        z = self.sample(grid, offset)
         for caution in self.cautions(grid):
             warnings.warn(caution, SurfaceWarning, stacklevel=2)
         return z
 
-    def sample(
-        self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0), *, periodic: bool = False
-    ) -> Array:
-        """The same without a warning: Python's filters of warnings belong to all threads of a process."""
+    def sample(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
+        """Return the `heights` without a warning: Python's warning filters are shared by all threads."""
         ox, oy = offset
         if not (math.isfinite(ox) and math.isfinite(oy)):
             raise InputError("offset", offset, "two finite lengths in m")
-        return self._sample(grid, (float(ox), float(oy)), periodic)
+        return self._sample(grid, (float(ox), float(oy)))
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         """What was read, cut, levelled, resampled or normalised for this grid, one sentence each."""
@@ -63,8 +59,9 @@ class Surface(ABC):
         """The part of ``describe`` that a user should be warned of."""
         return ()
 
-    def pitch(self, side: float) -> float | None:
-        """Finest distance between its points of data on a square of that side (m); None for a formula."""
+    def pitch(self, lengths: tuple[float, float]) -> float | None:
+        """Return the finest distance between data points on a domain of those lengths (m); None for a
+        formula."""
         return None
 
     @property
@@ -100,10 +97,10 @@ class SurfaceSum(Surface):
     def parts(self) -> tuple[Surface, ...]:
         return self.terms
 
-    def _sample(self, grid: Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        z = np.zeros((grid.M, grid.M))
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        z = grid.zeros
         for term in self.terms:
-            z += term._sample(grid, offset, periodic)
+            z += term._sample(grid, offset)
         return z
 
     def describe(self, grid: Grid) -> tuple[str, ...]:

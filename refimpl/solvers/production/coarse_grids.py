@@ -1,109 +1,117 @@
-"""Nested grids: the problem on halved grids, and pressures carried from one to the next."""
+"""Nested grids: the problem on coarser grids, and initial guesses carried from one grid to the next."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from refimpl.grid import Array, Grid, resampled
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask, Shape, resampled
 from refimpl.model.problem import Problem
-from refimpl.solvers.production.projected_cg import FIRST_LENGTH, Apply
-
-_COARSEST = 32  # elements per side where nesting starts
-_COARSEST_OF_TWO = 16  # the same of grids that would have no coarser one
-_QUARTERED = 128  # elements per side up to which a grid of half as many costs more than it spares
+from refimpl.operators.preconditioner import Apply
+from refimpl.solvers.production.constants import COARSEST, COARSEST_OF_TWO, FIRST_LENGTH, QUARTERED
 
 
-class Start(NamedTuple):
-    """One grid's answer: pressure (Pa) and the pair's displacement ``v - h`` (m), both ``(M, M)``.
+class InitialGuess(NamedTuple):
+    """One grid's solution as an initial guess for a finer grid; arrays of the coarser grid's shape.
 
-    ``approach`` (m) is None where heights were sampled anew: grids differ in where they see first touch.
-    ``strong`` says that updates had to be mixed (`refimpl.solvers.production.level`): finer grids feed back
-    even more.
+    pressure : f (Pa)
+    displacement : ``v - h`` of the pair (m)
+    approach : m from first contact, or None where heights were sampled anew: grids differ in it
+    needs_mixing : whether updates of the lagged terms had to be mixed; on finer grids they feed back more
     """
 
     pressure: Array
     displacement: Array
     approach: float | None
-    strong: bool = False
+    needs_mixing: bool = False
 
     @property
-    def M(self) -> int:
-        """Elements per side."""
-        return len(self.pressure)
+    def shape(self) -> Shape:
+        """Numbers of elements along x and y."""
+        return self.pressure.shape[0], self.pressure.shape[1]
 
 
-def levels(problem: Problem, above: int) -> list[Problem]:
-    """The problem on halved or quartered grids finer than ``above``, coarsest first."""
+def nested_problems(problem: Problem, above: Shape | None) -> list[Problem]:
+    """Return the problem on coarser and coarser grids that are finer than ``above``, coarsest first."""
     nested = [problem]
-    lowest = _COARSEST_OF_TWO
-    while (M := _coarser(nested[0].grid.M)) >= max(lowest, above + 1):
-        coarse = coarsened(nested[0])
-        nested.insert(0, coarse if coarse.grid.M == M else coarsened(coarse))
-        lowest = _COARSEST
-    return nested
+    lowest = COARSEST_OF_TWO
+    while True:
+        shape = _coarser(nested[0].grid.shape)
+        finer = above is None or math.prod(shape) > math.prod(above)
+        if min(shape) < lowest or not finer:
+            return nested
+        nested.insert(0, coarsened(nested[0], shape))
+        lowest = COARSEST
 
 
-def _coarser(M: int) -> int:
-    """Half as many elements per side, rounded up; of a small grid a quarter if those are enough."""
-    half = (M + 1) // 2
-    quarter = (half + 1) // 2
-    return quarter if M <= _QUARTERED and quarter >= _COARSEST else half
+def _coarser(shape: Shape) -> Shape:
+    """Half as many elements along each axis, rounded up; of a small grid a quarter if those are enough."""
+    half = tuple((n + 1) // 2 for n in shape)
+    quarter = tuple((n + 1) // 2 for n in half)
+    n, m = quarter if max(shape) <= QUARTERED and min(quarter) >= COARSEST else half
+    return n, m
 
 
-def coarsened(fine: Problem) -> Problem:
-    """The problem on half as many elements per side, rounded up: means of four where that number is even."""
-    M = (fine.grid.M + 1) // 2
-    seen = fine.terms.oblique  # nothing but slopes looks at the common surface
-    return replace(
-        fine,
-        grid=Grid(fine.grid.side, M),
-        gap=resampled(fine.gap, M),
-        mean_surface=resampled(fine.mean_surface, M) if seen else np.broadcast_to(0.0, (M, M)),
-    )
+def coarsened(fine: Problem, shape: Shape) -> Problem:
+    """Return the problem on a coarser grid, halved as often as needed: means of four where counts are
+    even."""
+    while fine.grid.shape != shape:
+        n, m = fine.grid.shape
+        grid = fine.grid.refined(((n + 1) // 2, (m + 1) // 2))
+        gap = resampled(fine.gap, grid.shape)
+        # only slopes look at the common surface
+        surface = (
+            resampled(fine.mean_surface, grid.shape)
+            if fine.terms.oblique
+            else np.broadcast_to(0.0, gap.shape)
+        )
+        fine = replace(fine, grid=grid, gap=gap, mean_surface=surface)
+    return fine
 
 
-def foundation_pressure(problem: Problem) -> Array:
-    """A pressure to start from: that of springs under the interference at the approach, or at the load.
+def winkler_pressure(problem: Problem) -> Array:
+    """Return the pressure of a Winkler foundation at the approach, or under the load (Pa).
 
-    At a prescribed approach it may be none at all: a coarse grid's means can lie above it, and touch nothing.
+    At a prescribed approach it may vanish: a coarse grid's means of the gap can lie above the approach.
     """
     load, dA = problem.load, problem.grid.element_area
-    depth = problem.approach if problem.approach is not None else _bearing(problem)
+    depth = problem.approach if problem.approach is not None else _bearing_depth(problem)
     interference = np.maximum(depth - problem.gap, 0.0)
-    if load is not None and not interference.any():  # flat on flat, in any unit: the load sets the scale
+    if load is not None and not interference.any():  # flat on flat: the load alone sets the pressure
         interference = np.ones_like(problem.gap)
-    pressure: Array = interference / (problem.pair.normal_compliance * problem.grid.side)
+    pressure: Array = interference / problem.elasticity.mean_compliance(problem.grid)
     if load is not None:
         pressure *= load / (dA * pressure.sum())
     return pressure
 
 
-def _bearing(problem: Problem) -> float:
-    """The least depth at which springs bear the load (m), of all that are as deep as some element.
+def _bearing_depth(problem: Problem) -> float:
+    """The least depth at which the foundation bears the load (m), of all that are as deep as some element.
 
-    Springs are as stiff as a half-space under a load of their width, ``1 / (compliance width)``. On 32 x 32
-    elements 0.6 or 2.5 times the width cost CG a sixth more steps (measured), and contact on 3 of 10 whatever
-    the load up to twelve times as many (see the tests).
+    Its stiffness is that of a half-space under a load of the contact's width, ``1 / (compliance width)``. On
+    32 x 32 elements 0.6 or 2.5 times the width cost CG a sixth more steps (measured), and contact on 3 of 10
+    elements whatever the load up to twelve times as many (tests).
     """
     assert problem.load is not None
+    dA = problem.grid.element_area
     lowest = np.sort(problem.gap, axis=None)
-    area = problem.grid.element_area * np.arange(1, lowest.size + 1)
-    volume = area * lowest - problem.grid.element_area * np.cumsum(lowest)
-    borne = np.maximum.accumulate(volume / (problem.pair.normal_compliance * np.sqrt(area)))
+    area = dA * np.arange(1, lowest.size + 1)
+    volume = area * lowest - dA * np.cumsum(lowest)
+    compliance = problem.elasticity.mean_compliance(problem.grid) * np.sqrt(area) / problem.grid.size
+    borne = np.maximum.accumulate(volume / compliance)
     return float(lowest[min(int(np.searchsorted(borne, problem.load)), lowest.size - 1)])
 
 
-def touching(pressure: Array, v: Array, approach: float | None, problem: Problem) -> tuple[Mask, float]:
-    """Elements in contact after a damped Jacobi step from a prolonged pressure; the approach if not known.
+def likely_contact(pressure: Array, v: Array, approach: float | None, problem: Problem) -> tuple[Mask, float]:
+    """Return elements in contact after a damped Jacobi step from a prolonged pressure, and the approach (m).
 
-    ``v`` is the prolonged displacement plus the grid's gap; what it misses of the approach is of the grid's
-    highest frequency ``q = pi / spacing``, where ``a`` is ``2 compliance spacing``. No operator is applied.
+    ``v`` is the prolonged displacement plus the grid's gap (m); its error is of the grid's highest frequency.
+    Without a known approach, the one that keeps the load is found. No operator is applied.
     """
-    stiffness = 0.5 / (2 * problem.pair.normal_compliance * problem.grid.spacing)
+    stiffness = 0.5 / problem.elasticity.element_compliance(problem.grid)
     freed = pressure - stiffness * v
     if approach is None:
         approach = _balancing(freed, stiffness, float(pressure.sum()))
@@ -114,8 +122,8 @@ def touching(pressure: Array, v: Array, approach: float | None, problem: Problem
 def _balancing(freed: Array, stiffness: float, total: float) -> float:
     """The approach at which ``max(freed + stiffness approach, 0)`` adds up to the total.
 
-    Newton's steps, from all elements on: the function is convex with the number of those that press for a
-    slope, so steps come from above and this number falls until it stays, which is the solution.
+    Newton's method with all elements in contact at first. The function is convex, and its slope is the number
+    of elements that press. So steps come from above, and the number falls until it is that of the solution.
     """
     pressing, fewest = freed, freed.size + 1
     while pressing.size < fewest:
@@ -126,15 +134,15 @@ def _balancing(freed: Array, stiffness: float, total: float) -> float:
 
 
 def sharpened(pressure: Array, misfit: Array, contact: Mask, precondition: Apply, *, loaded: bool) -> Array:
-    """A prolonged pressure with the grid's own detail: a preconditioned step, no operator applied.
+    """Return a prolonged pressure after one preconditioned step on the finer grid, without an operator.
 
-    ``misfit`` is what ``v`` of `touching` lacks of the approach; the step keeps the load if there is one.
+    ``misfit`` is the approach minus ``v`` of `likely_contact` (m); under a load the step keeps it.
     """
-    residual = _level(misfit * contact, contact, loaded)
-    step = _level(precondition(residual) * contact, contact, loaded)
+    residual = _balanced(misfit * contact, contact, loaded)
+    step = _balanced(precondition(residual) * contact, contact, loaded)
     raised: Array = (pressure + FIRST_LENGTH * step) * contact
     return np.maximum(raised, 0.0)
 
 
-def _level(values: Array, contact: Mask, loaded: bool) -> Array:
+def _balanced(values: Array, contact: Mask, loaded: bool) -> Array:
     return values - values.sum() / np.count_nonzero(contact) * contact if loaded else values

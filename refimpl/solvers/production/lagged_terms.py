@@ -1,4 +1,11 @@
-"""What CG holds while it works: shear that it has not taken in, slopes, the load's weights, tau's support."""
+"""The terms that lag: shear and slopes, held fixed while CG works and updated between its calls.
+
+CG inverts ``a f``, and with it the coupling ``beta c f`` where that is weak. Cerruti's kernel is odd, so
+``c`` is skew: it adds nothing to a curvature ``d.(a d)``, and one transform applies both kernels. What is
+left of shear is then the held traction of the friction law, which is constant on a given active set. Where
+the coupling is strong, CG's directions lose their conjugacy; then all of shear lags, and its updates are
+mixed. So do facet tractions, whose shear is no multiple of the pressure.
+"""
 
 from __future__ import annotations
 
@@ -6,71 +13,101 @@ import math
 
 import numpy as np
 
-from refimpl.grid import Array, inner
-from refimpl.model.friction import Mask, local_friction
-from refimpl.model.problem import Problem
+from refimpl.grid import Array, Mask, inner
+from refimpl.model.elasticity import WindowOperator
+from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
-from refimpl.solvers.production.anderson import Mixing
-from refimpl.solvers.production.flexibility import Flexibility
+from refimpl.operators.preconditioner import Apply
+from refimpl.solvers.production.anderson import AndersonMixing
+from refimpl.solvers.production.constants import LARGEST_DISPLACEMENT, STEEPEST_COSINE, WEAK_COUPLING
 from refimpl.solvers.production.projected_cg import ProjectedCG
 
-_STEEPEST = 1e-6  # cosine of slopes that have run off, under pressures far beyond the moduli
-_FARTHEST = 1e30  # sides; shear displacements beyond have run off, while their squares still fit a double
+
+def coupling_strength(problem: Problem) -> float:
+    """Return the spectral radius of ``beta c f`` against ``a f``, at most; 0 where shear closes no gap."""
+    return abs(problem.friction.slope * problem.elasticity.coupling_ratio)
 
 
-class Held:
-    """The rest of a window's problem, brought up to date with the pressure of ``cg`` and held from then on.
+def couples_weakly(problem: Problem) -> bool:
+    """Return whether CG takes the coupling ``beta c f`` into its product."""
+    return 0 < coupling_strength(problem) <= WEAK_COUPLING and not problem.terms.slope_correction
 
-    ``support`` is where tau is; ``slopes`` are those that the last update left, and ``entered`` those that
-    the displacements of the present state came from. ``ran_off`` says that slopes or shear did.
+
+def pressure_compliance(problem: Problem, operator: WindowOperator) -> Apply:
+    """Return what CG inverts (m/Pa): ``f -> a f``, or ``f -> a f + beta c f`` where the coupling is weak."""
+    elasticity = problem.elasticity
+    if couples_weakly(problem):
+        return elasticity.normal_with_shear(operator, problem.friction.slope)
+    return lambda pressure: elasticity.normal(operator, pressure)
+
+
+class LaggedTerms:
+    """Shear displacement, slopes and load target of a window's problem, updated from the pressure of ``cg``.
+
+    active : elements with adhesive shear
+    slopes : those that the last update found
+    slopes_used : those that the displacements of the present state came from
+    diverged : slopes or shear displacements ran out of range
     """
 
-    def __init__(self, problem: Problem, flexibility: Flexibility, cg: ProjectedCG) -> None:
-        self._problem, self._flexibility, self._cg = problem, flexibility, cg
-        self.slopes = self.entered = Slopes.flat(problem.gap.shape)
-        self.support: Mask = np.zeros(problem.gap.shape, dtype=bool)
-        self.ran_off = False
-        self._led: tuple[Array, Array] | None = None  # shear and weights that the present state came from
+    def __init__(self, problem: Problem, operator: WindowOperator, cg: ProjectedCG) -> None:
+        self._problem, self._operator, self._cg = problem, operator, cg
+        self.slopes = self.slopes_used = Slopes.flat(problem.gap.shape)
+        self.active = no_elements(problem)
+        self.diverged = False
+        self._weakly_coupled = couples_weakly(problem)
+        self._used: tuple[Array, Array] | None = None  # shear and weights that the present state came from
+        self._requested: tuple[Array, Array]
+        self._of_held: tuple[Mask, Array] | None = None  # active set, and the shear product of its traction
+        self._of_pressure: tuple[float, Array] | None = None  # sum of a pressure, and its shear product
+
+    def iterate(self) -> None:
+        """One CG step; the shear product of the old pressure is dropped."""
+        self._cg.iterate()
+        self._of_pressure = None
 
     @property
-    def lags(self) -> bool:
-        """Whether anything that is held depends on the pressure."""
+    def has_lag(self) -> bool:
+        """Whether any lagged term depends on the pressure."""
         return self._problem.terms.oblique or self._shear_lags
 
     @property
     def _shear_lags(self) -> bool:
-        """Whether shear does, beyond what CG has taken in and tau, which stays on its support."""
-        terms, beta = self._problem.terms, self._problem.friction.beta
-        return terms.slope_correction or (terms.coupled and beta > 0 and not self._flexibility.coupled)
+        """Whether shear displacements depend on the pressure beyond what CG takes in."""
+        terms, law = self._problem.terms, self._problem.friction
+        by_pressure = law.slope > 0 and not self._weakly_coupled
+        return terms.slope_correction or (terms.coupled and (by_pressure or not law.is_linear))
 
     @property
     def traction(self) -> Array:
-        """That of the present pressure, with tau on its support (Pa)."""
-        return local_friction(self._problem.friction, self._cg.pressure, self.support)
+        """The traction of the present pressure (Pa)."""
+        return self._problem.friction.traction(self._cg.pressure, self.active)
 
-    def update(self, step: int) -> float:
-        """Bring all up to date with the pressure of CG's ``step``; the residual of the whole problem."""
-        problem, pressure = self._problem, self._cg.pressure
-        shear, slopes = self._flexibility.displaced(
-            pressure, step, self.support, self.slopes, self._cg.normal_displacement
-        )
-        self.entered, change = slopes, 0.0
+    @property
+    def _held(self) -> Array:
+        return self._problem.friction.held_traction(self._cg.pressure, self.active)
+
+    def update(self) -> float:
+        """Update all lagged terms from the present pressure; return the residual of the whole problem."""
+        problem = self._problem
+        shear, slopes = self._displacements()
+        self.slopes_used, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
-            self.entered, change = self.slopes, slopes.distance(self.slopes, pressure > 0)
-        within = max(shear.max(), -shear.min()) < _FARTHEST * problem.grid.side
-        self.ran_off = not (slopes.obliqueness.min() > _STEEPEST and within)
-        if not self.ran_off:
+            self.slopes_used, change = self.slopes, slopes.distance(self.slopes, self._cg.pressure > 0)
+        within = max(shear.max(), -shear.min()) < LARGEST_DISPLACEMENT * problem.grid.size
+        self.diverged = not (slopes.obliqueness.min() > STEEPEST_COSINE and within)
+        if not self.diverged:
             self.slopes = slopes
         K = self.slopes.obliqueness
-        target, balance = self._target(K)
-        self._asked = shear, K
-        self._hold(shear, K, target)
-        return math.inf if self.ran_off else max(*self._cg.residuals(), balance, change)
+        target, load_error = self._target(K)
+        self._requested = shear, K
+        self._set_problem(shear, K, target)
+        return math.inf if self.diverged else max(*self._cg.residuals(), load_error, change)
 
-    def mix(self, mixing: Mixing | None) -> None:
-        """Go on from a mixture in place of what the present state asks for, if updates are mixed."""
-        if mixing is None or self._led is None:
-            self._led = self._asked
+    def mix(self, mixing: AndersonMixing | None) -> None:
+        """Replace the requested terms by a mixture with earlier ones, if updates are mixed."""
+        if mixing is None or self._used is None:
+            self._used = self._requested
             return
         oblique, sheared = self._problem.terms.oblique, self._shear_lags
         scale = float(np.abs(self._cg.normal_displacement).max()) or 1.0
@@ -78,28 +115,73 @@ class Held:
         def stacked(shear: Array, K: Array) -> Array:
             return np.vstack([shear / scale] * sheared + [K] * oblique)
 
-        (shear, K), n = self._asked, self._problem.gap.shape[0]
-        mixed = mixing.mixed(stacked(*self._led), stacked(shear, K))
+        (shear, K), n = self._requested, self._problem.gap.shape[0]
+        mixed = mixing.next(stacked(*self._used), stacked(shear, K))
         if sheared:
             shear = scale * mixed[:n]
         if oblique:
-            K = np.clip(mixed[-n:], _STEEPEST, 1.0)
-        self._led = shear, K
-        self._hold(shear, K, self._target(K)[0])
+            K = np.clip(mixed[-n:], STEEPEST_COSINE, 1.0)
+        self._used = shear, K
+        self._set_problem(shear, K, self._target(K)[0])
 
-    def _hold(self, shear: Array, K: Array, target: float | None) -> None:
+    def _set_problem(self, shear: Array, K: Array, target: float | None) -> None:
         problem = self._problem
-        self._cg.freeze(K * problem.gap + shear, K, target=target, approach=problem.approach)
+        self._cg.set_problem(K * problem.gap + shear, K, target=target, approach=problem.approach)
 
     def _target(self, K: Array) -> tuple[float | None, float]:
         """What ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| / P."""
         problem, pressure = self._problem, self._cg.pressure
         if problem.load is None:
             return None, 0.0
-        weights, offset = problem.load_weights(self.slopes, self.support)
+        weights, offset = problem.load_weights(self.slopes, self._held)
         dA = problem.grid.element_area
         found = inner(weights, pressure)
         target = (problem.load + offset) / dA + inner(K, pressure) - found
-        balance = abs(found * dA - offset - problem.load) / problem.load
-        # shear on slopes that alone exceeds the load leaves no balance: keep some contact and fail by it
-        return max(target, 1e-3 * problem.load / dA), balance
+        load_error = abs(found * dA - offset - problem.load) / problem.load
+        # no balance exists if shear on slopes alone exceeds the load: keep some contact, report the error
+        return max(target, 1e-3 * problem.load / dA), load_error
+
+    def _displacements(self) -> tuple[Array, Slopes]:
+        """What shear adds to CG's displacement (m), and the slopes of the surface that all tractions
+        leave."""
+        problem, operator, elasticity = self._problem, self._operator, self._problem.elasticity
+        displacement, pressure = self._cg.normal_displacement, self._cg.pressure
+        if not problem.terms.oblique:
+            return self._gap_by_shear(), self.slopes
+        if self._weakly_coupled:
+            of_pressure = problem.friction.slope * self._shear_of_pressure()
+            normal = displacement - elasticity.gap_by_shear(of_pressure)
+            shear = of_pressure + self._shear_of_held()
+            lower, upper = elasticity.body_displacements(normal, pressure, shear)
+        else:
+            lower, upper = problem.displacements(
+                operator, pressure, self.traction, self.slopes, normal=displacement
+            )
+        return lower + upper - displacement, problem.slopes(lower, upper)
+
+    def _gap_by_shear(self) -> Array:
+        """What shear that CG has not taken in adds to the closing of the gap (m)."""
+        traction = self._held if self._weakly_coupled else self.traction
+        if not self._problem.terms.coupled or not np.any(traction):
+            return np.broadcast_to(0.0, traction.shape)
+        return self._problem.elasticity.gap_by_shear(self._operator.shear(traction))
+
+    def _shear_of_pressure(self) -> Array:
+        """The shear product of the pressure (Pa m), applied once a CG step: afterwards only its scale
+        changes."""
+        pressure = self._cg.pressure
+        total = float(pressure.sum())
+        if self._of_pressure is None:
+            self._of_pressure = total, self._operator.shear(pressure)
+        applied, product = self._of_pressure
+        return product if applied in (0.0, total) else (total / applied) * product
+
+    def _shear_of_held(self) -> Array | float:
+        """The shear product of the held traction (Pa m), of a linear law applied once for an active set."""
+        law = self._problem.friction
+        if law.is_linear and law.jump == 0:
+            return 0.0
+        known = self._of_held is not None and np.array_equal(self._of_held[0], self.active)
+        if self._of_held is None or not (known and law.is_linear):
+            self._of_held = self.active, self._operator.shear(self._held)
+        return self._of_held[1]

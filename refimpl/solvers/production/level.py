@@ -1,8 +1,8 @@
-"""One grid of the production solver: projected CG on the contact's window, with the rest lagged.
+"""One grid of the production solver: projected CG on the contact's window, with lagged terms updated between.
 
-CG inverts ``a f``, and weak coupling with it (`flexibility`). The rest is held (`lagged_terms`) while CG
-reduces the residual as far as that lets it, and is then brought up to date. Where its own feedback is weak
-few updates suffice; where it is not they are mixed (`anderson`).
+CG inverts ``a f``, and weak coupling with it. The lagged terms (`lagged_terms`) are fixed while CG reduces
+the residual as far as their error lets it, and are then updated. Where their feedback is weak few updates are
+enough; where it is strong they are mixed (`anderson`).
 """
 
 from __future__ import annotations
@@ -13,42 +13,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.grid import Array
-from refimpl.grid.window import Window
-from refimpl.model.friction import Mask, TauSupport
-from refimpl.model.problem import Problem, visit
-from refimpl.model.state import Outcome, Status, Visited
-from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
-from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.solvers.production.coarse_grids import Start
-from refimpl.solvers.production.flexibility import Flexibility
-from refimpl.solvers.production.lagged_terms import Held
-from refimpl.solvers.production.projected_cg import Apply, ProjectedCG
-from refimpl.solvers.production.updates import Updates
-from refimpl.solvers.tau_active_set import followed
-
-_REDUCTION = 0.1  # of the residual is as much as CG leaves between updates of what is held
-_LEAST_FEEDBACK = 1e-3  # and this, where the last update brought hardly anything back
-_KEPT = 0.99  # of the tolerance: the certificate, recomputed, rounds otherwise, by 1e-15 against 1e-12
-_CG_LIMIT = 1000  # in one settling; those of `verification.extremes` that end well take 108 at most
-_CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
-_MIXED_SHARE = 0.1  # of the tolerance, for CG between mixed updates: what it leaves is noise to them
-_UPDATES = 600  # of what is held, in one settling; there 59 at most
-
-WindowInfluence = FFTInfluence | PeriodicInfluence
-
-
-def influence(problem: Problem, window: Window, counter: Counter) -> WindowInfluence:
-    """The operator of a problem's window, which is the whole grid where it repeats."""
-    if problem.periodic:
-        return PeriodicInfluence(problem.grid, problem.direction, counter=counter)
-    return FFTInfluence(problem.grid, problem.direction, source=window, counter=counter)
+from refimpl.grid import Array, Mask
+from refimpl.model.problem import Problem
+from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
+from refimpl.operators.influence import WindowInfluence, whole_grid_influence
+from refimpl.operators.preconditioner import Apply
+from refimpl.solvers.production import constants
+from refimpl.solvers.production.anderson import MixingControl
+from refimpl.solvers.production.coarse_grids import InitialGuess
+from refimpl.solvers.production.lagged_terms import LaggedTerms, pressure_compliance
+from refimpl.solvers.production.projected_cg import ProjectedCG
+from refimpl.solvers.tau_active_set import iterate
 
 
 class LevelSolver:
-    """One grid level: CG on a window, with slopes, shear and tau's support brought up to date.
+    """One grid level: CG on a window, with slopes, shear and tau's active set updated; a `TauSolver`.
 
-    ``strong`` says that what is held feeds back so strongly that updates are mixed from the first.
+    ``needs_mixing`` says that the lagged terms feed back so strongly that updates are mixed from the first.
     """
 
     def __init__(
@@ -58,7 +39,7 @@ class LevelSolver:
         precondition: Apply,
         pressure: Array,
         *,
-        strong: bool = False,
+        needs_mixing: bool = False,
     ) -> None:
         self.whole = problem
         self.counter = operator.counter
@@ -66,53 +47,43 @@ class LevelSolver:
         self.window = operator.source
         self.problem = problem.windowed(self.window)
         self.operator = operator
-        self.flexibility = Flexibility(self.problem, operator)
-        self.cg = ProjectedCG(self.flexibility.apply, precondition, pressure)
-        self.held = Held(self.problem, self.flexibility, self.cg)
-        self._nowhere = self.held.support
-        self._withheld: Mask | None = None
-        # of an element against its neighbours: `a` at a grid's highest frequency, as in `coarse_grids`
-        self._stiffness = 0.5 / (problem.pair.normal_compliance * problem.grid.spacing)
-        self.stuck = False
-        self._updates = Updates(math.inf, lags=True, strong=strong)
-        self._feedback = _REDUCTION
+        self.cg = ProjectedCG(pressure_compliance(self.problem, operator), precondition, pressure)
+        self.lagged = LaggedTerms(self.problem, operator, self.cg)
+        self.stagnated = False
+        self.residual = math.inf
+        self._excluded: Mask | None = None
+        self._stiffness = 1 / problem.elasticity.element_compliance(problem.grid)
+        self._control = MixingControl(math.inf, has_lag=True, needs_mixing=needs_mixing)
+        self._feedback = constants.REDUCTION
 
-    def answer(self) -> Start:
-        """What this grid has to say to a finer one."""
+    def initial_guess(self) -> InitialGuess:
+        """Return the initial guess for a finer grid."""
         displacement = self.full(self.cg.separation - self.problem.gap)
-        if self.window != Window.full(self.whole.grid.M):
-            outside = self.problem.pair.normal_compliance * self._onto_whole_grid().normal(
-                self.full(self.cg.pressure)
-            )
+        if self.window != self.whole.grid.window:
+            onto_grid = whole_grid_influence(self.whole.grid, self.whole.direction, self.window, self.counter)
+            outside = self.problem.elasticity.normal(onto_grid, self.full(self.cg.pressure))
             outside[self.window.slices] = displacement[self.window.slices]
             displacement = outside
-        return Start(self.full(self.cg.pressure), displacement, self.cg.approach, self.strong)
+        return InitialGuess(self.full(self.cg.pressure), displacement, self.cg.approach, self.needs_mixing)
 
-    def _onto_whole_grid(self) -> WholeGridInfluence:
-        grid = self.whole.grid
-        return WholeGridInfluence(
-            grid,
-            self.whole.direction,
-            source=self.window,
-            target=Window.full(grid.M),
-            counter=self.counter,
-        )
+    def result(self, tolerance: float) -> SolverResult:
+        """Solve under the rule for tau's active set.
 
-    def solve(self, tolerance: float) -> Outcome:
-        """The settled state; tau's support follows the rule of `refimpl.model.friction`.
-
-        Where one of tau's states meets the window's edge the next are not the rule's: it ends ``cramped``.
+        Where one of its states meets the window's edge the result is not final: see ``window_too_small``.
         """
-        if self.problem.friction.tau == 0:
-            self.settle(tolerance)
-            return self._outcome(self._ended(), TauSupport((1, 1)), [])
-        rule, in_cycles = followed(self, tolerance)
-        lawful = not np.any(rule.withheld & self.contact)
-        status = self._ended()
-        if status is Status.CONVERGED and not lawful:
-            status = Status.CYCLED
-        return self._outcome(
-            status if rule.settled or self.ran_off or self.stuck else Status.ITERATION_LIMIT, rule, in_cycles
+        ended = iterate(self, self.problem.friction, tolerance)
+        status = ended.status(self.contact, self._status())
+        if self._status() is not Status.CONVERGED and not (ended.settled or self.exhausted or self.stagnated):
+            status = Status.ITERATION_LIMIT
+        excluded = ended.excluded if ended.cycle_states else np.zeros(self.window.shape, dtype=bool)
+        return SolverResult(
+            pressure=self.full(self.cg.pressure),
+            traction=self.full(self.lagged.traction),
+            slopes=self.lagged.slopes_used.spread(self.window, self.whole.grid),
+            status=status,
+            excluded=self.full(excluded),
+            cycle_states=ended.cycle_states,
+            iterations={f"CG at {self.whole.grid}": self.cg_iterations},
         )
 
     @property
@@ -121,107 +92,96 @@ class LevelSolver:
         return self.cg.pressure > 0
 
     @property
-    def ran_off(self) -> bool:
-        """Whether slopes did, under pressures far beyond the moduli."""
-        return self.held.ran_off
+    def exhausted(self) -> bool:
+        """Whether the lagged terms diverged, under pressures far beyond the moduli."""
+        return self.lagged.diverged
 
     @property
-    def strong(self) -> bool:
-        """Whether what is held feeds back so strongly that updates are mixed."""
-        return self._updates.mixing is not None
+    def needs_mixing(self) -> bool:
+        """Whether the lagged terms feed back so strongly that updates are mixed."""
+        return self._control.mixing is not None
 
     @property
-    def cramped(self) -> bool:
+    def window_too_small(self) -> bool:
         """Whether the contact of one of tau's states meets the window's edge, which is not the grid's."""
-        return self.problem.friction.tau > 0 and self.window.on_edge(self.contact, self.whole.grid.M)
+        adhesive = self.problem.friction.jump > 0
+        return adhesive and self.window.on_edge(self.contact, self.whole.grid.shape)
 
-    def visited(self) -> Visited:
-        """The present state's numbers."""
-        return visit(self.problem, self.cg.pressure, self.held.traction, self.held.slopes)
+    def cycle_state(self) -> CycleState:
+        """Return the numbers of the present state."""
+        return cycle_state(self.problem, self.cg.pressure, self.lagged.traction, self.lagged.slopes)
 
-    def settle(self, tolerance: float, support: Mask | None = None, withheld: Mask | None = None) -> bool:
-        """CG and updates in turn until the residual meets the tolerance; tau on ``support`` or nowhere.
+    def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
+        """Alternate CG and updates until the residual meets the tolerance, with tau on ``active``.
 
-        Given what tau's rule has ``withheld``, it stops as soon as the next support is certain to be another.
+        Given the elements that tau's rule has ``excluded``, stop as soon as the next active set is certain to
+        be another one.
         """
-        self.held.support, self._withheld = self._nowhere if support is None else support, withheld
-        self._tolerance, self._budget = _KEPT * tolerance, self.cg_iterations + _CG_LIMIT
-        self.residual = self.held.update(self.cg_iterations)
-        lags = self.held.lags
-        self._updates, self.stuck = Updates(self.residual, lags=lags, strong=self.strong), False
-        for _ in range(_UPDATES):
-            # the residual is of what the pressure asked for before it met the load
-            if lags and self.residual <= self._tolerance:
-                self.residual = self.held.update(self.cg_iterations)
-            if self.residual <= self._tolerance or self._leads_on():
-                return self.residual <= self._tolerance
-            if self.cg_iterations >= self._budget or self.ran_off or self._updates.given_up:
+        self.lagged.active, self._excluded = active, excluded
+        goal, self._budget = constants.TOLERANCE_SHARE * tolerance, self.cg_iterations + constants.CG_LIMIT
+        self._goal = goal
+        self.residual = self.lagged.update()
+        has_lag = self.lagged.has_lag
+        self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=self.needs_mixing)
+        self.stagnated = False
+        for _ in range(constants.UPDATE_LIMIT):
+            # the residual is that of the terms which the pressure asked for before it was scaled to the load
+            if has_lag and self.residual <= goal:
+                self.residual = self.lagged.update()
+            if self.residual <= goal or self._next_set_differs():
+                return self.residual <= goal
+            if self.cg_iterations >= self._budget or self.exhausted or self._control.stagnated:
                 break
             last = self.residual
-            self.held.mix(self._updates.mixing)
-            frozen = self._reduce(self._goal(tolerance))
-            self.residual = self.held.update(self.cg_iterations) if lags else frozen
-            brought_back = (self.residual - frozen) / last
-            self._feedback = min(max(_LEAST_FEEDBACK, brought_back), _REDUCTION)
-            self._updates.led_to(self.residual, brought_back)
-        self.stuck = self.residual > self._tolerance
-        return not self.stuck
+            self.lagged.mix(self._control.mixing)
+            fixed = self._reduce(self._cg_goal(tolerance))
+            self.residual = self.lagged.update() if has_lag else fixed
+            feedback = (self.residual - fixed) / last
+            self._feedback = min(max(constants.LEAST_REDUCTION, feedback), constants.REDUCTION)
+            self._control.record(self.residual, feedback)
+        self.stagnated = self.residual > goal
+        return not self.stagnated
 
-    def _goal(self, tolerance: float) -> float:
-        """How far CG is to bring the frozen problem's residual down before the next update."""
-        if not self.strong:
-            return max(self._feedback * self.residual, self._share * tolerance)
-        return max(_REDUCTION * min(self.residual, max(self.cg.residuals())), _MIXED_SHARE * tolerance)
+    def _cg_goal(self, tolerance: float) -> float:
+        """The residual to which CG reduces the fixed problem before the next update."""
+        if not self.needs_mixing:
+            share = constants.LAGGED_SHARE if self.lagged.has_lag else constants.PLAIN_SHARE
+            return max(self._feedback * self.residual, share * tolerance)
+        now = min(self.residual, max(self.cg.residuals()))
+        return max(constants.REDUCTION * now, constants.MIXED_SHARE * tolerance)
 
     def _reduce(self, goal: float) -> float:
-        """CG steps until the frozen problem's residual, returned, meets the goal or no longer falls."""
+        """CG steps until the fixed problem's residual, returned, meets the goal or stagnates."""
         residual = best = max(self.cg.residuals())
         since = 0
-        while residual > goal and since < _CG_PATIENCE and self.cg_iterations < self._budget:
-            # a mixed state solves no frozen problem: its contact tells nothing
-            if not self.strong and self._leads_on():
+        while residual > goal and since < constants.CG_PATIENCE and self.cg_iterations < self._budget:
+            # between mixed updates the state solves no problem of its own: its contact is not the rule's
+            if not self.needs_mixing and self._next_set_differs():
                 break
-            self.cg.iterate()
+            self.lagged.iterate()
             self.cg_iterations += 1
             residual = max(self.cg.residuals())
             best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
         return residual
 
-    def _leads_on(self) -> bool:
-        """Whether the contact, beyond doubt, leads tau's rule to another support than the present one.
+    def _next_set_differs(self) -> bool:
+        """Whether tau's rule is certain to ask for another active set after this state.
 
-        Where tau moves nothing the next state is the same one.
+        Where tau moves nothing, the next state is the same one.
         """
         terms = self.problem.terms
         moved = terms.coupled or terms.oblique or terms.slope_correction
-        if self._withheld is None or not moved:
+        if self._excluded is None or not moved:
             return False
-        if not self.cg.beyond_doubt(self._stiffness):
+        if not self.cg.contact_is_certain(self._stiffness):
             return False
-        return not np.array_equal(self.cg.contact & ~self._withheld, self.held.support)
+        return not np.array_equal(self.cg.contact & ~self._excluded, self.lagged.active)
 
-    @property
-    def _share(self) -> float:
-        """Of the tolerance, for the frozen problem: the rest is for what is held, or for rounding alone."""
-        return 0.3 if self.held.lags else 0.9
-
-    def _ended(self) -> Status:
-        if self.residual <= self._tolerance:
+    def _status(self) -> Status:
+        if self.residual <= self._goal:
             return Status.CONVERGED
         return Status.ITERATION_LIMIT if self.cg_iterations >= self._budget else Status.STAGNATED
 
-    def _outcome(self, status: Status, rule: TauSupport, in_cycles: list[Visited]) -> Outcome:
-        withheld = rule.withheld if in_cycles else np.zeros(self.window.shape, dtype=bool)
-        return Outcome(
-            pressure=self.full(self.cg.pressure),
-            traction=self.full(self.held.traction),
-            slopes=self.held.entered.spread(self.window, self.whole.grid.M),
-            status=status,
-            withheld=self.full(withheld),
-            visited=tuple(in_cycles),
-            iterations={f"CG at {self.whole.grid.M}": self.cg_iterations},
-        )
-
     def full(self, values: NDArray[Any]) -> NDArray[Any]:
-        """A window array on the whole grid."""
-        return self.window.spread(values, self.whole.grid.M)
+        """Return a window's array on the whole grid."""
+        return self.window.spread(values, self.whole.grid.shape)

@@ -2,131 +2,120 @@
 
 from __future__ import annotations
 
-from refimpl.grid import Array, resampled
-from refimpl.grid.window import Window
+from refimpl.grid import Array, Mask, Window, resampled
 from refimpl.model.certificate import State, certify
-from refimpl.model.friction import Mask
-from refimpl.model.problem import Problem
-from refimpl.model.state import Outcome
-from refimpl.operators.base import Influence
-from refimpl.operators.extension import extended
-from refimpl.operators.fft import Counter, WholeGridInfluence
-from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.operators.preconditioner import SpectralPreconditioner
-from refimpl.solvers.production.coarse_grids import Start, foundation_pressure, levels, sharpened, touching
-from refimpl.solvers.production.level import LevelSolver, WindowInfluence, influence
-from refimpl.solvers.production.projected_cg import Apply
-
-MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
-_COARSE_TOLERANCE = 1e-3  # a coarse state is only a start: its own grid error is larger than this
+from refimpl.model.problem import Problem, no_elements
+from refimpl.model.state import SolverResult
+from refimpl.operators.fft import Counter
+from refimpl.operators.influence import WindowInfluence, whole_grid_influence, window_influence
+from refimpl.operators.preconditioner import Apply, SpectralPreconditioner, extended
+from refimpl.solvers.production.coarse_grids import (
+    InitialGuess,
+    likely_contact,
+    nested_problems,
+    sharpened,
+    winkler_pressure,
+)
+from refimpl.solvers.production.constants import COARSE_TOLERANCE, MARGIN
+from refimpl.solvers.production.level import LevelSolver
 
 
 def solve_fft(
-    problem: Problem, tolerance: float, counter: Counter, start: Start | None = None
-) -> tuple[Outcome, State]:
-    """Outcome and certified state of the problem, to a certificate of about ``tolerance``.
+    problem: Problem, tolerance: float, counter: Counter, start: InitialGuess | None = None
+) -> tuple[SolverResult, State]:
+    """Return the result and certified state of the problem, to a certificate of about ``tolerance``.
 
-    The outcome's status speaks of the loops only; the certificate is of the full grid. ``start`` is the
-    answer on a grid that is not finer: levels no finer than it need not be solved again.
+    The result's status concerns the loops only; the certificate is that of the whole grid. ``start`` is the
+    solution on a grid that is not finer: nested grids no finer than it are not solved again.
     """
     iterations: dict[str, int] = {}
-    nested = levels(problem, above=start.M if start else 0)
+    nested = nested_problems(problem, above=start.shape if start else None)
     coarsest = nested.pop(0)
-    solver = begun(coarsest, start, counter) if start else _unprepared(coarsest, counter)
+    solver = from_guess(coarsest, start, counter) if start else _from_winkler(coarsest, counter)
     while nested:
-        solver.settle(_COARSE_TOLERANCE)
-        iterations[f"CG at {solver.whole.grid.M}"] = solver.cg_iterations
-        solver = begun(nested.pop(0), solver.answer(), counter)
+        solver.solve(COARSE_TOLERANCE, no_elements(solver.problem))
+        iterations[f"CG at {solver.whole.grid}"] = solver.cg_iterations
+        solver = from_guess(nested.pop(0), solver.initial_guess(), counter)
     while True:
-        outcome, window, cramped = solver.solve(tolerance), solver.window, solver.cramped
-        strong = solver.strong
-        del solver  # what it holds is no longer needed when the whole grid's arrays come
-        beyond = window.mask(problem.grid.M)
-        if not cramped:
-            state = _certified(problem, outcome, counter)
-            missed = _beyond(problem, state, window, tolerance)
+        result, window = solver.result(tolerance), solver.window
+        too_small, needs_mixing = solver.window_too_small, solver.needs_mixing
+        del solver  # frees its memory before the arrays of the whole grid are made
+        needed = window.mask(problem.grid.shape)
+        if not too_small:
+            state = _certified(problem, result, counter)
+            missed = _missed_by_window(problem, state, window, tolerance)
             if not missed.any():
-                outcome.iterations.update(iterations)
-                return outcome, state
-            beyond |= missed  # windows only grow, so that this ends
-        solver = _widened(problem, outcome, beyond, counter, strong=strong)
+                result.iterations.update(iterations)
+                return result, state
+            needed |= missed  # windows only grow, so the loop ends
+        solver = _widened(problem, result, needed, counter, needs_mixing=needs_mixing)
 
 
-def begun(problem: Problem, start: Start, counter: Counter) -> LevelSolver:
-    """The solver of a grid, from another one's answer: its pressure, and the window of likely contact."""
+def from_guess(problem: Problem, start: InitialGuess, counter: Counter) -> LevelSolver:
+    """Return the solver of a grid from an initial guess: its pressure, and the window of likely contact."""
     window, pressure, misfit, contact = _prolonged(problem, start)
     operator, precondition = _operators(problem, window, counter)
     loaded = problem.load is not None
     pressure = sharpened(pressure, misfit, contact, precondition, loaded=loaded)
-    # contact is likely where the other grid had none: there is nothing to go on from
+    # where the contact is likely the guess has no pressure: there is nothing to start from
     if loaded and not pressure.any():
-        return _unprepared(problem, counter)
+        return _from_winkler(problem, counter)
     precondition = extended(precondition, pressure > 0)
-    return LevelSolver(problem, operator, precondition, pressure, strong=start.strong)
+    return LevelSolver(problem, operator, precondition, pressure, needs_mixing=start.needs_mixing)
 
 
-def _prolonged(problem: Problem, start: Start) -> tuple[Window, Array, Array, Mask]:
-    """A window; there the prolonged pressure, what its ``v`` lacks of the approach, and likely contact."""
-    M = problem.grid.M
-    v = resampled(start.displacement, M) + problem.gap
-    pressure = resampled(start.pressure, M)
+def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Array, Mask]:
+    """A window; on it the prolonged pressure, the approach minus its ``v``, and the likely contact."""
+    grid = problem.grid
+    v = resampled(start.displacement, grid.shape) + problem.gap
+    pressure = resampled(start.pressure, grid.shape)
     known = start.approach if problem.approach is None else problem.approach
-    contact, approach = touching(pressure, v, known, problem)
-    window = Window.full(M)
-    if not problem.periodic:
-        window = Window.around(contact, MARGIN).filling(M)
+    contact, approach = likely_contact(pressure, v, known, problem)
+    window = grid.window_around(contact, MARGIN).filling(grid.shape)
     place = window.slices
     return window, pressure[place].copy(), approach - v[place], contact[place].copy()
 
 
 def _operators(problem: Problem, window: Window, counter: Counter) -> tuple[WindowInfluence, Apply]:
-    """The influence of a window on itself, and the preconditioner that goes with it."""
-    operator = influence(problem, window, counter)
-    return operator, SpectralPreconditioner(operator, problem.pair.normal_compliance)
+    """The influence of a window on itself, and its preconditioner."""
+    operator = window_influence(problem.grid, problem.direction, window, counter)
+    return operator, SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
 
 
-def _unprepared(problem: Problem, counter: Counter) -> LevelSolver:
-    """The solver of a grid of which nothing is known."""
-    operator, precondition = _operators(problem, Window.full(problem.grid.M), counter)
-    return LevelSolver(problem, operator, precondition, foundation_pressure(problem))
+def _from_winkler(problem: Problem, counter: Counter) -> LevelSolver:
+    """The solver of a grid without an initial guess."""
+    operator, precondition = _operators(problem, problem.grid.window, counter)
+    return LevelSolver(problem, operator, precondition, winkler_pressure(problem))
 
 
-def _certified(problem: Problem, outcome: Outcome, counter: Counter) -> State:
+def _certified(problem: Problem, result: SolverResult, counter: Counter) -> State:
     """The state on the whole grid, from a source window that holds all tractions."""
-    if problem.periodic:
-        operator: Influence = PeriodicInfluence(problem.grid, problem.direction, counter=counter)
-    else:
-        loaded = (outcome.pressure != 0) | (outcome.traction != 0)
-        operator = WholeGridInfluence(
-            problem.grid,
-            problem.direction,
-            source=Window.around(loaded, margin=0),
-            target=Window.full(problem.grid.M),
-            counter=counter,
-        )
-    return certify(problem, operator, outcome.pressure, outcome.traction, outcome.slopes)
+    loaded = Window.around((result.pressure != 0) | (result.traction != 0), margin=0)
+    operator = whole_grid_influence(problem.grid, problem.direction, loaded, counter)
+    return certify(problem, operator, result.pressure, result.traction, result.slopes)
 
 
-def _beyond(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
+def _missed_by_window(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
     """Elements outside a window or on its edge for which it is too small.
 
-    They penetrate by more than the tolerance; or slopes count, which were one-sided there, and they touch.
+    They penetrate by more than the tolerance; or, with slope terms, they are in contact on the edge, where
+    slopes are one-sided.
     """
-    beyond = state.separation < state.approach * (1 - tolerance)
+    missed = state.v < state.approach * (1 - tolerance)
     if problem.terms.oblique:
-        beyond |= state.pressure > 0
-    beyond[window.interior(len(beyond)).slices] = False
-    return beyond
+        missed |= state.contact
+    missed[window.interior(problem.grid.shape).slices] = False
+    return missed
 
 
 def _widened(
-    problem: Problem, outcome: Outcome, needed: Mask, counter: Counter, *, strong: bool
+    problem: Problem, result: SolverResult, needed: Mask, counter: Counter, *, needs_mixing: bool
 ) -> LevelSolver:
     """A solver that starts from a pressure found, on a window that holds all elements needed."""
-    window = Window.around(needed, MARGIN).filling(len(needed))
-    pressure = outcome.pressure[window.slices]
+    window = Window.around(needed, MARGIN).filling(problem.grid.shape)
+    pressure = result.pressure[window.slices]
     operator, precondition = _operators(problem, window, counter)
     precondition = extended(precondition, pressure > 0)
-    solver = LevelSolver(problem, operator, precondition, pressure, strong=strong)
-    solver.cg_iterations = sum(outcome.iterations.values())
+    solver = LevelSolver(problem, operator, precondition, pressure, needs_mixing=needs_mixing)
+    solver.cg_iterations = sum(result.iterations.values())
     return solver

@@ -1,32 +1,31 @@
-"""Trial pressures that go below zero: how far a step has room, and what a cut leaves of it at the load."""
+"""Steps that would make pressures negative: how far a step may go, and its trial point cut at zero."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from refimpl.grid import Array, inner
+from refimpl.solvers.production.constants import LOAD_SLACK
 
-_LITTLE = 1e-3  # of the load: from 1e-2 to 1e-4 CG takes as many steps, within half a per cent
 
-
-def room(pressure: Array, change: Array) -> float:
-    """The multiple of a change at which the first pressure reaches zero."""
+def longest_step(pressure: Array, change: Array) -> float:
+    """Return the multiple of a change at which the first pressure reaches zero."""
     falling = np.flatnonzero(change < 0)
     return float((pressure.take(falling) / -change.take(falling)).min())
 
 
 def cut_at_zero(trial: Array, pressure: Array, change: Array, weights: Array, target: float | None) -> bool:
-    """Cut a trial at zero, and ``change`` to what leads there from ``pressure``; False if nothing stays.
+    """Cut a trial point at zero, and set ``change`` to ``trial - pressure``; return False if nothing remains.
 
     ``weights.trial`` is brought to the target, if there is one. Load that the cut adds is taken from all
-    pressures; a little only from those that rise, as scaling the rest as well would stir up what has long
-    settled.
+    pressures. A small excess is taken only from those that rise: scaling the others would disturb pressures
+    that have converged.
     """
     np.maximum(trial, 0.0, out=trial)
     total = inner(weights, trial)
     if total <= 0:
         return False
-    if target is not None and total > (1 + _LITTLE) * target:
+    if target is not None and total > (1 + LOAD_SLACK) * target:
         trial *= target / total
         total = target
     np.subtract(trial, pressure, out=change)

@@ -1,10 +1,11 @@
-"""What a scene asks of its grid: elements per correlation length of each Gaussian roughness."""
+"""Resolution of a scene by its grid: elements per correlation length of each Gaussian roughness."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
+from refimpl.grid import Grid
 from refimpl.scene.scene import Scene
 from refimpl.surfaces import GaussianRoughness
 from refimpl.surfaces.gaussian import DECAY
@@ -12,15 +13,16 @@ from refimpl.surfaces.gaussian import DECAY
 
 @dataclass(frozen=True)
 class Resolution:
-    """Elements per correlation length: the shortest of the scene, on the grid, and what is asked for."""
+    """The scene's shortest correlation length (m), elements per length on the grid, and the number
+    required."""
 
     correlation_length: float
     elements: float
-    asked: float
+    required: float
 
 
-def resolution(scene: Scene, M: int, accuracy: float) -> Resolution | None:
-    """The roughest demand of the scene on ``M x M`` elements; None without Gaussian roughness.
+def resolution(scene: Scene, grid: Grid, accuracy: float) -> Resolution | None:
+    """Return the resolution of the shortest correlation length; None without Gaussian roughness.
 
     Central differences of spacing h see the mean square slope of Eq. (9) too small by ``4.6 (h/l)^2``
     (`refimpl.surfaces.statistics.rms_slopes`), hence the rms slope by half of that, and the contact area
@@ -31,4 +33,4 @@ def resolution(scene: Scene, M: int, accuracy: float) -> Resolution | None:
     if not lengths:
         return None
     shortest = min(lengths)
-    return Resolution(shortest, shortest * M / scene.side, math.sqrt(DECAY / accuracy))
+    return Resolution(shortest, shortest / max(grid.spacings), math.sqrt(DECAY / accuracy))
