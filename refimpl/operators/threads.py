@@ -1,6 +1,6 @@
 """How many threads transforms may take.
 
-Threads change no bit of SciPy's transforms, and the last ones of ducc0's (0.42), by up to 6e-16 of the largest
+Threads change no bit of SciPy's transforms, and the last ones of ducc0's (0.42): up to 6e-16 of the largest
 number for sizes of 150 to 700. ducc0 takes no more threads than OMP_NUM_THREADS says at first.
 """
 
