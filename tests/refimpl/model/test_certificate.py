@@ -93,7 +93,8 @@ def test_the_numbers_are_spec_1s() -> None:
 @pytest.mark.parametrize("approach", [None, SOLVED.approach])
 def test_the_reported_numbers_follow_from_the_state(approach: float | None) -> None:
     state, dA = judged(approach=approach), (SCENE.side / M) ** 2
-    assert state.forces == resultants(SOLVED.pressure, SOLVED.traction, state.slopes, dA)
+    expected = resultants(SOLVED.pressure, SOLVED.traction, state.slopes, dA)
+    assert state.forces == pytest.approx(expected, rel=1e-13)
     load = SCENE.load if approach is None else state.forces.normal
     assert state.friction_coefficient == state.forces.friction / load
     assert state.max_pressure == SOLVED.pressure.max()
