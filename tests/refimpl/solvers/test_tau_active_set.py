@@ -160,7 +160,7 @@ class Played:
     """A solver whose contact is given by the active set, and is the active set itself where not given.
 
     Solves that may end early do so on the active sets ``early``, at the residual ``at``. On ``edge`` the
-    contact meets the window's edge; ``exhausted`` and ``stagnated`` are active sets after which the solver is.
+    contact meets the window's edge; after ``exhausted`` and ``stagnated`` sets the solver is that.
     """
 
     def __init__(
