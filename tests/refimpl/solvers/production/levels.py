@@ -21,6 +21,16 @@ BALL = rf.Scene(
     side=2e-3,
 )
 
+FAINT = replace(
+    BALL,
+    upper=rf.Body(rf.Material(E=18e9, nu=0.37), rf.Sphere(radius=0.165)),
+    lower=rf.Body(rf.Material(E=4.5e9, nu=0.17), rf.Flat()),
+    friction=rf.Friction(tau=8e6, beta=0.5),
+    load=0.1,
+    side=1.6e-3,
+)
+"""Tau moves the contact of so faint a load far about, from one of its states to the next."""
+
 
 def coupled(strength: float, tau: float = 0.0) -> rf.Scene:
     """Return the ball with such a beta that ``beta c f`` is up to ``strength`` times ``a f``."""
