@@ -33,7 +33,7 @@ from refimpl.first_touch import TOUCH, first_touch
 from refimpl.grid import Array
 from refimpl.grid_result import GridResult
 from verification.coverage.store import ladders, rungs
-from verification.files import to_json, write_text
+from verification.files import write_result
 from verification.provenance import provenance
 
 SOLVED = 1e-7
@@ -213,7 +213,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if not any(True for _ in rungs(options.store)):
         parser.error(f"{options.store} holds no scenes")
-    write_text(to_json(document(options.store)), options.json)
+    write_result(document(options.store), options.json)
 
 
 if __name__ == "__main__":
