@@ -72,6 +72,8 @@ def test_what_is_not_known_is_said(checkout: Path, tmp_path_factory: pytest.Temp
     assert told == "unknown"
     assert "does not have" in reason
     assert state(tmp_path_factory.mktemp("no checkout"), record(checkout))[0] == "unknown"
+    (checkout / "installed").mkdir()
+    assert state(checkout / "installed", record(checkout))[0] == "unknown"
 
 
 def test_digests_need_no_repository(checkout: Path) -> None:

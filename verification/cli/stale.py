@@ -125,7 +125,12 @@ def _differing(then: Mapping[str, str], now: Mapping[str, str], judged: tuple[st
 
 
 def changed_files(commit: str, judged: tuple[str, ...], root: Path = ROOT) -> list[str] | None:
-    """Files whose code differs from that at the commit; None where git does not know it."""
+    """Files whose code differs from that at the commit; None where git does not know it.
+
+    Only a checkout of our own counts, not a repository around an installed package.
+    """
+    if not (root / ".git").exists():
+        return None
     listed = _git(root, "diff", "--name-only", "--no-renames", "-z", commit, "--", *judged)
     if listed is None:
         return None
