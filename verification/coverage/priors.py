@@ -33,7 +33,7 @@ from refimpl.accuracy.first_contact import TOUCH, first_touch
 from refimpl.accuracy.grid_features import GridResult
 from refimpl.grid import Array
 from verification.coverage.store import ladders, rungs
-from verification.framework.files import to_json, write_text
+from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 
 SOLVED = 1e-7
@@ -213,7 +213,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if not any(True for _ in rungs(options.store)):
         parser.error(f"{options.store} holds no scenes")
-    write_text(to_json(document(options.store)), options.json)
+    write_result(document(options.store), options.json)
 
 
 if __name__ == "__main__":

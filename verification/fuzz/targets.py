@@ -14,6 +14,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.surfaces import MeasuredSurface
+from reports.result_files import compact
 from verification.cli.report import read_run
 from verification.sweep.study import read_study
 
@@ -59,7 +60,7 @@ def targets() -> tuple[Target, ...]:
         Target("X3P", ".x3p", (_x3p(heights),), _instrument, 0.02),
         Target("X3P, damaged inside", ".x3p", (XML.encode(),), _rezipped, 0.02),
         Target("text with a header", ".asc", (header + turned.getvalue(),), _instrument, 0.02),
-        Target("results", ".json", (_results(),), read_run, 0.06),
+        Target("results", ".json", (_results(), _compact_results()), read_run, 0.06),
     )  # fmt: skip
 
 
@@ -117,3 +118,7 @@ def _results() -> bytes:
             "provenance": provenance,
         }
     ).encode()
+
+
+def _compact_results() -> bytes:
+    return compact(json.loads(_results()))[0].encode()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +24,7 @@ from refimpl.accuracy.discretisation_error import (
 )
 from refimpl.accuracy.first_contact import TOUCH
 from refimpl.accuracy.refinement import OPENING
+from reports.result_files import read_result
 from tests.documents import ROOT
 from verification.coverage import priors
 from verification.coverage.priors import Numbers, fitted, log_likelihood
@@ -139,7 +139,7 @@ def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
     store, written = tmp_path / "store.jsonl", tmp_path / "priors.json"
     climb(store, range(4), [*OPENING, 96])
     priors.main(["--store", str(store), "--json", str(written)])
-    found = json.loads(written.read_text())
+    found = read_result(written)
     assert found["scenes"] == len(ladders(store)) == 4
     assert found["area"]["adopted"]["edge_size"] == EDGE_SIZE
     assert found["area"]["adopted"]["edge_size_spread"] == EDGE_SIZE_SPREAD
@@ -154,7 +154,7 @@ def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
     """Close to the likeliest of areas; peaks are held to vary up to twice as much, which self-affine ones do,
     and what is left more than that.
     """
-    found = json.loads((ROOT / "reports" / "results" / "priors.json").read_text())
+    found = read_result(ROOT / "reports" / "results" / "priors.json")
     area, rest = found["area"], found["friction_without_tau"]
     assert list(area["adopted"].values()) == [EDGE_SIZE, EDGE_SIZE_SPREAD, AREA.scatter, AREA.weight, SINGLES]
     assert list(rest["adopted"].values()) == [BULK.scatter, 1.0, BULK.weight]

@@ -16,6 +16,7 @@ import verification.extremes.axes  # noqa: F401  # registers the axes
 from appendix_a import wedge
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
+from reports.result_files import read_result
 from verification.cases.solvers.extremes import told
 from verification.extremes import (
     conditioning,
@@ -286,7 +287,7 @@ def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(study.conditioning, "GRIDS", (2, 3))
     path = tmp_path / "e.json"
     assert main(["--json", str(path), "--axis", "kernel"]) == 0
-    found = json.loads(path.read_text())
+    found = read_result(path)
     assert (found["complete"], found["counts"]["wrong"]) == (True, 0)
     with pytest.raises(SystemExit):
         main(["--json", str(path), "--axis", "nonsense"])
@@ -294,7 +295,7 @@ def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_the_committed_study_has_no_wrong_number() -> None:
     path = Path(__file__).parents[3] / "reports" / "results" / "extremes.json"
-    found = json.loads(path.read_text())
+    found = read_result(path)
     assert found["complete"]
     assert len(found["states"]) >= 400
     assert found["counts"]["wrong"] == 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import sys
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.solvers.paper import _Scheme
+from reports.result_files import read_result
 from verification.cases.paper import iterations, scheme
 from verification.cases.solvers import variational
 from verification.framework.case import Status, Unavailable
@@ -142,14 +142,14 @@ def test_command_writes_the_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(timing, "_SHORTEST", 0.0)
     out = tmp_path / "table2.json"
     command.main(["--json", str(out), "--rounds", "1", "--grids", "8", "10"])
-    found = json.loads(out.read_text())
+    found = read_result(out)
     assert {row["M"] for row in found["rows"]} == {8, 10}
     assert {"scene", "conditions", "provenance", "printed", "growth", "ratio to paper"} <= set(found)
     assert found["provenance"]["piqp"]
 
 
 def test_committed_table_is_complete_and_accurate() -> None:
-    found = json.loads(variational.COMMITTED.read_text())
+    found = read_result(variational.COMMITTED)
     by_grid: dict[int, list[dict[str, object]]] = {}
     for row in found["rows"]:
         # a time counts only with the right answer: the scheme's own tolerance allows 3.5e-4 (its cases)

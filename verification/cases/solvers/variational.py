@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 import refimpl as rf
+from reports.result_files import read_result
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged
@@ -183,7 +183,7 @@ def table2_rerun() -> Measured:
     tags=("table2", "cost"),
 )
 def table2_growth() -> Measured:
-    found = json.loads(COMMITTED.read_text(encoding="utf-8"))
+    found = read_result(COMMITTED)
     growths, data = found["growth"], {}
     for name in growths:
         rows = [row for row in found["rows"] if row["method"] == name]
