@@ -2,8 +2,8 @@
 
 At integer offsets ``q_x = 2i`` and ``q_y = 2j`` whatever the aspect ratio, so the order of the rule depends
 on the index alone. A slab of rows ``i0 <= i < i1`` with the columns ``j < i1`` takes x as the outer axis
-and the order of ``2 i0``; the columns ``j0 <= j < j1`` with the rows ``i < j0`` take y. Slabs are so small that
-their temporaries stay in cache.
+and the order of ``2 i0``; the columns ``j0 <= j < j1`` with the rows ``i < j0`` take y. Slabs are small
+enough for their temporaries to stay in cache.
 """
 
 from __future__ import annotations
