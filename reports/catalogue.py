@@ -168,7 +168,7 @@ DECLARED = (
         Figure(
             f"accuracy/{name}",
             ("difference / bar",),
-            dots("difference / bar", xlabel="difference of mu / bar of tau's support", limit=1.0),
+            dots("difference / bar", xlabel="difference of mu / bar of tau's active set", limit=1.0),
             "Scenes that cycle, and how many elements tau is withheld from: what a law without a jump says.",
             (6.4, height),
         )

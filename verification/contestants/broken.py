@@ -92,8 +92,8 @@ def between_nodes(problem: ContactProblem) -> ContactProblem:
     return with_gap(problem, (problem.gap + np.roll(problem.gap, 1, axis=0)) / 2)
 
 
-def from_first_touch(problem: ContactProblem) -> ContactProblem:
-    """A periodic approach measured downwards from first touch, with the mean gap forgotten."""
+def from_first_contact(problem: ContactProblem) -> ContactProblem:
+    """A periodic approach measured downwards from first contact, with the mean gap forgotten."""
     if not problem.periodic or problem.approach is None:
         return problem
     return replace(problem, approach=abs(problem.approach) - float(problem.gap.mean()))
@@ -189,7 +189,7 @@ BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.SINGLE_PRECISION: lambda: Wrong(inside(*_IN_SINGLE_PRECISION)),
     Fault.TAU_MISSING: lambda: Wrong(asked(without_tau)),
     Fault.MEAN_DISPLACEMENT_LOST: lambda: Wrong(mean_displacement_lost),
-    Fault.MEAN_PLANES_LOST: lambda: Wrong(asked(from_first_touch)),
+    Fault.MEAN_PLANES_LOST: lambda: Wrong(asked(from_first_contact)),
     Fault.MEAN_PRESSURE_LOST: lambda: Wrong(asked(mean_pressure_lost)),
     Fault.MEAN_PRESSURE_ADDED: lambda: Wrong(mean_pressure_added),
     Fault.NEAR_FIELD: lambda: Wrong(inside(_POINT_FORCES)),
