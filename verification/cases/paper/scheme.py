@@ -152,7 +152,7 @@ def own_tolerance_friction() -> Measured:
     "paper/same-state",
     title="Status, contact and tau's active set of the three solvers",
     claim="Tightened, the paper's scheme ends as the dense reference does, on the same elements",
-    source=SOURCE + "; tau's rule: refimpl.model.friction",
+    source=SOURCE + "; tau's rule: refimpl.solvers.tau_active_set",
     metric="equal",
     tolerance=0.0,
     tolerance_reason="statuses and sets are equal or not; an active set of tau has one solution",
