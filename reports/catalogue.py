@@ -169,7 +169,7 @@ DECLARED = (
             f"accuracy/{name}",
             ("difference / bar",),
             dots("difference / bar", xlabel="difference of mu / bar of tau's active set", limit=1.0),
-            "Alternating contact edges, and their elements excluded from tau: what a law without a jump says.",
+            "Alternating contact edges, and their elements excluded from tau; mu of a law without a jump.",
             (6.4, height),
         )
         for name, height in (("tau-shares", 3.4), ("tau-shares-128", 6.8))
