@@ -9,7 +9,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import PULLED, estimates
-from refimpl.accuracy.grid_features import GridResult, depth, pull
+from refimpl.accuracy.grid_features import GridFeatures, depth, pull
 from tests.refimpl.accuracy.made_up import made_up
 
 SOFT, HARD = rf.Material(E=1e9, nu=0.1), rf.Material(E=1e12, nu=0.3)
@@ -43,8 +43,8 @@ def test_pull_is_the_ratio_of_cerrutis_displacement_to_loves() -> None:
     pair = found.problem.pair
     ratio = abs(pair.shear_compliance) / pair.normal_compliance
     assert pull(found) == pytest.approx(ratio * 2e6 * found.contact_area / LOAD, rel=1e-12)
-    assert GridResult.of(found).pull == pull(found) > 0.1
-    assert GridResult.of(found).depth == depth(found)
+    assert GridFeatures.of(found).pull == pull(found) > 0.1
+    assert GridFeatures.of(found).depth == depth(found)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_tau_on_the_edge_widens_the_approach_under_a_load_alone() -> None:
     share = 0.3 * grids[-1].edge / grids[-1].numbers["contact_area"]
     before, after = estimates(grids), estimates(pulled)
     bound = PULLED["approach"] * share * 2e-6
-    assert after["approach"].spread == pytest.approx(math.hypot(before["approach"].spread, bound), rel=1e-12)
+    assert after["approach"].half_width == pytest.approx(math.hypot(before["approach"].half_width, bound), rel=1e-12)
     assert {name for name in after if after[name] != before[name]} == {"approach"}
 
 
@@ -78,7 +78,7 @@ def test_at_an_approach_it_widens_the_force_and_the_peak() -> None:
     before, after = estimates(grids), estimates(pulled)
     for name in ("normal_force", "max_pressure"):
         bound = PULLED[name] * share * grids[-1].numbers[name]
-        assert after[name].spread == pytest.approx(math.hypot(before[name].spread, bound), rel=1e-12)
+        assert after[name].half_width == pytest.approx(math.hypot(before[name].half_width, bound), rel=1e-12)
     assert {name for name in after if after[name] != before[name]} == {"normal_force", "max_pressure"}
 
 

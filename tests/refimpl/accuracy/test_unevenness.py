@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.grid_features import GridResult, alike, unevenness
+from refimpl.accuracy.grid_features import GridFeatures, alike, unevenness
 from refimpl.grid import Array
 from refimpl.model.slopes import Slopes
 from verification.coverage.scenes import random_scene
@@ -96,16 +96,16 @@ def test_an_edge_has_sides_along_both_axes() -> None:
 def test_a_grids_result_keeps_what_the_solution_states_beside_its_discretisation() -> None:
     found = rf.solve(random_scene(2047).scene, 64)
     assert found.status is rf.Status.CYCLED
-    kept = GridResult.of(found).parts["friction_coefficient"]
-    assert set(kept) == {"iteration", "tau support"}
-    assert kept["tau support"] == found.uncertainty["friction_coefficient"]["tau support"]
+    kept = GridFeatures.of(found).parts["friction_coefficient"]
+    assert set(kept) == {"iteration", "active_set"}
+    assert kept["active_set"] == found.uncertainty["friction_coefficient"]["active_set"]
 
 
 @pytest.mark.parametrize("seed", [14, 15])
 def test_where_contact_repeats_a_bar_knows_no_beginning(seed: int) -> None:
     """Contact across the border is bent as anywhere, and has the images that it has elsewhere."""
     s = rf.solve(random_scene(seed).scene, 24)
-    assert s.problem.periodic
+    assert s.problem.grid.periodic
     found = []
     for shift in ((0, 0), (7, 0), (0, 13), (11, 5)):
         pressure, *tans = (np.roll(a, shift, (0, 1)) for a in (s.pressure, s.slopes.tan_x, s.slopes.tan_y))

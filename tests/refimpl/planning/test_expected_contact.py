@@ -30,7 +30,7 @@ STIFFNESS = 3.0  # of an element, N
 
 
 def posed(M: int, gap: np.ndarray | None = None) -> Problem:
-    problem = pose(BALL, rf.Grid(BALL.side, M), EVERYTHING, None)
+    problem = pose(BALL, rf.Grid.square(BALL.side, M), EVERYTHING, None)
     return problem if gap is None else replace(problem, gap=gap)
 
 
@@ -70,7 +70,7 @@ def test_a_glance_tells_what_all_heights_do(monkeypatch: pytest.MonkeyPatch) -> 
     ratios, contact, windows = [], [], []
     for seed in range(3000, 3048):
         scene = random_scene(seed).scene
-        problem = pose(scene, rf.Grid(scene.side, 160), EVERYTHING, None)
+        problem = pose(scene, rf.Grid.square(scene.side, 160), EVERYTHING, None)
         told = expected(problem)
         with monkeypatch.context() as patched:
             patched.setattr("refimpl.planning.expected_contact._GLANCE", 160)

@@ -27,7 +27,7 @@ class Counted(rf.Surface):
 
     def _sample(self, grid: rf.Grid, offset: tuple[float, float], periodic: bool) -> Array:
         self.sampled.append(grid.M)
-        x = grid.centres - 0.5 * grid.side
+        x = grid.x - 0.5 * grid.side
         return np.asarray((x[:, None] ** 2 + x[None, :] ** 2) / 0.28)
 
     def cautions(self, grid: rf.Grid) -> tuple[str, ...]:
@@ -54,7 +54,7 @@ def test_a_climb_samples_each_grid_once_and_the_one_that_decides() -> None:
 
 
 def test_what_is_taken_is_what_would_be_posed_and_is_not_kept() -> None:
-    grid = rf.Grid(SCENE.side, 24)
+    grid = rf.Grid.square(SCENE.side, 24)
     posing, posed = Posing(SCENE, None), pose(SCENE, grid, FLAT, None)
     whole = posing.whole(grid)
     assert whole.terms == EVERYTHING
@@ -67,8 +67,8 @@ def test_what_is_taken_is_what_would_be_posed_and_is_not_kept() -> None:
 
 def test_another_grid_or_an_approach_is_posed_as_such() -> None:
     posing = Posing(SCENE, 1e-6)
-    posing.whole(rf.Grid(SCENE.side, 24))
-    taken = posing.take(rf.Grid(SCENE.side, 16), FLAT)
+    posing.whole(rf.Grid.square(SCENE.side, 24))
+    taken = posing.take(rf.Grid.square(SCENE.side, 16), FLAT)
     assert taken.gap.shape == (16, 16)
     assert (taken.load, taken.approach) == (None, 1e-6)
 
@@ -77,7 +77,7 @@ def test_remarks_are_kept_once_each_and_not_shown(recwarn: pytest.WarningsRecord
     scene, _ = counted()
     twice = replace(scene, lower=rf.Body(scene.lower.material, Counted()))
     posing = Posing(twice, None)
-    posing.whole(rf.Grid(scene.side, 8))
+    posing.whole(rf.Grid.square(scene.side, 8))
     assert posing.remarks == ("counted by hand",)
     assert not [warning for warning in recwarn if warning.category is SurfaceWarning]
 
@@ -87,7 +87,7 @@ def test_heights_of_a_scene_are_its_own() -> None:
     heights = np.random.default_rng(2).uniform(0, 1e-6, (16, 16))
     kept = heights.copy()
     scene = replace(SCENE, lower=rf.Body(SCENE.lower.material, heights))
-    first, second = (pose(scene, rf.Grid(SCENE.side, 16), FLAT, None) for _ in range(2))
+    first, second = (pose(scene, rf.Grid.square(SCENE.side, 16), FLAT, None) for _ in range(2))
     assert np.array_equal(heights, kept)
     assert np.array_equal(first.gap, second.gap)
     lower, upper = first.heights

@@ -19,7 +19,7 @@ SCENE = rf.Scene(
     load=70.0,
     side=1e-3,
 )
-GRID = rf.Grid(SCENE.side, 16)
+GRID = rf.Grid.square(SCENE.side, 16)
 
 
 def test_heights_are_about_their_mid_height() -> None:

@@ -46,7 +46,7 @@ def test_every_shipped_scene_survives_a_round_trip(tmp_path: Path) -> None:
         path.write_text(rf.scene_to_toml(scene))
         again = rf.read_scene(path)
         assert scene_to_dict(again) == scene_to_dict(scene)
-        grid = rf.Grid(scene.side, 128)
+        grid = rf.Grid.square(scene.side, 128)
         for one, two in zip(scene.heights(grid), again.heights(grid), strict=True):
             assert np.array_equal(one, two)
 
@@ -79,7 +79,7 @@ def test_measured_surfaces_are_relative_to_the_file(tmp_path: Path) -> None:
     np.save(tmp_path / "surface.npy", random.normal(0, 0.5, (64, 64)))
     (tmp_path / "scene.toml").write_text(SPEC_EXAMPLE)
     scene = rf.read_scene(tmp_path / "scene.toml")
-    lower, _ = scene.heights(rf.Grid(scene.side, 32))
+    lower, _ = scene.heights(rf.Grid.square(scene.side, 32))
     assert 0.5e-6 < np.ptp(lower) < 10e-6
     assert scene.sliding_direction == 0.5
 

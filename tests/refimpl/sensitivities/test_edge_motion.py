@@ -10,15 +10,15 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Mask
 from refimpl.sensitivities.edge_motion import EdgeMotion
-from refimpl.sensitivities.fixed_contact import FixedSet
+from refimpl.sensitivities.fixed_contact import FixedContact
 
 
-def fixed_set(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedSet:
+def fixed_set(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedContact:
     """A fixed set with another contact in it."""
     s = rf.solve(replace(rf.read_scene("table1-rough"), periodic=periodic), 16)
-    fixed = copy(FixedSet(s.problem, s.pressure, s.contact, s.slopes))
+    fixed = copy(FixedContact(s.problem, s.pressure, s.contact, s.slopes))
     fixed.contact, fixed.pressure = contact, np.where(contact, pressure, 0.0)
     return fixed
 

@@ -9,18 +9,18 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.sensitivities.fixed_contact import FixedSet
+from refimpl.sensitivities.fixed_contact import FixedContact
 from tests.refimpl.sensitivities.test_sensitivity import sliding
 
 M = 48
 
 
-def fixed_set(scene: rf.Scene, oblique: bool | None = None) -> FixedSet:
+def fixed_set(scene: rf.Scene, oblique: bool | None = None) -> FixedContact:
     s = rf.solve(scene, M, oblique=oblique)
-    return FixedSet(s.problem, s.pressure, s.contact & ~s.withheld, s.slopes)
+    return FixedContact(s.problem, s.pressure, s.contact & ~s.excluded, s.slopes)
 
 
-def change(fixed: FixedSet) -> Array:
+def change(fixed: FixedContact) -> Array:
     """Of the equations when the load grows by one part: the last one alone misses."""
     return np.append(np.zeros(np.count_nonzero(fixed.contact)), -1.0)
 
@@ -33,13 +33,13 @@ def test_an_answer_takes_a_dozen_products(
     """On rough surfaces, with friction on slopes; 25 to 27 without the inverse that it starts from."""
     fixed = fixed_set(sliding(tau, periodic))
     applied = []
-    jacobian = FixedSet._jacobian
+    jacobian = FixedContact._jacobian
 
-    def counted(self: FixedSet, x: Array) -> Array:
+    def counted(self: FixedContact, x: Array) -> Array:
         applied.append(x)
         return jacobian(self, x)
 
-    monkeypatch.setattr(FixedSet, "_jacobian", counted)
+    monkeypatch.setattr(FixedContact, "_jacobian", counted)
     found = fixed.response(change(fixed))
     assert found.residual <= 1e-6
     assert len(applied) <= 12
@@ -70,7 +70,7 @@ def test_without_friction_and_slopes_it_is_nearly_the_inverse() -> None:
 
 def test_at_an_approach_the_force_found_is_the_scale() -> None:
     s = rf.solve(sliding(), M, approach=rf.solve(sliding(), M).approach)
-    fixed = FixedSet(s.problem, s.pressure, s.contact, s.slopes)
+    fixed = FixedContact(s.problem, s.pressure, s.contact, s.slopes)
     assert fixed.problem.load is None
     found = fixed._plain_inverse(change(fixed))
     assert found[:-1].sum() * fixed.peak == pytest.approx(-s.pressure.sum(), rel=1e-10)
@@ -79,7 +79,7 @@ def test_at_an_approach_the_force_found_is_the_scale() -> None:
 def test_the_window_is_the_contact_and_its_neighbours() -> None:
     """Products are of the contact's size, not of the square's."""
     s = rf.solve(sliding(), M)
-    fixed = FixedSet(s.problem, 1e-9 * s.pressure, s.contact, s.slopes)  # of nothing beside a pascal
+    fixed = FixedContact(s.problem, 1e-9 * s.pressure, s.contact, s.slopes)  # of nothing beside a pascal
     contact = np.argwhere(s.contact)
     (first_row, first_column), (last_row, last_column) = contact.min(axis=0), contact.max(axis=0)
     rows, columns = fixed.window.slices

@@ -35,11 +35,11 @@ def scene(seed: int, *, periodic: bool = False, tau: float = 0.5e6, beta: float 
 
 def frozen_solution(problem: Problem, held: Array, slopes: Slopes) -> tuple[Array, float, Array]:
     """Pressure and approach with ``held`` and slopes fixed, by pivoting on dense matrices; and ``a``."""
-    influence = DenseInfluence(problem.grid, problem.direction, periodic=problem.periodic)
+    influence = DenseInfluence(problem.grid, problem.direction, periodic=problem.grid.periodic)
     C, beta = problem.pair.shear_compliance * problem.terms.coupled, problem.friction.beta
     a = problem.pair.normal_compliance * influence.normal_matrix
     K = slopes.obliqueness.ravel()
-    lift = problem.pair.normal_compliance * problem.grid.side / K.size if problem.periodic else 0.0
+    lift = problem.pair.normal_compliance * problem.grid.side / K.size if problem.grid.periodic else 0.0
     G = a + beta * C * influence.shear_matrix + lift * np.outer(K, K)
     g = C * influence.shear_matrix @ held.ravel() + K * problem.gap.ravel()
     active = problem.gap.ravel() < np.median(problem.gap)

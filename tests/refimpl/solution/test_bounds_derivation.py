@@ -11,7 +11,7 @@ from numpy.polynomial import Polynomial
 
 from refimpl.grid import Array, Grid
 from refimpl.model.forces import Forces, resultants
-from refimpl.model.friction import Mask
+from refimpl.grid import Mask
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
@@ -25,7 +25,7 @@ class Derived:
 
     def __init__(self, problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> None:
         self.problem, self.pressure, self.traction, self.slopes = problem, pressure, traction, slopes
-        influence = DenseInfluence(problem.grid, problem.direction, periodic=problem.periodic)
+        influence = DenseInfluence(problem.grid, problem.direction, periodic=problem.grid.periodic)
         norm = EnergyNorm(problem, slopes.obliqueness)
         self.floor, self.lift, self.diagonal = norm.floor, norm.lift, norm.diagonal
         self.beta, self.C = problem.friction.beta, problem.pair.shear_compliance * problem.terms.coupled

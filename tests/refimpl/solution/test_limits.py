@@ -16,7 +16,7 @@ from refimpl.model.forces import plasticity_index
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.influence_error import SlopeError
-from refimpl.solution.limits import Caution, Limit, cautions, plain_warning, softer_hardness
+from refimpl.solution.limits import ModelWarning, Limit, cautions, plain_warning, softer_hardness
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
 HARD_STEEL = rf.Material(200e9, 0.30, hardness=7e9)
@@ -42,8 +42,8 @@ STEEP = replace(  # the harder body's roughness is what both surfaces follow
 )
 
 
-def named(s: rf.Solution) -> dict[Limit, Caution]:
-    return {w.limit: w for w in s.warnings if isinstance(w, Caution)}
+def named(s: rf.Solution) -> dict[Limit, ModelWarning]:
+    return {w.limit: w for w in s.warnings if isinstance(w, ModelWarning)}
 
 
 def test_a_smooth_ball_leaves_no_limit() -> None:
@@ -151,26 +151,26 @@ def test_ambiguous_support_of_tau() -> None:
     )
     s = rf.solve(scene, 23, tolerance=1e-11)
     assert s.status is rf.Status.CYCLED
-    assert named(s)[Limit.TAU_SUPPORT].number == np.count_nonzero(s.withheld & s.contact) > 0
-    assert Limit.TAU_SUPPORT not in named(rf.solve(SMOOTH, 23))
+    assert named(s)[Limit.ACTIVE_SET].number == np.count_nonzero(s.excluded & s.contact) > 0
+    assert Limit.ACTIVE_SET not in named(rf.solve(SMOOTH, 23))
 
 
 def test_a_term_left_out_that_matters() -> None:
     s = rf.solve(SMOOTH, 32)
-    assert Limit.LEFT_OUT not in named(s)
-    mattered = replace(s, left_out={"shear coupling": Effect(0.0, 1e-3), "obliqueness": Effect(1e-9, 0.0)})
-    found = [c for c in cautions(mattered, SMOOTH) if c.limit is Limit.LEFT_OUT]
+    assert Limit.NEGLECTED not in named(s)
+    mattered = replace(s, left_out={"coupled": Effect(0.0, 1e-3), "oblique": Effect(1e-9, 0.0)})
+    found = [c for c in cautions(mattered, SMOOTH) if c.limit is Limit.NEGLECTED]
     assert [(c.number, c.allowed) for c in found] == [(1e-3, 1e-8)]
-    assert "shear coupling" in found[0]
+    assert "coupled" in found[0]
 
 
 def test_a_term_within_what_the_plan_allows_is_no_warning() -> None:
     """Without friction that is more than the accuracy asked for: a share of what the grid leaves open."""
     s = rf.solve(replace(SMOOTH, friction=rf.Friction()), 64)
-    assert s.plan.demand < s.left_out["obliqueness"].larger <= s.plan.budget
-    assert Limit.LEFT_OUT not in named(s)
-    mattered = replace(s, left_out={"obliqueness": Effect(0.0, 2 * s.plan.budget)})
-    (found,) = (c for c in cautions(mattered, SMOOTH) if c.limit is Limit.LEFT_OUT)
+    assert s.plan.demand < s.neglected["oblique"].larger <= s.plan.budget
+    assert Limit.NEGLECTED not in named(s)
+    mattered = replace(s, left_out={"oblique": Effect(0.0, 2 * s.plan.budget)})
+    (found,) = (c for c in cautions(mattered, SMOOTH) if c.limit is Limit.NEGLECTED)
     assert found.allowed == s.plan.budget
 
 
