@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
@@ -289,22 +287,6 @@ def test_binary_and_deeply_nested_files_are_refused(tmp_path: Path) -> None:
         path.write_bytes(content)
         with pytest.raises(rf.InputError, match="valid TOML"):
             rf.read_scene(path)
-
-
-def test_the_command_line_refuses_with_status_2_and_one_line(tmp_path: Path) -> None:
-    path = tmp_path / "scene.toml"
-    path.write_text(TOML.replace("70.0", "-70.0", 1))
-    ended = subprocess.run(
-        [str(Path(sys.executable).with_name("rough-friction")), "solve", str(path), "--grid", "8"],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60,
-    )
-    assert ended.returncode == 2
-    assert ended.stdout == ""
-    assert len(ended.stderr.strip().splitlines()) == 1
-    assert "load" in ended.stderr
 
 
 @pytest.mark.parametrize("side", [0.0, -0.5, math.inf, math.nan])
