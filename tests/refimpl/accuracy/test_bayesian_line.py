@@ -38,7 +38,9 @@ def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) 
         found = fit_line(values, weights, prior, Bias(sizes, 0.7, 0.0))
         alone = fit_line(values - 0.7 * sizes, weights, prior)
         assert found.value == pytest.approx(alone.value, rel=1e-12)
-        assert found.half_width == pytest.approx(alone.half_width, rel=2e-4)  # as closely as bounds are sought
+        assert found.half_width == pytest.approx(
+            alone.half_width, rel=2e-4
+        )  # as closely as bounds are sought
 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
@@ -69,14 +71,14 @@ def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
 
 def integrated(values: Array, weights: Array, prior: Prior, bias: Bias) -> tuple[float, float]:
     """Value and 95 % bound of the model, its factor integrated over 1001 points instead of nine nodes."""
-    factor = bias.mean + bias.half_width * np.linspace(-6, 6, 1001)
+    factor = bias.mean + bias.spread * np.linspace(-6, 6, 1001)
     precision = weights**-2.0
     rest = values - factor[:, None] * bias.sizes
     centre = rest @ precision / precision.sum()
     freedom = prior.weight + len(values) - 1
     squares = (rest - centre[:, None]) ** 2 @ precision
     variance = (prior.weight * prior.scatter**2 + squares) / freedom
-    share = stats.norm.pdf(factor, bias.mean, bias.half_width) * variance ** (-0.5 * freedom)
+    share = stats.norm.pdf(factor, bias.mean, bias.spread) * variance ** (-0.5 * freedom)
     share /= share.sum()
     value, scale = float(share @ centre), np.sqrt(variance / precision.sum())
 
@@ -99,7 +101,10 @@ def test_nine_nodes_do_for_the_factors_integral() -> None:
         scatter = prior.scatter * weights * draw.standard_normal(len(spacing))
         bias = Bias(sizes, EDGE_SIZE, EDGE_SIZE_SPREAD)
         values = 1 + sizes * draw.normal(EDGE_SIZE, EDGE_SIZE_SPREAD) + scatter
-        found, (value, bound) = fit_line(values, weights, prior, bias), integrated(values, weights, prior, bias)
+        found, (value, bound) = (
+            fit_line(values, weights, prior, bias),
+            integrated(values, weights, prior, bias),
+        )
         off.append((abs(found.value - value) / bound, abs(found.half_width / bound - 1)))
     assert np.all(np.quantile(off, 0.9, axis=0) < (5e-5, 0.02))
     assert np.max(off) < 0.15
@@ -125,4 +130,6 @@ def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> 
     assert fit_line(wild, weights, prior).half_width > 2 * fit_line(calm, weights, prior).half_width
     alone = fit_line(np.array([3.0]), np.ones(1), prior)
     assert alone.value == 3.0
-    assert alone.half_width == pytest.approx(4.303 * 0.01, rel=1e-3)  # Student's t with two degrees of freedom
+    assert alone.half_width == pytest.approx(
+        4.303 * 0.01, rel=1e-3
+    )  # Student's t with two degrees of freedom

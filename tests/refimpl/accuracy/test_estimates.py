@@ -11,20 +11,17 @@ import pytest
 import refimpl as rf
 from refimpl.accuracy import discretisation_error
 from refimpl.accuracy.discretisation_error import (
-    EDGE_SHARE,
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
-    _weights,
     area_scatter,
-    estimates,
     edge_scatter,
+    estimates,
 )
-from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.refinement import FIRST_GRIDS, relative_bound, uncertainty
-from refimpl.model.forces import perimeter_corrected_area
+from refimpl.model.forces import EDGE_SHARE
 from refimpl.solution.limits import Limit
 from refimpl.solution.solution import REPORTED
-from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, PEAK, SIDE, SLIP, made_up, told
+from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, DMU_DA, PEAK, SIDE, made_up, sloped
 
 HERTZ_GRIDS = (80, 96, 112, 128, 160, 192, 224, 256, 320, 384, 448, 512)
 
@@ -35,8 +32,8 @@ def test_numbers_that_follow_the_model_are_extrapolated() -> None:
         assert found[name].value == pytest.approx(AREA_LIMIT, rel=1e-3)
         assert abs(found[name].value - AREA_LIMIT) < found[name].half_width
     mu = found["friction_coefficient"]
-    assert mu.value == pytest.approx(BETA + SLIP * AREA_LIMIT, rel=1e-3)
-    assert abs(mu.value - BETA - SLIP * AREA_LIMIT) < mu.half_width
+    assert mu.value == pytest.approx(BETA + DMU_DA * AREA_LIMIT, rel=1e-3)
+    assert abs(mu.value - BETA - DMU_DA * AREA_LIMIT) < mu.half_width
     peak = found["max_pressure"]
     assert peak.value == pytest.approx(PEAK, rel=1e-6)
     assert abs(peak.value - PEAK) < peak.half_width < 0.02 * PEAK
@@ -60,12 +57,12 @@ def test_an_edge_of_unforeseen_size_is_learnt_from_the_grids() -> None:
 
 def test_slopes_that_change_within_elements_leave_mu_open() -> None:
     """Once found 0.249 +- 0.009 of a measured surface, and 0.07 on grids that resolve it."""
-    found = [told(mu, M, 0.02) for mu, M in ((0.09, 32), (0.12, 64), (0.25, 512))]
+    found = [sloped(mu, M, 0.02) for mu, M in ((0.09, 32), (0.12, 64), (0.25, 512))]
     mu = estimates(found)["friction_coefficient"]
     assert mu.error_bound(0.25) > 0.15
     alone = estimates(found[-1:])["friction_coefficient"]
     assert alone.half_width > 12.7 * 0.02  # Student's t with one degree of freedom
-    settling = [told(0.1 + u, M, u) for u, M in ((0.08, 32), (0.02, 64), (0.0003, 512))]
+    settling = [sloped(0.1 + u, M, u) for u, M in ((0.08, 32), (0.02, 64), (0.0003, 512))]
     assert estimates(settling)["friction_coefficient"].error_bound(0.1003) < 2e-3
 
 
@@ -74,15 +71,35 @@ def test_what_slopes_leave_open_of_mu_they_leave_open_of_forces() -> None:
     for name in ("friction_force", "binormal_force"):
         grids = [made_up(64, slope_sampling_error=u) for u in (0.0, 0.02)]
         even, uneven = (
-            estimates([replace(grid, numbers={**grid.numbers, name: 1e-3})])[name].half_width for grid in grids
+            estimates([replace(grid, numbers={**grid.numbers, name: 1e-3})])[name].half_width
+            for grid in grids
         )
         assert uneven > 12.7 * 0.02 * 70.0 > 10 * even
 
 
-def test_no_grid_counts_for_more_than_a_finer_one() -> None:
-    spacing = np.array([16.0, 8.0, 4.0, 2.0])
-    assert _weights(np.array([1.0, 6.0, 3.0, 2.0]), spacing).tolist() == [3.0, 3.0, 1.5, 1.0]
-    assert _weights(np.array([1.0, 1.0, 1.0, 0.0]), spacing) == pytest.approx((spacing / 2) ** 1.5)
+@pytest.mark.parametrize(
+    ("scatter", "weights"),
+    [
+        ((1.0, 6.0, 3.0, 2.0), (3.0, 3.0, 1.5, 1.0)),
+        ((4.0, 3.0, 2.0, 1.0), (4.0, 3.0, 2.0, 1.0)),
+        ((1.0, 1.0, 1.0, 0.0), (8**1.5, 4**1.5, 2**1.5, 1.0)),
+    ],
+)
+def test_no_grid_counts_for_more_than_a_finer_one(
+    scatter: tuple[float, ...], weights: tuple[float, ...]
+) -> None:
+    """Without scatter on the finest grid, weights are those of an area. Q scatters by slopes alone here."""
+    numbers = {**made_up(32).numbers, "friction_coefficient": 0.0}
+    found = np.array([3.0, -1.0, 2.0, 5.0])
+    results = [
+        replace(
+            made_up(M, slope_sampling_error=1e-3 * size), edge=0.0, numbers={**numbers, "binormal_force": Q}
+        )
+        for M, size, Q in zip((16, 32, 64, 128), scatter, found, strict=True)
+    ]
+    precision = np.array(weights) ** -2.0
+    expected = float(found @ precision / precision.sum())
+    assert estimates(results)["binormal_force"].value == pytest.approx(expected, rel=1e-9)
 
 
 def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
@@ -102,9 +119,10 @@ def test_what_is_known_of_spots_of_few_elements() -> None:
     result = made_up(64)
     area = result.numbers["contact_area"]
     few, many = (
-        replace(result, edge=share * 4 * EDGE_SHARE * area, slope_sampling_error=0.01) for share in (0.5, 0.01)
+        replace(result, edge=share * 4 * EDGE_SHARE * area, slope_sampling_error=0.01)
+        for share in (0.5, 0.01)
     )
-    counted = [math.sqrt(r.edge / EDGE_SHARE) * r.spacing for r in (few, many)]
+    counted = [math.sqrt(r.edge / EDGE_SHARE) * r.grid.element_size for r in (few, many)]
     assert area_scatter([few, many]) == pytest.approx([counted[0] * (4 / 3) ** 8, counted[1]], rel=1e-3)
     off = EDGE_SIZE * few.edge * (1 + discretisation_error.SINGLE_EXCESS / 4)
     assert estimates([few])["contact_area"].value == pytest.approx(area - off)
@@ -119,11 +137,13 @@ def test_what_is_known_of_spots_of_few_elements() -> None:
 
 def test_the_finest_grids_slip_turns_area_into_friction() -> None:
     coarse, fine = made_up(32), made_up(128)
-    mu = BETA + 3 * SLIP * coarse.numbers["contact_area"]
-    coarse = replace(coarse, dmu_dA=3 * SLIP, numbers={**coarse.numbers, "friction_coefficient": mu})
+    mu = BETA + 3 * DMU_DA * coarse.numbers["contact_area"]
+    coarse = replace(coarse, dmu_dA=3 * DMU_DA, numbers={**coarse.numbers, "friction_coefficient": mu})
     found = estimates([coarse, fine])
-    assert found["friction_coefficient"].value == pytest.approx(BETA + SLIP * found["contact_area"].value)
-    assert found["friction_coefficient"].half_width == pytest.approx(SLIP * found["contact_area"].half_width, rel=0.3)
+    assert found["friction_coefficient"].value == pytest.approx(BETA + DMU_DA * found["contact_area"].value)
+    assert found["friction_coefficient"].half_width == pytest.approx(
+        DMU_DA * found["contact_area"].half_width, rel=0.3
+    )
 
 
 def test_a_coarse_grids_area_hardly_counts_beside_a_fine_ones() -> None:
@@ -186,7 +206,9 @@ def test_single_elements_leave_mu_open_too() -> None:
     area = 12 * (SIDE / 64) ** 2
     results = [
         replace(
-            told(mu, M, 0.03), edge=share * area, numbers={**told(mu, M, 0.03).numbers, "contact_area": area}
+            sloped(mu, M, 0.03),
+            edge=share * area,
+            numbers={**sloped(mu, M, 0.03).numbers, "contact_area": area},
         )
         for mu, M in ((0.29, 32), (0.3, 64), (0.3, 128))
         for share in (4 * EDGE_SHARE,)
@@ -240,10 +262,3 @@ def test_bars_hold_against_hertz() -> None:
     assert sum(share > 1 for share in shares) <= 2
     assert max(shares) < 1.1
     assert np.median(shares) > 0.5  # no longer than need be
-
-
-def test_constants_agree_with_the_perimeter_correction() -> None:
-    contact = np.zeros((8, 8), dtype=bool)
-    contact[2:5, 3:6] = True  # 12 edges
-    corrected = perimeter_corrected_area(contact, 1.0)
-    assert 9 - corrected == pytest.approx(12 * discretisation_error.EDGE_SHARE)

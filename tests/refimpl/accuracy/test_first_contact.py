@@ -12,7 +12,13 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import estimates
-from refimpl.accuracy.first_contact import PEAK_ERROR, first_contact_error, missed, first_contact_share, touched
+from refimpl.accuracy.first_contact import (
+    PEAK_ERROR,
+    at_first_contact,
+    first_contact_bounds,
+    first_contact_error,
+    first_contact_share,
+)
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import NO_PEAK, Peak
 from refimpl.solution.solution import REPORTED
@@ -82,7 +88,9 @@ def test_what_the_touch_takes_is_foretold_by_powers_of_the_approach() -> None:
 def test_under_a_load_only_the_approach_hangs_on_the_touch() -> None:
     loaded = pressed(64, 0.0, 0.0, None)
     assert at_first_contact(loaded) is loaded
-    deeper = replace(loaded, first_contact=replace(loaded.first_contact, height=2 * loaded.first_contact.height))
+    deeper = replace(
+        loaded, first_contact=replace(loaded.first_contact, height=2 * loaded.first_contact.height)
+    )
     one, other = (estimates([result]) for result in (loaded, deeper))
     assert other["approach"].value - one["approach"].value == pytest.approx(loaded.first_contact.height)
     assert all(one[name] == other[name] for name in one if name != "approach")

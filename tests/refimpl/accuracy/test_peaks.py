@@ -1,4 +1,4 @@
-"""Bars of the highest pressure and of the approach, on summits that are made up."""
+"""Bars of the highest pressure and of the approach, on peaks that are made up."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import refimpl as rf
 from refimpl.accuracy import discretisation_error
 from refimpl.accuracy.discretisation_error import OTHER, PEAK_BIAS, PEAK_BIAS_SPREAD, estimates
 from refimpl.accuracy.peak import Peak
-from tests.refimpl.accuracy.made_up import PEAK, SIDE, made_up, peaked
+from tests.refimpl.accuracy.made_up import PEAK, made_up, peaked
 
 
 def test_a_peak_that_grows_with_the_grid_is_not_known() -> None:
@@ -21,7 +21,8 @@ def test_a_peak_that_grows_with_the_grid_is_not_known() -> None:
 
 
 def test_a_parabola_of_waves_has_no_bias() -> None:
-    free, waves = (replace(peaked(64, 1.0, 0.1), periodic=periodic) for periodic in (False, True))
+    free = peaked(64, 1.0, 0.1)
+    waves = replace(free, grid=replace(free.grid, periodic=True))
     found, unbiased = (estimates([grid])["max_pressure"] for grid in (free, waves))
     assert found.value == pytest.approx(1 - 0.1 * PEAK_BIAS)
     assert unbiased.value == pytest.approx(1.0)
@@ -36,10 +37,10 @@ def test_a_parabola_of_unforeseen_bias_is_learnt_from_the_grids() -> None:
 
 
 @pytest.mark.parametrize(
-    ("roughness", "more"), [(0.0, 1.0), (0.5, (4 / 3) ** 4), (0.9, 0.19**-4), (1.0, math.inf)]
+    ("non_parabolicity", "more"), [(0.0, 1.0), (0.5, (4 / 3) ** 4), (0.9, 0.19**-4), (1.0, math.inf)]
 )
-def test_a_peak_that_stands_alone_is_not_bounded(roughness: float, more: float) -> None:
-    even, uneven = (estimates([peaked(64, 1.0, 0.1, rough)]) for rough in (0.0, roughness))
+def test_a_peak_that_stands_alone_is_not_bounded(non_parabolicity: float, more: float) -> None:
+    even, uneven = (estimates([peaked(64, 1.0, 0.1, rough)]) for rough in (0.0, non_parabolicity))
     for name in ("friction_coefficient", "contact_area"):
         assert uneven[name].half_width == even[name].half_width
     assert uneven["approach"].half_width == pytest.approx(math.sqrt(more) * even["approach"].half_width)
@@ -52,7 +53,7 @@ def test_a_peak_that_stands_alone_is_not_bounded(roughness: float, more: float) 
 
 def test_full_contact_may_have_a_lone_peak_too() -> None:
     full = replace(peaked(64, 1.0, 3.0, 1.0), edge=0.0)
-    for results in ([full], [full, replace(full, M=128, spacing=SIDE / 128)]):
+    for results in ([full], [full, replace(full, grid=full.grid.refined((128, 128)))]):
         found = estimates(results)
         assert math.isinf(found["max_pressure"].half_width)
         assert math.isinf(found["approach"].half_width)
