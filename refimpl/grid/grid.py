@@ -55,15 +55,6 @@ class Grid:
         return self.lengths[0] / self.shape[0], self.lengths[1] / self.shape[1]
 
     @property
-    def has_square_elements(self) -> bool:
-        """Whether both edges of an element are equal, to the rounding of lengths over counts.
-
-        >>> Grid((128, 64), (2e-3, 1e-3)).has_square_elements, Grid((4, 2), (1.0, 1.0)).has_square_elements
-        (True, False)
-        """
-        return math.isclose(*self.spacings, rel_tol=1e-12)
-
-    @property
     def element_area(self) -> float:
         """Area dA of one element (m^2)."""
         dx, dy = self.spacings

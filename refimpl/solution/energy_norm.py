@@ -101,8 +101,7 @@ class EnergyNorm:
 
     def _free_floor(self, grid: Grid) -> float:
         dx, dy = grid.spacings
-        aspect = 1.0 if grid.has_square_elements else dy / dx
-        return float(self._elasticity.symbol(np.array([smallest_symbol(aspect) * dx]))[0])
+        return float(self._elasticity.symbol(np.array([smallest_symbol(dy / dx) * dx]))[0])
 
     def _periodic_floor(self, grid: Grid) -> float:
         """``e = mean + rest``: ``(K.e)^2 >= (mean K.mean e)^2 / 2 - (K.rest)^2``."""

@@ -54,7 +54,7 @@ def test_a_peaks_bar_is_predicted_to_fall_as_the_square(accuracy: float) -> None
 
 
 def test_what_a_grid_itself_leaves_open_is_predicted_to_fall_as_the_spacing() -> None:
-    """Active set of tau: 8 % of the peak on 64 elements a side are 2 % on 256; the peak's own bar is short."""
+    """Active set of tau: 8 % of the peak on 64 elements a side are 2 % on 256, and its own bar is short."""
     open_to = {"max_pressure": {"active set": 0.08 * PEAK}}
     opened = [replace(made_up(M), parts=open_to) for M in FIRST_GRIDS]
     assert next_grid(opened, 0.0235, "max_pressure", GRID_SIZES) == 256

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.driver.options import Options
 from refimpl.grid import Array, Grid
 from refimpl.operators import fft
 from refimpl.planning import plan, term_effects, terms
@@ -184,12 +185,28 @@ def test_memory_is_that_of_all_elements_and_a_refusal_names_the_longer_side(
     square, oblong = SMOOTH.grid(48), Grid((24, 96), (1e-3, 4e-3))
     for method in plan.METHODS:
         assert memory_of(method, square) == memory_of(method, oblong)
-    room = memory_of("fft", square)
+    room, chosen = memory_of("fft", square), planned(SMOOTH, 256)
     monkeypatch.setattr(plan, "free_memory", lambda: room)
-    assert planned(SMOOTH, oblong).memory == room
-    with pytest.raises(rf.InputError, match=r"grid = 97: .* GB") as refused:
-        planned(SMOOTH, Grid((24, 97), (1e-3, 4e-3)))
-    assert refused.value.field == "grid"
+    assert memory_of("fft", oblong) == chosen.on(oblong).memory == room
+    for refuse in (lambda grid: memory_of("fft", grid), chosen.on):
+        with pytest.raises(rf.InputError, match=r"grid = 97: .* GB") as refused:
+            refuse(Grid((24, 97), (1e-3, 4e-3)))
+        assert refused.value.field == "grid"
+
+
+@pytest.mark.parametrize("method", ["fft", "dense"])
+def test_the_grid_that_decides_the_terms_need_not_fit_into_memory(
+    method: plan.Method, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With an accuracy only its heights are sampled; each grid that is solved is checked."""
+    room = plan.estimated_memory(method, SMOOTH.grid(64 if method == "fft" else 32))
+    monkeypatch.setattr(plan, "free_memory", lambda: room)
+    chosen = Options(scene=SMOOTH, accuracy=0.1, method=method).plan()
+    assert chosen.decided_on == 256**2
+    assert chosen.memory > room
+    assert chosen.on(SMOOTH.grid(32)).memory <= room
+    with pytest.raises(rf.InputError, match="GB"):
+        Options(scene=SMOOTH, grid=256, method=method).plan()
 
 
 def test_shear_tilts_the_common_surface_of_twins() -> None:
