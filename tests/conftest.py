@@ -18,7 +18,8 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-from verification.framework.files import to_json, write_text
+from reports.result_files import read_result
+from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 
 # A property holds or does not, however busy the machine is: the limit of 200 ms for one example failed
@@ -79,7 +80,7 @@ class Log:
         if hasattr(self.config, "workerinput"):  # the controller of several processes has all reports
             return
         path = self.config.getoption("--order-log")
-        runs = json.loads(path.read_text())["runs"] if path.exists() else []
+        runs = read_result(path)["runs"] if path.exists() else []
         run = {
             "seed": self.config.getoption("--order-seed"),
             "tests": len(self.outcomes),
@@ -91,7 +92,7 @@ class Log:
         }
         runs.append(run)
         same = len({run["outcomes_sha256"] for run in runs}) == 1
-        write_text(to_json({"no_test_flips": same, "runs": runs}), path)
+        write_result({"no_test_flips": same, "runs": runs}, path)
 
 
 def _digest(value: object) -> str:

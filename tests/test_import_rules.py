@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+from tests.layers import ROOT, attribute_reads, closure, modules, room, uses
+
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 ALLOWED: dict[str, set[str]] = {
     "refimpl": set(),
     "appendix_a": set(),
     "reports": set(),
-    "verification": {"refimpl", "appendix_a"},
+    "verification": {"refimpl", "appendix_a", "reports.result_files"},
     "verification/cli": {"refimpl", "appendix_a", "reports"},
 }
+"""Packages, and single modules of them: writers of result files and the report share the files' form."""
 
 
 def imported(source: str) -> Iterator[tuple[int, str]]:
-    """Line and top-level package of every import of a package of ours, wherever in the file it stands."""
+    """Line and module of every import of a package of ours, wherever in the file it stands."""
     for node in ast.walk(ast.parse(source)):
         names: list[str] = []
         if isinstance(node, ast.Import):
@@ -32,7 +35,7 @@ def imported(source: str) -> Iterator[tuple[int, str]]:
         for name in names:
             top = name.partition(".")[0]
             if top in (*PACKAGES, "tests", "a relative import"):
-                yield getattr(node, "lineno", 0), top
+                yield getattr(node, "lineno", 0), name
 
 
 def layer(path: Path) -> str:
@@ -44,7 +47,11 @@ def layer(path: Path) -> str:
 def breaches(path: Path, source: str) -> list[str]:
     own = path.relative_to(ROOT).parts[0]
     allowed = ALLOWED[layer(path)] | {own}
-    return [f"{path.name}:{line} imports {top}" for line, top in imported(source) if top not in allowed]
+    return [
+        f"{path.name}:{line} imports {module}"
+        for line, module in imported(source)
+        if not allowed & {module, module.partition(".")[0]}
+    ]
 
 
 FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
@@ -65,7 +72,9 @@ def test_imports_follow_the_layers(package: str) -> None:
         ("appendix_a/x.py", "from refimpl.grid import Grid"),
         ("reports/x.py", "import importlib\nimportlib.import_module('verification.framework.case')"),
         ("reports/x.py", "if TYPE_CHECKING:\n    from refimpl import Solution"),
-        ("verification/framework/runner.py", "from reports.generator import render"),
+        ("verification/runner.py", "from reports.generator import render"),
+        ("verification/runner.py", "from reports import result_files"),
+        ("refimpl/x.py", "from reports.result_files import read_result"),
         ("verification/cases/x.py", "from reports import figures"),
         ("verification/cli/x.py", "from tests import conftest"),
         ("verification/x.py", "from . import case"),
@@ -75,5 +84,117 @@ def test_the_rule_sees_a_breach(place: str, source: str) -> None:
     assert breaches(ROOT / place, source)
 
 
+def test_writers_of_result_files_may_import_their_form() -> None:
+    assert not breaches(ROOT / "verification/runner.py", "from reports.result_files import write_result")
+
+
 def test_the_command_line_may_import_reports() -> None:
     assert not breaches(ROOT / "verification/cli/report.py", "from reports.generator import render")
+
+
+# The rooms of refimpl: a module may import its own room and those of lower floors, and no other of its floor.
+FLOORS = (
+    {"errors"},
+    {"grid", "kernels"},
+    {"model", "surfaces", "operators"},
+    {"scene", "planning", "accuracy", "solvers"},
+    {"solution"},
+    {"driver"},
+    {"sensitivities"},
+)
+FLOOR = {name: level for level, rooms in enumerate(FLOORS) for name in rooms}
+REFIMPL = [name for name in modules("refimpl") if name != "refimpl"]
+
+
+def may_import(importer: str, imported: str) -> bool:
+    own, other = room(importer), room(imported)
+    return own == other or FLOOR[other] < FLOOR[own]
+
+
+def test_every_room_stands_on_a_floor() -> None:
+    assert {room(name) for name in REFIMPL} == set(FLOOR)
+
+
+@pytest.mark.parametrize("name", REFIMPL)
+def test_rooms_import_lower_floors_only(name: str) -> None:
+    assert [other for other in sorted(uses(name, "refimpl")) if not may_import(name, other)] == []
+
+
+def test_a_room_beside_or_above_is_a_breach() -> None:
+    assert not may_import("refimpl.solvers.dense", "refimpl.scene.scene")
+    assert not may_import("refimpl.model.problem", "refimpl.operators.fft")
+    assert may_import("refimpl.solution.limits", "refimpl.scene.scene")
+
+
+@pytest.mark.parametrize("package", ["refimpl", "verification"])
+def test_no_file_imports_itself_through_others(package: str) -> None:
+    circles = [
+        name for name in modules(package) for used in uses(name, package) if name in closure(used, package)
+    ]
+    assert circles == []
+
+
+@pytest.mark.parametrize("name", [n for n in REFIMPL if room(n) == "solvers"])
+def test_solvers_see_a_problem_alone(name: str) -> None:
+    assert not {room(other) for other in closure(name)} & {
+        "scene",
+        "planning",
+        "solution",
+        "surfaces",
+        "driver",
+    }
+
+
+def test_the_dense_solver_shares_no_transform_and_no_production_code() -> None:
+    found = closure("refimpl.solvers.dense")
+    fft = {
+        f"refimpl.operators.{name}" for name in ("fft", "periodic", "transforms", "symmetric", "influence")
+    }
+    assert not found & fft
+    assert not any(name.startswith("refimpl.solvers.production") for name in found)
+    assert {name for name in found if room(name) == "operators"} <= {
+        "refimpl.operators",
+        "refimpl.operators.dense",
+    }
+
+
+JUDGES = ("refimpl.model.certificate", "refimpl.solution.bounds", "refimpl.solution.limits")
+
+
+@pytest.mark.parametrize("name", [*JUDGES, *(n for n in REFIMPL if room(n) == "accuracy")])
+def test_judges_take_problem_and_state(name: str) -> None:
+    assert "refimpl.solution.solution" not in closure(name)
+
+
+def test_a_solution_is_built_once() -> None:
+    sources = {n: path.read_text(encoding="utf-8") for n, path in modules("refimpl").items()}
+    builds = [n for n, text in sources.items() if re.search(r"(?<!class )(?<![\w.])Solution\(", text)]
+    assert builds == ["refimpl.solution.solution"]
+    assert [n for n, text in sources.items() if re.search(r"replace\((solution|solved),", text)] == []
+
+
+COMPLIANCES = {"normal_compliance", "shear_compliance"}
+
+
+def test_compliances_are_multiplied_in_one_module() -> None:
+    readers = {n for n in REFIMPL if attribute_reads(n, "refimpl", COMPLIANCES)}
+    assert readers <= {
+        "refimpl.model.materials",
+        "refimpl.model.elasticity",
+        "refimpl.solution.influence_error_3d",
+    }
+
+
+def test_only_the_law_and_scene_files_know_tau_and_beta() -> None:
+    readers = {n for n in REFIMPL if attribute_reads(n, "refimpl", {"tau", "beta"})}
+    assert readers <= {"refimpl.model.friction", "refimpl.scene.scene_file", "refimpl.scene.parameters"}
+
+
+ASK_THE_GRID = {"grid", "operators", "scene", "surfaces"}
+
+
+@pytest.mark.parametrize("name", [n for n in REFIMPL if room(n) not in ASK_THE_GRID])
+def test_shapes_and_topology_come_from_the_grid(name: str) -> None:
+    text = modules("refimpl")[name].read_text(encoding="utf-8")
+    found = re.findall(r"M \* M|\(M, M\)|M\*\*2|\bif [\w.]*periodic\b|\bif not [\w.]*periodic\b", text)
+    assert found == []

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from reports.result_files import read_result
 from tests.documents import ROOT, blocks, commands, run
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -72,7 +72,7 @@ def test_the_table_of_bars_is_that_of_the_results() -> None:
     rows = re.findall(r"^\| ([\w, -]+) to (0\.\d+) \| (.*) \|$", README, flags=re.M)
     assert len(rows) == 6
     files = [ROOT / "reports/results" / f"{name}.json" for name in ("coverage", "coverage_fresh")]
-    studies = [json.loads(path.read_text(encoding="utf-8")) for path in files]
+    studies = [read_result(path) for path in files]
     for name, accuracy, rest in rows:
         halves = [
             found["numbers"][JUDGED[name]]

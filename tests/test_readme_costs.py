@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
 
+from reports.result_files import read_result
 from tests.documents import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -46,7 +46,7 @@ TABLE: dict[str, Number] = {
 
 
 EVERY = frozenset({OURS, ALONE, PEER, QUICKEST, SHEARED, SLOPED})
-RUNS = json.loads((ROOT / "reports/results/benchmarks.json").read_text(encoding="utf-8"))["runs"]
+RUNS = read_result(ROOT / "reports/results/benchmarks.json")["runs"]
 
 
 def newest(codes: frozenset[str] = EVERY) -> dict[tuple[str, int], tuple[Ratios, Rows]]:

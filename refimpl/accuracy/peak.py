@@ -79,7 +79,7 @@ def highest(field: Array, grid: Grid) -> Peak:
     if min(field.shape) < 3:
         return Peak(top, 0.0, 1.0)
     box = grid.window_around(field >= _RIVAL * top, margin=_REACH).slices
-    return _peak(np.pad(field[box], _REACH, mode="wrap" if grid.periodic else "edge"), _RIVAL * top)
+    return _peak(grid.padded(field[box], _REACH), _RIVAL * top)
 
 
 def deepest(field: Array) -> Peak:

@@ -158,6 +158,10 @@ class Grid:
             return 0
         return int(np.count_nonzero(where)) - int(np.count_nonzero(where[1:-1, 1:-1]))
 
+    def padded(self, field: Array, width: int) -> Array:
+        """Return a field, or a window of it, with a frame: repeated if periodic, else its border values."""
+        return np.pad(field, width, mode="wrap" if self.periodic else "edge")
+
     @property
     def continuation(self) -> Literal["wrap", "constant"]:
         """How NumPy and SciPy continue a contact beyond the domain: repeated, or by nothing."""

@@ -7,9 +7,9 @@ results in the same unit.
 
 Relative error is at most 1e-13 (measured: see the cases ``kernels/*``) for offsets of 0 ... 1e6 elements
 and aspect ratios 1e-3 ... 1e3. Closed forms serve up to three elements away (``love``, ``cerruti``),
-quadrature over an exact inner integral beyond (``far_field``), with the axis of the larger ``q = 2 offset /
-edge`` as the outer one; tables of square elements go on by multipoles (``multipole``). Lengths are first
-divided by a power of two near the larger edge, which is exact, so that 1e-12 and 1e12 are as good as 1.
+quadrature over an exact inner integral beyond (``quadrature``), with the axis of the larger ``q = 2 offset /
+edge`` as the outer one. Lengths are first divided by a power of two near the larger edge, which is exact, so
+that 1e-12 and 1e12 are as good as 1.
 """
 
 from __future__ import annotations

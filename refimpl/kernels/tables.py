@@ -2,9 +2,8 @@
 
 At integer offsets ``q_x = 2i`` and ``q_y = 2j`` whatever the aspect ratio, so the order of the rule depends
 on the index alone. A slab of rows ``i0 <= i < i1`` with the columns ``j < i1`` takes x as the outer axis
-and the order of ``2 i0``; the columns ``j0 <= j < j1`` with the rows ``i < j0`` take y. Of square elements
-multipoles take over where few are enough, at a fifth of the cost. Slabs are kept so small that temporaries
-stay in cache.
+and the order of ``2 i0``; the columns ``j0 <= j < j1`` with the rows ``i < j0`` take y. Slabs are small
+enough for their temporaries to stay in cache.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.errors import InputError
-from refimpl.kernels import multipole
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.love import LOVE
 from refimpl.kernels.points import scale
@@ -25,7 +23,6 @@ Array = NDArray[np.float64]
 
 _NEAR_COUNT = int(np.ceil(NEAR / 2))  # offsets served by the closed form: 2i < NEAR
 _SLAB = 16384  # evaluations: 128 kB per temporary
-_SERIES = {LOVE: multipole.LOVE, CERRUTI: multipole.CERRUTI}
 
 
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
@@ -139,14 +136,10 @@ def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
 
 
 def _across_x(kernel: Kernel, start: int, stop: int, columns: int, dx: float, dy: float) -> Array:
-    if dx == dy and start >= multipole.FAR:
-        return _SERIES[kernel].across(_offsets(start, stop, 1)[:, None], _offsets(0, columns, 1), dx, start)
     x, y = _offsets(start, stop, dx), _offsets(0, columns, dy)
     return across(kernel.over_x, x[:, None], y, dx, dy, order_for(2.0 * start))
 
 
 def _across_y(kernel: Kernel, rows: int, start: int, stop: int, dx: float, dy: float) -> Array:
-    if dx == dy and start >= multipole.FAR:
-        return _SERIES[kernel].across(_offsets(0, rows, 1)[:, None], _offsets(start, stop, 1), dx, start)
     x, y = _offsets(0, rows, dx), _offsets(start, stop, dy)
     return across(kernel.over_y, y, x[:, None], dy, dx, order_for(2.0 * start))

@@ -32,7 +32,6 @@ from refimpl.model.slopes import Slopes
 _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the gap's rms gradient
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
 _COARSE = 64  # elements per side from which the contact is estimated
-_SORTED_SHARE = 4  # a quarter of the elements holds the contact of most scenes
 _LEAST = 1e-12  # mean pressure over E*, of a contact at an approach that hardly loads it
 _ROUNDING = 1e-9  # of a surface's range: heights that differ by less are mirror images of each other
 
@@ -83,7 +82,7 @@ def expected_contact(problem: Problem) -> ExpectedContact:
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
-        contact = _first(_rising(gap, elements), elements, gap)
+        contact = _first(_rising(gap), elements, gap)
         squares = float(_gradient_squared(coarse)[contact].sum())
         mean_pressure = stiffness * math.sqrt(squares * elements) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
@@ -108,14 +107,10 @@ def _coarse(problem: Problem) -> Problem:
 
 def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
     """The smallest number of lowest elements that carry the load, or all."""
-    gap, gradient_squared = problem.gap, _gradient_squared(problem).ravel()
-    sorted_out = gap.size // _SORTED_SHARE
-    while True:
-        order = _rising(gap, sorted_out)
-        carried = stiffness * np.sqrt(np.cumsum(gradient_squared[order]) * np.arange(1, order.size + 1))
-        if carried[-1] >= load or order.size == gap.size:
-            return _first(order, 1 + int(np.searchsorted(carried, load)), gap)
-        sorted_out = gap.size
+    order = _rising(problem.gap)
+    squares = np.cumsum(_gradient_squared(problem).ravel()[order])
+    carried = stiffness * np.sqrt(squares * np.arange(1, order.size + 1))
+    return _first(order, 1 + int(np.searchsorted(carried, load)), problem.gap)
 
 
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
@@ -125,12 +120,8 @@ def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
     return chosen
 
 
-def _rising(gap: Array, count: int) -> NDArray[np.intp]:
-    """At least that many elements from the lowest on, equal ones in the grid's order."""
-    if count < gap.size:
-        low = np.flatnonzero(gap <= np.partition(gap, count, axis=None)[count])
-        order: NDArray[np.intp] = low[np.argsort(gap.take(low), kind="stable")]
-        return order
+def _rising(gap: Array) -> NDArray[np.intp]:
+    """All elements from the lowest on, equal ones in the grid's order."""
     return np.argsort(gap, axis=None, kind="stable")
 
 

@@ -119,7 +119,7 @@ def _check(scene: Scene, solution: Solution) -> None:
     if not solution.certified:
         raise InputError("solution", solution.status.value, "a solution whose certificate holds")
     problem = solution.problem
-    if problem.grid.periodic and not problem.gap.any():
+    if not (problem.gap.any() or problem.counts_from_first_contact):
         raise InputError("solution", "two periodic flats", "one whose approach is not zero")
     if problem.load != scene.load:
         raise InputError("solution", problem.load, f"one under the scene's load of {scene.load:g} N")

@@ -38,8 +38,9 @@ both sides of (B1) makes ``a + m K K'`` definite; K.e is known as above. At a pr
 and no bound is claimed.
 
 Not proven, and not touched by these numbers: that slopes and tau's support are those of the solution of the
-whole problem (see the certificate's ``slope`` and ``unlawful``), and the grid's own error. Rounding of the
-products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of a number, is not.
+whole problem (see the certificate's ``slope`` and ``law_violations``), and the grid's own error. Rounding of
+the products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of a number, is
+not.
 """
 
 from __future__ import annotations
@@ -82,21 +83,21 @@ class Bounds:
 
 UNPROVEN = "slopes and tau's support are held as returned; the grid's own error is not included"
 NO_BOUND_CORRECTED = "the slope correction's matrix is not a plus a skew one: no bound"
-NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic square: no bound"
+NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic domain: no bound"
 NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressure: no bound"
 
 
 def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> Bounds:
-    """Bounds for any pressure and traction (Pa), shapes ``(M, M)``, at these slopes.
+    """Bounds for any pressure and traction (Pa) of the problem's shape, at these slopes.
 
     Costs some tens of products with ``a``. Where nothing can be proven all are infinite, and ``unproven``
     says why.
     """
     if problem.terms.slope_correction:
         return _none(problem, NO_BOUND_CORRECTED)
-    if problem.grid.periodic and problem.approach is not None:
-        return _none(problem, NO_BOUND_PERIODIC)
     norm = EnergyNorm(problem, slopes.obliqueness)
+    if problem.approach is not None and not norm.operator.displaces_mean:
+        return _none(problem, NO_BOUND_PERIODIC)
     if norm.floor <= 0:
         return _none(problem, NO_BOUND_STEEP)
     frozen = _Frozen(problem, norm, pressure, traction, slopes)
@@ -114,9 +115,9 @@ class _Frozen:
     ) -> None:
         self.problem, self.norm, self.slopes = problem, norm, slopes
         self.pressure, self.traction = pressure, traction
-        self.beta = problem.friction.slope
+        self.slope = problem.friction.slope
         self.K = slopes.obliqueness
-        self.coupled = self.beta > 0 and problem.elasticity.coupling_ratio != 0
+        self.coupled = self.slope > 0 and problem.elasticity.coupling_ratio != 0
         self._set(np.maximum(pressure, 0.0))
         spurious = (self.f > 0) & (self.w >= norm.diagonal * self.f)
         if spurious.any():
@@ -127,7 +128,7 @@ class _Frozen:
     def _set(self, f: Array) -> None:
         """Pressure, approach and w, from the displacements of this pressure."""
         problem, K = self.problem, self.K
-        shear = self.traction - self.beta * self.pressure + self.beta * f
+        shear = self.traction - self.slope * self.pressure + self.slope * f
         free = np.add(*problem.displacements(self.norm.operator, f, shear, self.slopes)) + K * problem.gap
         self.f, self.total = f, float(np.vdot(K, f))
         if problem.approach is not None:
@@ -150,7 +151,7 @@ class _Frozen:
 
     def distance(self) -> tuple[float, float]:
         """Bounds on ``||e||`` and on the approach's error (m); infinite when (B2) does not close."""
-        problem, beta = self.problem, self.beta
+        problem, beta = self.problem, self.slope
         if problem.load is None:
             return _largest_root(1.0, self.residual, self.slack), 0.0
         tan = self.slopes.tan_x
@@ -182,7 +183,7 @@ class _Frozen:
 
 def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
     """What ``||e|| <= x`` says of each reported number."""
-    problem, norm, slopes, beta = frozen.problem, frozen.norm, frozen.slopes, frozen.beta
+    problem, norm, slopes, beta = frozen.problem, frozen.norm, frozen.slopes, frozen.slope
     dA, root = problem.grid.element_area, math.sqrt(norm.floor)
     moved = x * (math.sqrt(norm.diagonal) + _shear_row(frozen) / root)
     out: Mask = frozen.w > moved + frozen.K * approach + frozen.noise
@@ -224,7 +225,7 @@ def _shear_row(frozen: _Frozen) -> float:
     rows = []
     for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
         corner = np.zeros(frozen.K.shape)
-        corner[i, j] = frozen.beta
+        corner[i, j] = frozen.slope
         rows.append(frozen.problem.elasticity.gap_by_shear(frozen.norm.operator.shear(corner)))
     return float(np.linalg.norm(rows))
 

@@ -206,10 +206,10 @@ class _Scheme:
             shear, held = self._update(active)
             u = self.slopes.obliqueness * (approach - problem.gap) - shear  # Eqs (6a), (7)
             if first:  # later passes only mend: the periodic contact would throw returned elements out again
-                inside = self._iterate(u, inside, periodic=True)
+                inside = self._iterate(u, inside, on_circle=True)
                 self.trace.periodicity_before = self._residual(u, inside)
                 self.trace.periodic_pressure = self.pressure
-            inside = self._iterate(u, inside, periodic=False)
+            inside = self._iterate(u, inside, on_circle=False)
             self.trace.periodicity_after = self._residual(u, inside)
             # (1d) inequality (6b): what penetrates comes back
             returning = ~inside & (self._apply(self.pressure) < u)
@@ -235,9 +235,9 @@ class _Scheme:
         self.slopes = self.problem.slopes(lower, upper)
         return lower + upper - self._apply(self.pressure), law.held_traction(self.pressure, tau_on)
 
-    def _iterate(self, u: Array, inside: Mask, *, periodic: bool) -> Mask:
+    def _iterate(self, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
         """(1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact left."""
-        flexibility = self._apply_periodic if periodic else self._apply
+        flexibility = self._apply_periodic if on_circle else self._apply
         pressure = self.pressure * inside
         answer = flexibility(pressure)
         for _ in range(_STEPS):
@@ -255,8 +255,8 @@ class _Scheme:
             answer = flexibility(found) if excluded.any() else answer + length * moved
             change = float(np.linalg.norm(found - pressure))
             pressure = found
-            self.trace.periodic_steps += periodic
-            self.trace.correction_steps += not periodic
+            self.trace.periodic_steps += on_circle
+            self.trace.correction_steps += not on_circle
             if change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found)):
                 break
             if self.exhausted:

@@ -18,7 +18,7 @@ Row = Mapping[str, Any]
 def build(document: Document) -> Exhibit:
     """A table for each surface, the record of all runs, and seconds over the grid."""
     runs = document["runs"]
-    newest = _newest(runs)
+    newest = newest_rows(runs)
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
     last = runs[-1]["conditions"]
     told = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
@@ -39,7 +39,7 @@ def build(document: Document) -> Exhibit:
     )
 
 
-def _newest(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
+def newest_rows(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
     """By surface and grid, each code's newest row, with the ratios and the commit of its own run."""
     found: dict[tuple[str, int], dict[str, Row]] = {}
     for run in runs:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
 
+from reports.result_files import read_result
 from reports.studies import exhibit
 
 RESULTS = Path(__file__).parents[2] / "reports" / "results"
@@ -14,7 +14,7 @@ TRAINED = range(1000, 1200)
 
 
 def committed(name: str) -> dict:
-    return json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
+    return read_result(RESULTS / f"{name}.json")
 
 
 def test_the_scenes_never_looked_at_are_no_others() -> None:

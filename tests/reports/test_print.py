@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import re
 
 from reports.generator import render
+from reports.result_files import read_result
 from tests.documents import ROOT
 from tests.reports.sample import case, results
 
@@ -13,7 +13,7 @@ TABLE = re.compile(r'<table class="sortable( wide)?">\s*<thead><tr>(.*?)</tr>', 
 
 
 def test_tables_of_more_than_eight_columns_are_set_small() -> None:
-    study = json.loads((ROOT / "reports/results/benchmarks.json").read_text(encoding="utf-8"))
+    study = read_result(ROOT / "reports/results/benchmarks.json")
     page = render(results(case("a/1")), {"benchmarks": study})
     columns = [(head.count("<th"), bool(wide)) for wide, head in TABLE.findall(page)]
     assert (13, True) in columns

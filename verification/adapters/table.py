@@ -23,7 +23,7 @@ from verification.contestants import own, referee
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, abilities_of
 from verification.contestants.suite import suite
 from verification.framework.case import Result, Status, jsonable
-from verification.framework.files import Progress, to_json, write_text
+from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 
 Solver = Peer | own.Own
@@ -128,7 +128,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m verification.adapters.table", description=__doc__)
     parser.add_argument("--json", type=Path, required=True, help="file to write")
     options = parser.parse_args(arguments)
-    write_text(to_json(jsonable(measured())), options.json)
+    write_result(jsonable(measured()), options.json)
 
 
 if __name__ == "__main__":

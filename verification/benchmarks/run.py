@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from reports.result_files import read_result
 from verification.benchmarks.codes import OWN, codes
 from verification.benchmarks.rounds import (
     CERTIFIED,
@@ -23,7 +23,7 @@ from verification.benchmarks.rounds import (
 )
 from verification.benchmarks.summary import ratios, row
 from verification.framework.case import jsonable
-from verification.framework.files import Progress, to_json, write_text
+from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 
 _GROWTH = 8.0  # seconds from one grid to the twice finer one: four times the elements, and more iterations
@@ -90,6 +90,6 @@ def _tuned(name: str, kind: str, M: int, last: Turns | None, threads: int, limit
 
 def append(run: dict[str, object], file: Path) -> None:
     """Add a run at the end of the record; earlier ones stay as they are."""
-    record = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {"runs": []}
+    record = read_result(file) if file.is_file() else {"runs": []}
     record["runs"].append(jsonable(run))
-    write_text(to_json(record), file)
+    write_result(record, file)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import shutil
 import subprocess
@@ -59,6 +58,7 @@ def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
     from refimpl.errors import InputError
     from reports.generator import render
+    from reports.result_files import result_paths
     from reports.results import ResultFileError
     from verification.framework.files import write_text
 
@@ -67,10 +67,9 @@ def run(options: argparse.Namespace) -> int:
     folder = options.committed or Path(str(resources.files("reports").joinpath("results")))
     if not folder.is_dir():
         raise InputError("--committed", str(folder), "a folder of result files")
-    files = sorted(folder.glob("*.json"))
-    committed = {path.stem: _committed(path) for path in files}
+    committed = {path.stem: _committed(path) for path in result_paths(folder)}
     path = options.output / "report.html"
-    read = [options.results, *([] if options.against is None else [options.against]), *files]
+    read = [options.results, *([] if options.against is None else [options.against]), *folder.glob("*.json")]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
     _check_folder(options.output)
     line = StatusLine()
@@ -131,9 +130,10 @@ def _checked(option: str, path: Path, found: object) -> Any:
 
 def _read(option: str, path: Path) -> Any:
     from refimpl.errors import InputError
+    from reports.result_files import read_result
 
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        return read_result(path)
     except FileNotFoundError as missing:
         allowed = "a result file; make one with 'rough-friction verify --json FILE'"
         raise InputError(option, str(path), allowed) from missing

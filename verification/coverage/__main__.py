@@ -26,10 +26,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     os.environ.update(dict.fromkeys(THREADS, "1"))
 
     from verification.coverage.document import document
-    from verification.framework.files import to_json, write_text
+    from verification.framework.files import write_result
 
     seeds = range(options.first, options.first + options.scenes)
-    write_text(to_json(document(options.accuracy, seeds, options.store)), options.json)
+    write_result(document(options.accuracy, seeds, options.store), options.json)
 
 
 if __name__ == "__main__":

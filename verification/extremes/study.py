@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import signal
 import time
 from collections import Counter
@@ -13,11 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import verification.extremes.axes  # noqa: F401  # registers the axes
+from reports.result_files import read_result
 from verification.extremes import conditioning, precision, uniqueness
 from verification.extremes.limits import LIMITS
 from verification.extremes.state import Extreme, Verdict, axes, states
 from verification.framework.case import jsonable
-from verification.framework.files import to_json, write_text
+from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 
 FORMAT = "rough-friction extremes, version 1"
@@ -119,7 +119,7 @@ def document(rows: list[Row], *, complete: bool) -> dict[str, Any]:
 def kept_rows(path: Path) -> dict[str, Row]:
     """States of an unfinished file of the same commit; anything else is begun anew."""
     try:
-        before = json.loads(path.read_text(encoding="utf-8"))
+        before = read_result(path)
         same = before["format"] == FORMAT and before["provenance"]["commit"] == provenance()["commit"]
         return {row["id"]: row for row in before["states"]} if same and not before["complete"] else {}
     except (FileNotFoundError, ValueError, KeyError, TypeError):
@@ -135,9 +135,9 @@ def study(
         rows.append(row)
         tick(f"{row['verdict']:<14} {row['id']}")
         if len(rows) % SAVED_EVERY == 0:
-            write_text(to_json(document(rows, complete=False)), path)
+            write_result(document(rows, complete=False), path)
     found = document(rows, complete=True)
-    write_text(to_json(found), path)
+    write_result(found, path)
     return found
 
 

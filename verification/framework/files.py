@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+import reports.result_files
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
@@ -73,6 +75,11 @@ def write_text(text: str, path: Path) -> None:
 def to_json(document: object) -> str:
     """JSON text with a final newline; NaN and infinity, which JSON does not have, raise ValueError."""
     return json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def write_result(document: object, path: Path) -> None:
+    """Write a study's result file in the compact form, which `reports.result_files.read_result` reads."""
+    reports.result_files.write_result(document, path, write_text)
 
 
 class Progress:

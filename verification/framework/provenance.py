@@ -1,8 +1,9 @@
-"""What a result depends on beside the code of its case: versions, commit, machine, date and command."""
+"""What a result depends on: versions, commit, digests of the code, machine, date and command."""
 
 from __future__ import annotations
 
 import datetime
+import hashlib
 import os
 import platform
 import shlex
@@ -11,6 +12,9 @@ import sys
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = ("refimpl", "appendix_a", "verification", "tests")
+"""Folders whose files results depend on; an installed package has no tests."""
 DISTRIBUTION = "rough-friction"
 PACKAGES = ("numpy", "scipy", "ducc0", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography",
             "matplotlib", "hypothesis", "pytest")  # fmt: skip
@@ -32,13 +36,29 @@ def revision() -> dict[str, str | bool | None]:
 
     Only a checkout that this file is part of counts, not whatever repository lies around an environment.
     """
-    root = Path(__file__).resolve().parents[2]
-    if not (root / "pyproject.toml").is_file() or _git(root, "rev-parse", "--show-prefix") != "":
+    if not _is_checkout() or _git(ROOT, "rev-parse", "--show-prefix") != "":
         return {"commit": None, "dirty": None}
-    changes = _git(root, "status", "--porcelain")
+    changes = _git(ROOT, "status", "--porcelain")
     return {
-        "commit": _git(root, "rev-parse", "HEAD"),
+        "commit": _git(ROOT, "rev-parse", "HEAD"),
         "dirty": None if changes is None else bool(changes),
+    }
+
+
+def sources() -> dict[str, str]:
+    """Digest of the files in each folder of code, those two levels deep with all below them.
+
+    The contents count, comments too; the names of files do not. `verification.cli.stale` compares them.
+    """
+    contents: dict[str, list[str]] = {}
+    for top in SOURCES if _is_checkout() else SOURCES[:-1]:
+        for path in (ROOT / top).rglob("*"):
+            if path.is_file() and "__pycache__" not in path.parts:
+                folder = "/".join(path.relative_to(ROOT).parent.parts[:2])
+                contents.setdefault(folder, []).append(hashlib.sha256(path.read_bytes()).hexdigest())
+    return {
+        folder: hashlib.sha256("".join(sorted(contents[folder])).encode()).hexdigest()[:10]
+        for folder in sorted(contents)
     }
 
 
@@ -63,9 +83,14 @@ def provenance() -> dict[str, object]:
         "command": command(),
         "date": now,
         **revision(),
+        "sources": sources(),
         "versions": versions(),
         "machine": machine(),
     }
+
+
+def _is_checkout() -> bool:
+    return (ROOT / "pyproject.toml").is_file()
 
 
 def _git(root: Path, *arguments: str) -> str | None:

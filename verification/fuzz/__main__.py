@@ -17,14 +17,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1"))
 
-    from verification.framework.files import Progress, to_json, write_text
+    from verification.framework.files import Progress, write_result
     from verification.fuzz.campaign import campaign
     from verification.fuzz.targets import targets
 
     progress = Progress(len(targets()))
     found = campaign(options.inputs, options.seed, progress.tick)
     progress.close()
-    write_text(to_json(found), options.json)
+    write_result(found, options.json)
     print(f"{found['inputs']} inputs, {found['tracebacks']} tracebacks, {found['hangs']} hangs")
     return 1 if found["tracebacks"] or found["hangs"] else 0
 

@@ -14,8 +14,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.surfaces import MeasuredSurface
+from reports.result_files import compact
 from verification.cli.report import read_run
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 GRID, PIXEL = 8, 1e-6
 SIDE = 8 * PIXEL
@@ -59,7 +60,7 @@ def targets() -> tuple[Target, ...]:
         Target("X3P", ".x3p", (_x3p(heights),), _instrument, 0.02),
         Target("X3P, damaged inside", ".x3p", (XML.encode(),), _rezipped, 0.02),
         Target("text with a header", ".asc", (header + turned.getvalue(),), _instrument, 0.02),
-        Target("results", ".json", (_results(),), read_run, 0.06),
+        Target("results", ".json", (_results(), _compact_results()), read_run, 0.06),
     )  # fmt: skip
 
 
@@ -71,15 +72,15 @@ def _packaged(package: str, folder: str) -> Iterator[bytes]:
 def _scene(path: Path) -> None:
     """Read a scene, and ask its surfaces for heights where the file is a scene."""
     scene = rf.read_scene(path)
-    scene.heights(rf.Grid(scene.side, GRID))
+    scene.heights(scene.grid(GRID))
 
 
 def _plain(path: Path) -> None:
-    MeasuredSurface(path, unit="nm", pixel_size=PIXEL, max_missing=0.5).heights(rf.Grid(SIDE, GRID))
+    MeasuredSurface(path, unit="nm", pixel_size=PIXEL, max_missing=0.5).heights(rf.Grid.square(SIDE, GRID))
 
 
 def _instrument(path: Path) -> None:
-    MeasuredSurface(path, max_missing=0.5).heights(rf.Grid(SIDE, GRID))
+    MeasuredSurface(path, max_missing=0.5).heights(rf.Grid.square(SIDE, GRID))
 
 
 def _rezipped(path: Path) -> None:
@@ -117,3 +118,7 @@ def _results() -> bytes:
             "provenance": provenance,
         }
     ).encode()
+
+
+def _compact_results() -> bytes:
+    return compact(json.loads(_results()))[0].encode()

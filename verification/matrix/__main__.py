@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from verification.framework.files import to_json, write_text
+from reports.result_files import read_result
+from verification.framework.files import write_result
 from verification.matrix.merge import merged
 from verification.matrix.run import CHEAP, Matrix, measure
 
@@ -32,15 +32,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
     known = {}
     if asked.times is not None:
-        cases = json.loads(asked.times.read_text(encoding="utf-8"))["cases"]
+        cases = read_result(asked.times)["cases"]
         known = {case["id"]: case["seconds"] for case in cases}
-    old = json.loads(asked.json.read_text(encoding="utf-8")) if asked.add else None
+    old = read_result(asked.json) if asked.add else None
     tried = [check["id"] for check in old["checks"]] if old is not None else []
     skip = [*asked.skip, *tried]
     matrix: Matrix | None = None
     for matrix in measure(asked.cheap, known, skip, asked.only or ("*",), asked.against or ("*",)):
         found = matrix.document()
-        write_text(to_json(found if old is None else merged(old, found)), asked.json)
+        write_result(found if old is None else merged(old, found), asked.json)
     if matrix is None:
         print("no check is left to try", file=sys.stderr)
         return 1

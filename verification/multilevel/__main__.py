@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from verification.framework.files import Progress, to_json, write_text
+from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 from verification.multilevel.ensemble import QUANTITIES, TOLERANCE, Ensemble, ensemble
-from verification.sweep.study import study_from_dict
+from verification.sweep.study_file import study_from_dict
 
 SCENE = "table1-rough"
 GRIDS = [64, 128, 256, 512]
@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         done.append(_repetition(repetition, options.target, options.store))
         progress.tick(f"repetition {repetition + 1}")
     progress.close()
-    write_text(to_json(document(done, options.target)), options.json)
+    write_result(document(done, options.target), options.json)
 
 
 def _repetition(repetition: int, target: float, store: Path) -> Ensemble:

@@ -9,7 +9,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 from verification.framework.case import Unavailable
-from verification.framework.files import to_json, write_text
+from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 from verification.mutation.score import passes, summary
 from verification.mutation.session import in_fair_order, population, run
@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     records = run(ROOT, targets, chosen, options.log)
     found = summary(records, len(everything), options.seed, of=options.of, targets=group)
     if options.json:
-        write_text(to_json(found | {"provenance": provenance()}), options.json)
+        write_result(found | {"provenance": provenance()}, options.json)
     print({name: found[name] for name in ("score", "score_lower_bound", "tried", "survived", "equivalent")})
     return 0 if passes(found) else 1
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 import traceback
 from collections.abc import Iterator, Mapping
@@ -11,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from verification.framework.files import Progress, to_json, write_text
+from reports.result_files import read_result
+from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 from verification.properties.check import search
 from verification.properties.registry import INVARIANTS, Solver
@@ -36,7 +36,7 @@ def run(path: Path, examples: int, seed: int) -> bool:
     for number, (solver, name) in enumerate((s, n) for s in SOLVERS for n in INVARIANTS):
         if (solver, name) not in known:
             slices.append(one_slice(number, solver, name, each, seed))
-            write_text(to_json(document(slices, seed)), path)
+            write_result(document(slices, seed), path)
             progress.tick(f"{solver} {name}")
     progress.close()
     return all(line["counterexample"] is None for line in slices)
@@ -45,7 +45,7 @@ def run(path: Path, examples: int, seed: int) -> bool:
 def logged(path: Path) -> Iterator[dict[str, Any]]:
     """Slices of an earlier run, if there was one."""
     if path.exists():
-        yield from json.loads(path.read_text(encoding="utf-8"))["slices"]
+        yield from read_result(path)["slices"]
 
 
 def one_slice(number: int, solver: str, name: str, examples: int, seed: int) -> dict[str, Any]:

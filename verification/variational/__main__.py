@@ -20,11 +20,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     os.environ.update(dict.fromkeys(THREADS, "1"))
 
-    from verification.framework.files import to_json, write_text
+    from verification.framework.files import write_result
     from verification.variational.document import document
 
     found = document(options.rounds, options.budget, options.grids)
-    write_text(to_json(found), options.json)
+    write_result(found, options.json)
 
 
 if __name__ == "__main__":

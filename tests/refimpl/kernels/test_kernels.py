@@ -38,7 +38,6 @@ CASES = [
     "kernels/textbook-normal-fails",
     "kernels/textbook-tangential-fails",
     "kernels/quadrature-bound",
-    "kernels/multipole-bound",
     "kernels/love-at-centre",
     "kernels/cerruti-at-edge",
 ]

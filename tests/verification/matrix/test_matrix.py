@@ -11,6 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.kernels import normal_integral
 from refimpl.operators import dense
+from reports.result_files import read_result
 from verification.framework.case import Case, Measured, Metric
 from verification.matrix import run as running
 from verification.matrix.appendix_faults import IN_APPENDIX
@@ -88,7 +89,7 @@ def test_the_command_writes_the_file_and_fails_for_a_fault_that_nothing_sees(
     monkeypatch.setattr(running, "FAULTS", {"harmless": harmless})
     assert main(["--json", str(tmp_path / "matrix.json")]) == 1
     assert "seen by none: harmless" in capsys.readouterr().out
-    content = json.loads((tmp_path / "matrix.json").read_text(encoding="utf-8"))
+    content = read_result(tmp_path / "matrix.json")
     assert content["format"] == running.FORMAT
     assert content["provenance"]["versions"]["numpy"]
 
@@ -124,16 +125,16 @@ def test_patches_reach_every_module_that_holds_the_function() -> None:
 def test_dear_checks_are_added_to_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main, path = import_module("verification.matrix.__main__").main, tmp_path / "matrix.json"
     assert main(["--json", str(path), "--skip", "some/*"]) == 1
-    first = json.loads(path.read_text(encoding="utf-8"))
+    first = read_result(path)
     assert first["excluded"] == {"some/check": "left out on request"}
     assert main(["--json", str(path), "--only", "some/*", "--against", "no-*", "--add"]) == 0
-    both = json.loads(path.read_text(encoding="utf-8"))
+    both = read_result(path)
     assert both["excluded"] == {}
     assert both["faults"][0]["caught_by"] == ["some/check"]
     assert [check["alone"] for check in both["checks"]] == [[], ["no-kernel"]]
     assert len(both["added"]) == 1
     assert main(["--json", str(path), "--only", "some/*", "--add"]) == 1
-    assert json.loads(path.read_text(encoding="utf-8")) == both
+    assert read_result(path) == both
     assert capsys.readouterr().err == "no check is left to try\n"
 
 

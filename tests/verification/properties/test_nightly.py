@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import refimpl as rf
+from reports.result_files import read_result
 from verification.properties import INVARIANTS, check_solver, nightly
 from verification.properties.__main__ import main
 
@@ -31,7 +32,7 @@ def solve_with_a_wrong_peak(scene: rf.Scene, grid: int, **keywords: Any) -> rf.S
 def test_a_night_without_counterexamples(tmp_path: Path) -> None:
     log = tmp_path / "log.json"
     assert main(["--examples", "10", "--seed", "7", "--json", str(log)]) == 0
-    found = json.loads(log.read_text())
+    found = read_result(log)
     assert found["examples"] == 12  # four slices of three: at least as many as asked
     assert found["counterexamples"] == 0
     assert [line["seed"] for line in found["slices"]] == [7, 8, 9, 10]
@@ -42,16 +43,16 @@ def test_a_night_without_counterexamples(tmp_path: Path) -> None:
 def test_finished_slices_are_kept_and_another_seed_starts_anew(tmp_path: Path) -> None:
     log = tmp_path / "log.json"
     main(["--examples", "8", "--json", str(log)])
-    cut = json.loads(log.read_text())
+    cut = read_result(log)
     cut["slices"][0]["claim"] = "kept"
     del cut["slices"][2]
     log.write_text(json.dumps(cut))
     main(["--examples", "8", "--json", str(log)])
-    slices = json.loads(log.read_text())["slices"]
+    slices = read_result(log)["slices"]
     assert sorted(line["number"] for line in slices) == [0, 1, 2, 3]
     assert slices[0]["claim"] == "kept"
     main(["--examples", "8", "--seed", "2", "--json", str(log)])
-    assert [line["seed"] for line in json.loads(log.read_text())["slices"]] == [2, 3, 4, 5]
+    assert [line["seed"] for line in read_result(log)["slices"]] == [2, 3, 4, 5]
 
 
 @pytest.mark.usefixtures("two_invariants")
@@ -61,7 +62,7 @@ def test_a_counterexample_fails_the_night_and_is_printed_shrunk(
     monkeypatch.setattr(nightly, "SOLVERS", {"wrong": solve_with_a_wrong_peak})
     log = tmp_path / "log.json"
     assert main(["--examples", "40", "--json", str(log)]) == 1
-    found = json.loads(log.read_text())
+    found = read_result(log)
     assert found["counterexamples"] == 1
     text = "".join(found["slices"][1]["counterexample"].split())
     assert "Sample(bumps=((0,0),(0,0))" in text

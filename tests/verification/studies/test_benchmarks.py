@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 
 from refimpl.errors import InputError
+from reports.result_files import read_result
 from verification.benchmarks import child, rounds, run
 from verification.benchmarks.__main__ import known, main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
@@ -267,7 +267,7 @@ def test_a_record_only_grows(tmp_path: Path) -> None:
     file = tmp_path / "record.json"
     append({"rows": [1]}, file)
     append({"rows": [2]}, file)
-    assert json.loads(file.read_text())["runs"] == [{"rows": [1]}, {"rows": [2]}]
+    assert read_result(file)["runs"] == [{"rows": [1]}, {"rows": [2]}]
 
 
 @pytest.mark.parametrize("name", [OWN, ALONE, SHEARED, SLOPED])
@@ -296,7 +296,7 @@ def test_peak_memory_is_of_this_process() -> None:
 def test_a_run_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "record.json"
     main(["--grids", "32", "--codes", OWN, "--kinds", "smooth", "--rounds", "1", "--json", str(file)])
-    (recorded,) = json.loads(file.read_text())["runs"]
+    (recorded,) = read_result(file)["runs"]
     (entry,) = recorded["rows"]
     assert entry["meets the target"]
     assert entry["seconds"]["median"] > 0

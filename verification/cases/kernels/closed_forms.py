@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from itertools import product
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.kernels import multipole, normal_integral, tangential_integral
+from refimpl.kernels import normal_integral, tangential_integral
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.love import LOVE
 from refimpl.kernels.quadrature import ORDERS, across, relative_error_bound
@@ -102,38 +101,6 @@ def quadrature_bound() -> Measured:
             ratios[key] = max(ratios.get(key, 0.0), error / bound)
     return Measured(
         value=max(ratios.values()), data=ratios, note="largest error over bound, by kernel and order"
-    )
-
-
-@case(
-    "kernels/multipole-bound",
-    title="The error bound that chooses the number of multipoles holds",
-    claim="what 1 ... 6 terms lack of either kernel stays below the bound from its moments wherever tried",
-    source="refimpl/kernels/multipole.py",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="error over bound; a bound is a bound",
-    tags=("kernels", "bound"),
-)
-def multipole_bound() -> Measured:
-    ratios: dict[str, float] = {}
-    kernels = (
-        ("normal", multipole.LOVE, reference.normal),
-        ("tangential", multipole.CERRUTI, reference.tangential),
-    )
-    for (name, series, exact), terms in product(kernels, range(1, multipole.MOST)):
-        for distance, turn in product((1.0, 2.0, 5.0, 20.0, 100.0), (0.0, 0.1, 0.6, 1.2)):
-            bound = series.remainder(terms, distance)
-            if bound < 1e-11:  # below, rounding would be judged
-                continue
-            x, y = distance * math.cos(turn), distance * math.sin(turn)
-            error = reference.relative_error(
-                series.sum(np.array(x), np.array(y), terms), exact(x, y, 1.0, 1.0)
-            )
-            key = f"{name}, {terms} terms"
-            ratios[key] = max(ratios.get(key, 0.0), error / bound)
-    return Measured(
-        value=max(ratios.values()), data=ratios, note="largest error over bound, by kernel and terms"
     )
 
 

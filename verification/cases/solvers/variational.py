@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 import refimpl as rf
+from refimpl.grid import Array
+from reports.result_files import read_result
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged
-from verification.variational.energy import Array, Energy, frictionless, table2_scene
+from verification.variational.energy import Energy, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, Minimum, interior_point
 from verification.variational.timing import Contact, growth, measure, table
 
@@ -183,7 +184,7 @@ def table2_rerun() -> Measured:
     tags=("table2", "cost"),
 )
 def table2_growth() -> Measured:
-    found = json.loads(COMMITTED.read_text(encoding="utf-8"))
+    found = read_result(COMMITTED)
     growths, data = found["growth"], {}
     for name in growths:
         rows = [row for row in found["rows"] if row["method"] == name]

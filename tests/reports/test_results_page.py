@@ -1,0 +1,55 @@
+"""The page of results is what the result files say."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from reports.result_files import read_results
+from reports.results_page import FOLDER, PAGE, interval, page, table_3
+from tests.documents import ROOT
+
+
+@pytest.fixture(scope="module")
+def documents() -> dict[str, Any]:
+    return read_results(FOLDER)
+
+
+def test_the_committed_page_is_that_of_the_files(documents: dict[str, Any]) -> None:
+    written = PAGE.read_text(encoding="utf-8")
+    assert written == page(documents), "run python -m reports.results_page"
+
+
+def test_every_row_names_a_file_that_is_there() -> None:
+    rows = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| ")]
+    heads = [row for row in rows if "results/" not in row]
+    assert all(re.search(r"\| file \||^\| file \||\| file$", row) for row in heads), heads
+    for row in set(rows) - set(heads):
+        (name,) = set(re.findall(r"\]\(results/([\w.]+)\)", row))
+        assert (ROOT / "reports/results" / name).is_file()
+
+
+def test_a_refuted_claim_and_a_failed_check_are_named(documents: dict[str, Any]) -> None:
+    assert "| refuted | Eq. (11) |" in page(documents)
+    run = documents["quick"]
+    broken = {**run["cases"][0], "status": "fail"}
+    counts = run["counts"] | {"pass": run["counts"]["pass"] - 1, "fail": 1}
+    made = page({**documents, "quick": {**run, "cases": [broken, *run["cases"][1:]], "counts": counts}})
+    assert f"Not passed: `{broken['id']}` (fail)." in made
+
+
+def test_table_3_has_the_printed_numbers(documents: dict[str, Any]) -> None:
+    rows = [line.split(" | ") for line in table_3(documents["reproduction"]).splitlines() if "512²" in line]
+    assert [[row[k] for k in (3, 5, 7)] for row in rows] == [
+        ["0.218", "0.643", "0.164"],
+        ["0.106", "0.122", "1.91"],
+        ["0.095", "0.07", "3.21"],
+        ["0.089", "0.044", "5.28"],
+    ]
+
+
+def test_an_interval_decides_the_digits() -> None:
+    assert interval(12.345, 3.0) == "12 ± 3"
+    assert interval(0.012341, 0.00005) == "0.01234 ± 0.00005"

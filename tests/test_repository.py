@@ -1,0 +1,50 @@
+"""What git tracks stays small: people clone it, and read its differences."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from reports.result_files import MOST_BYTES, result_paths
+from tests.documents import ROOT
+
+MOST_BYTES_IN_ALL = 8_000_000
+RESULTS = ROOT / "reports" / "results"
+
+
+@pytest.fixture(scope="module")
+def tracked() -> list[Path]:
+    """The tracked files that are there. In a checkout git must answer; a copy without `.git` is skipped."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("no git checkout: nothing says which files are tracked")
+    listed = subprocess.run(
+        ["git", "-C", str(ROOT), "ls-files", "-z"], capture_output=True, text=True, check=True
+    )
+    paths = [ROOT / name for name in listed.stdout.split("\0") if name]
+    return [path for path in paths if path.is_file()]
+
+
+def test_every_file_is_small(tracked: list[Path]) -> None:
+    assert len(tracked) > 100
+    sizes = {str(path.relative_to(ROOT)): path.stat().st_size for path in tracked}
+    assert {name: size for name, size in sizes.items() if size > MOST_BYTES} == {}
+    assert sum(sizes.values()) <= MOST_BYTES_IN_ALL
+
+
+def test_no_built_report_is_tracked(tracked: list[Path]) -> None:
+    built = [path for path in tracked if path.suffix in (".html", ".pdf")]
+    assert [str(path.relative_to(ROOT)) for path in built if path.parent != ROOT / "reports/templates"] == []
+
+
+def test_no_continuation_is_left_over() -> None:
+    owners = {path.stem for path in result_paths(RESULTS)}
+    parts = {path.stem.partition(".")[0] for path in set(RESULTS.glob("*.json")) - set(result_paths(RESULTS))}
+    assert parts <= owners
+
+
+def test_every_result_file_has_its_command_in_the_readme() -> None:
+    rows = (RESULTS / "README.md").read_text(encoding="utf-8").splitlines()
+    named = {row.split("`")[1] for row in rows if row.startswith("| `")}
+    assert named == {path.name for path in result_paths(RESULTS)}
