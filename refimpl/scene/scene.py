@@ -126,7 +126,9 @@ class Scene:
             raise InputError("side", None, allowed)
         x, y = (min(lengths[axis] for lengths in known) for axis in (0, 1))
         if not min(x, y) > 0:
-            raise InputError("sliding_offset", self.sliding_offset, "an offset at which measured areas overlap")
+            raise InputError(
+                "sliding_offset", self.sliding_offset, "an offset at which measured areas overlap"
+            )
         return x, y
 
     def grid(self, elements: int | Sequence[int]) -> Grid:

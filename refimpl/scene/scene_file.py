@@ -136,7 +136,9 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     modulus = _required(material, "E", "Young's modulus in Pa", prefix=f"{name}.material.")
     ratio = _required(material, "nu", "Poisson's ratio", prefix=f"{name}.material.")
     with within(f"{name}.material"):
-        matter = Material(E=math.inf if modulus == _RIGID else modulus, nu=ratio, hardness=material.get("hardness"))
+        matter = Material(
+            E=math.inf if modulus == _RIGID else modulus, nu=ratio, hardness=material.get("hardness")
+        )
     return Body(matter, sum(surfaces[1:], start=surfaces[0]))
 
 
@@ -144,7 +146,11 @@ def _body_to_dict(body: Body) -> dict[str, Any]:
     parts = body.surface.parts if isinstance(body.surface, SurfaceSum) else (body.surface,)
     hardness = {} if body.material.hardness is None else {"hardness": body.material.hardness}
     return {
-        "material": {"E": _RIGID if body.material.is_rigid else body.material.E, "nu": body.material.nu, **hardness},
+        "material": {
+            "E": _RIGID if body.material.is_rigid else body.material.E,
+            "nu": body.material.nu,
+            **hardness,
+        },
         "surface": [part.to_dict() for part in parts],
     }
 
