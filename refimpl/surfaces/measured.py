@@ -180,7 +180,7 @@ class MeasuredSurface(Surface):
             around = fill(np.pad(window.reading.heights, MEMORY, mode="wrap"), window.reading.pixel)
             z = around[MEMORY:-MEMORY, MEMORY:-MEMORY]
         x, y = np.arange(i.start, i.stop, dtype=float), np.arange(j.start, j.stop, dtype=float)
-        form = fit(x, y, z, DEGREES[self.level])
+        form = fit(x, y, z, DEGREES[str(self.level)])
         return z, form, z - form(x, y)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:

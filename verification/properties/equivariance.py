@@ -128,7 +128,9 @@ def swapped_bodies(solver: Solver, sample: Sample) -> None:
     equal_states(solver(overturned, sample.shape), base.pressure, base, sample, 1.0)
 
 
-@invariant("two measured maps: the bodies swapped, and the frame turned over with them", samples(periodic=False))
+@invariant(
+    "two measured maps: the bodies swapped, and the frame turned over with them", samples(periodic=False)
+)
 def swapped_maps(solver: Solver, sample: Sample) -> None:
     """Half a turn about the x axis: phi -> pi - phi. N, F, mu, A and the pressures stay, Q changes sign.
 

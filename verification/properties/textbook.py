@@ -32,9 +32,7 @@ def shear_matrix(grid: Grid, direction: float) -> Array:
     return _cerruti(*_pairs(grid), grid.spacings, direction)
 
 
-def shear_offsets(
-    shape: tuple[int, int], direction: float, edges: tuple[float, float] = (1.0, 1.0)
-) -> Array:
+def shear_offsets(shape: tuple[int, int], direction: float, edges: tuple[float, float] = (1.0, 1.0)) -> Array:
     """``I[s/rho^2]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and y."""
     return _cerruti(*_offsets(shape, edges), edges, direction)
 
