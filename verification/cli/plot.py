@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,7 +80,9 @@ def _map(axes: Axes, solution: Solution, name: str, colours: str) -> None:
 
     field = np.ma.masked_equal(getattr(solution, name) / MEGA, 0.0)
     width, height = (length / MILLI for length in solution.grid.lengths)
-    aspect = "equal" if max(width, height) <= SLENDER * min(width, height) else "auto"
+    aspect: Literal["equal", "auto"] = (
+        "equal" if max(width, height) <= SLENDER * min(width, height) else "auto"
+    )
     image = axes.imshow(field.T, origin="lower", extent=(0, width, 0, height), cmap=colours, aspect=aspect)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", title=name.capitalize())
     axes.figure.colorbar(image, ax=axes, label="MPa")

@@ -137,14 +137,14 @@ def swapped_maps(solver: Solver, sample: Sample) -> None:
     A measured map on the upper body is turned over by itself, so both maps only change places.
     """
     scene, grid = sample.scene, sample.grid
-    (dx, dy), bodies = grid.spacings, {}
+    (dx, dy), bodies = grid.spacings, dict[str, rf.Body]()
     with TemporaryDirectory() as folder:
         for name in ("upper", "lower"):
             body, path = getattr(scene, name), Path(folder) / f"{name}.npy"
             np.save(path, np.kron(heights(body, grid), np.ones((3, 3))))  # a window has four pixels at least
             surface = rf.MeasuredSurface(path, unit="m", pixel_size=(dx / 3, dy / 3), level="none")
             bodies[name] = rf.Body(body.material, surface)
-        here = replace(scene, **bodies)
+        here = replace(scene, upper=bodies["upper"], lower=bodies["lower"])
         there = replace(
             scene,
             upper=bodies["lower"],

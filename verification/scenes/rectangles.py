@@ -1,4 +1,4 @@
-"""Rectangular scenes on which the two solvers are held against each other, with square and oblong elements."""
+"""Rectangular scenes, with square and oblong elements, on which both solvers are compared."""
 
 from __future__ import annotations
 

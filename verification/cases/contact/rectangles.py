@@ -406,7 +406,7 @@ def work_scene(kind: str, size: tuple[float, float], seed: int) -> rf.Scene:
     plane = {"radius": None, "rms": 0.5e-6, "correlation_length": 60e-6}
     ball = {"radius": 0.14, "rms": 0.3e-6, "load": 20.0}
     given = ball if kind == "ball" else plane
-    return pressed(size=size, seed=seed, periodic=kind == "periodic", **given)  # type: ignore[arg-type]
+    return pressed(size=size, seed=seed, periodic=kind == "periodic", **given)
 
 
 def work(kind: str, ratio: float, oblong: float, seed: int) -> float:
