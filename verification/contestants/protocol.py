@@ -217,7 +217,7 @@ class Abilities:
 
         Raises `InputError` for an unknown name, and where no problem at all could be posed.
         """
-        given = [name.strip().replace(" ", "_") for name in names.split(",") if name.strip()]
+        given = [name.strip().replace(" ", "_").replace("-", "_") for name in names.split(",") if name.strip()]
         domain, control = {"periodic", "aperiodic"} & {*given}, {"load", "approach"} & {*given}
         if not {*given} <= {*FLAGS} or not domain or not control:
             allowed = (
