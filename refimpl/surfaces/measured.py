@@ -11,14 +11,13 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.arrays import pixel_edges
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.crop import ROUNDING, Crop, by, extent
 from refimpl.surfaces.detrending import DEGREES, Form, fit
 from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.orientation import MIRRORS, TURNS, Oriented, oriented
 from refimpl.surfaces.readers import UNITS, Reading, read
-from refimpl.surfaces.surface import Surface, finite
+from refimpl.surfaces.surface import Surface, finite, pixel_edges
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
