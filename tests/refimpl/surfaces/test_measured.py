@@ -137,7 +137,10 @@ def test_points_on_the_windows_edge_lie_in_it(tmp_path: Path) -> None:
 
 def test_all_but_the_path_goes_by_name() -> None:
     names = [name for name, p in signature(MeasuredSurface).parameters.items() if p.kind is p.KEYWORD_ONLY]
-    assert names == ["unit", "pixel_size", "level", "missing", "max_missing"]
+    assert names == [
+        "unit", "pixel_size", "level", "missing", "max_missing",
+        "replica", "mirror", "rotate_deg", "turn_over", "centre", "repeats",
+    ]  # fmt: skip
 
 
 # --- gaps ---
