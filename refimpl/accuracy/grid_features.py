@@ -1,5 +1,4 @@
-"""Features of a state on one grid that error bars need: numbers, contact edge, peaks, and the grid's own error
-parts."""
+"""Features of a state on one grid for error bars: numbers, contact edge, peaks, the grid's own parts."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ PLAIN = (".npy", ".csv")  # by nature; text (.asc, .txt) is a plain table if its
 TEXT = (".asc", ".txt")
 TEXT_FORMATS = ("asc", "xyz")
 
-# Errors that a reader may raise on bytes that are not what they claim to be. SurfaceTopography's own errors are
+# Errors that a reader may raise on bytes of another format than claimed. SurfaceTopography's own errors are
 # plain Exceptions and join these where it is imported.
 _BROKEN: tuple[type[Exception], ...] = (
     ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
