@@ -36,8 +36,8 @@ class MeasuredSurface(Surface):
     3. gaps: ``missing="fill"`` fills by Laplace's equation (``gaps.fill``), but refuses a window with more
        than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
     4. level: the least-squares ``"mean"``, ``"plane"`` (the default) or ``"paraboloid"`` (all six quadratic
-       terms) of the points in the window at offset 0 is taken off everywhere, so that a shifted surface
-       remains the same rigid body; ``"none"`` takes nothing off; of a map that repeats only the mean can be;
+       terms) of the points in the window at offset 0 is subtracted everywhere, so that a shifted surface
+       remains the same rigid body; ``"none"`` subtracts nothing; of a map that repeats only the mean can be;
     5. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
        the measured area the spline's end piece goes on.
 
@@ -104,7 +104,7 @@ class MeasuredSurface(Surface):
 
     @cached_property
     def reading(self) -> Reading:
-        """What the file holds, as it is (read once)."""
+        """The content of the file, as it is (read once)."""
         pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
         return read(self._file, self.unit, pixel)
 
