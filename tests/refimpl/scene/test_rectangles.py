@@ -147,7 +147,7 @@ def test_arrays_are_never_squeezed() -> None:
     with pytest.raises(rf.InputError, match=r"heights"):
         rf.solve(strip((1e-3, 0.506e-3), lower=rf.Body(COPPER, z)), 32)
     with pytest.raises(
-        rf.InputError, match="pixel = 'array of 0.001 x 0.001 m on a domain of 0.001 x 0.0005 m'"
+        rf.InputError, match=r"pixel = 'array of 0\.001 x 0\.001 m on a domain of 0\.001 x 0\.0005 m'"
     ):
         rf.solve(strip((1e-3, 0.5e-3), lower=rf.Body(COPPER, stated)), 32)
     assert strip(None, lower=rf.Body(COPPER, stated)).lengths == pytest.approx((1e-3, 1e-3))

@@ -86,7 +86,7 @@ def test_a_bad_way_up_is_refused(tmp_path: Path) -> None:
     with pytest.raises(rf.InputError, match=r"level = 'plane': expected one of none, mean"):
         rf.MeasuredSurface(tmp_path / "map.npy", repeats=True, level="plane")
     with pytest.raises(
-        rf.InputError, match="at most the measured 6e-06 x 6e-06 m of map.npy about the centre"
+        rf.InputError, match=r"at most the measured 6e-06 x 6e-06 m of map\.npy about the centre"
     ):
         written(tmp_path, centre=(3e-6, 3e-6)).heights(GRID)
 

@@ -163,7 +163,7 @@ def image_differences() -> dict[str, dict[str, float]]:
     source="symmetry of Eqs (1)-(7) under reflections and quarter turns",
     metric="at_most",
     tolerance=1e-12,
-    tolerance_reason="rounding of the dense solver, 1e-16, times a condition number below 2e3; measured 8e-15",
+    tolerance_reason="rounding of the dense solver times a condition number below 2e3; measured 8e-15",
     tags=("solvers", "rectangle", "axes"),
 )
 def images() -> Measured:
