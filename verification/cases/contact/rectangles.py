@@ -88,6 +88,25 @@ def dense_numbers() -> Measured:
     return largest({trial.name: difference(trial) for trial in trials()})
 
 
+@case(
+    "rectangles/paper-scheme",
+    title="The paper's own scheme on rectangles",
+    claim="on free rectangles, with square and oblong elements, the paper's scheme reaches the same pressures",
+    source="section 6 of the paper; the production solver as reference",
+    metric="at_most",
+    tolerance=1e-4,
+    tolerance_reason="its own load tolerance; measured 4e-5 of the peak",
+    tags=("solvers", "rectangle"),
+)
+def paper_scheme() -> Measured:
+    def difference(trial: Trial) -> float:
+        found = rf.solve(trial.scene, trial.M, method="paper", **trial.options)
+        off = float(np.abs(found.pressure - trial.fft.pressure).max()) / trial.fft.max_pressure
+        return off if found.converged else math.inf
+
+    return largest({trial.name: difference(trial) for trial in trials() if not trial.scene.periodic})
+
+
 # --- images ---
 
 IMAGES: Mapping[str, tuple[Callable[[Array], Array], Callable[[float], float], int]] = {
