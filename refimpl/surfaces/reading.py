@@ -1,4 +1,4 @@
-"""What a file of heights holds: the record that every reader returns, its units, and how people override them."""
+"""Record that every reader returns, units, and how the scene overrides what a file states."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Given:
         pixel: tuple[float, float] | None,
         what: str = "does not state them",
     ) -> tuple[str, tuple[float, float], tuple[str, ...]]:
-        """Unit, pixel and notes, from what the file states (None: nothing). Raises InputError if one lacks."""
+        """Unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one lacks."""
         if (self.unit or unit) is None or (self.pixel_size or pixel) is None:
             raise InputError("unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}")
         notes = []
