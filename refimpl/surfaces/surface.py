@@ -64,6 +64,19 @@ class Surface(ABC):
         formula."""
         return None
 
+    def extent(self, offset: tuple[float, float]) -> tuple[float, float] | None:
+        """Return the largest rectangle (m) that the surface's data cover at an offset; None for a formula."""
+        return None
+
+    @property
+    def label(self) -> str:
+        """What messages call the surface."""
+        return self.kind
+
+    def on_upper_body(self) -> Surface:
+        """Return the surface as it lies on the upper body."""
+        return self
+
     @property
     def parts(self) -> tuple[Surface, ...]:
         """The surfaces that add up to this one."""
