@@ -129,8 +129,8 @@ class _Level:
         """The five-point operator on a hole; ``diagonal`` counts the known neighbours as well."""
         usable = hole | known
         wx, wy = _couplings(pixel)
-        pairs_x: Array = wx * (usable[1:] & usable[:-1] & (hole[1:] | hole[:-1]))
-        pairs_y = wy * (usable[:, 1:] & usable[:, :-1] & (hole[:, 1:] | hole[:, :-1]))
+        pairs_x = np.multiply(wx, usable[1:] & usable[:-1] & (hole[1:] | hole[:-1]), dtype=np.float64)
+        pairs_y = np.multiply(wy, usable[:, 1:] & usable[:, :-1] & (hole[:, 1:] | hole[:, :-1]), dtype=np.float64)
         total = _sums(pairs_x, pairs_y, hole.shape)
         inner_x, inner_y = pairs_x * (hole[1:] & hole[:-1]), pairs_y * (hole[:, 1:] & hole[:, :-1])
         return cls(hole, inner_x, inner_y, np.where(hole, total, 1.0))

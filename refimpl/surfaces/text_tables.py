@@ -147,7 +147,9 @@ def _is_index(column: Array, layout: _Layout, lines: list[str]) -> bool:
     counts = len(column) > 1 and column[0] in (0, 1) and bool(np.all(np.diff(column) == 1))
     cells = [layout.cells(line) for line in lines if line]
     whole = all(_WHOLE.fullmatch(row[0]) for row in cells if row)
-    return bool(counts and whole) and not all(_WHOLE.fullmatch(cell) for row in cells for cell in row[1:] if cell)
+    decimals = not all(
+        _WHOLE.fullmatch(cell) for row in cells for cell in row[1:] if cell
+    )
 
 
 def is_triples(table: TextTable) -> bool:
