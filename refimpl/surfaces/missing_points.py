@@ -130,7 +130,9 @@ class _Level:
         usable = hole | known
         wx, wy = _couplings(pixel)
         pairs_x = np.multiply(wx, usable[1:] & usable[:-1] & (hole[1:] | hole[:-1]), dtype=np.float64)
-        pairs_y = np.multiply(wy, usable[:, 1:] & usable[:, :-1] & (hole[:, 1:] | hole[:, :-1]), dtype=np.float64)
+        pairs_y = np.multiply(
+            wy, usable[:, 1:] & usable[:, :-1] & (hole[:, 1:] | hole[:, :-1]), dtype=np.float64
+        )
         total = _sums(pairs_x, pairs_y, hole.shape)
         inner_x, inner_y = pairs_x * (hole[1:] & hole[:-1]), pairs_y * (hole[:, 1:] & hole[:, :-1])
         return cls(hole, inner_x, inner_y, np.where(hole, total, 1.0))

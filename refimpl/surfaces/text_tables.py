@@ -147,9 +147,8 @@ def _is_index(column: Array, layout: _Layout, lines: list[str]) -> bool:
     counts = len(column) > 1 and column[0] in (0, 1) and bool(np.all(np.diff(column) == 1))
     cells = [layout.cells(line) for line in lines if line]
     whole = all(_WHOLE.fullmatch(row[0]) for row in cells if row)
-    decimals = not all(
-        _WHOLE.fullmatch(cell) for row in cells for cell in row[1:] if cell
-    )
+    decimals = not all(_WHOLE.fullmatch(cell) for row in cells for cell in row[1:] if cell)
+    return counts and whole and decimals
 
 
 def is_triples(table: TextTable) -> bool:

@@ -27,8 +27,8 @@ def rewritten(path: Path, name: str | None) -> tuple[Source, tuple[str, ...]]:
     """Return what to hand to the library for a file of format ``name``, and a note of what was changed."""
     if name == "x3p":
         return _x3p(path)
-    if name == "sur" and path.read_bytes()[:12] == b"DSCOMPRESSED":
-        return _sur(path)
+    if name == "sur":
+        return _sur(path.read_bytes(), path)
     return str(path), ()
 
 
@@ -48,7 +48,7 @@ def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
             return str(path), ()
         if revision:
             text = text.replace(revision.group(0), f"<Revision>{X3P_REVISION}</Revision>".encode())
-        text = re.sub(rb"<(\w*Link)>[^<]*<", lambda m: m.group(0).replace(b"\\", b"/"), text)
+        text = re.sub(rb"<\w*Link>[^<]*", lambda m: m.group(0).replace(b"\\", b"/"), text)
         copy = io.BytesIO()
         with zipfile.ZipFile(copy, "w") as target:
             target.writestr("main.xml", text)
@@ -61,9 +61,12 @@ def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
     return copy, (f"X3P with {', '.join(changed)}",) if changed else ()
 
 
-def _sur(path: Path) -> tuple[Source, tuple[str, ...]]:
-    """Directory of streams (count; raw and packed length of each), then the zlib streams."""
-    raw = path.read_bytes()
+def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
+    """Units in UTF-8 become Latin-1. Compressed: a directory of streams (count; raw and packed length of
+    each), then the zlib streams."""
+    raw = raw[:_SUR_HEADER].replace("µm\0".encode(), "µm\0\0".encode("latin-1")) + raw[_SUR_HEADER:]
+    if not raw.startswith(b"DSCOMPRESSED"):
+        return io.BytesIO(raw), ()
     comment, private = struct.unpack_from(_SUR_COMMENT, raw, _SUR_LENGTHS_AT)
     at = _SUR_HEADER + comment + private
     (count,) = struct.unpack_from("<I", raw, at)
