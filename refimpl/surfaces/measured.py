@@ -205,6 +205,11 @@ class MeasuredSurface(Surface):
         form = fit_form(x, y, z, self.level or "plane", reading.pixel)
         return z, form, z - form(x, y)
 
+    def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array]:
+        """Form of the window of those lengths (m) at offset 0, and what is left of its measured points."""
+        _, form, rest = self._central(lengths)
+        return form, rest
+
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, reading = self._file.name, self._oriented.reading
         z, form, rest = self._central(grid.lengths)

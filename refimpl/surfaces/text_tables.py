@@ -148,12 +148,12 @@ def _is_index(column: Array, layout: _Layout, lines: list[str]) -> bool:
     cells = [layout.cells(line) for line in lines if line]
     whole = all(_WHOLE.fullmatch(row[0]) for row in cells if row)
     decimals = not all(_WHOLE.fullmatch(cell) for row in cells for cell in row[1:] if cell)
-    return counts and whole and decimals
+    return bool(counts and whole and decimals)
 
 
 def is_triples(table: TextTable) -> bool:
     """Whether the rows are points x, y, z: a map has four columns at least."""
-    return table.rows.shape[1] == 3
+    return bool(table.rows.shape[1] == 3)
 
 
 def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:

@@ -1,4 +1,4 @@
-"""Formats of instruments: an asymmetric map comes back with its orientation, pixel, unit and missing point."""
+"""Formats of instruments: an asymmetric map comes back, with orientation, pixel, unit and missing point."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from refimpl.errors import InputError
-from refimpl.surfaces.reading import ARRAY, IMAGE
 from refimpl.surfaces.readers import read
+from refimpl.surfaces.reading import ARRAY, IMAGE
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import MAP, MISSING, PIXEL, Writer
 
