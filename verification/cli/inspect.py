@@ -44,7 +44,11 @@ def add_parser(commands: Parsers) -> None:
     parser.add_argument("--unit", help="of the heights: m, mm, um, nm, A or pm")
     parser.add_argument("--pixel-size", metavar="DX[,DY]", type=_pair, help="edges of a pixel (m)")
     parser.add_argument("--channel", type=_channel, help="name or number; by default the first of heights")
-    parser.add_argument("--level", type=_level, help="plane (default), none, mean, paraboloid, cylinder, sphere, or a polynomial's degree")  # fmt: skip
+    parser.add_argument(
+        "--level",
+        type=_level,
+        help="plane (default), none, mean, paraboloid, cylinder, sphere, or a polynomial's degree",
+    )
     parser.add_argument(
         "--outliers", metavar="K", type=float, help="drop points K spreads off their neighbours"
     )
