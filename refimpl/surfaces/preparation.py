@@ -16,7 +16,9 @@ from refimpl.surfaces.reading import Reading
 
 NEIGHBOURHOOD = 5  # points an axis of the median
 MAD_TO_RMS = 1.4826  # of Gaussian differences
-REACH = 1.0  # cut-off wavelengths that a map is padded by: the weight there is exp(-pi^2 / ln 2) = 7e-7
+REACH = (
+    1.5  # cut-off wavelengths that a map is padded by; the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
+)
 
 
 def prepare(
