@@ -94,9 +94,13 @@ class Scene:
             require_size("side", self.side, "a positive length in m")
             keep_doubles(self, "side")
         elif self.size is not None:
-            object.__setattr__(self, "size", _two("size", self.size, "two positive lengths in m, (Lx, Ly)"))
-            for length in self.size:
-                require_size("size", length, "two positive lengths in m, (Lx, Ly)")
+            given, allowed = self.size, "two positive lengths in m, (Lx, Ly)"
+            object.__setattr__(self, "size", _two("size", given, allowed))
+            try:
+                for length in self.size:
+                    require_size("size", length, allowed)
+            except InputError as refused:
+                raise InputError("size", given, refused.allowed) from None
         low, high = sorted(self.lengths)
         if high > MAX_RATIO * low:
             raise InputError("size", self.lengths, f"lengths whose ratio is at most {MAX_RATIO:g}")

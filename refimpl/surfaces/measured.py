@@ -202,7 +202,8 @@ class MeasuredSurface(Surface):
         (i, j), reading = window.points, window.reading
         z = reading.heights[i, j]
         x, y = np.arange(i.start, i.stop, dtype=float), np.arange(j.start, j.stop, dtype=float)
-        form = fit_form(x, y, z, self.level or "plane", reading.pixel)
+        assert self.level is not None  # set in __post_init__
+        form = fit_form(x, y, z, self.level, reading.pixel)
         return z, form, z - form(x, y)
 
     def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array]:
