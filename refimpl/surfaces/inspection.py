@@ -47,7 +47,7 @@ PARAMETERS = {
 
 @dataclass(frozen=True)
 class Inspection:
-    """A measured surface and its levelled map ``z[i, j]`` (m; missing points NaN).
+    """A measured surface and its levelled map ``z[i, j]`` (m; missing points NaN), as it lies on its body.
 
     ``parameters`` are of that map, by the names of PARAMETERS, SI; NaN where the map does not tell: an
     autocorrelation that does not fall far enough within half the map, a spectrum of too few rings.
@@ -55,13 +55,9 @@ class Inspection:
 
     surface: MeasuredSurface
     z: Array
+    pixel: tuple[float, float]
     slopes: tuple[float, float]
     radius: float | None
-
-    @property
-    def pixel(self) -> tuple[float, float]:
-        """Edges (m) of a pixel."""
-        return self.surface.prepared.pixel
 
     @cached_property
     def autocorrelation(self) -> Autocorrelation:
@@ -137,8 +133,8 @@ def inspect(
     else:
         surface = MeasuredSurface(path, **{"max_missing": 1.0 - 1e-9} | keys)
     lengths = surface.extent((0.0, 0.0)) if size is None else size
-    form, z = surface.levelled(lengths)
+    form, z, pixel = surface.levelled(lengths)
     slopes = tuple(
-        float(slope / edge) for slope, edge in zip(form.slopes, surface.prepared.pixel, strict=True)
+        float(slope / edge) for slope, edge in zip(form.slopes, pixel, strict=True)
     )
-    return Inspection(surface, z, (slopes[0], slopes[1]), form.radius)
+    return Inspection(surface, z, pixel, (slopes[0], slopes[1]), form.radius)

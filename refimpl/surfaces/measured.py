@@ -206,10 +206,10 @@ class MeasuredSurface(Surface):
         form = fit_form(x, y, z, self.level, reading.pixel)
         return z, form, z - form(x, y)
 
-    def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array]:
-        """Form of the window of those lengths (m) at offset 0, and what is left of its measured points."""
+    def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array, tuple[float, float]]:
+        """Form of the window of those lengths (m) at offset 0, what is left of its points, their spacings."""
         _, form, rest = self._central(lengths)
-        return form, rest
+        return form, rest, self._oriented.reading.pixel
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, reading = self._file.name, self._oriented.reading
