@@ -15,7 +15,7 @@ from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.reading import Reading
 
 NEIGHBOURHOOD = 5  # points an axis of the median
-MAD_TO_RMS = 1.4826  # of Gaussian differences
+MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian differences to their rms
 REACH = (
     1.5  # cut-off wavelengths that a map is padded by; the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
 )
@@ -30,8 +30,9 @@ def prepare(
 ) -> Reading:
     """Return the map with outliers missing and wavelengths filtered, a note for each step.
 
-    outliers   points further from the median of the 5 x 5 points around them than that many spreads (1.4826
-               times the median distance over the map) become missing
+    outliers   points further from the median of the 5 x 5 points around them than that many spreads become
+               missing (Hampel's identifier); a spread is 1.4826 times the median of such distances, of the
+               5 x 5 points around or over the map, whichever is larger: smooth peaks stay
     low_pass   wavelengths (m) below are damped, ``high_pass``: above; by half at that wavelength (Gaussian
                filter of ISO 16610-61). At the border the weights are normalised (ISO 16610-28), after the
                plane of the whole map is set aside; missing points are filled for the filter alone.
@@ -48,11 +49,12 @@ def _without_outliers(reading: Reading, times: float, repeats: bool) -> Reading:
     filled = _filled(reading)
     mode = "wrap" if repeats else "nearest"
     away = np.abs(filled - median_filter(filled, NEIGHBOURHOOD, mode=mode))
-    spread = MAD_TO_RMS * float(np.median(away[~missing])) or float(np.sqrt(np.mean(away[~missing] ** 2)))
+    typical = float(np.median(away[~missing])) or float(np.sqrt(np.mean(away[~missing] ** 2))) / MAD_TO_RMS
+    spread = MAD_TO_RMS * np.maximum(median_filter(away, NEIGHBOURHOOD, mode=mode), typical)
     out = ~missing & (away > times * spread)
     note = (
-        f"{np.count_nonzero(out)} outliers, more than {times:g} x {spread:.3g} m off the median of the "
-        f"{NEIGHBOURHOOD} x {NEIGHBOURHOOD} points around, are taken as missing"
+        f"{np.count_nonzero(out)} outliers, more than {times:g} spreads off the median of the {NEIGHBOURHOOD} x "
+        f"{NEIGHBOURHOOD} points around (over the map one spread is {MAD_TO_RMS * typical:.3g} m), are missing"
     )
     return replace(reading, heights=np.where(out, np.nan, reading.heights), notes=(*reading.notes, note))
 
