@@ -39,14 +39,16 @@ class Crop:
         room = tuple((whole - length) / 2.0 for whole, length in zip(most, self.lengths, strict=True))
         if min(room) < -slack / 2:
             about = "" if self.centre is None else " about the centre"
-            raise InputError("side", max(self.lengths), f"at most the measured {by(most)} m of {name}{about}")
+            allowed = f"at most the measured {by(most)} m of {name}{about}"
+            raise InputError("side", self.lengths[room.index(min(room))], allowed)
         moved = extent(self.reading, self._middle, self.offset)
         if any(length - whole > 2 * slack for length, whole in zip(self.lengths, moved, strict=True)):
             fits = f"; a size of {by(moved)} m fits this offset" if min(moved) > 0 else ""
             raise InputError("offset", self.offset, f"at most {by(room)} m either way in {name}{fits}")
-        if min(s.stop - s.start for s in self.points) < 4:
+        counts = tuple(s.stop - s.start for s in self.points)
+        if min(counts) < 4:
             least = f"at least 4 pixels of {self.reading.name}, each {by(self.reading.pixel)} m"
-            raise InputError("side", min(self.lengths), least)
+            raise InputError("side", self.lengths[counts.index(min(counts))], least)
 
     @property
     def _middle(self) -> tuple[float, float]:

@@ -134,7 +134,5 @@ def inspect(
         surface = MeasuredSurface(path, **{"max_missing": 1.0 - 1e-9} | keys)
     lengths = surface.extent((0.0, 0.0)) if size is None else size
     form, z, pixel = surface.levelled(lengths)
-    slopes = tuple(
-        float(slope / edge) for slope, edge in zip(form.slopes, pixel, strict=True)
-    )
+    slopes = tuple(float(slope / edge) for slope, edge in zip(form.slopes, pixel, strict=True))
     return Inspection(surface, z, pixel, (slopes[0], slopes[1]), form.radius)

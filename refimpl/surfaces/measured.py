@@ -11,7 +11,6 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.arrays import pixel_edges
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.crop import ROUNDING, Crop, by, extent
 from refimpl.surfaces.detrending import CURVED, DEGREES, MAX_DEGREE, Form, fit_form
@@ -19,7 +18,7 @@ from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.orientation import MIRRORS, TURNS, Oriented, oriented
 from refimpl.surfaces.preparation import prepare
 from refimpl.surfaces.readers import UNITS, Reading, read
-from refimpl.surfaces.surface import Surface, finite, positive
+from refimpl.surfaces.surface import Surface, finite, pixel_edges, positive
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from scipy import fft
-from scipy.ndimage import median_filter
+from scipy.ndimage import percentile_filter
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
@@ -14,8 +14,12 @@ from refimpl.surfaces.detrending import fit
 from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.reading import Reading
 
-NEIGHBOURHOOD = 5  # points an axis of the median
-MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian differences to their rms
+NEIGHBOURHOOD = 5  # points an axis
+PERCENTILE, PERCENTILE_TO_RMS = (
+    80,
+    1.2816,
+)  # of absolute Gaussian distances: five of 25 points may be outliers
+MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
 REACH = (
     1.5  # cut-off wavelengths that a map is padded by; the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
 )
@@ -30,9 +34,10 @@ def prepare(
 ) -> Reading:
     """Return the map with outliers missing and wavelengths filtered, a note for each step.
 
-    outliers   points further from the median of the 5 x 5 points around them than that many spreads become
-               missing (Hampel's identifier); a spread is 1.4826 times the median of such distances, of the
-               5 x 5 points around or over the map, whichever is larger: smooth peaks stay
+    outliers   points further off their neighbours than that many spreads become missing. The distance is the
+               median, over the four lines through a point, of that from the mean of its two neighbours; a
+               spread is the rms of such distances, from their median over the map, or from their 80th
+               percentile over the 5 x 5 points around where that is larger (edges, rougher places)
     low_pass   wavelengths (m) below are damped, ``high_pass``: above; by half at that wavelength (Gaussian
                filter of ISO 16610-61). At the border the weights are normalised (ISO 16610-28), after the
                plane of the whole map is set aside; missing points are filled for the filter alone.
@@ -46,17 +51,32 @@ def prepare(
 
 def _without_outliers(reading: Reading, times: float, repeats: bool) -> Reading:
     missing = np.isnan(reading.heights)
-    filled = _filled(reading)
-    mode = "wrap" if repeats else "nearest"
-    away = np.abs(filled - median_filter(filled, NEIGHBOURHOOD, mode=mode))
-    typical = float(np.median(away[~missing])) or float(np.sqrt(np.mean(away[~missing] ** 2))) / MAD_TO_RMS
-    spread = MAD_TO_RMS * np.maximum(median_filter(away, NEIGHBOURHOOD, mode=mode), typical)
-    out = ~missing & (away > times * spread)
+    away = _off_neighbours(_filled(reading), repeats)
+    typical = MAD_TO_RMS * float(np.median(away[~missing]))
+    around = percentile_filter(away, PERCENTILE, NEIGHBOURHOOD, mode="wrap" if repeats else "nearest")
+    rounding = 1e-9 * float(np.nanstd(reading.heights))
+    out = ~missing & (away > times * np.maximum(around / PERCENTILE_TO_RMS, max(typical, rounding)))
     note = (
-        f"{np.count_nonzero(out)} outliers, more than {times:g} spreads off the median of the {NEIGHBOURHOOD} x "
-        f"{NEIGHBOURHOOD} points around (over the map one spread is {MAD_TO_RMS * typical:.3g} m), are missing"
+        f"{np.count_nonzero(out)} outliers, more than {times:g} spreads off their neighbours (over the map "
+        f"one spread is {typical:.3g} m), are taken as missing"
     )
     return replace(reading, heights=np.where(out, np.nan, reading.heights), notes=(*reading.notes, note))
+
+
+def _off_neighbours(z: Array, repeats: bool) -> Array:
+    """Distance of each point from its neighbours: the median, over the four lines through it, of that from
+    the mean of the two neighbours on the line. Lines that leave the map count as straight."""
+    padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")
+    nx, ny = z.shape
+    total, low, high = np.zeros_like(z), np.full_like(z, np.inf), np.full_like(z, -np.inf)
+    for i, j in ((1, 0), (0, 1), (1, 1), (1, -1)):
+        before = padded[1 - i : 1 - i + nx, 1 - j : 1 - j + ny]
+        after = padded[1 + i : 1 + i + nx, 1 + j : 1 + j + ny]
+        off = z - (before + after) / 2.0
+        total += off
+        np.minimum(low, off, out=low)
+        np.maximum(high, off, out=high)
+    return np.abs(total - low - high) / 2.0
 
 
 def _filtered(reading: Reading, low_pass: float | None, high_pass: float | None, repeats: bool) -> Reading:

@@ -1,4 +1,4 @@
-"""What a surface is: heights at the element centres of any grid, and sums of such surfaces."""
+"""What a surface is: heights at the element centres of any grid; arrays of heights, and sums of surfaces."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from refimpl.errors import LEAST, InputError, as_double
 from refimpl.grid import Array, Grid
+from refimpl.surfaces.arrays import cautions_of, check_domain, checked, sampled, use_of
 
 
 class SurfaceWarning(UserWarning):
@@ -126,10 +127,59 @@ class SurfaceSum(Surface):
         return {"kind": self.kind, "terms": [term.to_dict() for term in self.terms]}
 
 
-def as_surface(value: Surface | NDArray[Any]) -> Surface:
-    """``value`` if it is a surface, an ``ArraySurface`` of it if it is an array; else InputError."""
-    from refimpl.surfaces.arrays import ArraySurface  # here: arrays are surfaces, and build on this module
+@dataclass(frozen=True, eq=False)
+class ArraySurface(Surface):
+    """Heights (m) at the centres of ``shape[0] x shape[1]`` equal cells of the domain.
 
+    Used as they are, positive upwards on either body, on a grid of the same shape; otherwise resampled
+    bicubically to the element centres (sampled, not averaged). Within the outermost half cell the spline's
+    end piece goes on. An offset that leaves the domain is refused unless the scene is periodic. Cells more
+    than 1 % from square are refused unless ``pixel`` states their edges (m): heights are never squeezed.
+    """
+
+    data: NDArray[np.float64]
+    pixel: tuple[float, float] | None = None
+    kind: ClassVar[str] = "array"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", checked(self.data))
+        if self.pixel is not None:
+            object.__setattr__(self, "pixel", pixel_edges("pixel", self.pixel))
+
+    def extent(self, offset: tuple[float, float]) -> tuple[float, float] | None:
+        if self.pixel is None:
+            return None
+        return self.data.shape[0] * self.pixel[0], self.data.shape[1] * self.pixel[1]
+
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        check_domain((self.data.shape[0], self.data.shape[1]), self.pixel, grid.lengths)
+        return sampled(self.data, grid, offset)
+
+    def describe(self, grid: Grid) -> tuple[str, ...]:
+        return use_of(self.data.shape, grid), *self.cautions(grid)
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        return cautions_of(self.data.shape, grid)
+
+    def pitch(self, lengths: tuple[float, float]) -> float:
+        nx, ny = self.data.shape
+        return float(min(lengths[0] / nx, lengths[1] / ny))
+
+    def to_dict(self) -> dict[str, Any]:
+        allowed = 'a surface that has a TOML form; save the array as .npy and read it by kind = "measured"'
+        raise InputError("surface", f"array of shape {self.data.shape}", allowed)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ArraySurface):
+            return False
+        return self.pixel == other.pixel and np.array_equal(self.data, other.data)
+
+    def __hash__(self) -> int:
+        return hash((self.data.shape, float(self.data.sum())))
+
+
+def as_surface(value: Surface | NDArray[Any]) -> Surface:
+    """Return ``value`` if it is a surface, an `ArraySurface` of it if it is an array; else InputError."""
     if isinstance(value, Surface):
         return value
     if isinstance(value, np.ndarray):
@@ -151,3 +201,12 @@ def positive(field: str, value: object, allowed: str) -> float:
     if finite(field, value, allowed) < LEAST:
         raise InputError(field, value, allowed)
     return float(value)  # type: ignore[arg-type]  # `finite` has seen it
+
+
+def pixel_edges(field: str, value: object) -> tuple[float, float]:
+    """Return the edges (m) of a pixel from one length or two; else InputError."""
+    allowed = "a positive length in m, or two (x, y)"
+    pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
+    if len(pair) != 2:
+        raise InputError(field, value, allowed)
+    return positive(field, pair[0], allowed), positive(field, pair[1], allowed)

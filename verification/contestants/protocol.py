@@ -85,7 +85,7 @@ class ContactProblem:
     spacing : edge of one element (m), along x where elements are oblong
     reduced_modulus : E* (Pa), ``1/E* = sum (1 - nu^2)/E``
     load : normal load on the domain (N), or None
-    approach : prescribed approach (m), from first touch or, if periodic, from the mean planes; or None
+    approach : prescribed approach (m), from first contact or, if periodic, from the mean planes; or None
     periodic : the domain repeats in both directions; otherwise the half-space is free around it
     tolerance : relative residual to reach: complementarity gap over elastic energy, and load balance
     coupling : friction, or None
@@ -110,7 +110,7 @@ class ContactProblem:
         if gap.ndim != 2 or not gap.size or not np.isfinite(gap).all():
             raise InputError("gap", gap.shape, "a 2-D array of finite heights in m")
         if gap.min() != 0:
-            raise InputError("gap", float(gap.min()), "a gap whose least value is 0 m (first touch)")
+            raise InputError("gap", float(gap.min()), "a gap whose least value is 0 m (first contact)")
         object.__setattr__(self, "gap", gap)
         for edge in ("spacing", "spacing_y"):
             if getattr(self, edge) is not None:
@@ -156,7 +156,7 @@ class ContactProblem:
 
     @property
     def approach_from_touch(self) -> float | None:
-        """The prescribed approach counted from first touch, periodic or not (m); None under a load."""
+        """The prescribed approach counted from first contact, periodic or not (m); None under a load."""
         if self.approach is None or not self.periodic:
             return self.approach
         return self.approach + float(self.gap.mean())

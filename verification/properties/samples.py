@@ -77,7 +77,7 @@ class Sample:
 
     @cached_property
     def gap(self) -> Array:
-        """``z_upper - z_lower`` from first touch (m), in the grid's shape."""
+        """``z_upper - z_lower`` from first contact (m), in the grid's shape."""
         lower, upper = (heights(body, self.grid) for body in (self.scene.lower, self.scene.upper))
         gap: Array = upper - lower
         return gap - float(gap.min())

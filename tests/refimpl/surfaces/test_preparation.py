@@ -14,6 +14,7 @@ from refimpl.surfaces import MeasuredSurface
 from refimpl.surfaces.detrending import fit_form
 from refimpl.surfaces.preparation import gaussian_filter, prepare
 from refimpl.surfaces.reading import Reading
+from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd
 from tests.refimpl.surfaces.measured import quietly
 
 PIXEL = (1e-6, 1.5e-6)
@@ -105,18 +106,29 @@ def reading_of(z: np.ndarray, pixel: tuple[float, float] = PIXEL) -> Reading:
 def test_outliers_become_missing_and_nothing_else() -> None:
     rng = np.random.default_rng(4)
     z = 1e-8 * rng.normal(size=(80, 70)) + 1e-6 * np.sin(np.arange(80) / 12)[:, None]
-    spikes = [(5, 5), (40, 33), (79, 0)]
+    spikes = [(5, 5), (40, 33), (78, 1), (30, 60), (30, 61)]
     for k, place in enumerate(spikes):
         z[place] += (-1) ** k * 5e-7
     z[10, 10] = np.nan
     found = prepare(reading_of(z), outliers=8)
     assert [tuple(at) for at in np.argwhere(np.isnan(found.heights))] == sorted([*spikes, (10, 10)])
-    assert found.notes[-1].startswith("3 outliers, more than 8 x ")
+    assert found.notes[-1].startswith("5 outliers, more than 8 spreads ")
 
 
-def test_a_clean_map_has_no_outliers() -> None:
-    for z in (np.zeros((9, 9)), np.add.outer(np.arange(9.0), np.arange(9.0))):
-        assert np.isfinite(prepare(reading_of(z), outliers=6).heights).all()
+@pytest.mark.parametrize("length", [3e-6, 10e-6, 60e-6])
+def test_peaks_and_noise_are_no_outliers(length: float) -> None:
+    spectrum = _gaussian_psd({"lx": length, "ly": length})
+    z = _drawn((150, 120), PIXEL, spectrum, 1e-6, np.random.default_rng(0))
+    noise = np.random.default_rng(0).normal(size=(150, 120))
+    for clean in (z, noise, np.zeros((9, 9)), np.add.outer(np.arange(9.0), np.arange(9.0))):
+        assert np.isfinite(prepare(reading_of(clean), outliers=6).heights).all()
+
+
+def test_an_edge_is_no_outlier() -> None:
+    z = np.where(np.arange(40)[:, None] > 20, 1e-6, 0.0) + 1e-9 * np.random.default_rng(0).normal(
+        size=(40, 30)
+    )
+    assert np.isfinite(prepare(reading_of(z), outliers=6).heights).all()
 
 
 # --- filters ---

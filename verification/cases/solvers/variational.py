@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from reports.result_files import read_result
 from refimpl.grid import Array
+from reports.result_files import read_result
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged
