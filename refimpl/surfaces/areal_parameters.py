@@ -98,7 +98,8 @@ class Autocorrelation:
         drop = along[k, before] - along[k, first]
         share = (along[k, before] - level) / np.where(drop > 0, drop, 1.0)
         found = r[before] + share * (r[first] - r[before])
-        return np.where(below.any(axis=1), found, np.nan)
+        known = np.isfinite(self.values).any()  # not of a flat map
+        return np.where(below.any(axis=1) & known, found, np.nan)
 
     def ellipse(self, above: float = 0.4) -> tuple[float, float, float]:
         """Half-axes (m) at which ``exp(-r^2)`` falls to 1/e, and the angle (rad) of the longer one to x.
