@@ -1,7 +1,7 @@
 """Exact aperiodic convolution on a window by zero-padded real FFTs.
 
 Transforms are those of `refimpl.operators.transforms`. Columns that are known to be zero
-are not transformed, and columns of the result that nobody asked for are not transformed back.
+are not transformed, and columns of the result outside the target are not transformed back.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from refimpl.operators.transforms import Complex, factors, fourier, threads
 
 @dataclass
 class Counter:
-    """How often operators were applied, each application with its ``n log2 n`` padded points.
+    """Count of operator applications, each with its ``n log2 n`` padded points.
 
     A kernel's own transform counts as the half of an application that it is, or by symmetry as an eighth for
     each of its parts.

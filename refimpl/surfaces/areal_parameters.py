@@ -15,6 +15,7 @@ from scipy import fft
 from scipy.ndimage import map_coordinates
 
 from refimpl.grid import Array
+from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
 DIRECTIONS = 180  # of the half-circle, in which the autocorrelation is followed
@@ -22,11 +23,10 @@ DIRECTIONS = 180  # of the half-circle, in which the autocorrelation is followed
 
 def height_parameters(z: Array) -> dict[str, float]:
     """Sq, Sa, Sz (m), Ssk, Sku about the mean height."""
-    d = z[np.isfinite(z)]
-    d = d - d.mean()
-    sq = math.sqrt(float(np.mean(d**2)))
-    skewness, kurtosis = (float(np.mean(d**k)) / sq**k if sq > 0 else math.nan for k in (3, 4))
-    return {"Sq": sq, "Sa": float(np.abs(d).mean()), "Sz": float(np.ptp(d)), "Ssk": skewness, "Sku": kurtosis}
+    d = z[np.isfinite(z)] - np.nanmean(z)
+    sq = rms_height(d)
+    third, fourth = (skewness(d), kurtosis(d)) if sq > 0 else (math.nan, math.nan)
+    return {"Sq": sq, "Sa": float(np.abs(d).mean()), "Sz": float(np.ptp(d)), "Ssk": third, "Sku": fourth}
 
 
 def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:

@@ -123,7 +123,7 @@ class MeasuredSurface(Surface):
 
     @cached_property
     def reading(self) -> Reading:
-        """What the file holds, as it is (read once)."""
+        """The content of the file, as it is (read once)."""
         pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
         return read(self._file, self.unit, pixel, self.channel)
 

@@ -61,7 +61,7 @@ def read(
 
 
 def _check_size(path: Path) -> None:
-    if not os.path.isfile(path):  # of any name, however long
+    if not os.path.isfile(path):  # a name may have any length
         raise InputError("path", str(path), "an existing file")
     try:
         size = path.stat().st_size
