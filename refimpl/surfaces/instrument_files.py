@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import logging
 import math
@@ -16,6 +17,7 @@ from types import ModuleType
 from typing import Any, TypeVar
 
 import numpy as np
+from scipy.io.matlab import MatReadError
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
@@ -29,6 +31,8 @@ TEXT_FORMATS = ("asc", "xyz")  # read by `text_tables`
 # Formats of coordinates or of plain arrays: the second index runs up y. All others are images: the library
 # returns their lines from the top, as Gwyddion shows them.
 UPWARDS = ("x3p", "sdf", "nc", "npy", "npz", "mat", "h5")
+
+MARKLESS = ("mat", "nms", "hgt")  # read for their suffix alone
 
 # What a reader may raise on bytes that are not what they claim to be. SurfaceTopography's own errors are
 # plain Exceptions and join these where it is imported.
@@ -66,23 +70,29 @@ def claimed_by_magic(path: Path, head: bytes) -> bool:
 
 
 def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
-    """Formats that the first bytes allow: those whose mark they are, those of the suffix, then the others."""
+    """Formats to try: those whose mark the first bytes are, then those of the suffix; if there is none, all
+    that the bytes allow but those without a mark, which take any bytes."""
     match, suffix = library.IO.MagicMatch, path.suffix.lower()[1:]
-    ranked = []
-    for position, reader in enumerate(library.IO.readers):
-        answer = reader.can_read(head[:512])
-        own = suffix in reader.file_extensions()
-        if reader.format() in TEXT_FORMATS or (answer == match.NO and not own):
+    marked, own, others = [], [], []
+    for reader in library.IO.readers:
+        name, answer = reader.format(), reader.can_read(head[:512])
+        if name in TEXT_FORMATS:
             continue
-        ranked.append((answer != match.YES, not own, position, reader.format()))
-    return [name for *_, name in sorted(ranked)]
+        if answer == match.YES:
+            marked.append(name)
+        elif suffix in reader.file_extensions():
+            own.append(name)
+        elif answer == match.MAYBE and name not in MARKLESS:
+            others.append(name)
+    return marked + own or others
 
 
 def read_as(
     library: ModuleType, path: Path, name: str, given: Given, source: Source, notes: tuple[str, ...] = ()
 ) -> Reading:
     """Heights of one file, read as the format ``name`` from ``source``."""
-    with warnings.catch_warnings(record=True) as said, np.errstate(all="ignore"):
+    quiet = contextlib.redirect_stdout(io.StringIO())  # SciPy prints what it cannot reshape
+    with quiet, warnings.catch_warnings(record=True) as said, np.errstate(all="ignore"):
         warnings.simplefilter("always")
         with library.open_topography(source, format=name) as reader:
             index, channel = _choose(path, reader, given)
@@ -93,13 +103,14 @@ def read_as(
     unit, pixel, overridden = given.resolve(path.name, unit, pixel)
     if given.unit is not None or stated is None:
         stated = UNITS[unit]
+    told = [f"SurfaceTopography: {brief(w.message)}" for w in said if issubclass(w.category, UserWarning)]
     upwards = name in UPWARDS
     heights = heights * stated
     return Reading(
         np.ascontiguousarray(heights if upwards else heights[:, ::-1]),
         pixel, path.name, f"by SurfaceTopography's {name} reader", unit, ARRAY if upwards else IMAGE,
         str(channel.name), tuple(str(c.name) for c in reader.channels),
-        (*notes, *overridden, *(f"SurfaceTopography: {brief(w.message)}" for w in said)),
+        (*notes, *overridden, *told),
     )  # fmt: skip
 
 
@@ -179,7 +190,7 @@ def library_for(path: Path) -> ModuleType:
 def broken(library: ModuleType) -> tuple[type[Exception], ...]:
     """All that the library raises on files that are not what they claim to be."""
     own = library.Exceptions  # with no base in common
-    return (*BROKEN, own.ReadFileError, own.UnknownFileFormat, own.CannotPerformAnalysisError)
+    return (*BROKEN, MatReadError, own.ReadFileError, own.UnknownFileFormat, own.CannotPerformAnalysisError)
 
 
 def stream(text: bytes) -> io.BytesIO:
