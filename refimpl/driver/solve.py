@@ -71,9 +71,9 @@ def solve(
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, a share of it), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
-    start : a certified solution on a grid of the same lengths that is not finer, for "fft" to start from: nested
-        grids no finer are skipped, and the solution is the same. Best this scene's own on a coarser grid;
-        after another load the nested grids are faster
+    start : a certified solution on a grid of the same lengths that is not finer, for "fft" to start from:
+        nested grids no finer are skipped, and the solution is the same. Best this scene's own on a coarser
+        grid; after another load the nested grids are faster
     progress : called with a line of text at every step of the work
 
     Raises `InputError` for input that is out of range, before anything large is allocated; and, by "dense"

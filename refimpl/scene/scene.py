@@ -211,8 +211,8 @@ class Scene:
         for part, placed in zip(given, self.parts("upper"), strict=True):
             if placed is not part:
                 lines.append(
-                    f"{placed.label}: on the upper body, so turned over about the x axis, z(x, y) -> -z(x, -y) "
-                    "(turn_over = false uses it as it lies)"
+                    f"{placed.label}: on the upper body, so turned over about the x axis, "
+                    "z(x, y) -> -z(x, -y) (turn_over = false uses it as it lies)"
                 )
         return tuple(dict.fromkeys(lines))
 

@@ -38,8 +38,8 @@ class MeasuredSurface(Surface):
        pixel. A map that ``repeats`` with its own area (m) has no border;
     4. level: the least-squares ``"mean"``, ``"plane"`` (the default), ``"paraboloid"`` (all six quadratic
        terms), polynomial of total degree ``level = 3 ... 10``, ``"cylinder"`` or ``"sphere"`` of the measured
-       points in the window at offset 0 is taken off everywhere, so that a shifted surface remains the same
-       rigid body; ``"none"`` takes nothing off; of a map that repeats only the mean can be;
+       points in the window at offset 0 is subtracted everywhere, so that a shifted surface remains the same
+       rigid body; ``"none"`` subtracts nothing; of a map that repeats only the mean can be;
     5. gaps: ``missing="fill"`` fills by Laplace's equation (``missing_points.fill``), but refuses a window
        with more than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
     6. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of

@@ -71,9 +71,9 @@ def closure(problem: ContactProblem) -> float:
 
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
     P in a domain has a smaller one than the square punch that contains it, 0.87 P / (E* max(Lx, Ly)); at an
-    approach d it is d / 2 for a cone and more for blunter shapes. Periodic contact displaces half the heights' deviation when light,
-    a third when about to become full (peaks of three deviations), and less under still higher loads: twice
-    the energy that flattens the surface, over the load.
+    approach d it is d / 2 for a cone and more for blunter shapes. Periodic contact displaces half the
+    heights' deviation when light, a third when about to become full (peaks of three deviations), and less
+    under still higher loads: twice the energy that flattens the surface, over the load.
     """
     if problem.load is not None:
         depth = 0.87 * problem.load / (problem.reduced_modulus * max(problem.lengths))

@@ -31,9 +31,7 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PeerAnswer:
     tm.set_log_level(tm.LogLevel.error)
     if problem.approach is not None and not problem.periodic:
         raise Unsupported("tamaas does not offer: an approach in free space")
-    model = tm.ModelFactory.createModel(
-        tm.model_type.basic_2d, list(problem.lengths), list(problem.shape)
-    )
+    model = tm.ModelFactory.createModel(tm.model_type.basic_2d, list(problem.lengths), list(problem.shape))
     model.E, model.nu = problem.reduced_modulus, 0.0  # the other body is rigid, so E is the reduced modulus
     formulation = tm.PolonskyKeerRey.pressure if problem.approach is None else tm.PolonskyKeerRey.gap
     heights = np.ascontiguousarray(-problem.gap)

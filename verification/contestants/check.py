@@ -104,7 +104,7 @@ class Entrant:
         coupling: Coupling | None = None,
         modulus: float = MODULUS,
     ) -> Pressed:
-        """Pose a gap (m) over a square of ``side`` (m), or a rectangle; under a load (N) or at an approach (m).
+        """Pose a gap (m) on a square of ``side`` (m), or a rectangle; under a load (N) or at an approach (m).
 
         An aperiodic approach counts from the gap's own zero, which need not be its least value: an indenter's
         tip may lie between element centres. Raises what `ask` raises.

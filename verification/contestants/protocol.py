@@ -127,7 +127,7 @@ class ContactProblem:
     @property
     def M(self) -> int:
         """Elements along the longer axis: along one side of a square."""
-        return max(self.gap.shape)
+        return max(self.shape)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -217,7 +217,8 @@ class Abilities:
 
         Raises `InputError` for an unknown name, and where no problem at all could be posed.
         """
-        given = [name.strip().replace(" ", "_").replace("-", "_") for name in names.split(",") if name.strip()]
+        words = (name.strip().replace("-", " ").split() for name in names.split(","))
+        given = ["_".join(name) for name in words if name]
         domain, control = {"periodic", "aperiodic"} & {*given}, {"load", "approach"} & {*given}
         if not {*given} <= {*FLAGS} or not domain or not control:
             allowed = (

@@ -91,7 +91,10 @@ def displacement(problem: ContactProblem, pressure: Array) -> Array:
 
 
 def _waves(problem: ContactProblem) -> tuple[Array, Array]:
-    x, y = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(problem.shape, problem.spacings, strict=True))
+    x, y = (
+        np.asarray(2 * np.pi * np.fft.fftfreq(n, d), dtype=np.float64)
+        for n, d in zip(problem.shape, problem.spacings, strict=True)
+    )
     return x[:, None], y[None, :]
 
 

@@ -83,10 +83,10 @@ def test_a_bad_way_up_is_refused(tmp_path: Path) -> None:
     ):  # fmt: skip
         with pytest.raises(rf.InputError, match=f"^{name} = "):
             rf.MeasuredSurface(tmp_path / "map.npy", **{name: value})  # type: ignore[arg-type]
-    with pytest.raises(rf.InputError, match="level = 'plane': expected one of none, mean"):
+    with pytest.raises(rf.InputError, match=r"level = 'plane': expected one of none, mean"):
         rf.MeasuredSurface(tmp_path / "map.npy", repeats=True, level="plane")
     with pytest.raises(
-        rf.InputError, match="at most the measured 6e-06 x 6e-06 m of map.npy about the centre"
+        rf.InputError, match=r"at most the measured 6e-06 x 6e-06 m of map\.npy about the centre"
     ):
         written(tmp_path, centre=(3e-6, 3e-6)).heights(GRID)
 
@@ -161,7 +161,7 @@ def test_the_size_is_the_largest_rectangle_that_all_maps_cover(tmp_path: Path) -
     assert moved.lengths == pytest.approx((83e-6, 150e-6))  # 204 - 20 are still more than 150
     moved = rf.Scene(body(2e11, up), body(2e11, low), rf.Friction(), 1.0, sliding_offset=-10e-6)
     assert moved.lengths == pytest.approx((63e-6, 150e-6))
-    with pytest.warns(SurfaceWarning, match=r"no size given: 8.3e-05 x 0.00015 m, the largest rectangle"):
+    with pytest.warns(SurfaceWarning, match=r"no size given: 8\.3e-05 x 0\.00015 m, the largest rectangle"):
         scene.heights(scene.grid(30))
     found = rf.solve(scene, 30)
     assert found.grid.shape == (17, 30)
@@ -173,13 +173,13 @@ def test_the_refusal_of_an_offset_names_the_size_that_fits(tmp_path: Path) -> No
         body(2e11, rf.Flat()), body(2e11, flat_map(tmp_path / "a.npy", 83, 204)), rf.Friction(), 1.0,
         size=(80e-6, 200e-6), sliding_offset=10e-6,
     )  # fmt: skip
-    with pytest.raises(rf.InputError, match=r"sliding_offset = 1e-05.*a size of 6.3e-05 x 0.000204 m fits"):
+    with pytest.raises(rf.InputError, match=r"sliding_offset = 1e-05.*a size of 6\.3e-05 x 0\.000204 m fits"):
         rf.solve(scene, 16)
     fitting = rf.Scene(
         scene.upper, scene.lower, rf.Friction(), 1.0, size=(63e-6, 204e-6), sliding_offset=10e-6
     )
     assert rf.solve(fitting, 16).status.name == "CONVERGED"
-    with pytest.raises(rf.InputError, match="sliding_offset = 0.001: expected an offset at which"):
+    with pytest.raises(rf.InputError, match=r"sliding_offset = 0\.001: expected an offset at which"):
         rf.Scene(scene.upper, scene.lower, rf.Friction(), 1.0, sliding_offset=1e-3)
 
 
@@ -206,5 +206,7 @@ def test_maps_that_repeat(tmp_path: Path) -> None:
     free = rf.Scene(scene.upper, scene.lower, rf.Friction(), 1e-3, size=(20e-6, 30e-6), sliding_offset=1e-4)
     assert rf.solve(free, 30).status.name == "CONVERGED"
     refused = rf.Scene(scene.upper, scene.lower, rf.Friction(), 1e-3, size=(20e-6, 24e-6), periodic=True)
-    with pytest.raises(rf.InputError, match="whole multiples of the 1.6e-05 x 2.4e-05 m with which wave.npy"):
+    with pytest.raises(
+        rf.InputError, match=r"whole multiples of the 1\.6e-05 x 2\.4e-05 m with which wave\.npy"
+    ):
         rf.solve(refused, 24)

@@ -30,7 +30,9 @@ def solved(M: int, x: float = 0.0, y: float = 0.0) -> rf.Solution:
     h = SCENE.lengths[0] / M
     offset = (2 * np.arange(M) + 1 - M) * (h / 2)
     ball = ((offset - x * h)[:, None] ** 2 + (offset - y * h)[None, :] ** 2) / (2 * RADIUS)
-    scene = rf.Scene(rf.Body(SCENE.upper.material, ball), SCENE.lower, SCENE.friction, SCENE.load, SCENE.lengths[0])
+    scene = rf.Scene(
+        rf.Body(SCENE.upper.material, ball), SCENE.lower, SCENE.friction, SCENE.load, SCENE.lengths[0]
+    )
     solution = rf.solve(scene, M)
     if solution.status is not rf.Status.CONVERGED:
         raise RuntimeError(f"ended {solution.status.value} on {M} x {M} elements")

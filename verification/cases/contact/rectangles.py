@@ -158,12 +158,12 @@ def image_differences() -> dict[str, dict[str, float]]:
 @case(
     "rectangles/images",
     title="Mirrored and rotated copies of rectangular scenes",
-    claim="pressures of an image are the image of the pressures, to 1e-12 of the peak, and Q has its sign, "
-    "wherever the proven bounds decide on every element",
+    claim="pressures of an image are the image of the pressures, to 1e-12 of the peak, and Q has its "
+    "sign, wherever the proven bounds decide on every element",
     source="symmetry of Eqs (1)-(7) under reflections and quarter turns",
     metric="at_most",
     tolerance=1e-12,
-    tolerance_reason="rounding of the dense solver, 1e-16, times a condition number below 2e3; 8e-15 measured",
+    tolerance_reason="rounding of the dense solver times a condition number below 2e3; measured 8e-15",
     tags=("solvers", "rectangle", "axes"),
 )
 def images() -> Measured:
@@ -171,7 +171,8 @@ def images() -> Measured:
     names = list(next(iter(found.values())))
     worst = max(max(row.values()) for row in found.values())
     undecided = [trial.name for trial in trials() if trial.name not in names]
-    note = f"{len(names)} scenes, {len(found)} images each; bounds undecided on: {', '.join(undecided) or 'none'}"
+    left = ", ".join(undecided) or "none"
+    note = f"{len(names)} scenes, {len(found)} images each; bounds undecided on: {left}"
     return Measured(worst, data={"by image": found}, note=note)
 
 

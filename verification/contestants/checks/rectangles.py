@@ -120,7 +120,8 @@ def oblong_wave(entrant: Entrant) -> Measured:
     star = Wave(1.0, amplitude, 1.0, MODULUS).full_contact_pressure
     wave = Wave(0.5 * star, amplitude, 1.0, MODULUS)
     x = (np.arange(n) + 0.5) / n - 0.5
-    gap, exact = (np.outer(v, np.ones(across)) for v in (1e-3 * (1 - np.cos(2 * np.pi * x)), wave.pressure(x)))
+    ridge = amplitude * (1 - np.cos(2 * np.pi * x))
+    gap, exact = (np.outer(v, np.ones(across)) for v in (ridge, wave.pressure(x)))
     worst = 0.0
     for turn in (False, True):  # the ridge along y, then along x; elements 1 : 2 and 2 : 1
         size = (0.5, 1.0) if turn else (1.0, 0.5)
