@@ -257,6 +257,8 @@ class MeasuredSurface(Surface):
 
     def to_dict(self) -> dict[str, Any]:
         table = super().to_dict() | {"path": str(self._file.absolute())}
+        unset = [name for name in ("replica", "rotate_deg", "repeats") if not table[name]]
+        table = {key: value for key, value in table.items() if key not in unset}
         pairs = {name: table[name] for name in ("pixel_size", "centre") if name in table}
         return table | {name: list(pair) for name, pair in pairs.items()}
 
