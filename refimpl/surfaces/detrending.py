@@ -12,7 +12,9 @@ from typing import Protocol
 import numpy as np
 from scipy.optimize import least_squares
 
+from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.surfaces.surface import require_one_of
 
 DEGREES = {"none": -1, "mean": 0, "plane": 1, "paraboloid": 2}
 CURVED = ("cylinder", "sphere")
@@ -105,6 +107,16 @@ def _cap(tilted: Array, squared: Array, slope: float, curvature: float) -> Array
     inverse = 1.0 / math.sqrt(1.0 + slope**2)
     known = curvature * squared + 2.0 * inverse * tilted
     return np.asarray(known / (inverse + np.sqrt(np.maximum(inverse**2 - curvature * known, 0.0))))
+
+
+def check_level(level: object, repeats: bool) -> None:
+    """Raise InputError unless ``level`` names a form; of a map that repeats only the mean can be."""
+    if repeats:
+        require_one_of("level", level, ("none", "mean"))
+    elif isinstance(level, bool) or not isinstance(level, int):
+        require_one_of("level", level, (*DEGREES, *CURVED))
+    elif not 0 <= level <= MAX_DEGREE:
+        raise InputError("level", level, f"a polynomial's total degree, 0 to {MAX_DEGREE}")
 
 
 def fit_form(x: Array, y: Array, z: Array, level: str | int, pixel: tuple[float, float] = (1.0, 1.0)) -> Form:

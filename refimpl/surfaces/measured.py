@@ -13,12 +13,12 @@ from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.crop import ROUNDING, Crop, by, extent
-from refimpl.surfaces.detrending import CURVED, DEGREES, MAX_DEGREE, Form, fit_form
+from refimpl.surfaces.detrending import Form, check_level, fit_form
 from refimpl.surfaces.missing_points import fill
-from refimpl.surfaces.orientation import MIRRORS, TURNS, Oriented, oriented
-from refimpl.surfaces.preparation import prepare
+from refimpl.surfaces.orientation import Oriented, check_orientation, checked_centre, oriented
+from refimpl.surfaces.preparation import check_preparation, prepare
 from refimpl.surfaces.readers import UNITS, Reading, read
-from refimpl.surfaces.surface import Surface, finite, pixel_edges, positive
+from refimpl.surfaces.surface import Surface, finite, pixel_edges, require_one_of
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
@@ -73,7 +73,7 @@ class MeasuredSurface(Surface):
             raise InputError("path", self.path, "the path of a file")
         object.__setattr__(self, "path", Path(self.path))
         if self.unit is not None:
-            _require_one_of("unit", self.unit, tuple(UNITS))
+            require_one_of("unit", self.unit, tuple(UNITS))
         if self.pixel_size is not None:
             object.__setattr__(self, "pixel_size", pixel_edges("pixel_size", self.pixel_size))
         for name in ("replica", "repeats"):
@@ -81,37 +81,14 @@ class MeasuredSurface(Surface):
                 raise InputError(name, getattr(self, name), "true or false")
         if self.level is None:
             object.__setattr__(self, "level", "mean" if self.repeats else "plane")
-        _check_level(self.level, self.repeats)
-        self._check_preparation()
-        self._check_orientation()
-        _require_one_of("missing", self.missing, ("fill", "refuse"))
+        check_level(self.level, self.repeats)
+        check_preparation(self.channel, self.outliers, self.low_pass, self.high_pass)
+        check_orientation(self.mirror, self.rotate_deg, self.turn_over)
+        if self.centre is not None:
+            object.__setattr__(self, "centre", checked_centre(self.centre))
+        require_one_of("missing", self.missing, ("fill", "refuse"))
         if not 0 <= finite("max_missing", self.max_missing, _ALLOWED_FRACTION) < 1:
             raise InputError("max_missing", self.max_missing, _ALLOWED_FRACTION)
-
-    def _check_preparation(self) -> None:
-        if not isinstance(self.channel, str | int | None) or isinstance(self.channel, bool):
-            raise InputError("channel", self.channel, "a channel's name or number")
-        if self.outliers is not None:
-            positive("outliers", self.outliers, "a number of spreads, say 6")
-        for name in ("low_pass", "high_pass"):
-            if getattr(self, name) is not None:
-                positive(name, getattr(self, name), "a wavelength in m")
-        if self.low_pass is not None and self.high_pass is not None and self.low_pass >= self.high_pass:
-            raise InputError("low_pass", self.low_pass, f"less than high_pass, {self.high_pass:g} m")
-
-    def _check_orientation(self) -> None:
-        if self.mirror is not None:
-            _require_one_of("mirror", self.mirror, MIRRORS)
-        if isinstance(self.rotate_deg, bool) or self.rotate_deg not in TURNS:
-            raise InputError("rotate_deg", self.rotate_deg, f"one of {', '.join(map(str, TURNS))}")
-        if not isinstance(self.turn_over, bool | None):
-            raise InputError("turn_over", self.turn_over, "true or false")
-        if self.centre is not None:
-            allowed = "two lengths in m from the corner of the file's own area, (x, y)"
-            if not isinstance(self.centre, list | tuple) or len(self.centre) != 2:
-                raise InputError("centre", self.centre, allowed)
-            x, y = (finite("centre", at, allowed) for at in self.centre)
-            object.__setattr__(self, "centre", (x, y))
 
     @property
     def _file(self) -> Path:
@@ -266,17 +243,3 @@ class MeasuredSurface(Surface):
     def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
         path = table["path"]
         return cls(**table | {"path": folder / path if isinstance(path, str) and path else path})
-
-
-def _require_one_of(name: str, value: object, allowed: tuple[str, ...]) -> None:
-    if not isinstance(value, str) or value not in allowed:
-        raise InputError(name, value, "one of " + ", ".join(allowed))
-
-
-def _check_level(level: object, repeats: bool) -> None:
-    if repeats:
-        _require_one_of("level", level, ("none", "mean"))
-    elif isinstance(level, bool) or not isinstance(level, int):
-        _require_one_of("level", level, (*DEGREES, *CURVED))
-    elif not 0 <= level <= MAX_DEGREE:
-        raise InputError("level", level, f"a polynomial's total degree, 0 to {MAX_DEGREE}")

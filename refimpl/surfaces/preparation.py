@@ -13,6 +13,7 @@ from refimpl.grid import Array
 from refimpl.surfaces.detrending import fit
 from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.reading import Reading
+from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
 PERCENTILE, PERCENTILE_TO_RMS = (
@@ -23,6 +24,20 @@ MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their r
 REACH = (
     1.5  # cut-off wavelengths that a map is padded by; the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
 )
+
+
+def check_preparation(channel: object, outliers: object, low_pass: object, high_pass: object) -> None:
+    """Raise InputError for keys of a measured surface that are out of range; None is not set."""
+    if not isinstance(channel, str | int | None) or isinstance(channel, bool):
+        raise InputError("channel", channel, "a channel's name or number")
+    if outliers is not None:
+        positive("outliers", outliers, "a number of spreads, say 6")
+    wavelengths = {
+        name: value for name, value in (("low_pass", low_pass), ("high_pass", high_pass)) if value is not None
+    }
+    lengths = [positive(name, value, "a wavelength in m") for name, value in wavelengths.items()]
+    if len(lengths) == 2 and lengths[0] >= lengths[1]:
+        raise InputError("low_pass", low_pass, f"less than high_pass, {lengths[1]:g} m")
 
 
 def prepare(
