@@ -196,3 +196,43 @@ def write_sdf(path: Path, z: np.ndarray) -> None:
     )
     rows = "\n".join(" ".join("BAD" if np.isnan(v) else f"{v * 1e9:.6f}" for v in row) for row in z.T)
     path.write_text(head + rows + "\n*\n")
+
+
+def write_bcr(path: Path, z: np.ndarray) -> None:
+    """BCR-STM: a text header of 2048 characters, 16-bit lines from the top, 32767 for a missing point."""
+    nx, ny = z.shape
+    head = (
+        f"fileformat = bcrstm\nheadersize = 2048\nxpixels = {nx}\nypixels = {ny}\n"
+        f"xlength = {nx * PIXEL[0] * 1e9}\nylength = {ny * PIXEL[1] * 1e9}\nxunit = nm\nyunit = nm\nzunit = nm\nbit2nm = 10\nintelmode = 1\n"
+    )
+    path.write_bytes(head.encode().ljust(2048, b"\0") + steps(z, 32767).astype("<i2").tobytes())
+
+
+def write_tmd(path: Path, z: np.ndarray) -> None:
+    """TrueMap: lengths and heights in mm, single precision, lines from the top."""
+    nx, ny = z.shape
+    head = b"Binary TrueMap Data File v2.0\r\n\0" + b"Created by TrueMap v6\r\n\0"
+    head += struct.pack("<IIffff", nx, ny, nx * PIXEL[0] * 1e3, ny * PIXEL[1] * 1e3, 0, 0)
+    path.write_bytes(head + (top_down(z) * 1e3).astype("<f4").tobytes())
+
+
+def write_os3d(path: Path, z: np.ndarray) -> None:
+    """OmniSurf3D: lines from the top in um, the lowest single-precision number for a missing point."""
+    nx, ny = z.shape
+    head = b"OmniSurf3D" + struct.pack("<iii4si4siidddd", 1, 0, 4, b"test", 4, b"date", nx, ny,
+                                       PIXEL[0] * 1e6, PIXEL[1] * 1e6, 0.0, 0.0)  # fmt: skip
+    path.write_bytes(head + np.nan_to_num(top_down(z) * 1e6, nan=-3.4e38).astype("<f4").tobytes())
+
+
+def write_al3d(path: Path, z: np.ndarray) -> None:
+    """Alicona: a list of tags, then lines from the top in m, padded to 8 bytes; NaN for a missing point."""
+    nx, ny = z.shape
+    tags = {"Version": 1, "TagCount": 6, "Cols": nx, "Rows": ny, "PixelSizeXMeter": PIXEL[0],
+            "PixelSizeYMeter": PIXEL[1], "InvalidPixelValue": "NaN", "DepthImageOffset": 1024}  # fmt: skip
+    head = b"AliconaImaging\0\r\n"
+    head += b"".join(struct.pack("<20s30s2s", k.encode(), str(v).encode(), b"\r\n") for k, v in tags.items())
+    path.write_bytes(head.ljust(1024, b"\0") + top_down(z).astype("<f4").tobytes())
+
+
+def write_asc(path: Path, z: np.ndarray) -> None:
+    topography(z[:, ::-1]).to_matrix(str(path))

@@ -38,6 +38,11 @@ FORMATS = [
     ("map.gwy", write.write_gwy, {}, 1e-20, IMAGE),
     ("map.nc", write.write_nc, {}, 1e-20, ARRAY),
     ("map.sdf", write.write_sdf, {}, 1e-20, ARRAY),
+    ("map.asc", write.write_asc, {}, 1e-20, IMAGE),
+    ("map.bcr", write.write_bcr, {}, 1e-20, IMAGE),
+    ("map.tmd", write.write_tmd, {}, SINGLE, IMAGE),
+    ("map.os3d", write.write_os3d, {}, SINGLE, IMAGE),
+    ("map.al3d", write.write_al3d, {}, SINGLE, IMAGE),
 ]
 
 
