@@ -201,10 +201,10 @@ def write_sdf(path: Path, z: np.ndarray) -> None:
 def write_bcr(path: Path, z: np.ndarray) -> None:
     """BCR-STM: a text header of 2048 characters, 16-bit lines from the top, 32767 for a missing point."""
     nx, ny = z.shape
-    head = (
-        f"fileformat = bcrstm\nheadersize = 2048\nxpixels = {nx}\nypixels = {ny}\n"
-        f"xlength = {nx * PIXEL[0] * 1e9}\nylength = {ny * PIXEL[1] * 1e9}\nxunit = nm\nyunit = nm\nzunit = nm\nbit2nm = 10\nintelmode = 1\n"
-    )
+    keys = {"fileformat": "bcrstm", "headersize": 2048, "xpixels": nx, "ypixels": ny,
+            "xlength": nx * PIXEL[0] * 1e9, "ylength": ny * PIXEL[1] * 1e9, "xunit": "nm", "yunit": "nm",
+            "zunit": "nm", "bit2nm": 10, "intelmode": 1}  # fmt: skip
+    head = "".join(f"{key} = {value}\n" for key, value in keys.items())
     path.write_bytes(head.encode().ljust(2048, b"\0") + steps(z, 32767).astype("<i2").tobytes())
 
 

@@ -143,7 +143,7 @@ def test_parameters_agree_with_surface_topography() -> None:
 def test_parameters_agree_with_surfalize(
     tmp_path: Path, values: dict[str, float], stated: dict[str, float]
 ) -> None:
-    """Numbers of surfalize 0.19.2 on these maps, levelled by a plane. It interpolates Sal and Str otherwise."""
+    """Numbers of surfalize 0.19.2 on these maps, levelled by a plane; Sal and Str are interpolated."""
     rng = np.random.default_rng(2)
     np.save(tmp_path / "a.npy", _drawn((256, 256), (1e-6, 1e-6), _gaussian_psd(values), 1e-6, rng))
     found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=1e-6).parameters
