@@ -27,7 +27,7 @@ from refimpl.grid import Array, Grid
 from refimpl.surfaces.lay import Lay
 from refimpl.surfaces.noise_lattice import DECAY, NoiseLattice
 from refimpl.surfaces.surface import Detail, Surface, finite, positive, require_seed
-from refimpl.surfaces.waves import Torus
+from refimpl.surfaces.waves import Torus, turned
 
 RESOLVED = 4.0  # elements per correlation length from which slopes count as resolved
 _REACH = 26.6  # l q of the highest wave: exp(-26.6^2 / 18.4) = 2e-17
@@ -136,17 +136,19 @@ class GaussianRoughness(Surface):
 
     def _waves(self, x: Array, y: Array, grid: Grid) -> Array:
         """Periodic heights (m) of two lengths."""
-        cosine, sine = math.cos(self.lay), math.sin(self.lay)
+        torus = self._torus(grid)
+        scale = self.rms / math.sqrt(torus.mean_squares(self._amplitude)[0])
+        return scale * torus.field(self._amplitude, self.seed, x, y)
+
+    def _torus(self, grid: Grid) -> Torus:
+        along_x, along_y = (2.0 * math.pi / _REACH * length for length in self.ellipse.on_axes)
+        return Torus.holding(grid.lengths, (along_x, along_y), self._refused)
+
+    def _amplitude(self, qx: Array, qy: Array) -> Array:
+        """Root of Eq. (9)'s transform over its peak."""
+        along, across = turned(qx, qy, self.lay)
         lx, ly = self.ellipse.along, self.ellipse.across
-
-        def amplitude(qx: Array, qy: Array) -> Array:
-            along, across = lx * (qx * cosine + qy * sine), ly * (qy * cosine - qx * sine)
-            return np.asarray(np.exp(-(along**2 + across**2) / (8.0 * DECAY)))
-
-        shortest = (2.0 * math.pi / _REACH * length for length in self.ellipse.on_axes)
-        torus = Torus.holding(grid.lengths, shortest, self._refused)
-        scale = self.rms / math.sqrt(torus.mean_squares(amplitude)[0])
-        return scale * torus.field(amplitude, self.seed, x, y)
+        return np.asarray(np.exp(-((lx * along) ** 2 + (ly * across) ** 2) / (8.0 * DECAY)))
 
     def _refuse_longer(self, periods: tuple[float, float]) -> None:
         for extent, period in zip(self.ellipse.extents, periods, strict=True):

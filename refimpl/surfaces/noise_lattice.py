@@ -1,7 +1,8 @@
 """The random field of Eq. (9) as a smoothed lattice of white noise.
 
 ``exp(-4.6 r^2 / l^2)`` convolved with itself is proportional to ``R(r) = exp(-2.3 r^2 / l^2)``. So
-independent standard normal numbers w on the nodes of an infinite square lattice of spacing h, smoothed by that kernel,
+independent standard normal numbers w on the nodes of an infinite square lattice of spacing h, smoothed by
+that kernel,
 
     z(x, y) = (h k / l) sum_mn exp(-4.6 ((x - m h)^2 + (y - n h)^2) / l^2) w_mn,    k = sqrt(9.2 / pi),
 

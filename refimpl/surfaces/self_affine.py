@@ -35,7 +35,7 @@ from refimpl.errors import InputError, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.lay import Lay
 from refimpl.surfaces.surface import Detail, Surface, finite, require_seed
-from refimpl.surfaces.waves import ROUNDING, Spectrum, Torus
+from refimpl.surfaces.waves import ROUNDING, Torus, turned
 
 RESOLVED = 4.0  # elements per shortest wave from which slopes count as resolved
 _PERIODS = 8  # long_cuts in the period of a free surface, at least: waves of all directions at the long end
@@ -159,23 +159,22 @@ class SelfAffineRoughness(Surface):
         if self.long_cut < 2.0 * max(grid.spacings):
             need = f"at least two elements, {2.0 * max(grid.spacings):.3g} m: the grid holds no wave of it"
             raise InputError("long_cut", self.long_cut, need)
-        torus, spectrum = self._torus(grid), self._amplitude
-        height, gradient = torus.mean_squares(spectrum)
+        torus = self._torus(grid)
+        height, gradient = torus.mean_squares(self._amplitude)
         if not height:
             need = "a spectrum that holds a wave of the periodic domain"
             raise InputError("short_cut", self.short_cut, need)
         present = math.sqrt(height if self.given == "rms" else gradient)
-        return (
-            getattr(self, self.given)
-            / present
-            * torus.field(spectrum, self.seed, grid.x + offset[0], grid.y + offset[1])
-        )
+        size = self.rms if self.given == "rms" else self.rms_gradient
+        z = torus.field(self._amplitude, self.seed, grid.x + offset[0], grid.y + offset[1])
+        return np.asarray(z * (size / present))
 
     def _torus(self, grid: Grid) -> Torus:
         if grid.periodic:
             if self.long_cut > min(grid.lengths):
                 raise InputError("long_cut", self.long_cut, f"at most the period, {min(grid.lengths):.6g} m")
-            shortest = (self.short_cut * length for length in self.ellipse.on_axes)
+            along_x, along_y = self.ellipse.on_axes
+            shortest = (along_x * self.short_cut, along_y * self.short_cut)
             return Torus.holding(grid.lengths, shortest, self._refused)
         far = _FAR * max(grid.lengths) / min(self.anisotropy, 1.0)
         doublings = math.ceil(math.log2(max(_PERIODS, far / self.long_cut * (1.0 - ROUNDING))))
@@ -184,15 +183,10 @@ class SelfAffineRoughness(Surface):
         shortest = (a * self.short_cut, b * self.short_cut)
         return Torus.holding((a * period, b * period), shortest, self._refused, shear)
 
-    @property
-    def _amplitude(self) -> Spectrum:
-        cosine, sine, g = math.cos(self.lay), math.sin(self.lay), self.anisotropy
-
-        def amplitude(qx: Array, qy: Array) -> Array:
-            q = np.hypot(g * (qx * cosine + qy * sine), qy * cosine - qx * sine)
-            return np.sqrt(self._shape(q))
-
-        return amplitude
+    def _amplitude(self, qx: Array, qy: Array) -> Array:
+        """Root of the PSD over its plateau."""
+        along, across = turned(qx, qy, self.lay)
+        return np.sqrt(self._shape(np.hypot(self.anisotropy * along, across)))
 
     def _refused(self, factor: float, limit: str) -> NoReturn:
         need = f"at least {factor * self.short_cut:.3g} m on this domain ({limit})"

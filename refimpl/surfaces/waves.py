@@ -133,6 +133,12 @@ class Torus:
         return ahead, behind[::-1, ::-1].copy()
 
 
+def turned(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
+    """Components of wave vectors along a lay and across it."""
+    cosine, sine = math.cos(lay), math.sin(lay)
+    return qx * cosine + qy * sine, qy * cosine - qx * sine
+
+
 def _interpolation(turns: Array, waves: int) -> tuple[int, csr_array]:
     """Points of the period, and the matrix that interpolates from them at positions in periods."""
     N = 2 * next_fast_len(2 * waves + 1 + _WIDTH, real=True)
