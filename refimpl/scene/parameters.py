@@ -28,7 +28,7 @@ def parameters(scene: Scene) -> dict[str, float]:
         body = getattr(scene, name)
         found |= {f"{name}.material.E": body.material.E, f"{name}.material.nu": body.material.nu}
         for k, part in enumerate(body.surface.parts):
-            found |= {f"{name}.surface[{k}].{key}": value for key, value in part.numbers().items()}
+            found |= {f"{name}.surface[{k}].{key}": value for key, value in part.parameters().items()}
     return found
 
 
@@ -51,7 +51,7 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
     else:
         parts = list(body.surface.parts)
         k = int(place[len("surface[") : -1])
-        parts[k] = parts[k].with_number(key, value)
+        parts[k] = parts[k].with_parameter(key, value)
         body = Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
     return replace(scene, upper=body) if which == "upper" else replace(scene, lower=body)
 
@@ -65,7 +65,7 @@ def moving(scene: Scene) -> dict[str, float]:
     found = parameters(scene)
     for name in BODIES:
         for k, part in enumerate(getattr(scene, name).surface.parts):
-            for key in part.numbers().keys() - set(part.same_realisation(scene.periodic)):
+            for key in part.parameters().keys() - set(part.same_realisation(scene.periodic)):
                 del found[f"{name}.surface[{k}].{key}"]
     return {name: value for name, value in found.items() if value != 0}
 

@@ -97,23 +97,23 @@ class GaussianRoughness(Surface):
         """Ensemble rms of |grad z| (Sdq): ``rms sqrt(2 * 2.3) sqrt(1 / lx^2 + 1 / ly^2)``."""
         return self.rms * math.sqrt(2.0 * DECAY) * math.hypot(1 / self.ellipse.along, 1 / self.ellipse.across)
 
-    def numbers(self) -> dict[str, float]:
+    def parameters(self) -> dict[str, float]:
         given = self.correlation_length
         lengths = {"correlation_length": given}
         if isinstance(given, tuple):
             lengths = {f"correlation_length[{k}]": length for k, length in enumerate(given)}
         return {"rms": self.rms, **lengths, "lay": self.lay, "seed": self.seed}  # type: ignore[dict-item]  # a float
 
-    def with_number(self, name: str, value: float) -> GaussianRoughness:
+    def with_parameter(self, name: str, value: float) -> GaussianRoughness:
         if name.endswith("]"):
             assert isinstance(self.correlation_length, tuple)
             lx, ly = self.correlation_length
             return replace(self, correlation_length=(value, ly) if "[0]" in name else (lx, value))
-        return super().with_number(name, value)
+        return super().with_parameter(name, value)
 
     def same_realisation(self, periodic: bool) -> tuple[str, ...]:
         lattice = periodic and self.ellipse.is_isotropic  # another length has another lattice
-        return ("rms",) if lattice else tuple(name for name in self.numbers() if name != "seed")
+        return ("rms",) if lattice else tuple(name for name in self.parameters() if name != "seed")
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
         return self._field(grid.x + offset[0], grid.y + offset[1], grid) * self._scale(grid)
@@ -159,7 +159,7 @@ class GaussianRoughness(Surface):
     def _refused(self, factor: float, limit: str) -> NoReturn:
         """Refuse lengths that are too short for the domain by a factor; of two, the shorter is named."""
         least = factor * float(np.min(self.correlation_length))
-        need = f"at least {least:.3g} m on this square ({limit})"
+        need = f"at least {least:.3g} m on this domain ({limit})"
         raise InputError("correlation_length", self.correlation_length, need)
 
     def _scale(self, grid: Grid) -> float:
@@ -179,9 +179,9 @@ class GaussianRoughness(Surface):
         return math.sqrt(along @ (z - mean) ** 2 @ across)
 
     def detail(self, spacing: float) -> Detail:
-        # M4 / M2 of Eq. (9): mean squares of the Laplacian and the gradient, 32 c^2 over 4 c, c = 2.3 / l^2
+        # mean squares of the Laplacian and the gradient of Eq. (9): 32 c^2 and 4 c, c = 2.3 / l^2
         length = min(self.ellipse.along, self.ellipse.across)
-        return Detail("correlation length", length, RESOLVED, 8.0 * DECAY / length**2)
+        return Detail("correlation length", length, RESOLVED, math.sqrt(8.0 * DECAY))
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         over = f"over the domain of {_by(grid.lengths)} m" if self.normalise else "in the ensemble"

@@ -141,11 +141,11 @@ class SelfAffineRoughness(Surface):
         inside = (q >= low * (1.0 - ROUNDING)) & (q <= high * (1.0 + ROUNDING))
         return np.where(inside, (np.maximum(q, roll) / roll) ** (-2.0 - 2.0 * self.hurst), 0.0)
 
-    def numbers(self) -> dict[str, float]:
+    def parameters(self) -> dict[str, float]:
         names = (self.given, "hurst", "roll_off", "long_cut", "short_cut", "anisotropy", "lay", "seed")
         return {name: getattr(self, name) for name in names}
 
-    def with_number(self, name: str, value: float) -> SelfAffineRoughness:
+    def with_parameter(self, name: str, value: float) -> SelfAffineRoughness:
         table = self.to_dict() | {name: int(value) if name == "seed" and value % 1 == 0 else value}
         return SelfAffineRoughness.from_table({key: v for key, v in table.items() if key != "kind"}, Path())
 
@@ -153,7 +153,7 @@ class SelfAffineRoughness(Surface):
         return (self.given, "hurst") if periodic else (self.given, "hurst", "anisotropy", "lay")
 
     def to_dict(self) -> dict[str, Any]:
-        return {"kind": self.kind, **self.numbers()}
+        return {"kind": self.kind, **self.parameters()}
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
         if self.long_cut < 2.0 * max(grid.spacings):
@@ -223,8 +223,8 @@ class SelfAffineRoughness(Surface):
     def detail(self, spacing: float) -> Detail:
         slope, curvature = self.missed(spacing)
         said = f"{slope:.0%} of the rms slope and {curvature:.0%} of the rms curvature"
-        ratio = self.moment(4) / self.moment(2)
-        return Detail("shortest wave", self.short_cut, RESOLVED, ratio, said)
+        curvature = self.short_cut * math.sqrt(self.moment(4) / self.moment(2))
+        return Detail("shortest wave", self.short_cut, RESOLVED, curvature, said)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         lay = f", stretched {self.anisotropy:.4g} times along a lay of {math.degrees(self.lay):.4g} degrees"

@@ -43,7 +43,7 @@ class Sphere(Surface):
             raise InputError("radius", self.radius, allowed)
         object.__setattr__(self, "radius", float(self.radius))
 
-    def numbers(self) -> dict[str, float]:
+    def parameters(self) -> dict[str, float]:
         return {"radius": self.radius}
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:

@@ -1,4 +1,4 @@
-"""What a surface is: heights at the element centres of any grid, and sums of such surfaces."""
+"""What a surface is: heights at the element centres of any grid; arrays of heights, and sums of surfaces."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from refimpl.errors import LEAST, InputError, as_double
 from refimpl.grid import Array, Grid
+from refimpl.surfaces.arrays import cautions_of, checked, sampled, use_of
 
 
 class SurfaceWarning(UserWarning):
@@ -26,23 +27,23 @@ class Detail:
 
     name, length : of the detail's length (m)
     resolved : elements per length from which slopes count as resolved
-    curvature_to_slope : mean square of the Laplacian over that of the gradient (1/m^2)
+    curvature : rms of the Laplacian over rms of the gradient, times the length
     missed : what a grid of the given spacing misses, in words; empty where that has no simple number
     """
 
     name: str
     length: float
     resolved: float
-    curvature_to_slope: float
+    curvature: float
     missed: str = ""
 
     def required(self, accuracy: float) -> float:
         """Elements per length at which central differences see the rms slope too small by ``accuracy``.
 
         A wave q at the angle t to the axis has ``sin(q h cos t) / h`` in place of ``q cos t``: of the mean
-        square slope ``h^2 / 4`` times `curvature_to_slope` is missing, of the rms slope half of that.
+        square slope ``(h curvature / length)^2 / 4`` is missing, of the rms slope half of that.
         """
-        return self.length * math.sqrt(self.curvature_to_slope / (8.0 * accuracy))
+        return self.curvature / math.sqrt(8.0 * accuracy)
 
 
 class Surface(ABC):
@@ -93,19 +94,19 @@ class Surface(ABC):
         """Return the finest detail of a random roughness on elements of a spacing (m); None for others."""
         return None
 
-    def numbers(self) -> dict[str, float]:
+    def parameters(self) -> dict[str, float]:
         """Return the numbers that a study may vary, by name, SI."""
         return {}
 
-    def with_number(self, name: str, value: float) -> Self:
-        """Return the surface with one of its `numbers` changed; a whole number may come as a float."""
+    def with_parameter(self, name: str, value: float) -> Self:
+        """Return the surface with one of its `parameters` changed; a whole number may come as a float."""
         if name == "seed" and float(value).is_integer():
             value = int(value)
         return replace(self, **{name: value})  # type: ignore[type-var]  # dataclasses all
 
     def same_realisation(self, periodic: bool) -> tuple[str, ...]:
-        """Return those of the `numbers` on which heights depend smoothly: there are derivatives."""
-        return tuple(self.numbers())
+        """Return those of the `parameters` on which heights depend smoothly: there are derivatives."""
+        return tuple(self.parameters())
 
     @property
     def parts(self) -> tuple[Surface, ...]:
@@ -156,10 +157,47 @@ class SurfaceSum(Surface):
         return {"kind": self.kind, "terms": [term.to_dict() for term in self.terms]}
 
 
-def as_surface(value: Surface | NDArray[Any]) -> Surface:
-    """``value`` if it is a surface, an ``ArraySurface`` of it if it is an array; else InputError."""
-    from refimpl.surfaces.arrays import ArraySurface  # here: arrays are surfaces, and build on this module
+@dataclass(frozen=True, eq=False)
+class ArraySurface(Surface):
+    """Heights (m) at the centres of ``shape[0] x shape[1]`` equal cells of the domain.
 
+    Used as they are on a grid of the same shape; otherwise resampled bicubically to the element centres
+    (sampled, not averaged). Within the outermost half cell the spline's end piece goes on. An offset that
+    leaves the domain is refused unless the scene is periodic.
+    """
+
+    data: NDArray[np.float64]
+    kind: ClassVar[str] = "array"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", checked(self.data))
+
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        return sampled(self.data, grid, offset)
+
+    def describe(self, grid: Grid) -> tuple[str, ...]:
+        return use_of(self.data.shape, grid), *self.cautions(grid)
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        return cautions_of(self.data.shape, grid)
+
+    def pitch(self, lengths: tuple[float, float]) -> float:
+        nx, ny = self.data.shape
+        return float(min(lengths[0] / nx, lengths[1] / ny))
+
+    def to_dict(self) -> dict[str, Any]:
+        allowed = 'a surface that has a TOML form; save the array as .npy and read it by kind = "measured"'
+        raise InputError("surface", f"array of shape {self.data.shape}", allowed)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ArraySurface) and np.array_equal(self.data, other.data)
+
+    def __hash__(self) -> int:
+        return hash((self.data.shape, float(self.data.sum())))
+
+
+def as_surface(value: Surface | NDArray[Any]) -> Surface:
+    """Return ``value`` if it is a surface, an `ArraySurface` of it if it is an array; else InputError."""
     if isinstance(value, Surface):
         return value
     if isinstance(value, np.ndarray):
