@@ -15,7 +15,7 @@ from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution
 from refimpl.solvers.paper import PAPER_TOLERANCE
 
-# Of mean pressure and tau over the reduced modulus, and of approaches over the side.
+# Limits of mean pressure and tau over the reduced modulus, and of approaches over the side.
 LEAST_STRAIN, MOST_STRAIN = 1e-30, 1e6
 
 
@@ -105,7 +105,7 @@ class Options:
 
     @property
     def residual_tolerance(self) -> float:
-        """What every residual of the certificate must meet."""
+        """Tolerance of every residual of the certificate."""
         if self.tolerance is not None:
             return self.tolerance
         if self.method == "paper":

@@ -57,7 +57,7 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 
 
 def moving(scene: Scene) -> dict[str, float]:
-    """The parameters that derivatives are had for: those that are not zero.
+    """Return the parameters that have derivatives: those that are not zero.
 
     Without those of surfaces that make another realisation: seeds, cut-offs of a spectrum, and the
     correlation length of an isotropic periodic surface.

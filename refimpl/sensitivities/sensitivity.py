@@ -1,4 +1,4 @@
-"""What a solution's numbers change by when the scene's numbers change.
+"""Derivatives of a solution's numbers by the scene's numbers.
 
 Pressures answer smoothly while the contact set stays as it is, so that friction, binormal force and peak
 pressure follow from one linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does not:
@@ -47,8 +47,8 @@ _RANGES = {  # that steps may not leave
     ".E": (LEAST, RIGID),
     ".hurst": (LEAST, 1.0),
 }
-_TIED = 1e-6  # of the highest pressure, within which others are as high: symmetric scenes, but for slopes
-_SOLVED = 1e-3  # of a linear solve's right side, at most, may be left: a derivative's digits
+_TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
+_SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
 
 
 @dataclass(frozen=True)
@@ -259,7 +259,7 @@ def _gathered(
         found = (friction, area, answer.peak, answer.binormal)
         spreads = dmu_dA * loose, loose, answer.torn, 0.0
         for number, derivative, spread in zip(NUMBERS, found, spreads, strict=True):
-            # what changes meets elsewhere, which no fixed set knows: where there are two solves they tell
+            # the fixed set has no contact at new places; where two solves exist, their difference is included
             apart = abs(derivative - solved[name][number]) if name in solved else 0.0
             derivatives[number][name], scatter[number][name] = derivative, math.hypot(spread, apart)
     return Sensitivity(

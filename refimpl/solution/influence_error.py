@@ -1,4 +1,4 @@
-"""How wrong a flat half-space's influence coefficients are on a slope: the table of Appendix A's answer.
+"""Error of a flat half-space's influence coefficients on a slope, in the plane: Appendix A's table.
 
 The table (``data/coefficient_error.json``, made by ``rough-friction appendix-a map``) holds what
 finite elements found for a strip of half-width ``a`` on a sinusoidal boundary in plane strain. The

@@ -56,12 +56,12 @@ class Crop:
 
     @property
     def lost(self) -> int:
-        """How many of these points are missing."""
+        """Number of these points that are missing."""
         return int(np.isnan(self.reading.heights[self.points]).sum())
 
     @property
     def size(self) -> int:
-        """How many points there are."""
+        """Number of points."""
         return self.reading.heights[self.points].size
 
     def filled(self) -> tuple[Array, tuple[slice, slice]]:

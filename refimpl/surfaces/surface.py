@@ -78,7 +78,7 @@ class Surface(ABC):
         return self._sample(grid, (float(ox), float(oy)))
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        """What was read, cut, levelled, resampled or normalised for this grid, one sentence each."""
+        """Return how heights are read, cut, levelled, resampled or normalised here, one sentence each."""
         return self.cautions(grid)
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:

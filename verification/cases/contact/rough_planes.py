@@ -102,7 +102,7 @@ def area_curves(M: int) -> Array:
     curves = []
     for seed in range(5):
         heights = 1e-3 * self_affine(M, seed)
-        slope = rough_plane.spectral_rms_slope(heights, 1.0)
+        slope = rough_plane.spectral_rms_gradient(heights, 1.0)
         gap = heights.max() - heights
 
         def plane(x: Array, y: Array, gap: Array = gap) -> Array:
