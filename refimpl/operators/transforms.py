@@ -21,6 +21,7 @@ from refimpl.operators.threads import allowed_threads
 Complex = NDArray[np.complex128]
 
 
+
 class Library(Protocol):
     """What operators need of a library of transforms; ``workers`` are threads.
 

@@ -36,7 +36,7 @@ class Limit(StrEnum):
 
     PLASTICITY = "plasticity index"
     HARDNESS = "peak pressure"
-    RMS_SLOPE = "rms slope"
+    RMS_GRADIENT = "rms gradient"
     MAX_SLOPE = "maximum slope"
     BORDER = "border"
     CORRELATION = "correlation length"
@@ -174,7 +174,7 @@ def _hardness(evidence: Evidence) -> ModelWarning | None:
 def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
     error = _error_at_slopes(evidence)
     return [
-        _slope(Limit.RMS_SLOPE, error.rms_slope, error.at_rms),
+        _slope(Limit.RMS_GRADIENT, error.rms_gradient, error.at_rms),
         _slope(Limit.MAX_SLOPE, error.max_slope, error.at_max),
     ]
 

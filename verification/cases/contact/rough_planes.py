@@ -94,7 +94,7 @@ def self_affine(M: int, seed: int, *, longest: int = 4, shortest: int = 16) -> A
 
 
 LOADS = (0.02, 0.04, 0.08)
-"""Mean pressure over E* times rms slope."""
+"""Mean pressure over E* times rms gradient."""
 
 
 def area_curves(M: int) -> Array:
