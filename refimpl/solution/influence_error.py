@@ -79,7 +79,7 @@ def coefficient_error(
 
 
 def slope_error(slopes: Slopes, pressure: Array, pair: Pair) -> SlopeError:
-    """Return the error at a contact's rms gradient (weighted by pressure) and at its steepest loaded element."""
+    """Return the error at a contact's rms gradient, weighted by pressure, and at its steepest element."""
     loaded = pressure > 0
     squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2
     if not squared.any():
