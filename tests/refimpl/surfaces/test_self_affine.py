@@ -19,7 +19,7 @@ from scipy.integrate import quad
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces import SelfAffineRoughness, SurfaceWarning
+from refimpl.surfaces import SelfAffineRoughness, SurfaceWarning, surface_from_dict
 from refimpl.surfaces.statistics import kurtosis, skewness
 
 SIDE = 1e-3
@@ -440,3 +440,28 @@ def test_cost_is_small() -> None:
     start = time.process_time()
     surface.sample(grid)
     assert time.process_time() - start < 1.0  # CPU seconds; measured 0.1
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"hurst": None}, "surface.hurst"),
+        ({"colour": 1}, "surface.colour"),
+        ({"given": "rms"}, "surface.given"),
+        ({"rms_gradient": 0.1}, "surface.rms, rms_gradient = 'both'"),
+        ({"rms": None}, "surface.rms, rms_gradient = 'neither'"),
+        ({"hurst": 1.5}, "surface.hurst = 1.5"),
+    ],
+)
+def test_tables_are_checked(change: dict[str, Any], said: str) -> None:
+    table = {key: v for key, v in ({"kind": "self_affine"} | PARAMETERS | change).items() if v is not None}
+    with pytest.raises(InputError) as refusal:
+        surface_from_dict(table)
+    assert said in str(refusal.value)
+
+
+def test_tables_hold_the_given_size_alone() -> None:
+    for surface in (rough(anisotropy=2.0), rough(rms_gradient=0.1, lay=0.3)):
+        table = surface.to_dict()
+        assert len({"rms", "rms_gradient"} & table.keys()) == 1
+        assert surface_from_dict(table) == surface
