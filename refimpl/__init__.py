@@ -23,12 +23,14 @@ from refimpl.surfaces import (
     ArraySurface,
     Flat,
     GaussianRoughness,
+    Inspection,
     MeasuredSurface,
     SelfAffineRoughness,
     Sphere,
     Surface,
     SurfaceSum,
     SurfaceWarning,
+    inspect,
 )
 
 __all__ = [
@@ -39,6 +41,7 @@ __all__ = [
     "GaussianRoughness",
     "Grid",
     "InputError",
+    "Inspection",
     "Material",
     "MeasuredSurface",
     "Scene",
@@ -50,6 +53,7 @@ __all__ = [
     "Surface",
     "SurfaceSum",
     "SurfaceWarning",
+    "inspect",
     "read_scene",
     "scene_to_toml",
     "sensitivity",

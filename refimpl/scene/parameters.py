@@ -59,12 +59,16 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 def moving(scene: Scene) -> dict[str, float]:
     """Return the parameters that have derivatives: those that are not zero.
 
-    Without those of surfaces that make another realisation: seeds, cut-offs of a spectrum, and the
-    correlation length of an isotropic periodic surface.
+    Without the modulus and Poisson's ratio of a rigid body, which change nothing, and without the numbers of
+    surfaces that make another realisation: seeds, cut-offs of a spectrum, and the correlation length of an
+    isotropic periodic surface.
     """
     found = parameters(scene)
     for name in BODIES:
-        for k, part in enumerate(getattr(scene, name).surface.parts):
+        body: Body = getattr(scene, name)
+        if body.material.is_rigid:
+            del found[f"{name}.material.E"], found[f"{name}.material.nu"]
+        for k, part in enumerate(body.surface.parts):
             for key in part.parameters().keys() - set(part.same_realisation(scene.periodic)):
                 del found[f"{name}.surface[{k}].{key}"]
     return {name: value for name, value in found.items() if value != 0}

@@ -2,6 +2,7 @@
 
 from refimpl.surfaces.from_table import surface_from_dict
 from refimpl.surfaces.gaussian import GaussianRoughness
+from refimpl.surfaces.inspection import Inspection, inspect
 from refimpl.surfaces.measured import MeasuredSurface
 from refimpl.surfaces.self_affine import SelfAffineRoughness
 from refimpl.surfaces.shapes import Flat, Sphere
@@ -11,6 +12,7 @@ __all__ = [
     "ArraySurface",
     "Flat",
     "GaussianRoughness",
+    "Inspection",
     "MeasuredSurface",
     "SelfAffineRoughness",
     "Sphere",
@@ -18,5 +20,6 @@ __all__ = [
     "SurfaceSum",
     "SurfaceWarning",
     "as_surface",
+    "inspect",
     "surface_from_dict",
 ]

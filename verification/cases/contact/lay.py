@@ -25,18 +25,19 @@ def weak_forces(seed: int, direction: float) -> tuple[float, float]:
     ``int p dz/ds dA`` with Hertz' pressure p, s along the sliding direction."""
     ball = Sphere(load=70.0, radius=0.14, modulus=STEEL.E / (1 - STEEL.nu**2) / 2)
     a = ball.contact_radius
+    side = 3 * a
     roughness = rf.GaussianRoughness(WEAK_RMS, (a, a / 4), seed, lay=LAY)
     scene = rf.Scene(
         upper=rf.Body(STEEL, rf.Sphere(ball.radius)),
         lower=rf.Body(STEEL, roughness),
         friction=rf.Friction(),
         load=ball.load,
-        side=3 * a,
+        side=side,
         sliding_direction=direction,
     )
     solution = rf.solve(scene, grid=128)
-    grid, step = Grid.square(scene.side, 256), 1e-3 * a
-    pressure = ball.pressure(np.hypot(grid.x[:, None] - scene.side / 2, grid.y[None, :] - scene.side / 2))
+    grid, step = Grid.square(side, 256), 1e-3 * a
+    pressure = ball.pressure(np.hypot(grid.x[:, None] - side / 2, grid.y[None, :] - side / 2))
     shift = step * math.cos(direction), step * math.sin(direction)
     ahead, behind = (roughness.sample(grid, (sign * shift[0], sign * shift[1])) for sign in (1, -1))
     first_order = float((pressure * (ahead - behind)).sum()) * grid.element_area / (2 * step)
