@@ -20,6 +20,7 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import SelfAffineRoughness, SurfaceWarning, surface_from_dict
+from refimpl.surfaces.roughness_fit import fit_roughness
 from refimpl.surfaces.statistics import kurtosis, skewness
 
 SIDE = 1e-3
@@ -465,3 +466,14 @@ def test_tables_hold_the_given_size_alone() -> None:
         table = surface.to_dict()
         assert len({"rms", "rms_gradient"} & table.keys()) == 1
         assert surface_from_dict(table) == surface
+
+
+def test_a_map_of_it_is_fitted_by_it() -> None:
+    """The fit of measured maps, which knows nothing of this generator, finds the surface that was sampled."""
+    surface, pixel = rough(hurst=0.7), (2e-3 / 256, 2e-3 / 256)
+    found = fit_roughness(surface.sample(Grid.square(2e-3, 256)), pixel, "self-affine")
+    fitted = surface_from_dict(found.table(seed=2))
+    assert isinstance(fitted, SelfAffineRoughness)
+    assert abs(fitted.hurst - 0.7) < 4 * found.deviations["hurst"]
+    assert found.deviations["hurst"] < 0.05
+    assert fitted.rms == pytest.approx(1e-6, rel=0.15)
