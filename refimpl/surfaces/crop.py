@@ -10,6 +10,7 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.surfaces.bicubic import MEMORY
+from refimpl.surfaces.detrending import Form
 from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.readers import Reading
 
@@ -75,11 +76,13 @@ class Crop:
         """Number of points."""
         return self.reading.heights[self.points].size
 
-    def filled(self) -> tuple[Array, tuple[slice, slice]]:
-        """The window's points and what a spline remembers around them, gaps filled; and where these begin."""
-        around = tuple(slice(max(s.start - MEMORY, 0), s.stop + MEMORY) for s in self.points)
-        i, j = around
-        return fill(self.reading.heights[i, j], self.reading.pixel), (i, j)
+    def filled(self, form: Form) -> tuple[Array, tuple[slice, slice]]:
+        """The window's points and what a spline remembers around them, less ``form`` (over pixel positions),
+        gaps filled; and where these begin."""
+        i, j = (slice(max(s.start - MEMORY, 0), s.stop + MEMORY) for s in self.points)
+        heights = self.reading.heights[i, j]
+        x, y = (s.start + np.arange(n, dtype=float) for s, n in zip((i, j), heights.shape, strict=True))
+        return fill(heights - form(x, y), self.reading.pixel), (i, j)
 
 
 def extent(

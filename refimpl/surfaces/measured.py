@@ -13,11 +13,12 @@ from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.crop import ROUNDING, Crop, by, extent
-from refimpl.surfaces.detrending import DEGREES, Form, fit
+from refimpl.surfaces.detrending import Form, check_level, fit_form
 from refimpl.surfaces.missing_points import fill
-from refimpl.surfaces.orientation import MIRRORS, TURNS, Oriented, oriented
+from refimpl.surfaces.orientation import Oriented, check_orientation, checked_centre, oriented
+from refimpl.surfaces.preparation import check_preparation, prepare
 from refimpl.surfaces.readers import UNITS, Reading, read
-from refimpl.surfaces.surface import Surface, finite, pixel_edges
+from refimpl.surfaces.surface import Surface, finite, pixel_edges, require_one_of
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
@@ -26,30 +27,37 @@ _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 class MeasuredSurface(Surface):
     """Measured heights from a file (which: ``readers.read``), treated in this order:
 
-    1. orientation: heights point out of the material, x to the right and y up as seen from outside.
+    1. outliers and wavelengths (``preparation.prepare``): points further than ``outliers`` spreads from the
+       median of their neighbours become missing; ``low_pass`` and ``high_pass`` (m) filter the whole map;
+    2. orientation: heights point out of the material, x to the right and y up as seen from outside.
        ``replica=True`` negates them; ``mirror="x"`` or ``"y"`` mirrors (x -> -x, y -> -y); ``rotate_deg``
        (0, 90, 180, 270) turns them anticlockwise; ``turn_over`` turns the specimen over about the x axis,
        z(x, y) -> -z(x, -y), by default where it is the upper body;
-    2. window: the scene's domain about ``centre`` (m from the corner of the file's own area, by default its
+    3. window: the scene's domain about ``centre`` (m from the corner of the file's own area, by default its
        middle), moved by the offset; refused where it leaves that area, in which each point counts as one
        pixel. A map that ``repeats`` with its own area (m) has no border;
-    3. gaps: ``missing="fill"`` fills by Laplace's equation (``gaps.fill``), but refuses a window with more
-       than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
-    4. level: the least-squares ``"mean"``, ``"plane"`` (the default) or ``"paraboloid"`` (all six quadratic
-       terms) of the points in the window at offset 0 is subtracted everywhere, so that a shifted surface
-       remains the same rigid body; ``"none"`` subtracts nothing; of a map that repeats only the mean can be;
-    5. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
+    4. level: the least-squares ``"mean"``, ``"plane"`` (the default), ``"paraboloid"`` (all six quadratic
+       terms), polynomial of total degree ``level = 3 ... 10``, ``"cylinder"`` or ``"sphere"`` of the measured
+       points in the window at offset 0 is subtracted everywhere, so that a shifted surface remains the same
+       rigid body; ``"none"`` subtracts nothing; of a map that repeats only the mean can be;
+    5. gaps: ``missing="fill"`` fills by Laplace's equation (``missing_points.fill``), but refuses a window
+       with more than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
+    6. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
        the measured area the spline's end piece goes on.
 
-    ``unit`` (of heights: m, mm, um, nm, pm) and ``pixel_size`` (m; a number or (x, y)) are for files that do
-    not state them. Read on first use, then kept. Periodic scenes refuse it unless it ``repeats``, a whole
-    number of times.
+    ``unit`` (of heights: m, mm, um, nm, A, pm) and ``pixel_size`` (m; a number or (x, y)) are for files that
+    do not state them, and override those that do; ``channel`` is a name or a number. Read on first use, then
+    kept. Periodic scenes refuse it unless it ``repeats``, a whole number of times.
     """
 
     path: str | Path
     unit: str | None = field(default=None, kw_only=True)
     pixel_size: float | tuple[float, float] | None = field(default=None, kw_only=True)
-    level: str | None = field(default=None, kw_only=True)
+    channel: str | int | None = field(default=None, kw_only=True)
+    outliers: float | None = field(default=None, kw_only=True)
+    low_pass: float | None = field(default=None, kw_only=True)
+    high_pass: float | None = field(default=None, kw_only=True)
+    level: str | int | None = field(default=None, kw_only=True)
     missing: str = field(default="fill", kw_only=True)
     max_missing: float = field(default=0.05, kw_only=True)
     replica: bool = field(default=False, kw_only=True)
@@ -65,7 +73,7 @@ class MeasuredSurface(Surface):
             raise InputError("path", self.path, "the path of a file")
         object.__setattr__(self, "path", Path(self.path))
         if self.unit is not None:
-            _require_one_of("unit", self.unit, tuple(UNITS))
+            require_one_of("unit", self.unit, tuple(UNITS))
         if self.pixel_size is not None:
             object.__setattr__(self, "pixel_size", pixel_edges("pixel_size", self.pixel_size))
         for name in ("replica", "repeats"):
@@ -73,26 +81,14 @@ class MeasuredSurface(Surface):
                 raise InputError(name, getattr(self, name), "true or false")
         if self.level is None:
             object.__setattr__(self, "level", "mean" if self.repeats else "plane")
-        levels = ("none", "mean") if self.repeats else tuple(DEGREES)
-        _require_one_of("level", self.level, levels)
-        self._check_orientation()
-        _require_one_of("missing", self.missing, ("fill", "refuse"))
+        check_level(self.level, self.repeats)
+        check_preparation(self.channel, self.outliers, self.low_pass, self.high_pass)
+        check_orientation(self.mirror, self.rotate_deg, self.turn_over)
+        if self.centre is not None:
+            object.__setattr__(self, "centre", checked_centre(self.centre))
+        require_one_of("missing", self.missing, ("fill", "refuse"))
         if not 0 <= finite("max_missing", self.max_missing, _ALLOWED_FRACTION) < 1:
             raise InputError("max_missing", self.max_missing, _ALLOWED_FRACTION)
-
-    def _check_orientation(self) -> None:
-        if self.mirror is not None:
-            _require_one_of("mirror", self.mirror, MIRRORS)
-        if isinstance(self.rotate_deg, bool) or self.rotate_deg not in TURNS:
-            raise InputError("rotate_deg", self.rotate_deg, f"one of {', '.join(map(str, TURNS))}")
-        if not isinstance(self.turn_over, bool | None):
-            raise InputError("turn_over", self.turn_over, "true or false")
-        if self.centre is not None:
-            allowed = "two lengths in m from the corner of the file's own area, (x, y)"
-            if not isinstance(self.centre, list | tuple) or len(self.centre) != 2:
-                raise InputError("centre", self.centre, allowed)
-            x, y = (finite("centre", at, allowed) for at in self.centre)
-            object.__setattr__(self, "centre", (x, y))
 
     @property
     def _file(self) -> Path:
@@ -106,13 +102,18 @@ class MeasuredSurface(Surface):
     def reading(self) -> Reading:
         """The content of the file, as it is (read once)."""
         pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
-        return read(self._file, self.unit, pixel)
+        return read(self._file, self.unit, pixel, self.channel)
+
+    @cached_property
+    def prepared(self) -> Reading:
+        """The map without outliers and with its wavelengths filtered."""
+        return prepare(self.reading, self.outliers, self.low_pass, self.high_pass, self.repeats)
 
     @cached_property
     def _oriented(self) -> Oriented:
         """The file's heights as they lie on the body."""
         return oriented(
-            self.reading,
+            self.prepared,
             replica=self.replica,
             mirror=self.mirror,
             rotate_deg=self.rotate_deg,
@@ -126,7 +127,8 @@ class MeasuredSurface(Surface):
     @cached_property
     def _turned(self) -> MeasuredSurface:
         turned = replace(self, turn_over=True)
-        vars(turned)["reading"] = self.reading  # the cached property: the file is read once
+        for name in ("reading", "prepared"):  # cached properties: the file is read and filtered once
+            vars(turned)[name] = getattr(self, name)
         return turned
 
     def extent(self, offset: tuple[float, float]) -> tuple[float, float]:
@@ -139,9 +141,9 @@ class MeasuredSurface(Surface):
         if grid.periodic:
             raise InputError("periodic", True, f"false: {self._file.name} does not repeat (repeats = true?)")
         window = self._crop(grid.lengths, offset)
-        heights, (i, j) = window.filled()
+        heights, (i, j) = window.filled(self._central(grid.lengths)[1])
         x, y = window.positions(grid.x, 0), window.positions(grid.y, 1)
-        return resample(heights, x - i.start, y - j.start) - self._central(grid.lengths)[1](x, y)
+        return resample(heights, x - i.start, y - j.start)
 
     def _repeated(self, grid: Grid, offset: tuple[float, float]) -> Array:
         """Heights of a map that repeats with its own area."""
@@ -157,7 +159,8 @@ class MeasuredSurface(Surface):
             )
         )
         z, form, _ = self._central(grid.lengths)
-        return resample_periodic(z, x, y) - form(x, y)
+        filled = fill(np.pad(z, MEMORY, mode="wrap"), reading.pixel)[MEMORY:-MEMORY, MEMORY:-MEMORY]
+        return resample_periodic(filled, x, y) - form(x, y)
 
     def _crop(self, lengths: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)) -> Crop:
         reading, centre = self._oriented.reading, self._oriented.centre
@@ -170,30 +173,42 @@ class MeasuredSurface(Surface):
         return window
 
     def _central(self, lengths: tuple[float, float]) -> tuple[Array, Form, Array]:
-        """At offset 0: the window's points with gaps filled, their form, and what is left of them."""
+        """At offset 0: the window's points (missing ones NaN), their form, and what is left of them."""
         window = self._crop(lengths)
-        (i, j), (heights, (around_i, around_j)) = window.points, window.filled()
-        z = heights[i.start - around_i.start :, j.start - around_j.start :]
-        z = z[: i.stop - i.start, : j.stop - j.start]
-        if self.repeats:
-            around = fill(np.pad(window.reading.heights, MEMORY, mode="wrap"), window.reading.pixel)
-            z = around[MEMORY:-MEMORY, MEMORY:-MEMORY]
+        (i, j), reading = window.points, window.reading
+        z = reading.heights[i, j]
         x, y = np.arange(i.start, i.stop, dtype=float), np.arange(j.start, j.stop, dtype=float)
-        form = fit(x, y, z, DEGREES[str(self.level)])
+        assert self.level is not None  # set in __post_init__
+        form = fit_form(x, y, z, self.level, reading.pixel)
         return z, form, z - form(x, y)
+
+    def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array, tuple[float, float]]:
+        """Form of the window of those lengths (m) at offset 0, what is left of its points, their spacings."""
+        _, form, rest = self._central(lengths)
+        return form, rest, self._oriented.reading.pixel
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, reading = self._file.name, self._oriented.reading
         z, form, rest = self._central(grid.lengths)
         tilt = by(tuple(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True)))
+        bent = "" if form.radius is None else f", radius {form.radius:.4g} m"
         return (
             f"{name}: {by(reading.heights.shape)} points on {by(reading.area)} m, read {reading.source}",
             f"{name}: the window of {by(grid.lengths)} m about {self._about} is used, {by(z.shape)} points, "
             f"resampled bicubically to {grid} elements",
-            f"{name}: level {self.level!r} fitted in that window (slopes {tilt}) and subtracted; "
-            f"rms height there {z.std():.4g} m before, {rest.std():.4g} m after",
+            f"{name}: level {self.level!r} fitted in that window (slopes {tilt}{bent}) and subtracted; "
+            f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after",
+            *(f"{name}: {note}" for note in self.file_notes),
             *self.cautions(grid),
         )
+
+    @property
+    def file_notes(self) -> tuple[str, ...]:
+        """Channel, orientation and what was changed in reading and preparing the file."""
+        reading = self.prepared
+        others = [name for name in reading.channels if name != reading.channel]
+        several = (f"channel {reading.channel!r} was read; there are also {', '.join(map(repr, others))}",)
+        return (reading.orientation, *(several if others else ()), *reading.notes)
 
     @property
     def _about(self) -> str:
@@ -228,8 +243,3 @@ class MeasuredSurface(Surface):
     def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
         path = table["path"]
         return cls(**table | {"path": folder / path if isinstance(path, str) and path else path})
-
-
-def _require_one_of(name: str, value: object, allowed: tuple[str, ...]) -> None:
-    if not isinstance(value, str) or value not in allowed:
-        raise InputError(name, value, "one of " + ", ".join(allowed))

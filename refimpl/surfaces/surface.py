@@ -187,6 +187,12 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
     raise InputError("surface", value, "a surface, a sum of surfaces or a 2-D array of heights in m")
 
 
+def require_one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:
+    """Raise InputError unless ``value`` is one of these texts."""
+    if not isinstance(value, str) or value not in allowed:
+        raise InputError(field, value, "one of " + ", ".join(allowed))
+
+
 def finite(field: str, value: object, allowed: str) -> float:
     """``value`` as a float if it is a finite real number (no text, no truth value); else InputError."""
     number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)

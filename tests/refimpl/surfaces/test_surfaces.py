@@ -302,7 +302,7 @@ def test_relative_paths_start_at_the_folder() -> None:
         ({}, "surface.kind = None"),
         ({"kind": "flat", "height": 1}, "surface.height"),
         ({"kind": "measured", "path": 3}, "path = 3"),
-        ({"kind": "measured", "path": "a", "level": "sphere"}, "level = 'sphere'"),
+        ({"kind": "measured", "path": "a", "level": "cone"}, "level = 'cone'"),
         ({"kind": "measured", "path": "a", "unit": "inch"}, "unit = 'inch'"),
         ({"kind": "measured", "path": "a", "pixel_size": [1e-6]}, "pixel_size"),
         ({"kind": "measured", "path": "a", "pixel_size": [1e-6] * 3}, "pixel_size = [1e-06, 1e-06, 1e-06]"),
