@@ -91,7 +91,7 @@ def dense_numbers() -> Measured:
 @case(
     "rectangles/paper-scheme",
     title="The paper's own scheme on rectangles",
-    claim="on free rectangles, with square and oblong elements, the paper's scheme reaches the same pressures",
+    claim="on free rectangles, square and oblong elements, the paper's scheme reaches the same pressures",
     source="section 6 of the paper; the production solver as reference",
     metric="at_most",
     tolerance=1e-4,
