@@ -1,1 +1,1 @@
-"""The terms that a scene requires, before it is solved: the contact to expect, and the effect of each term."""
+"""The terms that a scene requires, before it is solved: the contact to expect, the effect of each term."""

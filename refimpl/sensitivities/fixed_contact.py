@@ -23,7 +23,7 @@ from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import ExtendedPreconditioner, SpectralPreconditioner
 
 _MARGIN = 2  # elements around the contact: its slopes are central differences
-_STEP = 1e-4  # step of the quotient, in peak pressures: the model is nonlinear by slopes^2 only, rounding costs 1e-12
+_STEP = 1e-4  # step of the quotient, in peak pressures: the error is slopes^2, that of rounding 1e-12
 _TOLERANCE = 1e-6  # relative residual of GMRES: a thousandth of the accuracy of a derivative
 _RESTART, _CYCLES = 80, 5
 _FACETS = 4  # times: each leaves a hundredth of what slopes still change by (at 5 degrees; see the tests)

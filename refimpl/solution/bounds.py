@@ -37,10 +37,10 @@ the very error if both supports agree, plus what of r is left over the root of t
 both sides of (B1) makes ``a + m K K'`` definite; K.e is known as above. At a prescribed approach it is not,
 and no bound is claimed.
 
-Not proven, and not touched by these numbers: that slopes and tau's active set are those of the solution of the
-whole problem (see the certificate's ``slope`` and ``law_violations``), and the grid's own error. Rounding of
-the products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of a number, is
-not.
+Not proven, and not contained in these numbers: that slopes and tau's active set are those of the solution
+of the whole problem (see the certificate's ``slope`` and ``law_violations``), and the grid's own error.
+Rounding of the products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of
+a number, is not.
 """
 
 from __future__ import annotations

@@ -29,9 +29,12 @@ _NEIGHBOUR = 2.0  # offset of the next element in half-widths
 
 @dataclass(frozen=True)
 class SlopeError:
-    """Slopes of a contact (rad) and the coefficient error at each; None beyond the table."""
+    """Slopes of a contact and the coefficient error at each; None beyond the table.
 
-    rms_slope: float
+    rms_gradient, max_slope : angles (rad) whose tangents are the rms and the largest of |grad z|
+    """
+
+    rms_gradient: float
     max_slope: float
     at_rms: float | None
     at_max: float | None
@@ -69,6 +72,8 @@ def coefficient_error(
     wavelength = table["wavelength"][-1] if wavelength is None else wavelength
     least = table["wavelength"][0]
     require_number("wavelength", wavelength, f"at least {least:g} half-widths", at_least=least)
+    if all(body.is_rigid for body in (lower, upper or lower)):
+        raise InputError("lower", lower, "an elastic body: a rigid one has no influence coefficients")
     if position is not None:
         require_number("position", position, "a share of the wavelength, 0 to 1", at_least=0, at_most=1)
     positions = np.array(table["position"] if position is None else [position])
@@ -76,7 +81,7 @@ def coefficient_error(
 
 
 def slope_error(slopes: Slopes, pressure: Array, pair: Pair) -> SlopeError:
-    """Return the error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
+    """Return the error at a contact's rms gradient, weighted by pressure, and at its steepest element."""
     loaded = pressure > 0
     squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2
     if not squared.any():

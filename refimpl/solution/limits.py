@@ -28,7 +28,6 @@ from refimpl.surfaces.statistics import rms_slopes
 
 _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (Greenwood and Williamson 1966)
 _COEFFICIENT_ERROR = 0.02  # section 4: what the paper accepts of flat-surface influence coefficients
-_CORRELATION = 4.0  # elements: slopes are resolved from four elements per correlation length (surfaces)
 _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle of radius r, here a tenth
 
 
@@ -37,10 +36,11 @@ class Limit(StrEnum):
 
     PLASTICITY = "plasticity index"
     HARDNESS = "peak pressure"
-    RMS_SLOPE = "rms slope"
+    RMS_GRADIENT = "rms gradient"
     MAX_SLOPE = "maximum slope"
     BORDER = "border"
     CORRELATION = "correlation length"
+    SHORT_CUT = "shortest wave"
     DATA = "points of data"
     RADIUS = "contact radius"
     ACTIVE_SET = "active set of tau"
@@ -138,8 +138,8 @@ def softer_hardness(pair: Pair) -> float | None:
 def roughness_slope(scene: Scene, grid: Grid) -> float:
     """Return the root of both bodies' summed mean square slopes along an axis, without spheres and flats."""
     total = 0.0
-    for body in (scene.lower, scene.upper):
-        rough = [part for part in body.surface.parts if not isinstance(part, Sphere | Flat)]
+    for name in ("lower", "upper"):
+        rough = [part for part in scene.parts(name) if not isinstance(part, Sphere | Flat)]
         z = grid.zeros
         for part in rough:
             z += part.sample(grid)
@@ -174,7 +174,7 @@ def _hardness(evidence: Evidence) -> ModelWarning | None:
 def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
     error = _error_at_slopes(evidence)
     return [
-        _slope(Limit.RMS_SLOPE, error.rms_slope, error.at_rms),
+        _slope(Limit.RMS_GRADIENT, error.rms_gradient, error.at_rms),
         _slope(Limit.MAX_SLOPE, error.max_slope, error.at_max),
     ]
 
@@ -209,7 +209,7 @@ def _border(evidence: Evidence) -> ModelWarning | None:
     advice = (
         f"the {' and '.join(concave)} body is concave (sign of its radius?)"
         if concave
-        else "enlarge the side"
+        else "enlarge the domain"
     )
     text = f"contact reaches the border of the domain on {touching} elements: {advice}"
     return ModelWarning(Limit.BORDER, touching, 0, text) if touching else None
@@ -222,13 +222,15 @@ def _is_concave(body: Body, sign: int) -> bool:
 
 def _correlation(evidence: Evidence) -> ModelWarning | None:
     found = resolution(evidence.scene, evidence.grid, evidence.plan.demand)
-    if found is None or found.elements >= _CORRELATION:
+    if found is None or found.elements >= found.detail.resolved:
         return None
+    detail = found.detail
+    missed = f"; the grid misses {detail.missed}" if detail.missed else ""
     text = (
-        f"{found.elements:.2g} elements per correlation length, {found.correlation_length:.3g} m: "
-        "slopes of the roughness are not resolved below 4"
+        f"{found.elements:.2g} elements per {detail.name}, {detail.length:.3g} m: "
+        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}"
     )
-    return ModelWarning(Limit.CORRELATION, found.elements, _CORRELATION, text)
+    return ModelWarning(Limit(detail.name), found.elements, detail.resolved, text)
 
 
 def _data(evidence: Evidence) -> ModelWarning | None:

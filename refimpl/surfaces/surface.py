@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -14,11 +14,36 @@ from numpy.typing import NDArray
 
 from refimpl.errors import LEAST, InputError, as_double
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.arrays import cautions_of, checked, sampled, use_of
+from refimpl.surfaces.arrays import cautions_of, check_domain, checked, sampled, use_of
 
 
 class SurfaceWarning(UserWarning):
     """Heights were delivered, but a user should know how: resampled finer than measured, points filled in."""
+
+
+@dataclass(frozen=True)
+class Detail:
+    """The finest detail of a random roughness, and how a grid resolves it.
+
+    name, length : of the detail's length (m)
+    resolved : elements per length from which slopes count as resolved
+    curvature : rms of the Laplacian over rms of the gradient, times the length
+    missed : what a grid of the given spacing misses, in words; empty where that has no simple number
+    """
+
+    name: str
+    length: float
+    resolved: float
+    curvature: float
+    missed: str = ""
+
+    def required(self, accuracy: float) -> float:
+        """Elements per length at which central differences see the rms slope too small by ``accuracy``.
+
+        A wave q at the angle t to the axis has ``sin(q h cos t) / h`` in place of ``q cos t``: of the mean
+        square slope ``(h curvature / length)^2 / 4`` is missing, of the rms slope half of that.
+        """
+        return self.curvature / math.sqrt(8.0 * accuracy)
 
 
 class Surface(ABC):
@@ -53,7 +78,7 @@ class Surface(ABC):
         return self._sample(grid, (float(ox), float(oy)))
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        """Return how heights are read, cut, levelled, resampled or normalised for this grid, a sentence each."""
+        """Return how heights are read, cut, levelled, resampled or normalised here, one sentence each."""
         return self.cautions(grid)
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
@@ -64,6 +89,37 @@ class Surface(ABC):
         """Return the finest distance between data points on a domain of those lengths (m); None for a
         formula."""
         return None
+
+    def detail(self, spacing: float) -> Detail | None:
+        """Return the finest detail of a random roughness on elements of a spacing (m); None for others."""
+        return None
+
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that a study may vary, by name, SI."""
+        return {}
+
+    def with_parameter(self, name: str, value: float) -> Self:
+        """Return the surface with one of its `parameters` changed; a whole number may come as a float."""
+        if name == "seed" and float(value).is_integer():
+            value = int(value)
+        return replace(self, **{name: value})  # type: ignore[type-var]  # dataclasses all
+
+    def same_realisation(self, periodic: bool) -> tuple[str, ...]:
+        """Return those of the `parameters` on which heights depend smoothly: there are derivatives."""
+        return tuple(self.parameters())
+
+    def extent(self, offset: tuple[float, float]) -> tuple[float, float] | None:
+        """Return the largest rectangle (m) that the surface's data cover at an offset; None for a formula."""
+        return None
+
+    @property
+    def label(self) -> str:
+        """What messages call the surface."""
+        return self.kind
+
+    def on_upper_body(self) -> Surface:
+        """Return the surface as it lies on the upper body."""
+        return self
 
     @property
     def parts(self) -> tuple[Surface, ...]:
@@ -118,18 +174,28 @@ class SurfaceSum(Surface):
 class ArraySurface(Surface):
     """Heights (m) at the centres of ``shape[0] x shape[1]`` equal cells of the domain.
 
-    Used as they are on a grid of the same shape; otherwise resampled bicubically to the element centres
-    (sampled, not averaged). Within the outermost half cell the spline's end piece goes on. An offset that
-    leaves the domain is refused unless the scene is periodic.
+    Used as they are, positive upwards on either body, on a grid of the same shape; otherwise resampled
+    bicubically to the element centres (sampled, not averaged). Within the outermost half cell the spline's
+    end piece goes on. An offset that leaves the domain is refused unless the scene is periodic. Cells more
+    than 1 % from square are refused unless ``pixel`` states their edges (m): heights are never squeezed.
     """
 
     data: NDArray[np.float64]
+    pixel: tuple[float, float] | None = None
     kind: ClassVar[str] = "array"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "data", checked(self.data))
+        if self.pixel is not None:
+            object.__setattr__(self, "pixel", pixel_edges("pixel", self.pixel))
+
+    def extent(self, offset: tuple[float, float]) -> tuple[float, float] | None:
+        if self.pixel is None:
+            return None
+        return self.data.shape[0] * self.pixel[0], self.data.shape[1] * self.pixel[1]
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        check_domain((self.data.shape[0], self.data.shape[1]), self.pixel, grid.lengths)
         return sampled(self.data, grid, offset)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
@@ -147,7 +213,9 @@ class ArraySurface(Surface):
         raise InputError("surface", f"array of shape {self.data.shape}", allowed)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ArraySurface) and np.array_equal(self.data, other.data)
+        if not isinstance(other, ArraySurface):
+            return False
+        return self.pixel == other.pixel and np.array_equal(self.data, other.data)
 
     def __hash__(self) -> int:
         return hash((self.data.shape, float(self.data.sum())))
@@ -160,6 +228,20 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
     if isinstance(value, np.ndarray):
         return ArraySurface(value)
     raise InputError("surface", value, "a surface, a sum of surfaces or a 2-D array of heights in m")
+
+
+def require_seed(seed: object) -> int:
+    """The seed of a random roughness as a whole number; else InputError."""
+    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
+    if not whole or not 0 <= seed < 2**63:  # type: ignore[operator]  # a number, as above
+        raise InputError("seed", seed, "a whole number, 0 <= seed < 2^63")
+    return int(seed)  # type: ignore[call-overload, no-any-return]  # as above
+
+
+def require_one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:
+    """Raise InputError unless ``value`` is one of these texts."""
+    if not isinstance(value, str) or value not in allowed:
+        raise InputError(field, value, "one of " + ", ".join(allowed))
 
 
 def finite(field: str, value: object, allowed: str) -> float:
@@ -176,3 +258,12 @@ def positive(field: str, value: object, allowed: str) -> float:
     if finite(field, value, allowed) < LEAST:
         raise InputError(field, value, allowed)
     return float(value)  # type: ignore[arg-type]  # `finite` has seen it
+
+
+def pixel_edges(field: str, value: object) -> tuple[float, float]:
+    """Return the edges (m) of a pixel from one length or two; else InputError."""
+    allowed = "a positive length in m, or two (x, y)"
+    pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
+    if len(pair) != 2:
+        raise InputError(field, value, allowed)
+    return positive(field, pair[0], allowed), positive(field, pair[1], allowed)

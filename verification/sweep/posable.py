@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from refimpl.driver.options import Options
-from refimpl.grid import Grid
 from refimpl.planning.plan import memory_of
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.scene import Scene
@@ -26,7 +25,8 @@ def check(study: Study) -> None:
     """Raise InputError, naming the field, for what `refimpl.solve` would refuse of any run but its memory.
 
     Options are made of every point of one realisation (0.1 ms each). Heights are sampled, of the first
-    realisation, only where a limit may be met, 8 times at most: the largest roughness (peak-to-valley), the
+    realisation, only where a limit may be met, 8 times at most, and twice as often for each number of a
+    surface that varies by its full name: the largest roughness (peak-to-valley), the
     shortest and the longest correlation (noise nodes; period), the farthest slides either way in the
     directions nearest to the axes (measured area). What remains for the runs: other realisations' peaks,
     and windows on the way of a slide that miss too many points.
@@ -42,8 +42,14 @@ def check(study: Study) -> None:
 
 def check_memory(study: Study) -> None:
     """Raise InputError where the finest grid does not fit into this machine's free memory."""
-    finest = Grid.square(study.scene["side"], int(max(study.vary["grid"])))
-    memory_of(study.settings.get("method", "fft"), finest)
+    scene = next(_closest(study))
+    memory_of(study.settings.get("method", "fft"), scene.grid(int(max(study.vary["grid"]))))
+
+
+def covered_size(study: Study) -> tuple[float, float]:
+    """Return the largest rectangle (m) that all measured surfaces cover over all offsets of a study."""
+    x, y = zip(*(scene.lengths for scene in _closest(study)), strict=True)
+    return min(x), min(y)
 
 
 def _closest(study: Study) -> Iterator[Scene]:
@@ -62,4 +68,5 @@ def _closest(study: Study) -> Iterator[Scene]:
 
 def _ends(axis: str, values: Sequence[float]) -> tuple[float, ...]:
     """The values of an axis that come closest to a limit; one of those that heights do not depend on."""
-    return tuple(dict.fromkeys(end(values) for end in _CLOSEST.get(axis, _SMALL)))
+    ends = _CLOSEST.get(axis, _BOTH if ".surface[" in axis else _SMALL)
+    return tuple(dict.fromkeys(end(values) for end in ends))

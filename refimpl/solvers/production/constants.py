@@ -16,10 +16,10 @@ MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes 
 # One grid (`level`)
 REDUCTION = 0.1  # relative residual reduction by CG between updates of the lagged terms
 LEAST_REDUCTION = 1e-3  # reduction where the last update changed the residual by less than that
-TOLERANCE_SHARE = 0.99  # share of the tolerance: the certificate, recomputed, differs by rounding (1e-15 of 1e-12)
+TOLERANCE_SHARE = 0.99  # share of the tolerance: the certificate differs by rounding (1e-15 of 1e-12)
 LAGGED_SHARE = 0.3  # share of the tolerance, for CG where terms lag: the rest is for the lagged terms
 PLAIN_SHARE = 0.9  # share of the tolerance, for CG where nothing lags: the rest is for rounding
-MIXED_SHARE = 0.1  # share of the tolerance, for CG between mixed updates: what CG leaves is noise to the mixing
+MIXED_SHARE = 0.1  # share of the tolerance, for CG between mixed updates: its residual is noise to the mixing
 CG_LIMIT = 1000  # CG steps of one solve; the extreme scenes that converge take 108 at most
 CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 UPDATE_LIMIT = 600  # updates of the lagged terms in one solve; the extreme scenes take 59 at most
@@ -44,7 +44,7 @@ LARGEST_DISPLACEMENT = (
 
 # Anderson mixing (`anderson`)
 DEPTH = 20  # differences kept: steep slopes on 1024 elements a side take 522 CG steps, 606 with 10
-MIXING_SHARE = 0.5  # share of the defect left after cancelling; 0.3 takes more steps, 1 stalled on 512 elements a side
+MIXING_SHARE = 0.5  # share of the remaining defect; 0.3 takes more steps, 1 stalled on 512 elements a side
 DISTINCT = 1e-10  # least eigenvalue of the normalised products of differences that is more than rounding
 STRONG_FEEDBACK = 0.3  # change of the residual by an update, over the last residual, that counts as strong
 STRONG_UPDATES = 2  # strong updates in a row that start the mixing; one may be a contact that opens

@@ -87,10 +87,10 @@ def test_peak_pressure_against_the_softer_hardness() -> None:
 def test_slopes_against_appendix_a() -> None:
     s = rf.solve(STEEP, 64)
     steep = named(s)
-    for limit in (Limit.RMS_SLOPE, Limit.MAX_SLOPE):
+    for limit in (Limit.RMS_GRADIENT, Limit.MAX_SLOPE):
         assert steep[limit].number > steep[limit].allowed == 0.02
-    assert steep[Limit.RMS_SLOPE].number == s.slope_error.at_rms
-    assert not {Limit.RMS_SLOPE, Limit.MAX_SLOPE} & set(named(rf.solve(rough(0.3e-6), 64)))
+    assert steep[Limit.RMS_GRADIENT].number == s.slope_error.at_rms
+    assert not {Limit.RMS_GRADIENT, Limit.MAX_SLOPE} & set(named(rf.solve(rough(0.3e-6), 64)))
 
 
 def test_slopes_are_judged_where_the_user_excluded_them() -> None:
@@ -100,9 +100,9 @@ def test_slopes_are_judged_where_the_user_excluded_them() -> None:
 
 def test_slopes_beyond_the_table() -> None:
     s = rf.solve(SMOOTH, 16)
-    steeper = SlopeError(rms_slope=0.01, max_slope=0.7, at_rms=0.001, at_max=None)
+    steeper = SlopeError(rms_gradient=0.01, max_slope=0.7, at_rms=0.001, at_max=None)
     warned = {w.limit: w for w in model_warnings(evidence(s, SMOOTH, slope_error=steeper))}
-    assert Limit.RMS_SLOPE not in warned
+    assert Limit.RMS_GRADIENT not in warned
     assert warned[Limit.MAX_SLOPE].number == math.inf
     assert "beyond" in warned[Limit.MAX_SLOPE]
 
@@ -128,7 +128,7 @@ def test_contact_at_the_border() -> None:
     border = s.contact.copy()
     border[1:-1, 1:-1] = False
     assert warned.number == border.sum() > 0
-    assert "enlarge the side" in str(warned)
+    assert "enlarge the domain" in str(warned)
     assert Limit.BORDER not in named(rf.solve(SMOOTH, 32))
     assert Limit.BORDER not in named(rf.solve(replace(SMOOTH, side=0.6e-3, periodic=True), 32))
     assert named(rf.solve(SMOOTH, 1))[Limit.BORDER].number == 1
@@ -146,7 +146,8 @@ def test_elements_per_correlation_length_told_once() -> None:
 @pytest.mark.parametrize(("M", "points"), [(32, 2.0), (64, None), (65, None)])
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
 def test_points_of_data_between_elements(M: int, points: float | None) -> None:
-    heights = np.zeros((48, 64))
+    side = SMOOTH.lengths[0]
+    heights = rf.ArraySurface(np.zeros((48, 64)), pixel=(side / 48, side / 64))
     warned = named(rf.solve(replace(SMOOTH, lower=rf.Body(STEEL, heights)), M)).get(Limit.DATA)
     assert (warned and warned.number) == points
 
