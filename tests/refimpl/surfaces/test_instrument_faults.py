@@ -15,8 +15,7 @@ import SurfaceTopography
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface
-from refimpl.surfaces.missing_points import fill
+from refimpl.surfaces import MeasuredSurface, missing_points
 from refimpl.surfaces.readers import read
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import MAP, NX, NY, PIXEL, sur_bytes
@@ -312,7 +311,7 @@ def test_a_large_hole_is_filled_in_bounded_time() -> None:
     holed = saddle.copy()
     holed[60:940, 60:940] = np.nan
     start = time.process_time()
-    filled = fill(holed, (1.0, 1.0))
+    filled = missing_points.fill(holed, (1.0, 1.0))
     assert time.process_time() - start < 15
     np.testing.assert_allclose(filled, saddle, rtol=0, atol=1e-8)
 
@@ -322,18 +321,18 @@ def test_both_ways_of_filling_agree(monkeypatch: pytest.MonkeyPatch, pixel: tupl
     z = np.random.default_rng(2).normal(size=(70, 90))
     z[10:50, 20:80] = z[65:, :] = z[:4, 60:] = z[2, :] = np.nan
     z[30, 40] = 0.3
-    eliminated = fill(z, pixel)
-    monkeypatch.setattr("refimpl.surfaces.missing_points.MAX_ELIMINATED", 3)
-    np.testing.assert_allclose(fill(z, pixel), eliminated, rtol=0, atol=1e-8)
-    monkeypatch.setattr("refimpl.surfaces.missing_points.MAX_ELIMINATED", 10**6)
-    monkeypatch.setattr("refimpl.surfaces.missing_points.MAX_TOGETHER", 3)
-    np.testing.assert_allclose(fill(z, pixel), eliminated, rtol=0, atol=1e-8)
+    eliminated = missing_points.fill(z, pixel)
+    monkeypatch.setattr(missing_points, "MAX_ELIMINATED", 3)
+    np.testing.assert_allclose(missing_points.fill(z, pixel), eliminated, rtol=0, atol=1e-8)
+    monkeypatch.setattr(missing_points, "MAX_ELIMINATED", 10**6)
+    monkeypatch.setattr(missing_points, "MAX_TOGETHER", 3)
+    np.testing.assert_allclose(missing_points.fill(z, pixel), eliminated, rtol=0, atol=1e-8)
 
 
 def test_a_map_of_which_almost_all_is_missing_is_filled() -> None:
     z = np.full((300, 300), np.nan)
     z[:10, :10], z[299, 299] = 1.0, 2.0
-    filled = fill(z, (1.0, 1.0))
+    filled = missing_points.fill(z, (1.0, 1.0))
     assert np.isfinite(filled).all()
     assert (filled >= 1.0).all()
     assert (filled <= 2.0).all()
