@@ -131,7 +131,7 @@ def certify(
     total, lowest = float(f.sum()), float(np.min(v, where=pressure < cap, initial=np.inf))
     contact: Mask = f > 0
     shares = f / total if total > 0 else f  # products of very small pressures would underflow
-    mean_v = _mean_v(f, v[box.slices], cap, lowest)
+    mean_v = approach_from(pressure, v, cap)
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, problem.grid.element_area)
     energy = 0.5 * inner(shares, normal[box.slices])
@@ -178,16 +178,18 @@ def certify(
     )
 
 
-def _mean_v(f: Array, v: Array, cap: float, lowest: float) -> float:
-    """The approach by the pressures: the mean of v weighted by ``f`` over ``0 < f < H``.
+def approach_from(f: Array, v: Array, cap: float) -> float:
+    """Return the approach of a state (m): the mean of ``v`` weighted by pressure over ``0 < f < H``.
 
     Where no element is free it is the middle of the interval between the capped and the unloaded ones; without
     any pressure it is the lowest v.
     """
-    free = f * (f < cap) if not math.isinf(cap) else f
+    box = Window.around(f != 0, margin=0).slices
+    free = f[box] * (f[box] < cap)
     total = float(free.sum())
     if total > 0:
-        return inner(free / total, v)
+        return inner(free / total, v[box])
+    lowest = float(np.min(v, where=f < cap, initial=np.inf))
     if f.max() <= 0:
         return lowest
     deepest = float(np.max(v, where=f >= cap, initial=-np.inf))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.grid import Array, Mask
-from refimpl.model.certificate import State, certify
+from refimpl.model.certificate import State, approach_from, certify
 from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
@@ -100,11 +100,13 @@ class _DenseSolver:
         self.converged, last = False, np.inf
         for _ in range(_SLOPE_ITERATIONS):
             before, slopes_before = self.pressure, self.slopes
-            approach = self._solve_frozen(law.held_traction(self.pressure, active))
+            self._solve_frozen(law.held_traction(self.pressure, active))
             self.picard += 1
             self.traction = law.traction(self.pressure, active)
             lower, upper = problem.displacements(self._operator, self.pressure, self.traction, self.slopes)
             K = self.slopes.obliqueness
+            approach = approach_from(self.pressure, (lower + upper) / K + problem.gap, problem.cap)
+            approach = approach if problem.approach is None else problem.approach
             self.indentation = problem.indentation(self.pressure, lower + upper, K, approach)
             self.slopes = problem.slopes(lower, upper, self.indentation)
             change = float(np.abs(self.pressure - before).max() / self.pressure.max(initial=1e-300))
@@ -119,14 +121,14 @@ class _DenseSolver:
             last = change
         return self.converged
 
-    def _solve_frozen(self, held_traction: Array) -> float:
-        """Solve with slopes and held traction fixed; return the approach (m)."""
+    def _solve_frozen(self, held_traction: Array) -> None:
+        """Solve with slopes and held traction fixed."""
         frozen = self._freeze(held_traction)
         h = self.problem.gap.ravel()
         if self.problem.approach is None:
-            return self._solve_load(frozen, h)
-        self.pressure = self._contact(frozen, h, self.problem.approach).reshape(self.pressure.shape)
-        return self.problem.approach
+            self._solve_load(frozen, h)
+        else:
+            self.pressure = self._contact(frozen, h, self.problem.approach).reshape(self.pressure.shape)
 
     def _contact(self, frozen: _Frozen, h: Array, approach: float) -> Array:
         """The pressure at an approach (Pa); the sets of free and capped elements are kept for the next one."""
@@ -136,14 +138,14 @@ class _DenseSolver:
         self._free, self._capped = found.free, found.capped
         return found.pressure
 
-    def _solve_load(self, frozen: _Frozen, h: Array) -> float:
+    def _solve_load(self, frozen: _Frozen, h: Array) -> None:
         """Newton on the piecewise linear ``N(approach)``, kept within a bracket, until the sets stay."""
         assert self.problem.load is not None
         target = (self.problem.load + frozen.offset) / self.problem.grid.element_area
         low, high = -np.inf, np.inf
         for _ in range(_APPROACH_ITERATIONS):
             if self.exhausted:
-                return np.nan
+                return
             at_cap = np.where(self._capped, self.problem.cap, 0.0) if self._capped.any() else np.zeros(len(h))
             at_zero = frozen.K * h + frozen.g + frozen.G @ at_cap
             per_approach, less = restricted_solve(
@@ -162,7 +164,7 @@ class _DenseSolver:
             total = float(frozen.weights @ pressure)
             if same and abs(total - target) <= 1e-12 * abs(target):
                 self.pressure = pressure.reshape(self.pressure.shape)
-                return float(approach)
+                return
             low, high = (approach, high) if total < target else (low, approach)
             if not self._free.any():
                 self._release(frozen, h, pressure, more=total < target)
