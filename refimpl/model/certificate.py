@@ -24,8 +24,8 @@ from refimpl.model.slopes import Slopes
 class Certificate:
     """Residuals of contact, all dimensionless; zero for an exact discrete solution.
 
-    gap : complementarity gap ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``; with a cap
-        ``sum [f (v - approach)+ + (H - f) (approach - v)+] dA`` over the energy
+    gap : complementarity gap ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``; with a
+        cap ``sum [f (v - approach)+ + (H - f) (approach - v)+] dA`` over the energy
     penetration : ``max(0, approach - min v) / approach``, of elements with ``f < H``
     negative_pressure : largest negative pressure, or excess over H, over the peak
     load_error : ``|N - P| / P`` under a load; ``|sum f (v - approach)| dA`` over the energy at an approach,
@@ -181,8 +181,8 @@ def certify(
 def approach_from(f: Array, v: Array, cap: float) -> float:
     """Return the approach of a state (m): the mean of ``v`` weighted by pressure over ``0 < f < H``.
 
-    Where no element is free it is the middle of the interval between the capped and the unloaded ones; without
-    any pressure it is the lowest v.
+    Where no element is free it is the middle of the interval between the capped and the unloaded ones;
+    without any pressure it is the lowest v.
     """
     box = Window.around(f != 0, margin=0).slices
     free = f[box] * (f[box] < cap)

@@ -131,7 +131,8 @@ class _DenseSolver:
             self.pressure = self._contact(frozen, h, self.problem.approach).reshape(self.pressure.shape)
 
     def _contact(self, frozen: _Frozen, h: Array, approach: float) -> Array:
-        """The pressure at an approach (Pa); the sets of free and capped elements are kept for the next one."""
+        """The pressure at an approach (Pa); the sets of free and capped elements are kept for the next
+        one."""
         q = frozen.g - frozen.K * (approach - h)
         found = complementarity(frozen.G, q, self._free, self.problem.cap, self._capped)
         self.solves += found.solves

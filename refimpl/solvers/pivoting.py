@@ -2,9 +2,9 @@
 
 The complementarity problem ``0 <= f <= H``, ``w = G f + q``, with ``w >= 0`` where ``f = 0``, ``w = 0`` where
 ``0 < f < H`` and ``w <= 0`` where ``f = H``, has one solution for a P-matrix ``G``; without a cap ``H`` is
-infinite. Blocks of infeasible elements are exchanged while that reduces their number; when it does not, single
-exchanges of the last infeasible index follow (Murty 1974), which end for every P-matrix, with an upper bound
-too (Judice and Pires 1994, Computers Ops Res. 21, 587).
+infinite. Blocks of infeasible elements are exchanged while that reduces their number; when it does not,
+single exchanges of the last infeasible index follow (Murty 1974), which end for every P-matrix, with an upper
+bound too (Judice and Pires 1994, Computers Ops Res. 21, 587).
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ _LIMIT = 20  # exchanges per element; only a matrix without the P property gets 
 
 
 class Pivoted(NamedTuple):
-    """Solution of a complementarity problem: pressure, its free and capped elements, number of linear solves."""
+    """Solution of a complementarity problem: pressure, its free and capped elements, number of linear
+    solves."""
 
     pressure: Array
     free: Mask

@@ -1,8 +1,8 @@
 """Projected CG with a second bound: pressures end at the hardness, ``0 <= f <= H``.
 
-CG works on the free elements, ``0 < f < H``. Elements that reach H leave them and keep that pressure; they come
-back where ``v`` exceeds the approach, as less pressure would do there. The load's target for the free elements
-is what the capped ones leave of it.
+CG works on the free elements, ``0 < f < H``. Elements that reach H leave them and keep that pressure; they
+come back where ``v`` exceeds the approach, as less pressure would do there. The load's target for the free
+elements is what the capped ones leave of it.
 """
 
 from __future__ import annotations
@@ -85,7 +85,8 @@ class CappedCG(ProjectedCG):
             self._bear(self._target - inner(self._K, self.pressure))
 
     def _bear(self, missing: float) -> None:
-        """Let the room below the cap bear load that a cut has lost: of free elements, then of the next ones."""
+        """Let the room below the cap bear load that a cut has lost: of free elements, then of the next
+        ones."""
         assert self._target is not None
         if missing <= _LOAD_ROUNDING * self._target:
             return
@@ -150,7 +151,7 @@ class CappedCG(ProjectedCG):
         np.add(self._pressing, change, out=trial)
         if trial.max() > self._cap:
             np.minimum(trial, self._cap, out=trial)
-            room = self._cap - trial
+            room = (self._cap - trial) * self._vectors.ones()
             missing = 0.0 if target is None else target - inner(self._weights, trial)
             whole = inner(self._weights, room)
             if missing > 0 and whole > 0:
