@@ -171,13 +171,14 @@ class CappedCG(ProjectedCG):
 
         Where those cannot bear it, or the capped ones bear more, all pressures are scaled.
         """
-        assert self._target is not None and self._free_target is not None
+        assert self._target is not None
+        assert self._free_target is not None
         free = self._vectors.scatter(self._pressing)
         carried, target = inner(self._K, free), self._free_target
         if not self.capped.any() and target * float(free.max()) <= self._cap * carried:
             super()._scale_to_target(displace=displace)
             return
-        if 0 < carried and 0 < target < self._cap * float(np.sum(self._K, where=free > 0)):
+        if carried > 0 and 0 < target < self._cap * float(np.sum(self._K, where=free > 0)):
             filled = filled_up(free, self._K, target, self._cap) + self._cap * self.capped
         elif self.contact.any():
             filled = filled_up(self.pressure, self._K, self._target, self._cap)
