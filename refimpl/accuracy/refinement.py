@@ -27,7 +27,7 @@ QUANTITIES: tuple[Quantity, ...] = (
 FIRST_GRIDS = (32, 64)  # elements along the longer side
 GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
 MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids are poor beyond
-MAX_BLIND_REFINEMENT = 2  # the same where the bar is longer than the number, and predicts nothing
+MAX_BLIND_REFINEMENT = 2  # ratio where the bar is longer than the number, and predicts nothing
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 

@@ -100,7 +100,7 @@ class Pair:
 
     @property
     def shear_ratio(self) -> float:
-        """``(|c_lower| + |c_upper|) / a``: the same of both bodies, without regard to sign."""
+        """``(|c_lower| + |c_upper|) / a``: the ratio with both bodies' magnitudes."""
         return (abs(self.lower.shear_compliance) + abs(self.upper.shear_compliance)) / self.normal_compliance
 
     def tilts(self, shear: float) -> tuple[float, float]:

@@ -34,7 +34,7 @@ class Terms:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What solvers solve, on a grid or on a window of it; all arrays have one shape.
+    """The contact problem on a grid or on a window of it; all arrays have one shape.
 
     grid : shape, lengths and topology
     gap : ``h = z_upper - z_lower`` shifted to ``min h = 0`` (m)
@@ -77,16 +77,18 @@ class Problem:
 
     @property
     def counts_from_first_contact(self) -> bool:
-        """Whether the reported approach does; that of a periodic problem counts from the mean planes."""
+        """True if the reported approach does; that of a periodic problem counts from the mean planes."""
         return not self.grid.periodic
 
     def with_terms(self, terms: Terms) -> Problem:
         """Return the problem with other terms.
 
         Without slope terms nothing feels the common surface, and shear moves both bodies by what they are.
+        Facet tractions include shear: with the slope correction it always closes the gap.
         """
-        tilted = terms.tilted if terms.oblique else terms.coupled
-        elasticity = replace(self.elasticity, coupled=terms.coupled, tilted=tilted)
+        coupled = terms.coupled or terms.slope_correction
+        tilted = terms.tilted if terms.oblique else coupled
+        elasticity = replace(self.elasticity, coupled=coupled, tilted=tilted)
         return replace(self, terms=terms, elasticity=elasticity)
 
     def windowed(self, window: Window) -> Problem:

@@ -58,9 +58,9 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 
 
 def moving(scene: Scene) -> dict[str, float]:
-    """The parameters that derivatives are had for: those that are not zero.
+    """Return the parameters that have derivatives: those that are not zero.
 
-    The correlation length of a periodic surface is left out: another length is another realisation.
+    The correlation length of a periodic surface is not among them: another length is another realisation.
     """
     return {
         name: value

@@ -15,7 +15,7 @@ from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
 from refimpl.surfaces import Surface, SurfaceWarning, as_surface
 
-# What a surface is asked with, by the names that the scene has for it.
+# Arguments of a surface, by the names of the scene's fields.
 _ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
 
 
@@ -103,7 +103,7 @@ class Scene:
     def heights(self, grid: Grid) -> tuple[Array, Array]:
         """Return heights ``(z_lower, z_upper)`` at the element centres, each about its own mid-height (m).
 
-        Mid-heights are taken off because only the gap enters: heights may come with any datum.
+        Mid-heights are subtracted because only the gap enters: heights may come with any datum.
 
         Raises `InputError` when a surface's peak-to-valley exceeds the side, which means a wrong unit; warns
         (`SurfaceWarning`) of `cautions`.
@@ -113,7 +113,7 @@ class Scene:
         return self.sampled(grid)
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        """What a user should know of how the heights of this grid were had, each once."""
+        """Return the notes on how the heights of this grid are computed, each once."""
         parts = (*self.lower.surface.parts, *self.upper.surface.parts)
         return tuple(dict.fromkeys(line for part in parts for line in part.cautions(grid)))
 

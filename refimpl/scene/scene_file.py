@@ -48,7 +48,7 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
     if not isinstance(name, str | os.PathLike):
         raise InputError("scene", name, "the path of a TOML file, or the name of a shipped scene")
     path = Path(name)
-    if not os.path.isfile(path):  # of any name, however long
+    if not os.path.isfile(path):  # a name may have any length
         if str(path) in shipped_scenes():
             path = Path(str(resources.files("refimpl").joinpath("data", "scenes", f"{path}.toml")))
         else:

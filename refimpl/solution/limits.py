@@ -1,4 +1,4 @@
-"""Where a solution leaves the range of the model: named warnings, each with its number and its limit."""
+"""Limits of the model: named warnings of a solution, each with its number and its limit."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def plain_warning(text: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """What the limits of a model are compared with.
+    """Everything that the limits of the model are compared with.
 
     scene, problem, plan, state : what was posed, solved and found
     excluded : elements that the rule for tau's active set leaves without adhesive shear

@@ -141,13 +141,13 @@ class Solution:
 
     @property
     def converged(self) -> bool:
-        """Whether the loops ended well and the certificate holds; an alternating contact edge is certified
+        """True if the loops ended well and the certificate holds; an alternating contact edge is certified
         too."""
         return self.status in (Status.CONVERGED, Status.CYCLED)
 
     @property
     def certified(self) -> bool:
-        """Whether the certificate holds, as it may where a requested accuracy was not reached."""
+        """True if the certificate holds, as it may where a requested accuracy was not reached."""
         return self.certificate.satisfies(self.tolerance)
 
     @cached_property
@@ -213,7 +213,7 @@ class Solved:
 
     @cached_property
     def features(self) -> GridFeatures:
-        """What error bars look at on this grid."""
+        """Features that error bars depend on, on this grid."""
         return GridFeatures.of(self.problem, self.state, self.own_parts)
 
     @property

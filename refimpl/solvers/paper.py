@@ -122,9 +122,9 @@ class _Scheme:
         self.settled = True
         self._approach = approach
         # (1) [a] by the moving-grid argument: one row of it, translated; here on the FFT's circle
-        (n, m), (dx, dy) = problem.grid.shape, problem.grid.spacings
+        (n, m), dx = problem.grid.shape, problem.grid.spacings[0]
         circle = [np.minimum(np.arange(count), count - np.arange(count)) for count in (n, m)]
-        row = unit_table("normal", (1 + n // 2, 1 + m // 2), dy / dx)[np.ix_(*circle)] * dx
+        row = unit_table("normal", (1 + n // 2, 1 + m // 2), problem.grid.aspect)[np.ix_(*circle)] * dx
         self._periodic_hat: Array = problem.elasticity.symbol(sfft.rfft2(row).real)
 
     def result(self) -> SolverResult:
@@ -149,13 +149,13 @@ class _Scheme:
 
     @property
     def exhausted(self) -> bool:
-        """Whether more was done on this grid than any state that settles takes: limits of loops multiply."""
+        """True if more was done on this grid than any state that settles takes: limits of loops multiply."""
         trace = self.trace
         return trace.periodic_steps + trace.correction_steps + trace.passes >= _BUDGET
 
     @property
     def contact(self) -> Mask:
-        """Where the present pressure is positive."""
+        """Elements with positive pressure."""
         return self.pressure > 0
 
     def cycle_state(self) -> CycleState:
@@ -196,7 +196,7 @@ class _Scheme:
     def normal_force(self, approach: float, active: Mask | None) -> float:
         """(1) Iteration one: the contact at an assumed approach; returns N, Eq. (2)."""
         self.trace.approaches += 1
-        self.settled, problem = True, self.problem  # what an approach on the way left open is not this one's
+        self.settled, problem = True, self.problem  # independent of the approaches before
         inside: Mask = problem.gap < approach  # (1a) contact lies within kinematic interference
         if self.pressure.any():
             inside &= self.pressure > 0

@@ -37,7 +37,7 @@ def complementarity(
     """Solve the problem above from the elements that are ``free`` and ``capped`` (none by default) at first.
 
     ``G`` has shape ``(n, n)``; ``q`` and the masks have shape ``(n,)``. Signs are judged against rounding
-    only: ``n eps`` of the largest pressure, and of the largest gap.
+    only: ``n eps`` of the maximum pressure, and of the largest gap.
 
     Raises `ArithmeticError` when ``G`` is no P-matrix and the exchanges do not end.
 

@@ -1,4 +1,4 @@
-"""Form removal: the least-squares polynomial of a rectangle of heights, to be taken off anywhere."""
+"""Form removal: the least-squares polynomial of a rectangle of heights, to be subtracted anywhere."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class MeasuredSurface(Surface):
     2. gaps: ``missing="fill"`` fills by Laplace's equation (``gaps.fill``), but refuses a window with more
        than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
     3. level: the least-squares ``"mean"``, ``"plane"`` or ``"paraboloid"`` (all six quadratic terms) of the
-       points in the window at offset 0 is taken off everywhere, so that a shifted surface remains the same
+       points in the window at offset 0 is subtracted everywhere, so that a shifted surface remains the same
        rigid body; ``"none"`` takes nothing off;
     4. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
        the measured area the spline's end piece goes on.
@@ -66,7 +66,7 @@ class MeasuredSurface(Surface):
 
     @cached_property
     def reading(self) -> Reading:
-        """What the file holds, as it is (read once)."""
+        """The content of the file, as it is (read once)."""
         return read(self._file, self.unit, None if self.pixel_size is None else _pixel(self.pixel_size))
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:

@@ -33,7 +33,7 @@ PLAIN = (".npy", ".csv")  # by nature; text (.asc, .txt) is a plain table if its
 TEXT = (".asc", ".txt")
 TEXT_FORMATS = ("asc", "xyz")
 
-# What a reader may raise on bytes that are not what they claim to be. SurfaceTopography's own errors are
+# Errors that a reader may raise on bytes of another format than claimed. SurfaceTopography's own errors are
 # plain Exceptions and join these where it is imported.
 _BROKEN: tuple[type[Exception], ...] = (
     ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
@@ -79,7 +79,7 @@ def read(path: Path, unit: str | None, pixel_size: tuple[float, float] | None) -
 
 
 def _inspect(path: Path) -> None:
-    if not os.path.isfile(path):  # of any name, however long
+    if not os.path.isfile(path):  # a name may have any length
         raise InputError("path", str(path), "an existing file")
     try:
         size = path.stat().st_size

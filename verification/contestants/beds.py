@@ -11,8 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 from verification.contestants import referee
 from verification.contestants.check import MODULUS, Entrant, Pressed
 from verification.contestants.protocol import ContactProblem, Coupling
@@ -98,7 +97,7 @@ class Bed:
 
     @property
     def touch(self) -> float:
-        """Approach (m) from first touch: what the first pin to be touched gives way."""
+        """Approach (m) from first contact: what the first pin to be touched gives way."""
         return float(self.moved[self.pressure > 0].max())
 
     @property

@@ -1,7 +1,7 @@
 """Lawful states counted by brute force: every contact set of a tiny grid is tried, without a contact solver.
 
 A contact set S is lawful when the pressure that solves the linear equations on it, with tau acting on S and
-nowhere else, is positive on S and leaves no penetration outside. Slopes are left out. With tau = 0 there is
+nowhere else, is positive on S and leaves no penetration outside. Slopes are neglected. With tau = 0 there is
 exactly one (`positive_definite`); with tau there may be none, one or several.
 """
 
@@ -56,9 +56,9 @@ def scene(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
 
 def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
     """All lawful contact sets, each as ``(M, M)``."""
-    grid, pair = rf.Grid(scene.side, M), scene.materials
-    a = pair.normal_compliance * normal(M, False).astype(float) * grid.spacing
-    x, y = (c.astype(float) * grid.spacing for c in tangential(M, False))
+    grid, pair = scene.grid(M), scene.materials
+    a = pair.normal_compliance * normal(M, False).astype(float) * grid.element_size
+    x, y = (c.astype(float) * grid.element_size for c in tangential(M, False))
     c = pair.shear_compliance * (np.cos(scene.sliding_direction) * x + np.sin(scene.sliding_direction) * y)
     lower, upper = scene.heights(grid)
     h = (upper - lower - (upper - lower).min()).ravel()

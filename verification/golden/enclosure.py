@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.model.friction import Mask
+from refimpl.grid import Mask
 from verification.framework.case import Unavailable
 from verification.golden.scenes import SIDE, GoldenScene
 
@@ -38,7 +38,7 @@ class NotProven(ArithmeticError):
 class Proof:
     """Balls: pressures (Pa) on ``contact`` in row order, approach (m), forces (N) and w (m).
 
-    ``approach`` counts from first touch; ``separations`` are w off contact, in row order.
+    ``approach`` counts from first contact; ``separations`` are w off contact, in row order.
     """
 
     contact: Mask

@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 from verification.framework.files import to_json, write_text
 from verification.framework.provenance import provenance
 from verification.golden.enclosure import BITS, Ball, Proof, arb
@@ -49,7 +48,7 @@ class Enclosed:
 class Golden:
     """A stored scene: contact set, pressure midpoints with their largest radius (Pa), enclosed numbers.
 
-    ``numbers`` holds the approach (m, from first touch), the forces (N) and the friction coefficient.
+    ``numbers`` holds the approach (m, from first contact), the forces (N) and the friction coefficient.
     """
 
     scene: GoldenScene

@@ -51,7 +51,7 @@ class Sample:
     @property
     def grid(self) -> Grid:
         """The grid the sample is meant for."""
-        return Grid(SIDE, self.M)
+        return Grid.square(SIDE, self.M, periodic=self.periodic)
 
     @cached_property
     def scene(self) -> rf.Scene:
@@ -73,7 +73,7 @@ class Sample:
 
     @cached_property
     def gap(self) -> Array:
-        """``z_upper - z_lower`` from first touch (m), shape ``(M, M)``."""
+        """``z_upper - z_lower`` from first contact (m), shape ``(M, M)``."""
         lower, upper = (heights(body, self.grid) for body in (self.scene.lower, self.scene.upper))
         gap: Array = upper - lower
         return gap - float(gap.min())

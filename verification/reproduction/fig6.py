@@ -89,15 +89,14 @@ def textbook(rms: float, mu: float = 4.0) -> gt.RoughSphere:
 
 @cache
 def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
-    """Frictionless contact with all the roughness on the flat, slopes left out ("tips of asperities")."""
+    """Frictionless contact with all the roughness on the flat, slopes neglected ("tips of asperities")."""
     scene = rough(rms, realisation=realisation, friction=NO_FRICTION)
     return rf.solve(scene, grid, oblique=False)
 
 
 def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
     """The averaged pressure, and both theories at the same radii."""
-    elements = rf.Grid(SMOOTH.side, grid)
-    centres = elements.centres - SMOOTH.side / 2
+    centres = SMOOTH.grid(grid).x - SMOOTH.side / 2
     distance = np.hypot(centres[:, None], centres[None, :])
     ring = (distance / BIN).astype(int)
     rings = int(SMOOTH.side / 2 / BIN)  # whole annuli only

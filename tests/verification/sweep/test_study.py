@@ -15,7 +15,8 @@ from refimpl.scene.scene_file import scene_from_dict
 from refimpl.surfaces import measured
 from verification.sweep import study as study_module
 from verification.sweep.run import COORDINATES, OUTCOMES, execute
-from verification.sweep.study import Study, read_study, shipped_studies, study_from_dict
+from verification.sweep.study import Study
+from verification.sweep.study_file import read_study, shipped_studies, study_from_dict
 
 BASE: dict[str, Any] = {"scene": "table1-rough", "realisations": 2, "vary": {"grid": [16]}}
 
@@ -205,7 +206,7 @@ def test_only_what_differs_in_its_limits_is_sampled(monkeypatch: pytest.MonkeyPa
     heights = rf.Scene.sampled
 
     def counted(scene: rf.Scene, grid: rf.Grid) -> object:
-        sampled.append((scene.sliding_offset, grid.M))
+        sampled.append((scene.sliding_offset, grid.shape[0]))
         return heights(scene, grid)
 
     monkeypatch.setattr(rf.Scene, "sampled", counted)

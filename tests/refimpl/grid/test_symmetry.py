@@ -1,0 +1,105 @@
+"""Symmetry multiplicity: images of a contact on square and on oblong elements."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from refimpl.grid import Grid
+from refimpl.grid.symmetry import symmetry_multiplicity
+
+SQUARE = {repeats: Grid((24, 24), (1.0, 1.0), repeats) for repeats in (False, True)}
+OBLONG = {repeats: Grid((24, 24), (1.0, 2.0), repeats) for repeats in (False, True)}
+
+
+def disc(n: int = 24, m: int = 24, radius: float = 7.2, stretch: float = 1.0) -> np.ndarray:
+    """Elements within an ellipse about the middle: ``radius`` along x and ``radius stretch`` along y."""
+    i, j = np.arange(n) - (n - 1) / 2, np.arange(m) - (m - 1) / 2
+    return np.hypot(i[:, None], j[None, :] / stretch) < radius
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_disc_has_all_eight_images_on_square_elements_and_four_on_oblong_ones(periodic: bool) -> None:
+    """A mirror image across a diagonal would exchange edges of different lengths."""
+    assert symmetry_multiplicity(disc(), SQUARE[periodic]) == 8
+    assert symmetry_multiplicity(disc(), OBLONG[periodic]) == 4
+
+
+def test_elements_that_are_square_to_rounding_are_square() -> None:
+    """0.3 / 24 and 0.2 / 16 differ in the last bit."""
+    grid = Grid((24, 16), (0.3, 0.2))
+    assert grid.spacings[0] != grid.spacings[1]
+    assert symmetry_multiplicity(disc(24, 16, radius=6.2), grid) == 8
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_an_ellipse_has_four_images(periodic: bool) -> None:
+    contact = disc(radius=9.2, stretch=0.5)
+    assert symmetry_multiplicity(contact, OBLONG[periodic]) == 4
+    assert 4 <= symmetry_multiplicity(contact, SQUARE[periodic]) < 8  # a turned one shares some of the edge
+
+
+@pytest.mark.parametrize("grid", [*SQUARE.values(), *OBLONG.values()])
+def test_an_irregular_contact_has_hardly_any_image_but_itself(grid: Grid) -> None:
+    contact = np.random.default_rng(5).random((24, 24)) < 0.3
+    assert 1 <= symmetry_multiplicity(contact, grid) < 1.5
+
+
+@pytest.mark.parametrize("grid", [*SQUARE.values(), *OBLONG.values()])
+def test_no_contact_counts_once(grid: Grid) -> None:
+    assert symmetry_multiplicity(np.zeros((24, 24), dtype=bool), grid) == 1
+
+
+@pytest.mark.parametrize("grids", [SQUARE, OBLONG])
+def test_the_place_of_a_contact_does_not_count(grids: dict[bool, Grid]) -> None:
+    half = disc() & (np.arange(24) < 12)
+    here = symmetry_multiplicity(half, grids[False])
+    assert here == symmetry_multiplicity(np.roll(half, (2, 5), (0, 1)), grids[False])
+    around = np.roll(half, (11, 15), (0, 1))  # across both borders
+    assert symmetry_multiplicity(around, grids[True]) == symmetry_multiplicity(half, grids[True])
+
+
+def test_a_mirrored_pair_counts_twice() -> None:
+    """Half of a disc has one mirror image of its own."""
+    half = disc() & (np.arange(24) < 12)
+    for grid in (SQUARE[False], OBLONG[False]):
+        assert symmetry_multiplicity(half, grid) == 2
+
+
+def images(contact: np.ndarray, *, periodic: bool = False) -> float:
+    """The multiplicity on square elements."""
+    n, m = contact.shape
+    return symmetry_multiplicity(contact, Grid((n, m), (float(n), float(m)), periodic))
+
+
+def test_images_that_differ_by_one_element_count_by_their_edge() -> None:
+    """A square without a corner: two images of eight are itself, six lack another corner of 26 edges."""
+    contact = np.zeros((9, 9), dtype=bool)
+    contact[1:7, 2:8] = True
+    contact[1, 2] = False
+    assert images(contact) == pytest.approx(2 + 6 * (1 - 4 * 2 / 26))
+    assert images(contact[:, ::-1]) == pytest.approx(images(contact))
+
+
+def test_an_edge_has_sides_along_both_axes() -> None:
+    """Three bars in a frame of 3 x 5 elements, open to one side: 10 sides within it, and 16 around."""
+    comb = np.array([[True] * 5, [True, False, True, False, True], [True, False, True, False, True]])
+    mirrored, upside_down = 1.0, 1 - 4 * 4 / (2 + 8 + 16)
+    assert images(np.pad(comb, 1)) == pytest.approx(2 * mirrored + 2 * upside_down)
+    assert images(np.pad(comb.T, 1)) == images(np.pad(comb, 1))
+
+
+def test_a_contact_that_covers_a_periodic_square_has_all_images() -> None:
+    assert images(np.ones((3, 3), dtype=bool), periodic=True) == 8.0
+
+
+def test_a_free_contact_is_turned_within_its_box_and_a_periodic_one_with_its_domain() -> None:
+    """On a rectangle a free disc has all images, and a periodic one only four."""
+    contact = np.zeros((16, 24), dtype=bool)
+    contact[4:12, 9:17] = np.hypot(*np.mgrid[-3.5:4, -3.5:4]) < 4
+    assert images(contact) == 8.0
+    for shift in ((0, 0), (6, 0), (3, -11)):
+        assert images(np.roll(contact, shift, (0, 1)), periodic=True) == 4.0
+    strip = np.zeros((16, 24), dtype=bool)
+    strip[4:12, 3:20] = True
+    assert images(strip) == 4.0
