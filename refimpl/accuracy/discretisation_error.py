@@ -111,6 +111,7 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
         "friction_force": _sheared(grids, "friction_force", area, dmu_dA * grids.found("normal_force"), load),
         "contact_area": area,
         "contact_area_corrected": area,
+        "plastic_area": _plastic_area(grids.results[-1]),
         "max_pressure": _peak(grids),
         "binormal_force": grids.smooth(grids.found("binormal_force"), BINORMAL, *across),
     }
@@ -140,8 +141,11 @@ def _peak(grids: _Grids) -> Estimate:
     """The maximum pressure: that of the parabola, minus its bias, a share of the curvature drop.
 
     Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
-    for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
+    for a single wave that is a 24th of the drop. Band-limited pressures have no such bias. The hardness is
+    exact.
     """
+    if grids.results[-1].yields:
+        return Estimate(float(grids.found("max_pressure")[-1]), 0.0)
     drop = grids.each(lambda result: result.peak.curvature_drop)
     bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)
     size = grids.each(lambda result: result.peak.widened(result.peak.curvature_drop))
@@ -230,6 +234,13 @@ def _area(results: Sequence[GridFeatures]) -> Estimate:
     prior = AREA._replace(scatter=AREA.scatter * scatter[-1])
     bias = Bias(edge * (1 + SINGLE_EXCESS * single_element_share(results) ** 2), EDGE_SIZE, EDGE_SIZE_SPREAD)
     return fit_line(area, scatter / scatter[-1], prior, bias)
+
+
+def _plastic_area(fine: GridFeatures) -> Estimate:
+    """The area at the hardness: the count of its edge elements, and their excess either way."""
+    edge, dA = fine.plastic_edge, fine.grid.element_area
+    counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity) if edge > 0 else 0.0
+    return Estimate(fine.numbers.get("plastic_area", 0.0), edge + 2 * AREA.scatter * counted)
 
 
 def area_scatter(results: Sequence[GridFeatures]) -> Array:

@@ -66,6 +66,7 @@ class State:
     forces : N, F and Q (N)
     friction_coefficient : mu, Eq. (4)
     contact_area, contact_area_corrected : real contact area, and less the excess along its edge (m^2)
+    plastic, plastic_area : elements at the hardness, and their area (m^2)
     certificate : residuals
     """
 
@@ -81,6 +82,8 @@ class State:
     friction_coefficient: float
     contact_area: float
     contact_area_corrected: float
+    plastic: Mask
+    plastic_area: float
     certificate: Certificate
 
     @property
@@ -135,14 +138,12 @@ def certify(
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, problem.grid.element_area)
     energy = 0.5 * inner(shares, normal[box.slices])
-    if math.isinf(cap):
+    if math.isinf(cap) or total <= 0:
         gap = inner(shares, v[box.slices] - lowest)
     else:
         excess = v - approach
-        gap = (
-            float(np.sum(pressure * np.maximum(excess, 0) + (cap - pressure) * np.maximum(-excess, 0)))
-            / total
-        )
+        products = pressure * np.maximum(excess, 0) + (cap - pressure) * np.maximum(-excess, 0)
+        gap = float(products.sum()) / total
     if problem.load is not None:
         load_error = abs(forces.normal - problem.load) / problem.load
     else:
@@ -152,7 +153,7 @@ def certify(
         load_error = relative_gap(missed, energy) if total > 0 else 0.0
     plastic = problem.indentation(pressure, lower + upper, found.obliqueness, approach)
     requested = on_slopes if plastic is None else problem.slopes(lower, upper, plastic).windowed(box)
-    everywhere = pressure > 0
+    everywhere, at_cap = pressure > 0, pressure >= cap
     beyond = max(0.0, -float(f.min()), float(f.max()) - cap)
     return State(
         pressure=pressure,
@@ -167,6 +168,8 @@ def certify(
         friction_coefficient=friction_coefficient(forces.friction, problem.nominal_load(forces.normal)),
         contact_area=contact_area(everywhere, problem.grid),
         contact_area_corrected=perimeter_corrected_area(everywhere, problem.grid),
+        plastic=at_cap,
+        plastic_area=contact_area(at_cap, problem.grid),
         certificate=Certificate(
             gap=relative_gap(gap, energy),
             penetration=max(0.0, approach - lowest) / (abs(approach) or 1.0),
@@ -190,7 +193,7 @@ def approach_from(f: Array, v: Array, cap: float) -> float:
     if total > 0:
         return inner(free / total, v[box])
     lowest = float(np.min(v, where=f < cap, initial=np.inf))
-    if f.max() <= 0:
-        return lowest
     deepest = float(np.max(v, where=f >= cap, initial=-np.inf))
+    if not math.isfinite(deepest):
+        return lowest
     return 0.5 * (deepest + lowest) if math.isfinite(lowest) else deepest

@@ -22,14 +22,14 @@ class Terms:
     oblique : slope terms; without them cosines are 1 and sines 0 (small-slope approximation)
     tilted : shear moves the common surface (c, mean of both bodies): slope change by shear
     slope_correction : exact facet tractions in Eq. (7)
-    capped : pressures end at the hardness of the softer body
+    plastic : pressures end at the hardness of the softer body
     """
 
     coupled: bool = True
     oblique: bool = True
     tilted: bool = True
     slope_correction: bool = False
-    capped: bool = False
+    plastic: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class Problem:
     def cap(self) -> float:
         """Largest pressure (Pa): the hardness of the softer body, infinite without a cap."""
         hardness = self.pair.softer_hardness
-        return hardness if self.terms.capped and hardness is not None else math.inf
+        return hardness if self.terms.plastic and hardness is not None else math.inf
 
     @property
     def heights(self) -> tuple[Array, Array]:

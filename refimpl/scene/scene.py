@@ -46,6 +46,7 @@ class Scene:
     sliding_direction : phi (rad)
     sliding_offset : how far the upper body has slid (m); the lower surface is sampled at x + offset
     periodic : the doubly periodic problem instead of a half-space that is free outside the domain
+    plastic : whether pressures end at the hardness of the softer body; None: where they reach it
 
     Raises `InputError` naming the field.
     """
@@ -58,6 +59,7 @@ class Scene:
     sliding_direction: float = 0.0
     sliding_offset: float = 0.0
     periodic: bool = False
+    plastic: bool | None = None
 
     def __post_init__(self) -> None:
         for name in ("upper", "lower"):
@@ -72,6 +74,8 @@ class Scene:
         require_number("sliding_offset", self.sliding_offset, allowed, at_least=-MOST, at_most=MOST)
         if not isinstance(self.periodic, bool):
             raise InputError("periodic", self.periodic, "true or false")
+        if not isinstance(self.plastic, bool | None):
+            raise InputError("plastic", self.plastic, "true, false, or unset to let the hardness decide")
         keep_doubles(self, "load", "side", "sliding_direction", "sliding_offset")
 
     @property

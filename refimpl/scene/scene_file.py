@@ -20,7 +20,7 @@ from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceSum
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
-_OPTIONAL_KEYS = ("sliding_direction", "sliding_offset", "periodic")
+_OPTIONAL_KEYS = ("sliding_direction", "sliding_offset", "periodic", "plastic")
 _SCENE_KEYS = ("load", "side", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
 
 
@@ -103,6 +103,7 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         "sliding_direction": scene.sliding_direction,
         "sliding_offset": scene.sliding_offset,
         "periodic": scene.periodic,
+        **({} if scene.plastic is None else {"plastic": scene.plastic}),
         "friction": {"tau": scene.friction.tau, "beta": scene.friction.beta},
         "upper": _body_to_dict(scene.upper),
         "lower": _body_to_dict(scene.lower),
