@@ -101,7 +101,17 @@ class _Grids:
 
 
 def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
-    """Return estimates of the reported numbers, from grids coarse to fine (one at least)."""
+    """Return estimates of the reported numbers, from grids coarse to fine (one at least).
+
+    A maximum pressure that is the hardness is exact.
+    """
+    found, last = _estimates(results), results[-1]
+    if last.yields:
+        found["max_pressure"] = Estimate(last.numbers["max_pressure"], 0.0)
+    return found
+
+
+def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     grids = _Grids([at_first_contact(result) for result in results])
     area, load = _area(grids.results), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
@@ -120,7 +130,7 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
         by_shear = SHEAR_BOUNDS["approach"] * last.shear_by_edge * last.depth
         return found | {"approach": _approach(grids).widened(by_shear)}
     bounds = first_contact_bounds(last)
-    widened = {name: estimate.widened(bounds[name]) for name, estimate in found.items()}
+    widened = {name: estimate.widened(bounds.get(name, 0.0)) for name, estimate in found.items()}
     widened["normal_force"] = _force(grids)
     for name in ("normal_force", "max_pressure"):
         widened[name] = widened[name].widened(SHEAR_BOUNDS[name] * last.shear_by_edge * grids.finest(name))
@@ -141,11 +151,8 @@ def _peak(grids: _Grids) -> Estimate:
     """The maximum pressure: that of the parabola, minus its bias, a share of the curvature drop.
 
     Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
-    for a single wave that is a 24th of the drop. Band-limited pressures have no such bias. The hardness is
-    exact.
+    for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
     """
-    if grids.results[-1].yields:
-        return Estimate(float(grids.found("max_pressure")[-1]), 0.0)
     drop = grids.each(lambda result: result.peak.curvature_drop)
     bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)
     size = grids.each(lambda result: result.peak.widened(result.peak.curvature_drop))

@@ -72,10 +72,10 @@ def iteration_parts(problem: Problem, state: State) -> Uncertainty:
     sizes = dict.fromkeys(("normal_force", "binormal_force"), normal) | {"approach": lift}
     parts: Uncertainty = {name: {"iteration": residual * size} for name, size in sizes.items()}
     parts["max_pressure"] = {"iteration": max(residual * state.max_pressure, _peak_misfit(problem, state))}
+    yielding = state.plastic & (clearance >= -margin * lift)
+    yielding |= ~state.plastic & (state.pressure >= (1 - margin) * problem.cap)
+    parts["plastic_area"] = {"iteration": contact_area(yielding, problem.grid)}
     if state.plastic_area:
-        near = state.plastic & (clearance >= -margin * lift)
-        near |= ~state.plastic & (state.pressure >= (1 - margin) * state.max_pressure)
-        parts["plastic_area"] = {"iteration": contact_area(near, problem.grid)}
         parts["max_pressure"] = {"iteration": 0.0}
     if problem.load is not None and state.plastic_area == state.contact_area > 0:
         parts["approach"]["not unique"] = _approach_interval(state)

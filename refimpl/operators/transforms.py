@@ -21,7 +21,6 @@ from refimpl.operators.threads import allowed_threads
 Complex = NDArray[np.complex128]
 
 
-
 class Library(Protocol):
     """What operators need of a library of transforms; ``workers`` are threads.
 

@@ -172,12 +172,12 @@ class _DenseSolver:
         raise ArithmeticError("no approach balances the load")
 
     def _release(self, frozen: _Frozen, h: Array, pressure: Array, *, more: bool) -> None:
-        """Free the element that is the next to change as the approach grows (``more``) or falls."""
+        """Free the element that is the next to change as the approach grows (``more``) or falls, if any."""
+        candidates = ~self._capped if more else self._capped
+        if not candidates.any():
+            return
         v = (frozen.G @ pressure + frozen.g) / frozen.K + h
-        if more:
-            next_one = int(np.argmin(np.where(self._capped, np.inf, v)))
-        else:
-            next_one = int(np.argmax(np.where(self._capped, v, -np.inf)))
+        next_one = int(np.argmin(np.where(candidates, v if more else -v, np.inf)))
         self._free[next_one], self._capped[next_one] = True, False
 
     def _freeze(self, held_traction: Array) -> _Frozen:
