@@ -227,7 +227,7 @@ def solved_again(scene: Scene, solution: Solution, *, plastic: bool) -> Solution
     corrected = terms.slope_correction and not plastic
     return solve(
         scene,
-        max(solution.grid.shape),
+        solution.grid.shape,
         oblique=terms.oblique,
         slope_correction=corrected,
         coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
