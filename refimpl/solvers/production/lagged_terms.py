@@ -96,7 +96,9 @@ class LaggedTerms:
         shear, slopes = self._displacements()
         self.slopes_used, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
-            self.slopes_used, change = self.slopes, slopes.distance(self.slopes, self._cg.pressure > 0)
+            self.slopes_used = self.slopes
+        if problem.terms.slope_correction or self.indentation is not None:  # no gap shows these changes
+            change = slopes.distance(self.slopes, self._cg.pressure > 0)
         within = max(shear.max(), -shear.min()) < LARGEST_DISPLACEMENT * problem.grid.size
         self.diverged = not (slopes.obliqueness.min() > STEEPEST_COSINE and within)
         if not self.diverged:
