@@ -180,10 +180,11 @@ class LaggedTerms:
 
     def _shear_of_pressure(self) -> Array:
         """The shear product of the pressure (Pa m), applied once a CG step: afterwards only its scale
-        changes."""
+        changes, but under a cap."""
         pressure = self._cg.pressure
         total = float(pressure.sum())
-        if self._of_pressure is None:
+        scales = math.isinf(self._problem.cap)
+        if self._of_pressure is None or not (scales or self._of_pressure[0] == total):
             self._of_pressure = total, self._operator.shear(pressure)
         applied, product = self._of_pressure
         return product if applied in (0.0, total) else (total / applied) * product

@@ -164,7 +164,7 @@ def area_by_hardness() -> Measured:
         found = np.array([s.contact_area for s in solved])
         missing = scene.load / hardnesses * (1 - 1e-9) - found
         worst = max(worst, float(np.diff(found).max()), float(missing.max()))
-        areas[str(seed)] = list(found)
+        areas[str(seed)] = found.tolist()
     return Measured(value=worst, unit="m^2", data=areas)
 
 
