@@ -30,7 +30,6 @@ from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.nested_solver import solve_fft
-from refimpl.surfaces import GaussianRoughness
 
 Progress = Callable[[str], None]
 
@@ -237,5 +236,6 @@ def _guess(problem: Problem, pressure: Array, clearance: Array, approach: float)
 def _notes(scene: Scene, grid: Grid, lines: Sequence[str]) -> tuple[Notice, ...]:
     """Notes of the surfaces; unresolved roughness has a named warning of its own."""
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    named = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
+    rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
+    named = {line for part in rough for line in part.cautions(grid)}
     return tuple(Notice(line) for line in lines if line not in named)

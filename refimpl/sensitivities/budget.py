@@ -10,9 +10,9 @@ Every entry is a half-width in the number's unit that holds with 95 %.
 - model form: what is known of the model's own error. V&V 20 leaves it to comparison with experiment;
   three of its sources can be found from within. "coefficients": a flat half-space's influence coefficients on
   a slope (`refimpl.solution.influence_error`), taken as if all of them were wrong by as much as the worst
-  neighbour at the contact's rms slope, which is a change of both moduli by that share. "cosines": the printed
-  cosines of Eqs (2) and (3) against the exact tractions of a facet. "plasticity": of an elastic solution
-  whose pressures exceed a given hardness, the difference to the solution with pressures capped there.
+  neighbour at the contact's rms gradient, which is a change of both moduli by that share. "cosines": the
+  printed cosines of Eqs (2) and (3) against the exact tractions of a facet. "plasticity": of an elastic
+  solution whose pressures exceed a given hardness, the difference to the capped solution.
 
 Independent sources add in squares; a model's error is no matter of chance, and is added as it is:
 ``total = model form + sqrt(numerical^2 + input^2 + sampling^2)``.

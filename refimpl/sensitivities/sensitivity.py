@@ -43,7 +43,11 @@ NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_for
 _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
 _STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
-_RANGES = {".nu": (math.nextafter(-1, 0), 0.5), ".E": (LEAST, RIGID)}  # that steps may not leave
+_RANGES = {  # that steps may not leave
+    ".nu": (math.nextafter(-1, 0), 0.5),
+    ".E": (LEAST, RIGID),
+    ".hurst": (LEAST, 1.0),
+}
 _TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
 _SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
 
@@ -208,7 +212,7 @@ def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
 
 
 def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> dict[str, float]:
-    """Each number's derivative by a central difference of two solves."""
+    """Each number's derivative by a difference of two solves, central but at the end of a range."""
     step = _stride(scene, name, value)
     low, high = _ends(name, value, step)
     below, above = (
@@ -238,15 +242,25 @@ def solved_again(scene: Scene, solution: Solution, *, plastic: bool) -> Solution
 
 
 def _stride(scene: Scene, name: str, value: float) -> float:
-    if name.endswith("correlation_length"):  # stretches the whole surface about its corner
+    """The relative step of full solves. Numbers that deform a surface about its corner move it farthest at
+    the other border: by no more than a share of its finest length."""
+    head, _, key = name.rpartition(".")
+    if key.startswith("correlation_length"):
         return min(_STRIDE, _SHIFT * value / max(scene.lengths))
+    if key in ("lay", "anisotropy"):
+        which, _, place = head.partition(".")
+        part = getattr(scene, which).surface.parts[int(place[len("surface[") : -1])]
+        finest: float = part.detail(max(scene.lengths)).length
+        turn = abs(value) if key == "lay" else 1.0
+        return min(_STRIDE, _SHIFT * finest / max(scene.lengths) / turn)
     return _STRIDE
 
 
 def _scatter(scene: Scene, solution: Solution, name: str, value: float) -> float:
     """95 % bound of what counting elements twice does to ``dA/dp``: as the error bars have it of one grid."""
     one = AREA.scatter * float(area_scatter([solution.features])[0])
-    return math.sqrt(2) * one / (_stride(scene, name, value) * abs(value))
+    low, high = _ends(name, value, _stride(scene, name, value))
+    return 2 * math.sqrt(2) * one / (high - low)
 
 
 def _gathered(

@@ -27,7 +27,6 @@ from refimpl.surfaces.statistics import rms_slopes
 
 _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (Greenwood and Williamson 1966)
 _COEFFICIENT_ERROR = 0.02  # section 4: what the paper accepts of flat-surface influence coefficients
-_CORRELATION = 4.0  # elements: slopes are resolved from four elements per correlation length (surfaces)
 _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle of radius r, here a tenth
 
 
@@ -36,10 +35,11 @@ class Limit(StrEnum):
 
     PLASTICITY = "plasticity index"
     HARDNESS = "peak pressure"
-    RMS_SLOPE = "rms slope"
+    RMS_GRADIENT = "rms gradient"
     MAX_SLOPE = "maximum slope"
     BORDER = "border"
     CORRELATION = "correlation length"
+    SHORT_CUT = "shortest wave"
     DATA = "points of data"
     RADIUS = "contact radius"
     ACTIVE_SET = "active set of tau"
@@ -201,7 +201,7 @@ def _area_missing(evidence: Evidence, hardness: float) -> str:
 def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
     error = _error_at_slopes(evidence)
     return [
-        _slope(Limit.RMS_SLOPE, error.rms_slope, error.at_rms),
+        _slope(Limit.RMS_GRADIENT, error.rms_gradient, error.at_rms),
         _slope(Limit.MAX_SLOPE, error.max_slope, error.at_max),
     ]
 
@@ -249,13 +249,15 @@ def _is_concave(body: Body, sign: int) -> bool:
 
 def _correlation(evidence: Evidence) -> ModelWarning | None:
     found = resolution(evidence.scene, evidence.grid, evidence.plan.demand)
-    if found is None or found.elements >= _CORRELATION:
+    if found is None or found.elements >= found.detail.resolved:
         return None
+    detail = found.detail
+    missed = f"; the grid misses {detail.missed}" if detail.missed else ""
     text = (
-        f"{found.elements:.2g} elements per correlation length, {found.correlation_length:.3g} m: "
-        "slopes of the roughness are not resolved below 4"
+        f"{found.elements:.2g} elements per {detail.name}, {detail.length:.3g} m: "
+        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}"
     )
-    return ModelWarning(Limit.CORRELATION, found.elements, _CORRELATION, text)
+    return ModelWarning(Limit(detail.name), found.elements, detail.resolved, text)
 
 
 def _data(evidence: Evidence) -> ModelWarning | None:

@@ -86,10 +86,10 @@ def test_peak_pressure_against_the_softer_hardness() -> None:
 def test_slopes_against_appendix_a() -> None:
     s = rf.solve(STEEP, 64)
     steep = named(s)
-    for limit in (Limit.RMS_SLOPE, Limit.MAX_SLOPE):
+    for limit in (Limit.RMS_GRADIENT, Limit.MAX_SLOPE):
         assert steep[limit].number > steep[limit].allowed == 0.02
-    assert steep[Limit.RMS_SLOPE].number == s.slope_error.at_rms
-    assert not {Limit.RMS_SLOPE, Limit.MAX_SLOPE} & set(named(rf.solve(rough(0.3e-6), 64)))
+    assert steep[Limit.RMS_GRADIENT].number == s.slope_error.at_rms
+    assert not {Limit.RMS_GRADIENT, Limit.MAX_SLOPE} & set(named(rf.solve(rough(0.3e-6), 64)))
 
 
 def test_slopes_are_judged_where_the_user_excluded_them() -> None:
@@ -99,9 +99,9 @@ def test_slopes_are_judged_where_the_user_excluded_them() -> None:
 
 def test_slopes_beyond_the_table() -> None:
     s = rf.solve(SMOOTH, 16)
-    steeper = SlopeError(rms_slope=0.01, max_slope=0.7, at_rms=0.001, at_max=None)
+    steeper = SlopeError(rms_gradient=0.01, max_slope=0.7, at_rms=0.001, at_max=None)
     warned = {w.limit: w for w in model_warnings(evidence(s, SMOOTH, slope_error=steeper))}
-    assert Limit.RMS_SLOPE not in warned
+    assert Limit.RMS_GRADIENT not in warned
     assert warned[Limit.MAX_SLOPE].number == math.inf
     assert "beyond" in warned[Limit.MAX_SLOPE]
 

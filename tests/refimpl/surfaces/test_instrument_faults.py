@@ -120,6 +120,35 @@ def test_a_refusal_says_what_was_found(tmp_path: Path, content: str, said: str) 
         read(tmp_path / "a.csv", unit="um", pixel_size=PIXEL)
 
 
+def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
+    blocks = ["\n".join(f"{i} {j} {i - 2 * j}" for j in range(6)) for i in range(5)]
+    (tmp_path / "map.xyz").write_text("\n\n".join(blocks) + "\n")
+    assert read(tmp_path / "map.xyz", unit="um").heights.shape == (5, 6)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.xyz"])
+def test_text_among_the_numbers_is_refused_and_after_them_is_not(tmp_path: Path, name: str) -> None:
+    rows = [f"{i} {j} {i * j}" if name == "a.xyz" else " ".join("12345") for i in range(5) for j in range(5)]
+    (tmp_path / name).write_text("\n".join([*rows, "end of data"]))
+    whole = read(tmp_path / name, unit="um", pixel_size=PIXEL).heights
+    assert whole.size == (25 if name == "a.xyz" else 125)
+    (tmp_path / name).write_text("\n".join([*rows[:7], "lost", *rows[7:]]))
+    with pytest.raises(InputError, match="after row 7 stands 'lost', then numbers"):
+        read(tmp_path / name, unit="um", pixel_size=PIXEL)
+
+
+def test_a_text_of_two_images_gives_either(tmp_path: Path) -> None:
+    write.write_txt(tmp_path / "one.txt", MAP)
+    one = (tmp_path / "one.txt").read_bytes().decode("latin-1")
+    write.write_txt(tmp_path / "one.txt", 2 * MAP)
+    other = (tmp_path / "one.txt").read_bytes().decode("latin-1").replace("Topography", "Retrace")
+    (tmp_path / "two.txt").write_text(one + other)
+    same(read(tmp_path / "two.txt").heights)
+    second = read(tmp_path / "two.txt", channel="Retrace")
+    same(second.heights / 2)
+    assert second.channels == ("Topography", "Retrace")
+
+
 @pytest.mark.parametrize("encoding", ["latin-1", "utf-8", "utf-8-sig", "utf-16"])
 def test_a_micro_sign_in_any_encoding(tmp_path: Path, encoding: str) -> None:
     write.write_txt(tmp_path / "map.txt", MAP)
