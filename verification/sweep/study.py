@@ -30,7 +30,8 @@ class Study:
     directions are compared on the same surfaces.
 
     ``vary`` maps names of `AXES`, and of `refimpl.scene.parameters` of surfaces (``lower.surface[0].hurst``,
-    counted in the base scene) and hardnesses (``lower.material.hardness``), to their values (SI, rad); an rms of 0 leaves that body's roughness out.
+    counted in the base scene) and hardnesses (``lower.material.hardness``), to their values (SI, rad); an rms
+    of 0 leaves that body's roughness out.
     Realisations are of random roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
     `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
