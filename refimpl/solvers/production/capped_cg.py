@@ -97,7 +97,10 @@ class CappedCG(ProjectedCG):
             order = np.argsort(np.where(self.contact, math.inf, v), axis=None, kind="stable")
             candidates.ravel()[order[: min(count, np.count_nonzero(~self.contact))]] = True
         room = np.where(candidates, self._cap - pressure, 0.0)
-        pressure += min(1.0, missing / float(np.sum(self._K * room))) * room
+        whole = float(np.sum(self._K * room))
+        if whole == 0:  # the window is full, or slopes leave no contact that bears the load: it stays missing
+            return
+        pressure += min(1.0, missing / whole) * room
         self._set_pressure(pressure)
         self.normal_displacement = self._apply(self.pressure)
         self._separation = None
