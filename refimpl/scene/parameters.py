@@ -17,7 +17,8 @@ def parameters(scene: Scene) -> dict[str, float]:
     """All parameters with their values, SI; a surface's parts count from 0.
 
     ``load``, ``friction.tau``, ``friction.beta``, ``upper.material.E``, ``upper.material.nu``,
-    ``upper.surface[0].rms`` and so on; of two correlation lengths ``lower.surface[0].correlation_length[1]``.
+    ``upper.material.hardness`` where one is given, ``upper.surface[0].rms`` and so on; of two correlation
+    lengths ``lower.surface[0].correlation_length[1]``.
 
     >>> from refimpl.scene.scene_file import read_scene
     >>> parameters(read_scene("hertz"))["load"]
@@ -27,6 +28,8 @@ def parameters(scene: Scene) -> dict[str, float]:
     for name in BODIES:
         body = getattr(scene, name)
         found |= {f"{name}.material.E": body.material.E, f"{name}.material.nu": body.material.nu}
+        if body.material.hardness is not None:
+            found[f"{name}.material.hardness"] = body.material.hardness
         for k, part in enumerate(body.surface.parts):
             found |= {f"{name}.surface[{k}].{key}": value for key, value in part.parameters().items()}
     return found

@@ -9,7 +9,8 @@ to friction.
   linear answer grows like there (`refimpl.sensitivities.edge_motion`), up to one factor. That is taken from
   the load, for which the area is differenced over two full solves.
 - Shapes and roughness bring contact to new places, which no fixed set foresees: the area is differenced
-  over two full solves for each.
+  over two full solves for each. So it is for all parameters where pressures reach the hardness: there the
+  edge has no such growth.
 
 The scatter stated beside the area (and through tau beside friction) is that of counting elements in
 two solves, and of comparing the edge with 5 x 5 or with 9 x 9 elements. Beside every number's answer to the
@@ -94,12 +95,12 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     base = solution.problem.with_terms(_terms(solution))
     active = solution.contact & ~solution.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
-    values = moving(scene)
+    values, yields = moving(scene), bool(fixed.capped.any())
     answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
     solved = {
         name: _differenced(scene, solution, name, value)
         for name, value in values.items()
-        if name == "load" or ".surface" in name
+        if name == "load" or ".surface" in name or yields
     }
     counted = {
         name: (derivatives["contact_area"], _scatter(scene, solution, name, values[name]))
@@ -107,7 +108,9 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     }
     edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
     areas = {
-        name: counted[name] if ".surface" in name else edge.derivative(answers[name].pressure)
+        name: counted[name]
+        if name in counted and (yields or name != "load")
+        else edge.derivative(answers[name].pressure)
         for name in values
     }
     return _gathered(scene, solution, answers, areas, solved)
@@ -123,6 +126,8 @@ def _check(scene: Scene, solution: Solution) -> None:
     if not solution.certified:
         raise InputError("solution", solution.status.value, "a solution whose certificate holds")
     problem = solution.problem
+    if solution.plastic_area == solution.contact_area:
+        raise InputError("solution", "all contact at the hardness", "one with elastic contact")
     if not (problem.gap.any() or problem.counts_from_first_contact):
         raise InputError("solution", "two periodic flats", "one whose approach is not zero")
     if problem.load != scene.load:
@@ -169,17 +174,33 @@ def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: 
     found = fixed.response((residuals[1] - residuals[0]) / span)
     if not found.residual <= _SOLVED:
         raise ArithmeticError(f"the derivative over {name} is not found: {found.residual:.1e} is left of it")
-    before = fixed.forces(below, fixed.pressure + (low - value) * found.pressure)
-    after = fixed.forces(above, fixed.pressure + (high - value) * found.pressure)
-    tied = found.pressure[fixed.pressure >= (1 - _TIED) * fixed.peak]
+    before, after = (
+        fixed.forces(
+            problem,
+            fixed.pressure + (at - value) * found.pressure,
+            fixed.approach + (at - value) * found.approach,
+        )
+        for problem, at in ((below, low), (above, high))
+    )
+    pressure = found.pressure
+    if fixed.capped.any():
+        pressure = np.where(fixed.capped, (above.cap - below.cap) / span, pressure)
+    tied = pressure[fixed.pressure >= (1 - _TIED) * fixed.peak]
     return _Answer(
-        pressure=found.pressure,
+        pressure=pressure,
         peak=0.5 * float(tied.max() + tied.min()),
         torn=0.5 * float(np.ptp(tied)),
         friction=(after.friction - before.friction) / span,
         binormal=(after.binormal - before.binormal) / span,
         residual=found.residual,
     )
+
+
+def _ends(name: str, value: float, step: float) -> tuple[float, float]:
+    """A parameter's values a relative step below and above, within its range."""
+    low, high = sorted((value * (1 - step), value * (1 + step)))
+    least, most = next((ends for key, ends in _RANGES.items() if name.endswith(key)), (low, high))
+    return max(low, least), min(high, most)
 
 
 def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
@@ -192,18 +213,10 @@ def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
 
 def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> dict[str, float]:
     """Each number's derivative by a difference of two solves, central but at the end of a range."""
-    terms, step = solution.problem.terms, _stride(scene, name, value)
+    step = _stride(scene, name, value)
     low, high = _ends(name, value, step)
     below, above = (
-        solve(
-            with_parameter(scene, name, at),
-            solution.grid.shape,
-            oblique=terms.oblique,
-            slope_correction=terms.slope_correction,
-            coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
-            tilted=terms.tilted,
-            tolerance=solution.tolerance,
-        )
+        solved_again(with_parameter(scene, name, at), solution, plastic=solution.problem.terms.plastic)
         for at in (low, high)
     )
     for ended in (below, above):
@@ -212,11 +225,20 @@ def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> d
     return {number: (getattr(above, number) - getattr(below, number)) / (high - low) for number in NUMBERS}
 
 
-def _ends(name: str, value: float, step: float) -> tuple[float, float]:
-    """The values a relative step below and above, within the parameter's range."""
-    low, high = sorted((value * (1 - step), value * (1 + step)))
-    least, most = next((ends for key, ends in _RANGES.items() if name.endswith(key)), (low, high))
-    return max(low, least), min(high, most)
+def solved_again(scene: Scene, solution: Solution, *, plastic: bool) -> Solution:
+    """Solve a scene on a solution's grid, with its terms and its tolerance."""
+    terms = solution.problem.terms
+    corrected = terms.slope_correction and not plastic
+    return solve(
+        scene,
+        solution.grid.shape,
+        oblique=terms.oblique,
+        slope_correction=corrected,
+        coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
+        tilted=terms.tilted,
+        plastic=plastic,
+        tolerance=solution.tolerance,
+    )
 
 
 def _stride(scene: Scene, name: str, value: float) -> float:

@@ -38,8 +38,8 @@ message is shown, or did not converge: then its row says so by its status.
                               #   Without such a roughness (smooth, measured) there is one alone
   normalise = true            # scale each realisation to its rms (default: as the scene says)
   [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
-  grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and numbers of
-                              #   surfaces by full name; grid is needed
+  grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and by full name
+                              #   numbers of surfaces and hardnesses; grid is needed
   lower_rms = [0.504e-6, 1.68e-6]
   "lower.surface[0].lay" = [0.0, 0.7854]
   [solve]                     # optional: method, oblique, slope_correction, tolerance

@@ -21,7 +21,8 @@ COORDINATES = (
     "sliding_direction", "sliding_offset", "tau", "beta", "parameters",
 )  # fmt: skip
 """What tells the runs of one study apart; SI units and rad, None where a scene has no such thing.
-``parameters`` is the JSON text of the numbers of surfaces that the study varies by their full names.
+``parameters`` is the JSON text of the hardnesses and the numbers of surfaces that the study varies by their
+full names.
 """
 
 OUTCOMES = (

@@ -30,7 +30,8 @@ class Study:
     directions are compared on the same surfaces.
 
     ``vary`` maps names of `AXES`, and of `refimpl.scene.parameters` of surfaces (``lower.surface[0].hurst``,
-    counted in the base scene), to their values (SI, rad); an rms of 0 leaves that body's roughness out.
+    counted in the base scene) and hardnesses (``lower.material.hardness``), to their values (SI, rad); an rms
+    of 0 leaves that body's roughness out.
     Realisations are of random roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
     `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
@@ -49,15 +50,15 @@ class Study:
     def runs(self) -> Iterator[Run]:
         """All runs, realisations outermost, then the axes in the order of `AXES`."""
         files = measured_files(self.scene)
-        axes = (*AXES, *self.surface_axes)
+        axes = (*AXES, *self.own_axes)
         values = [self.vary.get(axis, (None,)) for axis in axes]
         for k in range(self.realisations):
             for point in itertools.product(*values):
                 yield self._run(k, dict(zip(axes, point, strict=True)), files)
 
     @property
-    def surface_axes(self) -> tuple[str, ...]:
-        """The varied numbers of surfaces, by their full names."""
+    def own_axes(self) -> tuple[str, ...]:
+        """The varied hardnesses and numbers of surfaces, by their full names."""
         return tuple(axis for axis in self.vary if axis not in AXES)
 
     @property
@@ -98,9 +99,7 @@ class Study:
             "sliding_offset": scene["sliding_offset"],
             "tau": scene["friction"]["tau"],
             "beta": scene["friction"]["beta"],
-            "parameters": json.dumps(own)
-            if (own := {axis: point[axis] for axis in self.surface_axes})
-            else None,
+            "parameters": json.dumps(own) if (own := {axis: point[axis] for axis in self.own_axes}) else None,
         }
         inputs = {
             "scene": scene,
@@ -116,9 +115,7 @@ class Study:
         rms, length = point[f"{name}_rms"], point["correlation_length"]
         parts = []
         for k, part in enumerate(body["surface"]):
-            own = {
-                axis: point[axis] for axis in self.surface_axes if axis.startswith(f"{name}.surface[{k}].")
-            }
+            own = {axis: point[axis] for axis in self.own_axes if axis.startswith(f"{name}.surface[{k}].")}
             part = _changed(part, {axis.partition("].")[2]: value for axis, value in own.items()})
             if part["kind"] not in RANDOM:
                 parts.append(part)
@@ -129,7 +126,9 @@ class Study:
                     change |= {} if length is None else {"correlation_length": float(length)}
                     change |= {} if self.normalise is None else {"normalise": self.normalise}
                 parts.append(part | change)
-        return body | {"surface": parts or [{"kind": "flat"}]}
+        hardness = point.get(f"{name}.material.hardness")
+        material = body["material"] | ({} if hardness is None else {"hardness": hardness})
+        return body | {"material": material, "surface": parts or [{"kind": "flat"}]}
 
 
 def _random(body: Table) -> Table:

@@ -74,8 +74,12 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
     base = read_scene(scene_file)
-    surfaces = tuple(name for name in parameters(base) if ".surface[" in name and not name.endswith(".seed"))
-    _refuse_unknown("vary", vary, (*AXES, *surfaces))
+    own = tuple(
+        name
+        for name in parameters(base)
+        if (".surface[" in name and not name.endswith(".seed")) or name.endswith(".hardness")
+    )
+    _refuse_unknown("vary", vary, (*AXES, *own))
     scene = scene_to_dict(base)
     study = Study(
         scene=scene,

@@ -92,7 +92,7 @@ def certified(problem: Problem, result: SolverResult, counter: Counter) -> State
     """Return the state on the whole grid, from a source window that holds all tractions."""
     loaded = Window.around((result.pressure != 0) | (result.traction != 0), margin=0)
     operator = whole_grid_influence(problem.grid, problem.direction, loaded, counter)
-    return certify(problem, operator, result.pressure, result.traction, result.slopes)
+    return certify(problem, operator, result.pressure, result.traction, result.slopes, result.indentation)
 
 
 def missed_by_window(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:

@@ -287,6 +287,20 @@ def test_numbers_of_surfaces_vary_by_their_full_names(tmp_path: Path) -> None:
     assert execute(runs[-1].inputs)[0]["status"] == "converged"
 
 
+def test_hardness_varies_by_its_full_name(tmp_path: Path) -> None:
+    hard = SELF_AFFINE.replace("[lower.material]", "[lower.material]\nhardness = 1e9")
+    (tmp_path / "scene.toml").write_text(f"load = 100.0\nside = 1e-3\n{hard}")
+    axes = {"lower.material.hardness": [0.2e9, 1e12]}
+    runs = list(study_from_dict({"scene": "scene.toml", "vary": {"grid": [32], **axes}}, tmp_path).runs())
+    soft, unlimited = (execute(run.inputs)[0] for run in runs)
+    assert soft["max_pressure"] == 0.2e9 < unlimited["max_pressure"]
+    assert soft["contact_area"] > unlimited["contact_area"]
+    with pytest.raises(InputError, match=r"upper\.material\.hardness"):
+        study_from_dict(
+            {"scene": "scene.toml", "vary": {"grid": [32], "upper.material.hardness": [1e9]}}, tmp_path
+        )
+
+
 @pytest.mark.parametrize(
     ("field", "axis", "values"),
     [
