@@ -15,10 +15,10 @@ from refimpl.grid import Array, Mask
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
+from refimpl.model.state import SolverResult, Status
 from refimpl.operators.dense import DenseInfluence
 from refimpl.solvers.pivoting import complementarity, restricted_solve
-from refimpl.solvers.tau_active_set import iterate
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, iterate
 
 _SLOPE_TOLERANCE = 1e-13  # share of the peak pressure: 450 eps; or until slope changes no longer shrink
 _ROUNDING_FLOOR = 1e-11  # a smaller change that no longer shrinks is rounding of the linear solves
@@ -46,14 +46,13 @@ def solve_dense(problem: Problem) -> tuple[SolverResult, State]:
     """
     operator = DenseInfluence(problem.grid, problem.direction)
     solver = _DenseSolver(problem, operator)
-    ended = iterate(solver, problem.friction, _SLOPE_TOLERANCE)
+    ended = iterate(solver, problem, _SLOPE_TOLERANCE)
     result = SolverResult(
         pressure=solver.pressure,
         traction=solver.traction,
         slopes=solver.slopes,
-        status=ended.status(solver.contact) if solver.converged else Status.ITERATION_LIMIT,
+        status=ended.status() if solver.converged else Status.ITERATION_LIMIT,
         excluded=ended.excluded,
-        cycle_states=ended.cycle_states,
         iterations={"linear solves": solver.solves, "slopes": solver.picard, "active sets": ended.solves},
     )
     return result, certify(problem, operator, result.pressure, result.traction, result.slopes)
@@ -63,7 +62,6 @@ class _DenseSolver:
     """State of the reference solution: pressure, slopes, contact set; a `TauSolver`."""
 
     stagnated = window_too_small = False  # it has no window, and its budget alone ends it early
-    residual = 0.0  # a state is solved to rounding, or the budget is spent
 
     def __init__(self, problem: Problem, operator: DenseInfluence) -> None:
         self.problem = problem
@@ -71,6 +69,7 @@ class _DenseSolver:
         self.traction = np.zeros(problem.gap.shape)
         self.slopes = Slopes.flat(problem.gap.shape)
         self.converged = False
+        self._clearance = problem.gap.copy()
         self.solves = self.picard = 0
         self._operator = operator
         self._active: Mask = problem.gap.ravel() <= np.quantile(problem.gap, 0.05)
@@ -86,33 +85,44 @@ class _DenseSolver:
         """Elements with positive pressure."""
         return self.pressure > 0
 
-    def cycle_state(self) -> CycleState:
-        """Return the numbers of the present state."""
-        return cycle_state(self.problem, self.pressure, self.traction, self.slopes)
+    def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
+        """Picard iteration on slopes and held traction, with tau on ``active``, to the rounding floor.
 
-    def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
-        """Picard iteration on slopes and held traction, with tau on ``active``, to the rounding floor."""
+        Where the clearance feeds back on the traction so that the iteration does not contract, it is averaged
+        over iterations.
+        """
         problem, law = self.problem, self.problem.friction
-        self.converged, last = False, np.inf
+        self.converged, last, weight = False, np.inf, 1.0
         for _ in range(_SLOPE_ITERATIONS):
             before, slopes_before = self.pressure, self.slopes
-            self._solve_frozen(law.held_traction(self.pressure, active))
+            self._solve_frozen(active.held_traction(law, self.pressure, self._last_clearance))
             self.picard += 1
-            self.traction = law.traction(self.pressure, active)
-            self.slopes = problem.slopes(
-                *problem.displacements(self._operator, self.pressure, self.traction, self.slopes)
-            )
+            self.traction = active.traction(law, self.pressure, self._last_clearance)
+            lower, upper = problem.displacements(self._operator, self.pressure, self.traction, self.slopes)
+            self.slopes = problem.slopes(lower, upper)
+            self._clearance += weight * (self._clearance_of(lower + upper) - self._clearance)
             change = float(np.abs(self.pressure - before).max() / self.pressure.max(initial=1e-300))
             change = max(change, self.slopes.distance(slopes_before, ~no_elements(problem)))
             at_floor = change <= _ROUNDING_FLOOR and change >= last
-            lags = problem.terms.oblique or not law.is_linear
+            lags = problem.terms.oblique or not (law.is_linear and active.is_fixed)
             if change <= tolerance or at_floor or not lags:
                 self.converged = True
                 break
             if self.exhausted:
                 break
-            last = change
+            weight, last = (0.5 * weight if change >= last else weight), change
         return self.converged
+
+    def _last_clearance(self) -> Array:
+        return self._clearance
+
+    def _clearance_of(self, displacement: Array) -> Array:
+        """``v - approach`` (m) of the present pressure."""
+        v = self.slopes.per_obliqueness(displacement) + self.problem.gap
+        total = float(self.pressure.sum())
+        if self.problem.approach is not None or total == 0:
+            return np.asarray(v - (self.problem.approach or v.min()))
+        return np.asarray(v - float(np.sum(self.pressure * v)) / total)
 
     def _solve_frozen(self, held_traction: Array) -> None:
         frozen = self._freeze(held_traction)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from refimpl.grid import Array, Mask, Window, resampled
 from refimpl.model.certificate import State, certify
-from refimpl.model.problem import Problem, no_elements
+from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence, window_influence
@@ -18,6 +18,7 @@ from refimpl.solvers.production.coarse_grids import (
 )
 from refimpl.solvers.production.constants import COARSE_TOLERANCE, MARGIN
 from refimpl.solvers.production.level import LevelSolver
+from refimpl.solvers.tau_active_set import first_set
 
 
 def solve_fft(
@@ -33,7 +34,7 @@ def solve_fft(
     coarsest = nested.pop(0)
     solver = from_guess(coarsest, start, counter) if start else _from_winkler(coarsest, counter)
     while nested:
-        solver.solve(COARSE_TOLERANCE, no_elements(solver.problem))
+        solver.solve(COARSE_TOLERANCE, first_set(solver.problem))
         iterations[f"CG at {solver.whole.grid}"] = solver.cg_iterations
         solver = from_guess(nested.pop(0), solver.initial_guess(), counter)
     while True:
