@@ -52,6 +52,7 @@ class LevelSolver:
         self.residual = math.inf
         self._enough: ContactTest | None = None
         self._stiffness = 1 / problem.elasticity.element_compliance(problem.grid)
+        self._slopes_need_mixing = needs_mixing
         self._control = MixingControl(math.inf, has_lag=True, needs_mixing=needs_mixing)
         self._feedback = constants.REDUCTION
 
@@ -110,13 +111,15 @@ class LevelSolver:
 
         Stop as soon as the contact set is certain and passes the test ``enough``.
         """
+        # shares of tau that had to be mixed say nothing of a fixed set
+        mixes = self.needs_mixing if self.lagged.active.is_fixed else self._slopes_need_mixing
         self.lagged.active, self._enough = active, enough
         least = constants.LEAST_REDUCTION if active.is_fixed else constants.REDUCTION
         goal, self._budget = constants.TOLERANCE_SHARE * tolerance, self.cg_iterations + constants.CG_LIMIT
         self._goal = goal
         self.residual = self.lagged.update()
         has_lag = self.lagged.has_lag
-        self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=self.needs_mixing)
+        self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=mixes)
         self.stagnated = False
         for _ in range(constants.UPDATE_LIMIT):
             # the residual is that of the terms which the pressure asked for before it was scaled to the load
