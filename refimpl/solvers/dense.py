@@ -152,6 +152,8 @@ class _DenseSolver:
             approach = (target + frozen.weights @ at_zero) / stiffness
             if not low < approach < high:
                 approach = 0.5 * (low + high)
+            if not np.isfinite(approach):  # no bracket: however deep, the load is not borne
+                break
             found = complementarity(frozen.G, frozen.g - frozen.K * (approach - h), self._active)
             self.solves += found.solves + 1
             same = np.array_equal(found.active, self._active)

@@ -1,7 +1,7 @@
 """The active set of tau: which elements carry adhesive shear, one rule and one loop for all solvers.
 
-``r = tau + beta f`` switches tau on where contact begins. Tau moves the surfaces beside it, so elements with tau
-need not be the elements in contact. The rule has two steps.
+``r = tau + beta f`` switches tau on where contact begins. Tau moves the surfaces beside it, so elements with
+tau need not be the elements in contact. The rule has two steps.
 
 1. *Gradual state.* Tau acts in full on the contact, and on a share of each element beside it: the share falls
    from 1 to 0 as the clearance grows from 0 to ``reach``. Shares follow displacements continuously, and less
@@ -14,10 +14,10 @@ need not be the elements in contact. The rule has two steps.
 Elements that are in contact in the final state and not in A carry no adhesive shear: they are ``excluded``.
 
 What this means for the user: the set is a property of the grid, the same for every solver, window and start.
-If elements are excluded, mu may differ by as much as tau on them over the load, the part ``active set`` of its
-error bar: 5e-3 of mu at most on 128 x 128 elements of random scenes, typically 4e-4, and 2e-5 of mu of Table
-1's ball on 512 x 512. If none are, the law holds everywhere; where several sets obey the law, the choice has
-moved mu by up to 9e-4 of its value on 128 x 128 elements, in 5 % of random scenes.
+If elements are excluded, mu may differ by as much as tau on them over the load, the part ``active set`` of
+its error bar: typically 4e-4 of mu on 128 x 128 elements of random scenes, and 2e-5 for Table 1's ball on 512
+x 512. If none are, the law holds everywhere; other sets may obey it as well, with a mu that differs by up to
+1e-3 of its value on 128 x 128 elements, in one random scene of twenty.
 """
 
 from __future__ import annotations
@@ -170,7 +170,9 @@ def iterate(solver: TauSolver, problem: Problem, tolerance: float) -> TauResult:
     if first.is_fixed:
         solver.solve(tolerance, first)
         return TauResult(True, np.zeros(solver.contact.shape, dtype=bool), 1)
-    solver.solve(tolerance, first, lambda contact: True)
+    terms = problem.terms
+    moves = terms.coupled or terms.oblique or terms.slope_correction  # else the final state is this one
+    solver.solve(tolerance, first, (lambda contact: True) if moves else None)
     active, solves, settled = solver.contact, 1, False
     stagnated = int(solver.stagnated)
     while not (settled or solver.window_too_small or solver.exhausted):

@@ -216,7 +216,7 @@ def test_shear_on_slopes_that_bears_more_than_the_load_leaves_no_approach(direct
     scene = rf.Scene(
         upper=rf.Body(rf.Material(1e11, 0.45), rf.Sphere(11742.5)),
         lower=rf.Body(rf.Material(1e11, 0.3), rf.Flat()),
-        friction=rf.Friction(tau=2.2e7, beta=0.1),
+        friction=rf.Friction(tau=3e7, beta=0.1),
         load=7e8,
         side=1e3,
         sliding_direction=direction,

@@ -169,6 +169,7 @@ def test_without_tau_nothing_is_applied_for_it() -> None:
 def test_without_pressure_nothing_is_sheared() -> None:
     problem = turned(0.2, 1e6, oblique=True)
     lagged, cg, _ = lagging(problem, np.zeros((M, M)))
+    lagged.active = FixedSet(np.zeros((M, M), dtype=bool))
     for _ in range(2):
         lagged.update()
         assert np.array_equal(displacement(problem, lagged, cg), np.zeros((M, M)))
@@ -189,7 +190,7 @@ def test_without_facet_tractions_an_update_applies_no_pressure() -> None:
 def test_slopes_and_facet_tractions_lag(
     friction: rf.Friction, coupled: bool, oblique: bool, slope_correction: bool
 ) -> None:
-    """Tau does not: it is constant on its active set."""
+    """Tau does not on a fixed set; shares of it do, where shear closes the gap."""
     problem = problem_of(
         replace(BALL, friction=friction),
         4,
@@ -197,13 +198,26 @@ def test_slopes_and_facet_tractions_lag(
         coupled=coupled,
         slope_correction=slope_correction,
     )
-    assert level_solver(problem).lagged.has_lag is (oblique or slope_correction)
+    lagged = level_solver(problem).lagged
+    shared = friction.tau > 0 and coupled
+    assert lagged.has_lag is (oblique or slope_correction or shared)
+    lagged.active = FixedSet(np.ones((4, 4), dtype=bool))
+    assert lagged.has_lag is (oblique or slope_correction)
 
 
 @pytest.mark.parametrize("tau", [0.0, 1e6])
 @pytest.mark.parametrize(("strength", "lags"), [(0.29, False), (0.31, True)])
 def test_strong_coupling_lags(strength: float, lags: bool, tau: float) -> None:
-    assert level_solver(problem_of(coupled(strength, tau=tau), 4)).lagged.has_lag is lags
+    lagged = level_solver(problem_of(coupled(strength, tau=tau), 4)).lagged
+    lagged.active = FixedSet(np.ones((4, 4), dtype=bool))
+    assert lagged.has_lag is lags
+
+
+@pytest.mark.parametrize(
+    ("oblique", "strength", "lags"), [(True, 0.019, True), (True, 0.021, False), (False, 0.019, False)]
+)
+def test_the_weakest_coupling_lags_beside_slopes(oblique: bool, strength: float, lags: bool) -> None:
+    assert couples_weakly(problem_of(coupled(strength), 4, oblique=oblique)) is not lags
 
 
 class Problems:
