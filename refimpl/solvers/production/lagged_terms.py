@@ -131,7 +131,8 @@ class LaggedTerms:
             self._used = self._requested
             return
         oblique, sheared = self._problem.terms.oblique, self._shear_lags
-        scale = float(np.abs(self._cg.normal_displacement).max()) or 1.0
+        fields = self._cg.normal_displacement, self._requested[0]
+        scale = max(float(np.abs(field).max()) for field in fields) or 1.0
 
         def stacked(shear: Array, K: Array) -> Array:
             return np.vstack([shear / scale] * sheared + [K] * oblique)
