@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tomllib
 from collections.abc import Mapping
@@ -20,8 +21,9 @@ from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceSum
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
-_OPTIONAL_KEYS = ("sliding_direction", "sliding_offset", "periodic")
-_SCENE_KEYS = ("load", "side", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
+_OPTIONAL_KEYS = ("side", "size", "sliding_direction", "sliding_offset", "periodic")
+_RIGID = "rigid"  # E of a rigid body
+_SCENE_KEYS = ("load", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -86,7 +88,6 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
         lower=_body(table, "lower", folder),
         friction=Friction(**friction),
         load=_required(table, "load", "a normal load in N"),
-        side=_required(table, "side", "a length in m"),
         **optional,
     )
     _tolerances(table, scene)
@@ -99,7 +100,8 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         raise InputError("scene", scene, "a Scene")
     return {
         "load": scene.load,
-        "side": scene.side,
+        **({} if scene.side is None else {"side": scene.side}),
+        **({} if scene.size is None else {"size": list(scene.size)}),
         "sliding_direction": scene.sliding_direction,
         "sliding_offset": scene.sliding_offset,
         "periodic": scene.periodic,
@@ -134,7 +136,9 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     modulus = _required(material, "E", "Young's modulus in Pa", prefix=f"{name}.material.")
     ratio = _required(material, "nu", "Poisson's ratio", prefix=f"{name}.material.")
     with within(f"{name}.material"):
-        matter = Material(E=modulus, nu=ratio, hardness=material.get("hardness"))
+        matter = Material(
+            E=math.inf if modulus == _RIGID else modulus, nu=ratio, hardness=material.get("hardness")
+        )
     return Body(matter, sum(surfaces[1:], start=surfaces[0]))
 
 
@@ -142,7 +146,11 @@ def _body_to_dict(body: Body) -> dict[str, Any]:
     parts = body.surface.parts if isinstance(body.surface, SurfaceSum) else (body.surface,)
     hardness = {} if body.material.hardness is None else {"hardness": body.material.hardness}
     return {
-        "material": {"E": body.material.E, "nu": body.material.nu, **hardness},
+        "material": {
+            "E": _RIGID if body.material.is_rigid else body.material.E,
+            "nu": body.material.nu,
+            **hardness,
+        },
         "surface": [part.to_dict() for part in parts],
     }
 

@@ -194,7 +194,7 @@ def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> d
     below, above = (
         solve(
             with_parameter(scene, name, value * factor),
-            max(solution.grid.shape),
+            solution.grid.shape,
             oblique=terms.oblique,
             slope_correction=terms.slope_correction,
             coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
