@@ -100,6 +100,7 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> float:
     surface is resolved it falls as h^3. Where slopes are uncorrelated between elements it is 1.4 times the
     standard error of their mean.
 
+    >>> import numpy as np
     >>> bump = Slopes(np.pad([[1.0]], 1), np.zeros((3, 3)))
     >>> round(12 * slope_sampling_error(np.pad([[7.0]], 1), bump, Grid.square(1.0, 3)) ** 2, 9)  # bends of 2
     8.0

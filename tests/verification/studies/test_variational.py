@@ -176,8 +176,8 @@ def test_trace_case_sees_an_uncorrected_error(monkeypatch: pytest.MonkeyPatch) -
     """With the residual correction switched off the case fails."""
     iterate = _Scheme._iterate
 
-    def uncorrected(self: _Scheme, u: Array, inside: Mask, *, periodic: bool) -> Mask:
-        return iterate(self, u, inside, periodic=True)
+    def uncorrected(self: _Scheme, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
+        return iterate(self, u, inside, on_circle=True)
 
     monkeypatch.setattr(_Scheme, "_iterate", uncorrected)
     monkeypatch.setattr(iterations, "SCENES", ("hertz",))
