@@ -17,7 +17,7 @@ What this means for the user: the set is a property of the grid, the same for ev
 If elements are excluded, mu may differ by as much as tau on them over the load, the part ``active set`` of
 its error bar: typically 4e-4 of mu on 128 x 128 elements of random scenes, and 2e-5 for Table 1's ball on 512
 x 512. If none are, the law holds everywhere; other sets may obey it as well, with a mu that differs by up to
-1e-3 of its value on 128 x 128 elements, in one random scene of twenty.
+2e-3 of its value on 128 x 128 elements, in one random scene of ten.
 """
 
 from __future__ import annotations
