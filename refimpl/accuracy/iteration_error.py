@@ -1,8 +1,7 @@
 """Error bars of what a grid's own solution leaves open: unfinished iterations, and tau's active set.
 
 Parts are absolute, in the number's unit, and meant as 95 % bounds that add. ``iteration`` follows from the
-certificate; ``active set`` from the states of an alternating contact edge, and from tau on elements in
-contact that carry none.
+certificate; ``active set`` from elements in contact that carry no adhesive shear.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from refimpl.model.certificate import State
 from refimpl.model.forces import contact_area
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
-from refimpl.model.state import SolverResult
 
 AREAS = "contact_area", "contact_area_corrected"  # both depend on the same elements
 NUMBERS = (
@@ -107,24 +105,18 @@ def _peak_misfit(problem: Problem, state: State) -> float:
     return misfit / problem.elasticity.element_compliance(problem.grid)
 
 
-def active_set_parts(problem: Problem, result: SolverResult, state: State) -> Uncertainty:
-    """Return how far mu, F and the areas of the states of tau's cycles lie from the returned ones.
+def active_set_parts(problem: Problem, state: State) -> Uncertainty:
+    """Return the parts of elements that violate the law: without adhesive shear they are in contact, with it
+    they would not be.
 
-    For mu it is at least tau on all elements that violate the law: a law that turns tau on with pressure,
-    however soon, leaves such elements a share of it (the case ``tau/shares``).
+    A law that turns tau on with pressure, however soon, leaves such elements a share of it (the case
+    ``tau/shares``): mu is uncertain by all of tau on them, the area by the elements.
     """
     load = problem.nominal_load(state.forces.normal)
     violating = state.certificate.law_violations * problem.grid.element_area
-    spread = {
-        name: max(
-            (abs(getattr(other, name) - getattr(state, name)) for other in result.cycle_states), default=0.0
-        )
-        for name in ("friction_coefficient", "contact_area")
-    }
     by_violation = problem.friction.jump * violating / load if load else 0.0
-    spread["friction_coefficient"] = max(spread["friction_coefficient"], by_violation)
-    spread["friction_force"] = spread["friction_coefficient"] * load
-    spread |= dict.fromkeys(AREAS, spread["contact_area"])
+    spread = {"friction_coefficient": by_violation, "friction_force": by_violation * load}
+    spread |= dict.fromkeys(AREAS, violating)
     return {name: {"active set": width} for name, width in spread.items() if width > 0}
 
 

@@ -224,7 +224,7 @@ def _without_contact(problem: Problem) -> tuple[SolverResult, State]:
     zero = np.zeros(problem.gap.shape)
     slopes = problem.slopes(zero, zero)
     operator = whole_grid_influence(problem.grid, problem.direction, Window(0, 1, 0, 1))
-    result = SolverResult(zero, zero, slopes, Status.NO_CONTACT, zero > 0, ())
+    result = SolverResult(zero, zero, slopes, Status.NO_CONTACT, zero > 0)
     return result, certify(problem, operator, zero, zero, slopes)
 
 

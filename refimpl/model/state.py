@@ -1,14 +1,11 @@
-"""A solver's result before certification: the fields, the end of its loops, and the states of cycles."""
+"""A solver's result before certification: the fields and the end of its loops."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import NamedTuple
 
 from refimpl.grid import Array, Mask
-from refimpl.model.forces import contact_area, friction_coefficient, resultants
-from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
 
@@ -30,13 +27,6 @@ class Status(Enum):
     NO_CONTACT = "no contact"
 
 
-class CycleState(NamedTuple):
-    """Summary of one state of a cycle: friction coefficient and contact area (m^2)."""
-
-    friction_coefficient: float
-    contact_area: float
-
-
 @dataclass(frozen=True, eq=False)
 class SolverResult:
     """A solver's result; arrays have the shape of the grid.
@@ -45,7 +35,6 @@ class SolverResult:
     slopes : those that the facet tractions of the slope correction were taken at
     status : how the loops ended
     excluded : elements that the rule for tau's active set leaves without adhesive shear
-    cycle_states : summaries of the states of all cycles
     iterations : counts by loop
     indentation : plastic indentation that the slopes contain (m), None without a cap
     """
@@ -55,13 +44,5 @@ class SolverResult:
     slopes: Slopes
     status: Status
     excluded: Mask
-    cycle_states: tuple[CycleState, ...]
     iterations: dict[str, int] = field(default_factory=dict)
     indentation: Array | None = None
-
-
-def cycle_state(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> CycleState:
-    """Return the summary of a state, by Eqs (2) to (4)."""
-    forces = resultants(pressure, traction, slopes, problem.grid.element_area)
-    load = problem.nominal_load(forces.normal)
-    return CycleState(friction_coefficient(forces.friction, load), contact_area(pressure != 0, problem.grid))

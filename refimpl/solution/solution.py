@@ -246,7 +246,7 @@ class Solved:
         )
         return merged(
             iteration_parts(problem, state),
-            active_set_parts(problem, self.result, state),
+            active_set_parts(problem, state),
             neglected_parts(
                 self.neglected,
                 float(state.traction.sum()) / total if total else 0.0,

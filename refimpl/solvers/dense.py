@@ -15,10 +15,10 @@ from refimpl.grid import Array, Mask
 from refimpl.model.certificate import State, approach_from, certify
 from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
+from refimpl.model.state import SolverResult, Status
 from refimpl.operators.dense import DenseInfluence
 from refimpl.solvers.pivoting import complementarity, restricted_solve
-from refimpl.solvers.tau_active_set import iterate
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, iterate
 
 _SLOPE_TOLERANCE = 1e-13  # share of the peak pressure: 450 eps; or until slope changes no longer shrink
 _ROUNDING_FLOOR = 1e-11  # a smaller change that no longer shrinks is rounding of the linear solves
@@ -46,15 +46,14 @@ def solve_dense(problem: Problem) -> tuple[SolverResult, State]:
     """
     operator = DenseInfluence(problem.grid, problem.direction)
     solver = _DenseSolver(problem, operator)
-    ended = iterate(solver, problem.friction, _SLOPE_TOLERANCE)
+    ended = iterate(solver, problem, _SLOPE_TOLERANCE)
     result = SolverResult(
         pressure=solver.pressure,
         traction=solver.traction,
         slopes=solver.slopes,
         indentation=solver.indentation,
-        status=ended.status(solver.contact) if solver.converged else Status.ITERATION_LIMIT,
+        status=ended.status() if solver.converged else Status.ITERATION_LIMIT,
         excluded=ended.excluded,
-        cycle_states=ended.cycle_states,
         iterations={"linear solves": solver.solves, "slopes": solver.picard, "active sets": ended.solves},
     )
     found = result.pressure, result.traction, result.slopes, result.indentation
@@ -65,7 +64,6 @@ class _DenseSolver:
     """State of the reference solution: pressure, slopes, contact set; a `TauSolver`."""
 
     stagnated = window_too_small = False  # it has no window, and its budget alone ends it early
-    residual = 0.0  # a state is solved to rounding, or the budget is spent
 
     def __init__(self, problem: Problem, operator: DenseInfluence) -> None:
         self.problem = problem
@@ -74,6 +72,7 @@ class _DenseSolver:
         self.slopes = Slopes.flat(problem.gap.shape)
         self.indentation: Array | None = None
         self.converged = False
+        self._clearance = problem.gap.copy()
         self.solves = self.picard = 0
         self._operator = operator
         self._free: Mask = problem.gap.ravel() <= np.quantile(problem.gap, 0.05)
@@ -90,36 +89,46 @@ class _DenseSolver:
         """Elements with positive pressure."""
         return self.pressure > 0
 
-    def cycle_state(self) -> CycleState:
-        """Return the numbers of the present state."""
-        return cycle_state(self.problem, self.pressure, self.traction, self.slopes)
+    def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
+        """Picard iteration on slopes and held traction, with tau on ``active``, to the rounding floor.
 
-    def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
-        """Picard iteration on slopes and held traction, with tau on ``active``, to the rounding floor."""
+        Where the clearance feeds back on the traction so that the iteration does not contract, it is averaged
+        over iterations.
+        """
         problem, law = self.problem, self.problem.friction
-        self.converged, last = False, np.inf
+        self.converged, last, weight = False, np.inf, 1.0
         for _ in range(_SLOPE_ITERATIONS):
             before, slopes_before = self.pressure, self.slopes
-            self._solve_frozen(law.held_traction(self.pressure, active))
+            self._solve_frozen(active.held_traction(law, self.pressure, self._last_clearance))
             self.picard += 1
-            self.traction = law.traction(self.pressure, active)
-            lower, upper = problem.displacements(self._operator, self.pressure, self.traction, self.slopes)
-            K = self.slopes.obliqueness
-            approach = approach_from(self.pressure, (lower + upper) / K + problem.gap, problem.cap)
-            approach = approach if problem.approach is None else problem.approach
-            self.indentation = problem.indentation(self.pressure, lower + upper, K, approach)
-            self.slopes = problem.slopes(lower, upper, self.indentation)
+            self.traction = active.traction(law, self.pressure, self._last_clearance)
+            self._update(weight)
             change = float(np.abs(self.pressure - before).max() / self.pressure.max(initial=1e-300))
             change = max(change, self.slopes.distance(slopes_before, ~no_elements(problem)))
             at_floor = change <= _ROUNDING_FLOOR and change >= last
-            lags = problem.terms.oblique or not law.is_linear
+            lags = problem.terms.oblique or not (law.is_linear and active.is_fixed)
             if change <= tolerance or at_floor or not lags:
                 self.converged = True
                 break
             if self.exhausted:
                 break
-            last = change
+            weight, last = (0.5 * weight if change >= last else weight), change
         return self.converged
+
+    def _update(self, weight: float) -> None:
+        """Slopes, indentation and, with ``weight``, clearance of the present pressure and traction."""
+        problem, K = self.problem, self.slopes.obliqueness
+        lower, upper = problem.displacements(self._operator, self.pressure, self.traction, self.slopes)
+        v = self.slopes.per_obliqueness(lower + upper) + problem.gap
+        approach = problem.approach
+        if approach is None:
+            approach = approach_from(self.pressure, v, problem.cap)
+        self._clearance += weight * (v - approach - self._clearance)
+        self.indentation = problem.indentation(self.pressure, lower + upper, K, approach)
+        self.slopes = problem.slopes(lower, upper, self.indentation)
+
+    def _last_clearance(self) -> Array:
+        return self._clearance
 
     def _solve_frozen(self, held_traction: Array) -> None:
         """Solve with slopes and held traction fixed."""
@@ -158,6 +167,8 @@ class _DenseSolver:
             approach = (target + frozen.weights @ (less - at_cap)) / stiffness
             if not low < approach < high:
                 approach = 0.5 * (low + high)
+            if not np.isfinite(approach):  # no bracket: however deep, the load is not borne
+                break
             before = self._free, self._capped
             pressure = self._contact(frozen, h, approach)
             self.solves += 1

@@ -26,10 +26,10 @@ from refimpl.grid import Array, Mask, inner, resampled
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
+from refimpl.model.state import SolverResult, Status
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.kernel_tables import unit_table
-from refimpl.solvers.tau_active_set import iterate
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, first_set, iterate
 
 PAPER_TOLERANCE = 1e-4  # |(P - N) / P|, section 5
 _PRESSURE_SHARE = 0.1  # |df| / |f| may be this share of the load tolerance: 1e-5, section 5
@@ -70,7 +70,7 @@ def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[S
     *coarse, finest = _refinements(problem)
     for level in coarse:  # (3) iteration three: from coarse to fine
         scheme = _Scheme(level, tolerance, counter, pressure)
-        approach = scheme.balance(approach, active=None)
+        approach = scheme.balance(approach, first_set(level))
         pressure = _interpolated(scheme.pressure)
         traces.append(scheme.trace)
     scheme = _Scheme(finest, tolerance, counter, pressure, approach)
@@ -102,7 +102,6 @@ class _Scheme:
     """Iterations one and two on one grid; a `TauSolver`."""
 
     stagnated = window_too_small = False  # it has no window, and its budget alone ends it early
-    residual = 0.0  # the scheme has no residual of the whole problem, only its own tolerances
 
     def __init__(
         self,
@@ -119,6 +118,7 @@ class _Scheme:
         self.pressure = np.zeros(problem.gap.shape) if pressure is None else pressure
         self.traction = np.zeros(problem.gap.shape)
         self.slopes = Slopes.flat(problem.gap.shape)
+        self._shear = self._clearance = np.zeros(problem.gap.shape)
         self.settled = True
         self._approach = approach
         # (1) [a] by the moving-grid argument: one row of it, translated; here on the FFT's circle
@@ -129,7 +129,7 @@ class _Scheme:
 
     def result(self) -> SolverResult:
         """Balance under the rule for tau's active set that all solvers share."""
-        ended = iterate(self, self.problem.friction, self.tolerance)
+        ended = iterate(self, self.problem, self.tolerance)
         every = (*self.trace.coarser, self.trace)
         counts = {
             "periodic": sum(t.periodic_steps for t in every),
@@ -141,9 +141,8 @@ class _Scheme:
             pressure=self.pressure,
             traction=self.traction,
             slopes=self.slopes,
-            status=ended.status(self.contact) if self.settled else Status.ITERATION_LIMIT,
+            status=ended.status() if self.settled else Status.ITERATION_LIMIT,
             excluded=ended.excluded,
-            cycle_states=ended.cycle_states,
             iterations=counts | {"active sets": ended.solves},
         )
 
@@ -158,17 +157,13 @@ class _Scheme:
         """Elements with positive pressure."""
         return self.pressure > 0
 
-    def cycle_state(self) -> CycleState:
-        """Return the numbers of the present state."""
-        return cycle_state(self.problem, self.pressure, self.traction, self.slopes)
-
-    def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
+    def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Balance with tau on an active set."""
         self._approach = self.balance(self._approach, active)
-        self.traction = self.problem.friction.traction(self.pressure, active)
+        self.traction = active.traction(self.problem.friction, self.pressure, self._last_clearance)
         return self.settled
 
-    def balance(self, approach: float | None, active: Mask | None) -> float:
+    def balance(self, approach: float | None, active: ActiveSet) -> float:
         """(2) Iteration two: the approach at which N = P, by secants within a bracket; returns it (m)."""
         if self.problem.approach is not None:
             self.normal_force(self.problem.approach, active)
@@ -193,7 +188,7 @@ class _Scheme:
         self.settled = False
         return approach
 
-    def normal_force(self, approach: float, active: Mask | None) -> float:
+    def normal_force(self, approach: float, active: ActiveSet) -> float:
         """(1) Iteration one: the contact at an assumed approach; returns N, Eq. (2)."""
         self.trace.approaches += 1
         self.settled, problem = True, self.problem  # independent of the approaches before
@@ -203,7 +198,7 @@ class _Scheme:
         before = self.pressure
         for first in (True, *(_PASSES - 1) * (False,)):
             self.trace.passes += 1
-            shear, held = self._update(active)
+            shear, held = self._update(approach, active)
             u = self.slopes.obliqueness * (approach - problem.gap) - shear  # Eqs (6a), (7)
             if first:  # later passes only mend: the periodic contact would throw returned elements out again
                 inside = self._iterate(u, inside, on_circle=True)
@@ -226,14 +221,19 @@ class _Scheme:
         weights, offset = problem.load_weights(self.slopes, held)
         return inner(weights, self.pressure) * problem.grid.element_area - offset
 
-    def _update(self, active: Mask | None) -> tuple[Array, Array]:
+    def _update(self, approach: float, active: ActiveSet) -> tuple[Array, Array]:
         """Slopes; returned are all displacements but ``a f`` (m), and the held traction (Pa)."""
-        law = self.problem.friction
-        tau_on = self.contact if active is None else active
-        traction = law.traction(self.pressure, tau_on)
+        law, normal = self.problem.friction, self._apply(self.pressure)
+        v = self.slopes.per_obliqueness(normal + self._shear) + self.problem.gap
+        self._clearance = v - approach
+        traction = active.traction(law, self.pressure, self._last_clearance)
         lower, upper = self.problem.displacements(self.operator, self.pressure, traction, self.slopes)
         self.slopes = self.problem.slopes(lower, upper)
-        return lower + upper - self._apply(self.pressure), law.held_traction(self.pressure, tau_on)
+        self._shear = lower + upper - normal
+        return self._shear, active.held_traction(law, self.pressure, self._last_clearance)
+
+    def _last_clearance(self) -> Array:
+        return self._clearance
 
     def _iterate(self, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
         """(1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact left."""

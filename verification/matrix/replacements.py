@@ -17,7 +17,6 @@ from refimpl.model.certificate import State
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import SolverResult
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
@@ -153,9 +152,9 @@ def quarter_of_a_bound(self: Estimate, found: float) -> float:
     return _bound(self, found) / 4
 
 
-def states_alone(problem: Problem, result: SolverResult, state: State) -> Any:
+def states_alone(problem: Problem, state: State) -> Any:
     lawful = replace(state.certificate, law_violations=0)
-    return _active_set_parts(problem, result, replace(state, certificate=lawful))
+    return _active_set_parts(problem, replace(state, certificate=lawful))
 
 
 def low_departure(*args: Any) -> Any:

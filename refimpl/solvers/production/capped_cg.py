@@ -66,7 +66,12 @@ class CappedCG(ProjectedCG):
         return max(relative_gap(gap, energy), missed), max(0.0, approach - lowest) / (abs(approach) or 1.0)
 
     def contact_is_certain(self, stiffness: float) -> bool:
-        """Return whether the remaining error of the separation can change no element's contact."""
+        """Return whether the remaining error of the separation can change no element's contact.
+
+        Without free elements nothing measures that error.
+        """
+        if not self.free.any():
+            return False
         v, approach = self.separation, self.approach
         margin = CERTAINTY * float((np.abs(v - approach) * self.free).max())
         pressing = np.count_nonzero(self.pressure > stiffness * margin)

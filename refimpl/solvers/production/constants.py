@@ -11,6 +11,9 @@ COARSE_TOLERANCE = (
     1e-3  # residual of a coarse grid: only an initial guess; its grid error is larger. 1e-2: 4 %
 )
 #                          fewer transforms on 40 rough scenes, half as many again on smooth 1024 x 1024
+START_MISFIT = (
+    0.02  # of a start on the same grid: 1 % of load saves up to a third, 5 % costs up to two thirds
+)
 MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 
 # One grid (`level`)
@@ -36,6 +39,7 @@ LOAD_SLACK = (
 LIST_SHARE = 0.35  # share of a window up to which lists are quicker: 0.35 at 256 elements a side, 0.45 at 512
 
 # Lagged terms (`lagged_terms`)
+NEGLIGIBLE_COUPLING = 0.02  # beta c / a up to which the coupling lags beside slopes: 8 to 15 % less work
 WEAK_COUPLING = 0.3  # beta c / a up to which CG takes the coupling in; it pays to 0.5 and fails at 0.7
 STEEPEST_COSINE = 1e-6  # cosine of slopes that have diverged, under pressures far beyond the moduli
 LARGEST_DISPLACEMENT = (

@@ -13,14 +13,20 @@ import math
 
 import numpy as np
 
-from refimpl.grid import Array, Mask, inner
+from refimpl.grid import Array, inner
 from refimpl.model.elasticity import WindowOperator
-from refimpl.model.problem import Problem, no_elements
+from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.anderson import AndersonMixing
-from refimpl.solvers.production.constants import LARGEST_DISPLACEMENT, STEEPEST_COSINE, WEAK_COUPLING
+from refimpl.solvers.production.constants import (
+    LARGEST_DISPLACEMENT,
+    NEGLIGIBLE_COUPLING,
+    STEEPEST_COSINE,
+    WEAK_COUPLING,
+)
 from refimpl.solvers.production.projected_cg import ProjectedCG
+from refimpl.solvers.tau_active_set import ActiveSet, first_set
 
 
 def coupling_strength(problem: Problem) -> float:
@@ -29,8 +35,14 @@ def coupling_strength(problem: Problem) -> float:
 
 
 def couples_weakly(problem: Problem) -> bool:
-    """Return whether CG takes the coupling ``beta c f`` into its product."""
-    return 0 < coupling_strength(problem) <= WEAK_COUPLING and not problem.terms.slope_correction
+    """Return whether CG takes the coupling ``beta c f`` into its product.
+
+    Beside slopes, which lag anyway, the weakest coupling lags as well: one shear product an update fewer.
+    """
+    if problem.terms.slope_correction:
+        return False
+    least = NEGLIGIBLE_COUPLING if problem.terms.oblique else 0.0
+    return least < coupling_strength(problem) <= WEAK_COUPLING
 
 
 def pressure_compliance(problem: Problem, operator: WindowOperator) -> Apply:
@@ -44,7 +56,7 @@ def pressure_compliance(problem: Problem, operator: WindowOperator) -> Apply:
 class LaggedTerms:
     """Shear displacement, slopes and load target of a window's problem, updated from the pressure of ``cg``.
 
-    active : elements with adhesive shear
+    active : where adhesive shear acts
     slopes : those that the last update found
     slopes_used : those that the displacements of the present state came from
     diverged : slopes or shear displacements ran out of range
@@ -54,15 +66,16 @@ class LaggedTerms:
     def __init__(self, problem: Problem, operator: WindowOperator, cg: ProjectedCG) -> None:
         self._problem, self._operator, self._cg = problem, operator, cg
         self.slopes = self.slopes_used = Slopes.flat(problem.gap.shape)
-        self.active = no_elements(problem)
+        self.active: ActiveSet = first_set(problem)
         self.diverged = False
         self.indentation: Array | None = None
         self._posed = False
         self._weakly_coupled = couples_weakly(problem)
         self._used: tuple[Array, Array] | None = None  # shear and weights that the present state came from
         self._requested: tuple[Array, Array]
-        self._of_held: tuple[Mask, Array] | None = None  # active set, and the shear product of its traction
+        self._of_held: tuple[ActiveSet, Array] | None = None  # active set, and its traction's shear product
         self._of_pressure: tuple[float, Array] | None = None  # sum of a pressure, and its shear product
+        self._set_problem(np.broadcast_to(0.0, problem.gap.shape), self.slopes.obliqueness, None)
 
     def iterate(self) -> None:
         """One CG step; the shear product of the old pressure is dropped."""
@@ -79,16 +92,24 @@ class LaggedTerms:
         """Whether shear displacements depend on the pressure beyond what CG takes in."""
         terms, law = self._problem.terms, self._problem.friction
         by_pressure = law.slope != 0 and not self._weakly_coupled
-        return terms.slope_correction or (terms.coupled and (by_pressure or not law.is_linear))
+        return terms.slope_correction or (terms.coupled and (by_pressure or not self._held_is_constant))
+
+    @property
+    def _held_is_constant(self) -> bool:
+        return self._problem.friction.is_linear and self.active.is_fixed
+
+    def clearance(self) -> Array:
+        """Return ``v - approach`` of the present state (m)."""
+        return self._cg.separation - self._cg.approach
 
     @property
     def traction(self) -> Array:
         """The traction of the present pressure (Pa)."""
-        return self._problem.friction.traction(self._cg.pressure, self.active)
+        return self.active.traction(self._problem.friction, self._cg.pressure, self.clearance)
 
     @property
     def _held(self) -> Array:
-        return self._problem.friction.held_traction(self._cg.pressure, self.active)
+        return self.active.held_traction(self._problem.friction, self._cg.pressure, self.clearance)
 
     def update(self) -> float:
         """Update all lagged terms from the present pressure; return the residual of the whole problem."""
@@ -115,7 +136,8 @@ class LaggedTerms:
             self._used = self._requested
             return
         oblique, sheared = self._problem.terms.oblique, self._shear_lags
-        scale = float(np.abs(self._cg.normal_displacement).max()) or 1.0
+        fields = self._cg.normal_displacement, self._requested[0]
+        scale = max(float(np.abs(field).max()) for field in fields) or 1.0
 
         def stacked(shear: Array, K: Array) -> Array:
             return np.vstack([shear / scale] * sheared + [K] * oblique)
@@ -194,7 +216,6 @@ class LaggedTerms:
         law = self._problem.friction
         if law.is_linear and law.jump == 0:
             return 0.0
-        known = self._of_held is not None and np.array_equal(self._of_held[0], self.active)
-        if self._of_held is None or not (known and law.is_linear):
+        if self._of_held is None or self._of_held[0] is not self.active or not self._held_is_constant:
             self._of_held = self.active, self._operator.shear(self._held)
         return self._of_held[1]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from refimpl.grid import Array, Mask
 from refimpl.model.problem import Problem
-from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
+from refimpl.model.state import SolverResult, Status
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production import constants
@@ -24,7 +24,7 @@ from refimpl.solvers.production.capped_cg import CappedCG
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.lagged_terms import LaggedTerms, pressure_compliance
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.tau_active_set import iterate
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, iterate
 
 
 def projected_cg(
@@ -62,8 +62,9 @@ class LevelSolver:
         self.lagged = LaggedTerms(self.problem, operator, self.cg)
         self.stagnated = False
         self.residual = math.inf
-        self._excluded: Mask | None = None
+        self._enough: ContactTest | None = None
         self._stiffness = 1 / problem.elasticity.element_compliance(problem.grid)
+        self._slopes_need_mixing = needs_mixing
         self._control = MixingControl(math.inf, has_lag=True, needs_mixing=needs_mixing)
         self._feedback = constants.REDUCTION
 
@@ -82,18 +83,16 @@ class LevelSolver:
 
         Where one of its states meets the window's edge the result is not final: see ``window_too_small``.
         """
-        ended = iterate(self, self.problem.friction, tolerance)
-        status = ended.status(self.contact, self._status())
+        ended = iterate(self, self.problem, tolerance)
+        status = ended.status(self._status())
         if self._status() is not Status.CONVERGED and not (ended.settled or self.exhausted or self.stagnated):
             status = Status.ITERATION_LIMIT
-        excluded = ended.excluded if ended.cycle_states else np.zeros(self.window.shape, dtype=bool)
         return SolverResult(
             pressure=self.full(self.cg.pressure),
             traction=self.full(self.lagged.traction),
             slopes=self.lagged.slopes_used.spread(self.window, self.whole.grid),
             status=status,
-            excluded=self.full(excluded),
-            cycle_states=ended.cycle_states,
+            excluded=self.full(ended.excluded),
             iterations={f"CG at {self.whole.grid}": self.cg_iterations},
             indentation=self._full_indentation(),
         )
@@ -119,32 +118,31 @@ class LevelSolver:
 
     @property
     def window_too_small(self) -> bool:
-        """Whether the contact of one of tau's states meets the window's edge, which is not the grid's."""
-        adhesive = self.problem.friction.jump > 0
-        return adhesive and self.window.on_edge(self.contact, self.whole.grid.shape)
+        """True if elements with shear meet the window's edge, which is not the grid's."""
+        if self.problem.friction.jump == 0:
+            return False
+        return self.window.on_edge(self.contact | (self.lagged.traction > 0), self.whole.grid.shape)
 
-    def cycle_state(self) -> CycleState:
-        """Return the numbers of the present state."""
-        return cycle_state(self.problem, self.cg.pressure, self.lagged.traction, self.lagged.slopes)
-
-    def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
+    def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Alternate CG and updates until the residual meets the tolerance, with tau on ``active``.
 
-        Given the elements that tau's rule has ``excluded``, stop as soon as the next active set is certain to
-        be another one.
+        Stop as soon as the contact set is certain and passes the test ``enough``.
         """
-        self.lagged.active, self._excluded = active, excluded
+        # shares of tau that had to be mixed say nothing of a fixed set
+        mixes = self.needs_mixing if self.lagged.active.is_fixed else self._slopes_need_mixing
+        self.lagged.active, self._enough = active, enough
+        least = constants.LEAST_REDUCTION if active.is_fixed else constants.REDUCTION
         goal, self._budget = constants.TOLERANCE_SHARE * tolerance, self.cg_iterations + constants.CG_LIMIT
         self._goal = goal
         self.residual = self.lagged.update()
         has_lag = self.lagged.has_lag
-        self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=self.needs_mixing)
+        self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=mixes)
         self.stagnated = False
         for _ in range(constants.UPDATE_LIMIT):
             # the residual is that of the terms which the pressure asked for before it was scaled to the load
             if has_lag and self.residual <= goal:
                 self.residual = self.lagged.update()
-            if self.residual <= goal or self._next_set_differs():
+            if self.residual <= goal or self._contact_suffices():
                 return self.residual <= goal
             if self.cg_iterations >= self._budget or self.exhausted or self._control.stagnated:
                 break
@@ -153,7 +151,7 @@ class LevelSolver:
             fixed = self._reduce(self._cg_goal(tolerance))
             self.residual = self.lagged.update() if has_lag else fixed
             feedback = (self.residual - fixed) / last
-            self._feedback = min(max(constants.LEAST_REDUCTION, feedback), constants.REDUCTION)
+            self._feedback = min(max(least, feedback), constants.REDUCTION)
             self._control.record(self.residual, feedback)
         self.stagnated = self.residual > goal
         return not self.stagnated
@@ -172,7 +170,7 @@ class LevelSolver:
         since = 0
         while residual > goal and since < constants.CG_PATIENCE and self.cg_iterations < self._budget:
             # between mixed updates the state solves no problem of its own: its contact is not the rule's
-            if not self.needs_mixing and self._next_set_differs():
+            if not self.needs_mixing and self._contact_suffices():
                 break
             self.lagged.iterate()
             self.cg_iterations += 1
@@ -180,18 +178,11 @@ class LevelSolver:
             best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
         return residual
 
-    def _next_set_differs(self) -> bool:
-        """Whether tau's rule is certain to ask for another active set after this state.
-
-        Where tau moves nothing, the next state is the same one.
-        """
-        terms = self.problem.terms
-        moved = terms.coupled or terms.oblique or terms.slope_correction
-        if self._excluded is None or not moved:
+    def _contact_suffices(self) -> bool:
+        """Whether no more than the contact set is asked of this state, and the set is certain."""
+        if self._enough is None or not self._enough(self.cg.contact):
             return False
-        if not self.cg.contact_is_certain(self._stiffness):
-            return False
-        return not np.array_equal(self.cg.contact & ~self._excluded, self.lagged.active)
+        return self.cg.contact_is_certain(self._stiffness)
 
     def _status(self) -> Status:
         if self.residual <= self._goal:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from refimpl.grid import Array, Mask, Window, resampled
-from refimpl.model.certificate import State, certify
-from refimpl.model.problem import Problem, no_elements
+from refimpl.grid import Array, Mask, Window, inner, resampled
+from refimpl.model.certificate import State, certify, relative_gap
+from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence, window_influence
@@ -16,8 +16,9 @@ from refimpl.solvers.production.coarse_grids import (
     sharpened,
     winkler_pressure,
 )
-from refimpl.solvers.production.constants import COARSE_TOLERANCE, MARGIN
+from refimpl.solvers.production.constants import COARSE_TOLERANCE, MARGIN, START_MISFIT
 from refimpl.solvers.production.level import LevelSolver
+from refimpl.solvers.tau_active_set import first_set
 
 
 def solve_fft(
@@ -26,14 +27,17 @@ def solve_fft(
     """Return the result and certified state of the problem, to a certificate of about ``tolerance``.
 
     The result's status concerns the loops only; the certificate is that of the whole grid. ``start`` is the
-    solution on a grid that is not finer: nested grids no finer than it are not solved again.
+    solution on a grid that is not finer: nested grids no finer than it are not solved again. A start on this
+    very grid is used only where it fits: load or contact off by more than 2 % cost more than nested grids.
     """
+    if start and start.shape == problem.grid.shape and _misfit(problem, start) > START_MISFIT:
+        start = None
     iterations: dict[str, int] = {}
     nested = nested_problems(problem, above=start.shape if start else None)
     coarsest = nested.pop(0)
     solver = from_guess(coarsest, start, counter) if start else _from_winkler(coarsest, counter)
     while nested:
-        solver.solve(COARSE_TOLERANCE, no_elements(solver.problem))
+        solver.solve(COARSE_TOLERANCE, first_set(solver.problem))
         iterations[f"CG at {solver.whole.grid}"] = solver.cg_iterations
         solver = from_guess(nested.pop(0), solver.initial_guess(), counter)
     while True:
@@ -49,6 +53,16 @@ def solve_fft(
                 return result, state
             needed |= missed  # windows only grow, so the loop ends
         solver = widened(problem, result, needed, counter, needs_mixing=needs_mixing)
+
+
+def _misfit(problem: Problem, start: InitialGuess) -> float:
+    """Relative error of a start as a solution on its own grid: of the load, and of the contact."""
+    f, v = start.pressure, start.displacement + problem.gap
+    total, energy = float(f.sum()), 0.5 * inner(f, start.displacement)
+    gap = relative_gap(inner(f, v) - total * float(v.min()), energy)
+    if problem.load is not None:
+        return max(gap, abs(total * problem.grid.element_area - problem.load) / problem.load)
+    return max(gap, relative_gap(abs(inner(f, v) - total * (problem.approach or 0.0)), energy))
 
 
 def from_guess(problem: Problem, start: InitialGuess, counter: Counter) -> LevelSolver:

@@ -12,7 +12,6 @@ from refimpl.grid import Grid, Window
 from refimpl.model.forces import resultants
 from refimpl.model.problem import Problem, Terms, no_elements
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import cycle_state
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.scene.discretise import discretise
@@ -125,20 +124,6 @@ def test_facet_tractions_close_the_gap_by_their_shear_whatever_is_coupled() -> N
     apart, together = (problem_with(Terms(coupled=c, slope_correction=True)) for c in (False, True))
     found = apart.displacements(operator(), F, 0.2 * F, SLOPES)
     np.testing.assert_array_equal(found, together.displacements(operator(), F, 0.2 * F, SLOPES))
-
-
-def test_the_summary_of_a_cycles_state() -> None:
-    """Friction over the prescribed load, or over the force at an approach; the area of the contact."""
-    forces = resultants(F, 0.2 * F, SLOPES, GRID.element_area)
-    assert forces.normal != pytest.approx(1.0, rel=0.05)
-    under_load, at_approach = problem_with(), problem_with(approach=1e-7)
-    for problem, load in ((under_load, 1.0), (at_approach, forces.normal)):
-        state = cycle_state(problem, F, 0.2 * F, SLOPES)
-        assert state.friction_coefficient == pytest.approx(forces.friction / load, rel=1e-15)
-        assert state.contact_area == pytest.approx(np.count_nonzero(F) * SIDE**2 / 48, rel=1e-14)
-    apart = cycle_state(at_approach, 0 * F, 0 * F, SLOPES)
-    assert np.isnan(apart.friction_coefficient)
-    assert apart.contact_area == 0
 
 
 def test_facet_tractions_enter_with_the_slope_correction() -> None:

@@ -17,6 +17,7 @@ from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers import paper as module
 from refimpl.solvers.paper import Trace, _interpolated, _Scheme
+from refimpl.solvers.tau_active_set import FixedSet, GradualSet
 
 
 def hertz(M: int = 8, friction: rf.Friction | None = None) -> Problem:
@@ -107,14 +108,18 @@ def test_the_first_approach_is_a_small_part_of_the_gap(
     assert press.asked[1] == one.problem.grid.element_size
 
 
-def test_without_an_active_set_tau_is_where_contact_is() -> None:
-    """As on the coarser grids, which start the last one."""
+def test_tau_is_where_the_active_set_says() -> None:
+    """On the coarser grids the gradual one: on contact, and in shares up to a clearance beside it."""
     one = scheme(friction=rf.Friction(tau=1e6, beta=0.0))
     one.pressure[2:5, 3] = 1e7, 1e-3, 0.0
-    _, held = one._update(None)
-    assert np.argwhere(held == 1e6).tolist() == [[2, 3], [3, 3]]
+    v = one._apply(one.pressure) + one.problem.gap
+    reach = 2 * float(v[4, 3] - v.min() + 1e-9)
+    approach = float(v[4, 3]) - reach / 4
+    _, held = one._update(approach, GradualSet(reach))
+    assert held[2:4, 3] == pytest.approx(1e6)
+    assert held[4, 3] == pytest.approx(0.75e6)
     given = np.eye(8, dtype=bool)
-    assert np.array_equal(one._update(given)[1], 1e6 * given)
+    assert np.array_equal(one._update(0.0, FixedSet(given))[1], 1e6 * given)
 
 
 @pytest.mark.parametrize(
@@ -144,9 +149,9 @@ def test_iteration_one_starts_within_the_interference_and_the_contact_so_far(
         return iterate(u, inside, on_circle=on_circle)
 
     monkeypatch.setattr(one, "_iterate", recorded)
-    one.normal_force(4e-6, None)
+    one.normal_force(4e-6, FixedSet(one.problem.gap < 0))
     found = one.pressure > 0
-    one.normal_force(6e-6, None)
+    one.normal_force(6e-6, FixedSet(one.problem.gap < 0))
     assert np.array_equal(begun[0], one.problem.gap < 4e-6)
     assert 0 < found.sum() < begun[0].sum()
     assert np.array_equal(begun[1], found)
@@ -172,7 +177,7 @@ def test_passes_are_as_many_as_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(module, "_PASSES", passes)
         one = scheme(16)
         one.tolerance = 0.0
-        one.normal_force(4e-6, None)
+        one.normal_force(4e-6, FixedSet(one.problem.gap < 0))
         assert one.trace.passes == passes
         assert not one.settled
 
@@ -180,7 +185,7 @@ def test_passes_are_as_many_as_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_contact_that_never_settles_is_given_up_after_sixty_passes() -> None:
     one = scheme(4)
     one.tolerance = 0.0
-    one.normal_force(4e-6, None)
+    one.normal_force(4e-6, FixedSet(one.problem.gap < 0))
     assert one.trace.passes == 60
     assert not one.settled
 
@@ -230,7 +235,7 @@ def test_the_unit_of_pressure_changes_no_bit() -> None:
 def test_a_loop_that_meets_its_limit_says_so(limit: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever the certificate makes of the state that it left."""
     monkeypatch.setattr(module, limit, 1)
-    result, _, _ = module.solve_paper(hertz(friction=rf.Friction(tau=1e6, beta=0.1)), 1e-9, Counter())
+    result, _, _ = module.solve_paper(hertz(friction=rf.Friction(beta=0.1)), 1e-9, Counter())
     assert result.status is Status.ITERATION_LIMIT
 
 

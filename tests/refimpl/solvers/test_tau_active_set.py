@@ -1,8 +1,8 @@
-"""The rule for tau's active set on hand-made sequences, and the loop on a solver that plays contact sets."""
+"""Sets of tau on given states, and the rule's loop on a solver that plays contact sets."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -11,11 +11,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import refimpl as rf
-from refimpl.grid import Mask
-from refimpl.model.state import CycleState, Status
-from refimpl.solvers.tau_active_set import TauActiveSet, TauResult, iterate
+from refimpl.grid import Array, Mask
+from refimpl.model.problem import Problem
+from refimpl.model.state import Status
+from refimpl.solvers.tau_active_set import (
+    ActiveSet,
+    ContactTest,
+    FixedSet,
+    GradualSet,
+    TauResult,
+    first_set,
+    iterate,
+)
+from tests.refimpl.solvers.production.levels import BALL, problem_of
 
-ADHESIVE = rf.Friction(tau=1.0)
+SCENE = replace(BALL, friction=rf.Friction(tau=3e6, beta=0.1))
+ADHESIVE = problem_of(SCENE, 4)
 
 
 def mask(marks: str) -> Mask:
@@ -27,155 +38,61 @@ def mask(marks: str) -> Mask:
     return np.array([mark == "x" for mark in marks])
 
 
-def play(*contacts: str) -> TauActiveSet:
-    rule = TauActiveSet((len(contacts[0]),))
-    for contact in contacts:
-        rule.next(mask(contact))
-    return rule
+def none() -> Array:
+    raise AssertionError("a fixed set asks for no clearance")
 
 
-def test_it_starts_without_tau_and_settles_on_a_contact_set_that_stays() -> None:
-    rule = TauActiveSet((3,))
-    assert not rule.current.any()
-    rule.next(mask("xx."))
-    assert not rule.settled
-    rule.next(mask("xx."))
-    assert rule.settled
-    assert rule.cycle == ()
-    assert not rule.excluded.any()
+def test_a_fixed_set_carries_tau_whatever_the_state() -> None:
+    law, pressure, on = rf.Friction(tau=2.0, beta=0.5), np.array([4.0, 0.0, 4.0]), mask("xx.")
+    assert FixedSet(on).traction(law, pressure, none).tolist() == [4.0, 2.0, 2.0]
+    assert FixedSet(on).held_traction(law, pressure, none).tolist() == [2.0, 2.0, 0.0]
 
 
-def test_no_contact_settles_at_once() -> None:
-    assert play("...").settled
-
-
-def test_a_cycle_of_two_excludes_what_changed() -> None:
-    rule = play("xx.", "x..", "xx.")
-    assert len(rule.cycle) == 2
-    np.testing.assert_array_equal(rule.excluded, mask(".x."))
-    np.testing.assert_array_equal(rule.current, mask("x.."))
-    rule.next(mask("xx."))
-    assert rule.settled
-
-
-def test_a_cycle_of_three_excludes_all_that_changed_within_it() -> None:
-    rule = play("xx..", "x.x.", "x..x", "xx..")
-    assert len(rule.cycle) == 3
-    np.testing.assert_array_equal(rule.excluded, mask(".xxx"))
-
-
-def test_a_return_to_no_tau_counts_as_a_cycle() -> None:
-    """The state without tau, with which the rule starts, is one of the sequence."""
-    rule = play("x", ".")
-    assert len(rule.cycle) == 2
-    np.testing.assert_array_equal(rule.excluded, mask("x"))
-
-
-def test_what_came_before_the_cycle_does_not_count() -> None:
-    rule = play("xxx.", "xx..", "x...", "xx..")
-    assert len(rule.cycle) == 2
-    np.testing.assert_array_equal(rule.excluded, mask(".x.."))
-
-
-def test_active_sets_from_before_a_cycle_was_ended_are_forgotten() -> None:
-    """Without its elements contact is another function of the active set."""
-    rule = play("x..xx", ".x.xx", "x..xx")
-    np.testing.assert_array_equal(rule.current, mask("...xx"))
-    for contact in ("..xxx", "xx.xx"):
-        rule.next(mask(contact))
-    assert [list(active) for active in rule.cycle] == [list(mask("...xx")), list(mask("..xxx"))]
-
-
-def test_what_leaves_for_the_third_time_is_excluded_though_no_active_set_returns() -> None:
-    """The others stay; the state reported is the one that it leaves."""
-    on_and_off = ("x.....", ".x....", "x.x...", "...x..", "x...x.")
-    rule = play(*on_and_off)
-    assert rule.cycle == ()
-    np.testing.assert_array_equal(rule.current, mask("x...x."))
-    rule.next(mask(".....x"))
-    assert [list(state) for state in rule.cycle] == [list(mask("x...x."))]
-    np.testing.assert_array_equal(rule.excluded, mask("x....."))
-    np.testing.assert_array_equal(rule.current, mask(".....x"))
-    rule.next(mask("x....x"))
-    assert rule.settled
-    assert rule.cycle == ()
-
-
-def test_elements_that_flip_each_at_its_own_pace_settle_soon() -> None:
-    """Contact goes round in groups of 2, 3, 5 and 7: together they return after 210 active sets."""
-    groups = np.split(np.arange(17), [2, 5, 10])
-    rule, contact = TauActiveSet((21,)), np.zeros(21, dtype=bool)
-    contact[[0, 2, 5, 10, 17, 18, 19, 20]] = True
-    for _ in range(3 * 7 + 1):
-        rule.next(contact)
-        for group in groups:
-            contact[group] = np.roll(contact[group], 1)
-    assert rule.excluded[:17].all()
-    assert not rule.excluded[17:].any()
-    rule.next(contact)
-    assert rule.settled
-
-
-@pytest.mark.parametrize(
-    ("wide", "narrow", "given_up"), [("xx.", "x..", False), ("xxxx", "xx..", False), ("xxx.", "x...", True)]
-)
-def test_a_rule_that_would_take_tau_from_most_of_the_contact_is_given_up(
-    wide: str, narrow: str, given_up: bool
+@given(clearance=st.floats(-2, 2), pressure=st.sampled_from([0.0, 1e-9, 1.0]))
+def test_shares_of_a_gradual_set_fall_with_the_clearance_outside_the_contact(
+    clearance: float, pressure: float
 ) -> None:
-    """And nothing changes: half of the contact at most may lose tau."""
-    rule = play(wide, narrow, wide)
-    assert rule.given_up is given_up
-    assert not rule.settled
-    assert (rule.cycle == ()) is given_up
-    assert rule.excluded.any() is np.bool_(not given_up)
-    np.testing.assert_array_equal(rule.current, mask(narrow))
+    held = GradualSet(0.5).held_traction(
+        rf.Friction(tau=2.0), np.array([pressure]), lambda: np.array([clearance])
+    )
+    share = 1.0 if pressure else min(max(1 - clearance / 0.5, 0.0), 1.0)
+    assert held.tolist() == [2.0 * share]
 
 
-@settings(derandomize=True, deadline=None, max_examples=100)
-@given(st.integers(1, 5), st.integers(0, 2**32 - 1))
-def test_it_ends_whatever_contact_answers(n: int, seed: int) -> None:
-    """Contact is an arbitrary but fixed function of the active set; excluded elements only grow in number."""
-    random = np.random.default_rng(seed)
-    answer = random.integers(0, 2, (2**n, n)).astype(bool)
-    rule, count = TauActiveSet((n,)), 0
-    # between two of at most 3 n active sets that elements leave, active sets grow at most n times
-    for _ in range((3 * n + 1) * (n + 1)):
-        rule.next(answer[int(rule.current @ 2 ** np.arange(n))])
-        assert int(rule.excluded.sum()) >= count
-        assert not np.any(rule.current & rule.excluded)
-        count = int(rule.excluded.sum())
-        if rule.settled or rule.given_up:
-            break
-    assert rule.settled is not rule.given_up
+def test_a_gradual_set_is_continuous_where_contact_ends() -> None:
+    law, reach = rf.Friction(tau=2.0, beta=0.1), GradualSet(1e-6)
+    pressed, touching = (reach.traction(law, np.array([p]), lambda: np.array([0.0])) for p in (1e-12, 0.0))
+    assert pressed == pytest.approx(touching, rel=1e-12)
 
 
-def test_shapes_other_than_lines() -> None:
-    rule = TauActiveSet((2, 2))
-    rule.next(np.eye(2, dtype=bool))
-    with pytest.raises(ValueError, match=r"broadcast|shape"):
-        rule.next(np.ones((3, 3), dtype=bool))
+def test_the_reach_is_what_tau_on_an_element_moves_the_gap_by() -> None:
+    """Twice as much; where bodies do not couple, a hundredth of what pressure as large as tau would."""
+    found = first_set(ADHESIVE)
+    assert isinstance(found, GradualSet)
+    pair, h = SCENE.materials, ADHESIVE.grid.element_size
+    assert found.reach == pytest.approx(2 * abs(pair.shear_compliance) * 3e6 * 2 * h, rel=1e-12)
+    apart = first_set(problem_of(SCENE, 4, coupled=False))
+    assert isinstance(apart, GradualSet)
+    assert apart.reach == pytest.approx(2 * 0.01 * pair.normal_compliance * 3e6 * 2 * h, rel=1e-12)
 
 
 class Played:
     """A solver whose contact is given by the active set, and is the active set itself where not given.
 
-    Solves that may end early do so on the active sets ``early``, at the residual ``at``. On ``edge`` the
-    contact meets the window's edge; after ``exhausted`` and ``stagnated`` sets the solver is that.
+    ``"?"`` stands for the gradual state. On ``edge`` the contact meets the window's edge; after ``exhausted``
+    and ``stagnated`` sets the solver is that.
     """
 
     def __init__(
         self,
         contacts: dict[str, str],
         *,
-        early: tuple[str, ...] = (),
-        at: float = 1e-3,
         edge: str = "",
         exhausted: str = "",
         stagnated: tuple[str, ...] = (),
     ) -> None:
-        self._contacts, self._early, self._at = contacts, early, at
-        self._edge, self._exhausted, self._stagnated = edge, exhausted, stagnated
-        self._active, self.residual = "." * len(next(iter(contacts))), math.inf
+        self._contacts, self._edge, self._exhausted, self._stagnated = contacts, edge, exhausted, stagnated
+        self._active = "?"
         self.asked: list[str] = []
 
     @property
@@ -194,130 +111,96 @@ class Played:
     def stagnated(self) -> bool:
         return self._active in self._stagnated
 
-    def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
-        assert tolerance == 1e-8 or (excluded is None and tolerance == 1e-6)
-        self._active = "".join("x" if on else "." for on in active)
-        self.asked.append(self._active + ("" if excluded is not None else " fully"))
-        early = excluded is not None and self._active in self._early
-        self.residual = self._at if early else tolerance
-        return not early
-
-    def cycle_state(self) -> CycleState:
-        return CycleState(float(len(self.asked)), float(self.contact.sum()))
+    def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
+        assert tolerance == 1e-8
+        if isinstance(active, FixedSet):
+            self._active = "".join("x" if on else "." for on in np.atleast_1d(active.elements).ravel())
+        ended = enough is not None and enough(self.contact)
+        self.asked.append(self._active + (" early" if ended else ""))
+        return True
 
 
-def followed(solver: Played) -> TauResult:
-    return iterate(solver, ADHESIVE, 1e-8)
+def followed(solver: Played, problem: Problem = ADHESIVE) -> TauResult:
+    return iterate(solver, problem, 1e-8)
 
 
 def test_a_law_without_a_jump_holds_everywhere_and_needs_one_solve() -> None:
-    solver = Played({"..": "x."})
-    found = iterate(solver, rf.Friction(beta=0.1), 1e-8)
-    assert found.settled
-    assert found.solves == 1
-    assert solver.asked == ["xx fully"]
+    solver = Played({"x" * 16: "x" + 15 * "."})
+    found = followed(solver, problem_of(BALL, 4))
+    assert (found.settled, found.solves, solver.asked) == (True, 1, ["x" * 16])
     assert not found.excluded.any()
 
 
-def test_the_last_state_is_the_one_that_leads_to_itself() -> None:
-    solver = Played({"..": "x.", "x.": "xx", "xx": "xx"}, early=("..", "x."))
+def test_the_contact_of_the_gradual_state_is_the_active_set() -> None:
+    solver = Played({"?": "xx."})
     found = followed(solver)
-    assert found.settled
-    assert found.cycle_states == ()
-    assert solver.asked == ["..", "x.", "xx"]
+    assert (found.settled, found.solves, solver.asked) == (True, 2, ["? early", "xx."])
+    assert found.status() is Status.CONVERGED
+
+
+def test_elements_that_come_back_are_excluded() -> None:
+    solver = Played({"?": "xx.", "xx.": "xxx"})
+    found = followed(solver)
+    assert solver.asked == ["? early", "xx."]
+    assert np.array_equal(found.excluded, mask("..x"))
+    assert found.status() is Status.CYCLED
+    assert found.status(Status.STAGNATED) is Status.STAGNATED
+
+
+def test_active_elements_out_of_contact_are_dropped_for_good() -> None:
+    solver = Played({"?": "xxx.", "xxx.": "x.xx", "x.x.": "xxx."})
+    found = followed(solver)
+    assert solver.asked == ["? early", "xxx. early", "x.x."]
+    assert np.array_equal(found.excluded, mask(".x.."))
     assert found.solves == 3
 
 
-@pytest.mark.parametrize(
-    ("early", "again", "states"),
-    [
-        ((), [], (CycleState(3, 1), CycleState(2, 2))),
-        (("..",), [], (CycleState(3, 1), CycleState(2, 2))),
-        (("xx",), ["xx fully"], (CycleState(4, 1), CycleState(2, 2))),
-        (("x.", "xx"), ["xx fully", "x. fully"], (CycleState(4, 1), CycleState(5, 2))),
-    ],
-)
-def test_states_of_a_cycle_whose_solve_ended_early_are_solved_again_to_be_reported(
-    early: tuple[str, ...], again: list[str], states: tuple[CycleState, ...]
-) -> None:
-    """And the rule goes on without the elements that changed in the cycle."""
-    solver = Played({"..": "x.", "x.": "xx", "xx": "x."}, early=early)
-    found = followed(solver)
-    assert found.cycle_states == states
-    assert found.settled
-    assert np.array_equal(found.excluded, mask(".x"))
-    assert solver.asked == ["..", "x.", "xx", *again, "x."]
-    assert found.solves == len(solver.asked)
-
-
-def test_states_of_a_cycle_whose_mu_is_known_already_are_not_solved_again() -> None:
-    solver = Played({"..": "x.", "x.": "xx", "xx": "x."}, early=("x.", "xx"), at=1e-6)
-    assert followed(solver).cycle_states == (CycleState(3, 1), CycleState(2, 2))
-    assert solver.asked == ["..", "x.", "xx", "x."]
+def test_a_set_that_loses_most_of_the_contact_is_given_up() -> None:
+    """Of half of the contact it may: then as much of the law is left."""
+    half, more = (followed(Played({"?": gradual, gradual: "xxxx"})) for gradual in ("xx..", "x..."))
+    assert (half.settled, more.settled) == (True, False)
+    assert more.status() is Status.ITERATION_LIMIT
 
 
 def test_a_contact_that_meets_the_windows_edge_ends_the_loop() -> None:
-    solver = Played({"..": "x.", "x.": "xx"}, edge="x.")
-    assert not followed(solver).settled
-    assert solver.asked == ["..", "x."]
+    for edge, asked in (("?", ["? early"]), ("xx", ["? early", "xx early"])):
+        solver = Played({"?": "xx", "xx": "x."}, edge=edge)
+        assert not followed(solver).settled
+        assert solver.asked == asked
 
 
 def test_an_exhausted_solver_ends_the_loop() -> None:
-    solver = Played({"..": "x.", "x.": "xx"}, exhausted="x.")
+    solver = Played({"?": "xx", "xx": "x."}, exhausted="xx")
     assert not followed(solver).settled
-    assert solver.asked == ["..", "x."]
+    assert solver.asked == ["? early", "xx early"]
 
 
-def test_where_the_rule_gives_up_the_last_state_is_solved_fully() -> None:
-    contacts = {"..": "xx", "xx": "x.", "x.": ".x", ".x": "xx"}
-    solver = Played(contacts, early=("..", "xx", "x.", ".x"))
-    found = followed(solver)
-    assert not found.settled
-    assert found.cycle_states == ()
-    assert not found.excluded.any()
-    assert solver.asked == ["..", "xx", "x.", ".x", ".x fully"]
-    assert solver.residual == 1e-8
-
-
-def test_a_sequence_without_end_is_given_up() -> None:
-    """After 200 active sets; here the contact is always one element larger."""
-    sets = ["x" * k + "." * (300 - k) for k in range(300)]
-    solver = Played(dict(pairwise(sets)))
-    found = followed(solver)
+def test_the_loop_has_a_limit() -> None:
+    """Of 200 solves; here each loses one element."""
+    sets = ["x" * k + "." * (300 - k) for k in range(300, 0, -1)]
+    found = followed(Played({"?": sets[0], **dict(pairwise(sets))}))
     assert not found.settled
     assert found.solves == 200
 
 
 @pytest.mark.parametrize(
-    ("stagnated", "ends_at"),
-    [
-        (("....", "x..."), None),
-        (("....", "x...", "xxx."), None),
-        (("....", "xx..", "xxx."), None),
-        (("....", "x...", "xx.."), "xx.."),
-        (("x...", "xx..", "xxx."), "xxx."),
-    ],
+    ("stagnated", "solves"), [(("?", "xxxx"), 5), (("?", "xxxx", "xxx."), 3), (("xxx.", "xx..", "x..."), 5)]
 )
-def test_three_stagnated_states_in_a_row_end_the_loop(
-    stagnated: tuple[str, ...], ends_at: str | None
-) -> None:
-    """Fewer do not: a state that comes after them may converge, and be lawful."""
-    sets = ["....", "x...", "xx..", "xxx.", "xxxx"]
-    solver = Played(dict(pairwise(sets)), stagnated=stagnated)
+def test_three_solves_in_a_row_that_stagnate_end_the_loop(stagnated: tuple[str, ...], solves: int) -> None:
+    solver = Played({"?": "xxxx", "xxxx": "xxx.", "xxx.": "xx..", "xx..": "x..."}, stagnated=stagnated)
+    assert followed(solver).solves == solves
+
+
+@settings(max_examples=200)
+@given(st.integers(2, 6).flatmap(lambda n: st.tuples(st.just(n), st.randoms(use_true_random=False))))
+def test_any_map_from_sets_to_contacts_ends_in_a_set_within_its_contact(drawn: tuple[int, object]) -> None:
+    """Without a cycle, after as many solves as there are elements, and two more, at most."""
+    n, random = drawn
+    draw = getattr(random, "random")  # noqa: B009
+    sets = [format(k, f"0{n}b").replace("0", ".").replace("1", "x") for k in range(2**n)]
+    solver = Played({s: sets[int(draw() * 2**n)] for s in ("?", *sets)})
     found = followed(solver)
-    assert found.settled is (ends_at is None)
-    assert solver.asked[-1] == (ends_at or "xxxx")
-
-
-@pytest.mark.parametrize(
-    ("settled", "contact", "ended", "expected"),
-    [
-        (True, "x.", Status.CONVERGED, Status.CONVERGED),
-        (True, "xx", Status.CONVERGED, Status.CYCLED),  # an excluded element is in contact
-        (False, "x.", Status.CONVERGED, Status.ITERATION_LIMIT),
-        (True, "xx", Status.STAGNATED, Status.STAGNATED),
-        (False, "xx", Status.STAGNATED, Status.STAGNATED),
-    ],
-)
-def test_the_status_of_a_solver(settled: bool, contact: str, ended: Status, expected: Status) -> None:
-    assert TauResult(settled, mask(".x"), (), 1).status(mask(contact), ended) is expected
+    last, contact = mask(solver.asked[-1].split()[0]), solver.contact
+    assert found.solves <= n + 2
+    assert np.all(last <= contact)
+    assert np.array_equal(found.excluded, contact & ~last)

@@ -1,4 +1,4 @@
-"""Tau's active set when it follows the contact set in a cycle: the rule must end with a certified state."""
+"""Tau's rule on scenes: one active set for every solver, start and window, and what it leaves open."""
 
 from __future__ import annotations
 
@@ -8,20 +8,23 @@ from typing import Literal
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 import refimpl as rf
-from refimpl.grid import Mask, Window
+from refimpl.grid import Window
 from refimpl.operators.fft import Counter
 from refimpl.solvers.production import projected_cg
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.nested_solver import solve_fft
 from refimpl.solvers.production.projected_cg import ProjectedCG
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, FixedSet
 from tests.refimpl.solvers.production.levels import FAINT, level_solver, problem_of
 from verification.coverage import scenes as study
 
 
-def test_a_cycle_longer_than_two_is_settled() -> None:
-    # One element enters and leaves every third update; found among 540 solves of rough balls on rough flats.
+def test_a_contact_edge_that_cannot_keep_tau_is_reported() -> None:
+    """One element is in contact without tau, and out of it with tau."""
     smooth = rf.read_scene("table1-smooth")
     ball = rf.GaussianRoughness(0.084e-6, 104e-6, seed=2021, normalise=True)
     flat = rf.GaussianRoughness(0.2e-6, 104e-6, seed=2022, normalise=True)
@@ -42,7 +45,7 @@ def test_a_cycle_longer_than_two_is_settled() -> None:
 
 @pytest.mark.parametrize("oblique", [False, True])
 def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
-    """Contact that met the edge of a window between both ends of the sequence took another course."""
+    """Also where shares of tau beside the contact meet a window's edge."""
     problem = problem_of(FAINT, 80, oblique=oblique)
     everywhere = level_solver(problem).result(1e-8)
     result, state = solve_fft(problem, 1e-8, Counter())
@@ -53,10 +56,10 @@ def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
 
 
 @pytest.mark.parametrize(("margin", "too_small"), [(0, True), (12, False)])
-def test_a_sequence_that_meets_the_windows_edge_ends_there(margin: int, too_small: bool) -> None:
+def test_a_state_that_meets_the_windows_edge_ends_the_loop(margin: int, too_small: bool) -> None:
     problem = problem_of(FAINT, 40)
     first = level_solver(problem)
-    first.solve(1e-8, np.zeros((40, 40), dtype=bool))
+    first.solve(1e-8, FixedSet(np.zeros((40, 40), dtype=bool)))
     solver = level_solver(problem, Window.around(first.contact, margin))
     result = solver.result(1e-8)
     assert solver.window.shape < (40, 40)
@@ -79,39 +82,64 @@ def random_scene(seed: int) -> rf.Scene:
 
 
 def test_solves_that_end_early_end_with_the_right_contact(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half of the margin is enough to tell what contact the full tolerance finds.
-
-    And mu, to the residual; measured on 900 states of 400 scenes with slopes: 0.6 times that at most.
-    """
+    """Half of the margin is enough to tell what contact the full tolerance finds."""
     monkeypatch.setattr(projected_cg, "CERTAINTY", 1.0)
     ended_early = []
     for seed in range(24):
-        solver, errors = (
-            level_solver(problem_of(random_scene(seed), 48, oblique=bool(seed % 2))),
-            list[float](),
-        )
+        solver = level_solver(problem_of(random_scene(seed), 48, oblique=bool(seed % 2)))
 
         def compared(
             tolerance: float,
-            active: Mask,
-            excluded: Mask | None = None,
+            active: ActiveSet,
+            enough: ContactTest | None = None,
             solver: LevelSolver = solver,
-            errors: list[float] = errors,
             solve: Callable[..., bool] = solver.solve,
         ) -> bool:
-            solve(tolerance, active, excluded)
-            contact, residual, early = solver.contact, solver.residual, solver.cycle_state()
+            solve(tolerance, active, enough)
+            contact, residual = solver.contact, solver.residual
             solve(tolerance, active)
             assert np.array_equal(contact, solver.contact)
             ended_early.append(residual > tolerance)
-            change = early.friction_coefficient - solver.cycle_state().friction_coefficient
-            errors.append(abs(change) / residual)
             return True
 
         monkeypatch.setattr(solver, "solve", compared)
         solver.result(1e-8)
-        assert max(errors) <= solver.cycle_state().friction_coefficient
-    assert sum(ended_early) > 40
+    assert sum(ended_early) >= 20
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 10**6), start=st.integers(0, 10**6), oblique=st.booleans())
+def test_the_active_set_does_not_depend_on_the_start(seed: int, start: int, oblique: bool) -> None:
+    """From pressures drawn at random, on any elements, as from a Winkler foundation's."""
+    problem = problem_of(random_scene(seed), 32, oblique=oblique)
+    draw = np.random.default_rng(start)
+    drawn = draw.random((32, 32)) * (draw.random((32, 32)) < draw.uniform(0.02, 1))
+    results = [level_solver(problem, pressure=p).result(1e-9) for p in (None, drawn)]
+    assume(all(r.status in (rf.Status.CONVERGED, rf.Status.CYCLED) for r in results))
+    one, other = results
+    assert np.array_equal(one.excluded, other.excluded)
+    assert np.array_equal(one.traction > 0, other.traction > 0)
+    assert np.abs(one.pressure - other.pressure).max() <= 1e-5 * one.pressure.max()
+
+
+@pytest.mark.parametrize("seed", [910, 2015, 2031, 2047, 2071, 2118])
+def test_the_active_set_is_that_of_the_dense_reference(seed: int) -> None:
+    """And excluded elements; scenes whose contact edge cannot keep tau, on this grid or finer ones."""
+    by_fft, dense = (rf.solve(study.random_scene(seed).scene, 32, method=m) for m in ("fft", "dense"))
+    assert np.array_equal(by_fft.excluded, dense.excluded)
+    assert np.array_equal(by_fft.traction > 0, dense.traction > 0)
+    assert by_fft.friction_coefficient == pytest.approx(dense.friction_coefficient, rel=1e-8)
+
+
+def test_grid_accuracy_and_start_agree() -> None:
+    scene = replace(random_scene(3), friction=rf.Friction(tau=1e7, beta=0.1))
+    by_accuracy = rf.solve(scene, accuracy=0.05)
+    by_grid = rf.solve(scene, by_accuracy.grid.shape[0])
+    nearby = rf.solve(replace(scene, load=1.01 * scene.load), by_grid.grid.shape[0])
+    restarted = rf.solve(scene, by_grid.grid.shape[0], start=nearby)
+    for other in (by_accuracy, restarted):
+        assert np.array_equal(other.traction > 0, by_grid.traction > 0)
+        assert np.array_equal(other.excluded, by_grid.excluded)
 
 
 @pytest.mark.parametrize("scene", [FAINT, random_scene(3), random_scene(5)])
@@ -128,13 +156,11 @@ def test_solves_that_end_early_do_not_change_the_sequence(
     assert np.array_equal(short.excluded, long.excluded)
     assert np.array_equal(short.traction > 0, long.traction > 0)
     assert np.abs(short.pressure - long.pressure).max() <= 1e-6 * long.pressure.max()
-    assert len(short.cycle_states) == len(long.cycle_states)
-    np.testing.assert_allclose(short.cycle_states, long.cycle_states, rtol=1e-7)
-    assert bool(long.cycle_states) or quick.cg_iterations < 0.9 * thorough.cg_iterations
+    assert quick.cg_iterations <= thorough.cg_iterations
 
 
 def test_tau_that_moves_nothing_costs_nothing() -> None:
-    """The state without it is the last one, scaled to the load once more; its solve once ended too early."""
+    """The first state is the last one; its solve once ended too early."""
     terms = {"coupled": False, "oblique": False}
     still, rubbed = (
         rf.solve(replace(random_scene(3), friction=rf.Friction(tau, 0.0)), 48, **terms) for tau in (0.0, 1e7)
@@ -143,24 +169,14 @@ def test_tau_that_moves_nothing_costs_nothing() -> None:
     assert still.cost.applications == rubbed.cost.applications
 
 
-def test_an_active_set_that_wanders_settles() -> None:
-    """Many elements flip, each at its own pace: no active set returned within 200 states, 1776 steps."""
+def test_a_scene_whose_edge_moves_far_ends_after_few_solves() -> None:
+    """Many elements alternate, each at its own pace: sets that followed the contact took 1776 steps."""
     found = rf.solve(study.random_scene(2047).scene, 256)
-    assert found.status is rf.Status.CYCLED
-    assert sum(found.cost.iterations.values()) < 400
-    assert 0 < found.uncertainty["friction_coefficient"]["active set"] < 1e-2 * found.friction_coefficient
-
-
-def test_elements_that_leave_too_often_are_excluded_by_both_solvers() -> None:
-    """A scene where that happens on a grid for the dense one, found among 1000."""
-    by_fft, dense = (rf.solve(study.random_scene(910).scene, 32, method=m) for m in ("fft", "dense"))
-    assert by_fft.excluded.any()
-    assert np.array_equal(by_fft.excluded, dense.excluded)
-    assert by_fft.friction_coefficient == pytest.approx(dense.friction_coefficient, rel=1e-12)
+    assert found.status in (rf.Status.CYCLED, rf.Status.CONVERGED)
+    assert sum(found.cost.iterations.values()) < 200
 
 
 def test_the_error_bar_of_the_active_set_holds_all_of_tau_on_excluded_elements() -> None:
-    """And not only the difference of the states on the cycle, which is smaller here."""
     scene = study.random_scene(2071).scene
     found = rf.solve(scene, 128)
     spared = np.count_nonzero(found.excluded & (found.pressure > 0)) * found.grid.element_area
@@ -179,4 +195,3 @@ def test_tau_of_several_times_the_pressure_is_given_up(method: Literal["fft", "d
     violations = found.certificate.law_violations * found.grid.element_area
     assert found.uncertainty["friction_coefficient"]["active set"] >= 2e7 * violations / 0.1 > 0
     assert found.normal_force == pytest.approx(0.1, rel=1e-8)
-    assert np.count_nonzero(found.excluded & found.contact) < np.count_nonzero(found.contact)

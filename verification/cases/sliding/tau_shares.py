@@ -9,9 +9,11 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Mask
+from refimpl.model.forces import friction_coefficient, resultants
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import SpectralPreconditioner, extended
 from refimpl.solvers.production.level import LevelSolver
+from refimpl.solvers.tau_active_set import FixedSet
 from verification.coverage.scenes import random_scene
 from verification.framework.case import Measured
 from verification.framework.registry import case
@@ -73,12 +75,19 @@ def in_shares(solution: rf.Solution) -> tuple[float, float]:
     for _ in range(UPDATES):
         solver = solved(pressure, share)
         pressure = solver.cg.pressure
-        found.append(solver.cycle_state().friction_coefficient)
+        found.append(_mu(solver))
         change = np.clip(pressure / onset, 0.0, 1.0) - share
         length = np.where(change * last < 0, 0.5 * length, np.minimum(1.1 * length, 1.0))
         share, last = share + length * change, change
     late = found[UPDATES // 2 :]
     return float(np.mean(late)), float(np.std(late))
+
+
+def _mu(solver: LevelSolver) -> float:
+    """Friction coefficient of a solver's present state, Eq. (4)."""
+    problem, lagged = solver.problem, solver.lagged
+    forces = resultants(solver.cg.pressure, lagged.traction, lagged.slopes, problem.grid.element_area)
+    return friction_coefficient(forces.friction, problem.nominal_load(forces.normal))
 
 
 def _solver(solution: rf.Solution) -> Callable[[Array, Array], LevelSolver]:
@@ -94,7 +103,7 @@ def _solver(solution: rf.Solution) -> Callable[[Array, Array], LevelSolver]:
     def solved(pressure: Array, share: Array) -> LevelSolver:
         law = SharesOfTau(tau, solution.friction.slope, share)
         solver = LevelSolver(replace(problem, friction=law), operator, precondition, pressure)
-        if not solver.solve(TOLERANCE, share > 0):
+        if not solver.solve(TOLERANCE, FixedSet(share > 0)):
             raise RuntimeError(f"residual {solver.residual:.1e} with fixed shares of tau")
         return solver
 

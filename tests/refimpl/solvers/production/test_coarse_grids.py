@@ -19,6 +19,7 @@ from refimpl.solvers.production.coarse_grids import (
     sharpened,
     winkler_pressure,
 )
+from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, level_solver, problem_of
 
 SIDE = 2.0**-9
@@ -147,7 +148,7 @@ def test_it_is_as_deep_as_the_load_requires(load: float) -> None:
 
 def steps_from(pressure: Array, given: Problem) -> int:
     solver = level_solver(given, pressure=pressure)
-    assert solver.solve(1e-3, given.gap < 0)
+    assert solver.solve(1e-3, FixedSet(given.gap < 0))
     return solver.cg_iterations
 
 

@@ -16,6 +16,7 @@ from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.constants import MARGIN
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.nested_solver import from_guess, solve_fft
+from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, level_solver, problem_of
 
 STEEP = rf.Scene(
@@ -31,7 +32,7 @@ STEEP = rf.Scene(
 def solved(problem: Problem, tolerance: float, window: Window | None = None) -> LevelSolver:
     """The level's solver after a solve without tau."""
     solver = level_solver(problem, window)
-    assert solver.solve(tolerance, np.zeros(solver.problem.gap.shape, dtype=bool))
+    assert solver.solve(tolerance, FixedSet(np.zeros(solver.problem.gap.shape, dtype=bool)))
     return solver
 
 
@@ -72,7 +73,7 @@ def test_a_finer_grid_starts_close_to_its_solution(approach: float | None) -> No
     # the coarse grid's own error, measured: 0.080 and 0.057, and a fifteenth of the contact's elements
     assert np.linalg.norm(start - exact) <= 0.1 * np.linalg.norm(exact)
     assert np.count_nonzero((start > 0) != (exact > 0)) <= 0.08 * np.count_nonzero(exact)
-    assert refined.solve(1e-8, np.zeros(refined.problem.gap.shape, dtype=bool))
+    assert refined.solve(1e-8, FixedSet(np.zeros(refined.problem.gap.shape, dtype=bool)))
     assert refined.cg_iterations <= 10  # measured: 9 and 9
     if approach is not None:  # measured: 12; under a load a foundation is as good for a smooth ball, 9
         assert refined.cg_iterations < alone.cg_iterations

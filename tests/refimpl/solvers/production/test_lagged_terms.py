@@ -24,6 +24,7 @@ from refimpl.solvers.production.lagged_terms import (
     pressure_compliance,
 )
 from refimpl.solvers.production.projected_cg import ProjectedCG
+from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, problem_of
 
 M = 12
@@ -111,7 +112,7 @@ def test_what_is_inverted_and_what_lags_add_up_to_the_same(
     problem = turned(0.2, tau, oblique=oblique, periodic=periodic)
     pressure, active = pressed(2), pressed(3) > 0
     lagged, cg, _ = lagging(problem, pressure)
-    lagged.active = active
+    lagged.active = FixedSet(active)
     lagged.update()
     assert couples_weakly(problem) is (weak > 0)
     dense = DenseInfluence(problem.grid, problem.direction)
@@ -132,6 +133,7 @@ def test_tau_is_applied_once_for_an_active_set_and_a_pressure_once_for_a_step() 
     """Between CG's steps a pressure is only scaled to the load, and its product with it, to rounding."""
     problem = turned(0.2, 1e6, oblique=True)
     lagged, cg, counter = lagging(problem, pressed(7))
+    last = None
     for seed, step, factor, products in (
         (1, False, 1.0, 2),
         (1, False, 1.1, 2),
@@ -139,7 +141,8 @@ def test_tau_is_applied_once_for_an_active_set_and_a_pressure_once_for_a_step() 
         (2, True, 1.0, 4),
         (1, False, 1.0, 5),
     ):
-        lagged.active = pressed(seed) > 0
+        if seed != last:
+            lagged.active, last = FixedSet(pressed(seed) > 0), seed
         if step:
             lagged.iterate()
         if factor != 1:
@@ -158,7 +161,7 @@ def test_tau_is_applied_once_for_an_active_set_and_a_pressure_once_for_a_step() 
 
 def test_without_tau_nothing_is_applied_for_it() -> None:
     lagged, _, counter = lagging(turned(0.2, oblique=True), pressed(7))
-    lagged.active = pressed(1) > 0
+    lagged.active = FixedSet(pressed(1) > 0)
     lagged.update()
     assert counter.tally["shear"] == 1
 
@@ -166,6 +169,7 @@ def test_without_tau_nothing_is_applied_for_it() -> None:
 def test_without_pressure_nothing_is_sheared() -> None:
     problem = turned(0.2, 1e6, oblique=True)
     lagged, cg, _ = lagging(problem, np.zeros((M, M)))
+    lagged.active = FixedSet(np.zeros((M, M), dtype=bool))
     for _ in range(2):
         lagged.update()
         assert np.array_equal(displacement(problem, lagged, cg), np.zeros((M, M)))
@@ -186,7 +190,7 @@ def test_without_facet_tractions_an_update_applies_no_pressure() -> None:
 def test_slopes_and_facet_tractions_lag(
     friction: rf.Friction, coupled: bool, oblique: bool, slope_correction: bool
 ) -> None:
-    """Tau does not: it is constant on its active set."""
+    """Tau does not on a fixed set; shares of it do, where shear closes the gap."""
     problem = problem_of(
         replace(BALL, friction=friction),
         4,
@@ -194,13 +198,26 @@ def test_slopes_and_facet_tractions_lag(
         coupled=coupled,
         slope_correction=slope_correction,
     )
-    assert level_solver(problem).lagged.has_lag is (oblique or slope_correction)
+    lagged = level_solver(problem).lagged
+    shared = friction.tau > 0 and coupled
+    assert lagged.has_lag is (oblique or slope_correction or shared)
+    lagged.active = FixedSet(np.ones((4, 4), dtype=bool))
+    assert lagged.has_lag is (oblique or slope_correction)
 
 
 @pytest.mark.parametrize("tau", [0.0, 1e6])
 @pytest.mark.parametrize(("strength", "lags"), [(0.29, False), (0.31, True)])
 def test_strong_coupling_lags(strength: float, lags: bool, tau: float) -> None:
-    assert level_solver(problem_of(coupled(strength, tau=tau), 4)).lagged.has_lag is lags
+    lagged = level_solver(problem_of(coupled(strength, tau=tau), 4)).lagged
+    lagged.active = FixedSet(np.ones((4, 4), dtype=bool))
+    assert lagged.has_lag is lags
+
+
+@pytest.mark.parametrize(
+    ("oblique", "strength", "lags"), [(True, 0.019, True), (True, 0.021, False), (False, 0.019, False)]
+)
+def test_the_weakest_coupling_lags_beside_slopes(oblique: bool, strength: float, lags: bool) -> None:
+    assert couples_weakly(problem_of(coupled(strength), 4, oblique=oblique)) is not lags
 
 
 class Problems:
@@ -282,7 +299,7 @@ def test_mixed_cosines_stay_cosines(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_without_an_active_set_tau_is_nowhere() -> None:
     """As on coarse grids: tau's rule begins so, and there only."""
     solver = level_solver(problem_of(coupled(0.3, tau=1e6), 16))
-    assert solver.solve(1e-9, solver.problem.gap < 0)
+    assert solver.solve(1e-9, FixedSet(solver.problem.gap < 0))
     pressure, friction = solver.cg.pressure, solver.problem.friction
     assert 1 < np.count_nonzero(pressure) < 16**2
     assert np.array_equal(solver.lagged.traction, friction.slope * pressure)
@@ -294,14 +311,14 @@ def test_any_pressure_is_contact() -> None:
     problem = problem_of(replace(BALL, friction=rf.Friction(tau=1.0, beta=0.0)), 8)
     solver = level_solver(problem, pressure=np.where(diagonal, 1e-3, 0.0))
     assert np.array_equal(solver.contact, diagonal)
-    solver.lagged.active = solver.contact
+    solver.lagged.active = FixedSet(solver.contact)
     assert np.array_equal(solver.lagged.traction, 1.0 * diagonal)
 
 
 @pytest.mark.parametrize("inside", [True, False])
 def test_outdated_slopes_of_facets_count_where_there_is_contact(inside: bool) -> None:
     solver = level_solver(problem_of(BALL, 16, oblique=True, slope_correction=True))
-    assert solver.solve(1e-8, solver.problem.gap < 0)
+    assert solver.solve(1e-8, FixedSet(solver.problem.gap < 0))
     where = solver.contact == inside
     assert 1 < np.count_nonzero(where) < 16**2
     slopes = solver.lagged.slopes
@@ -315,7 +332,7 @@ def test_a_load_that_shear_on_slopes_exceeds_leaves_some_contact(monkeypatch: py
     downhill = -0.5 * problem.grid.x[:, None] * np.ones((8, 8))  # tau takes from the load
     solver = level_solver(replace(problem, mean_surface=downhill))
     given = Problems(solver.cg, monkeypatch)
-    solver.lagged.active = np.ones((8, 8), dtype=bool)
+    solver.lagged.active = FixedSet(np.ones((8, 8), dtype=bool))
     assert solver.lagged.update() > 1
     assert given.targets[0] is not None
     assert 1e-4 <= given.targets[0] * problem.grid.element_area / BALL.load <= 1e-2
