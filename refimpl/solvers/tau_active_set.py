@@ -18,7 +18,7 @@ from refimpl.grid import Mask
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.state import CycleState, Status
 
-_MOST_EXCLUDED = 0.5  # share of the contact; reached where tau is two to three times the highest pressure
+_MOST_EXCLUDED = 0.5  # share of the contact; reached where tau is two to three times p_max
 _MOST_EXITS = 3  # times that an element leaves the active set; cycles of two are mostly found before
 _ACTIVE_SETS = 200  # limit of the loop
 _MOST_STAGNATED = 3  # solves in a row that do not converge: their contact sets are not the rule's
@@ -82,7 +82,7 @@ class TauActiveSet:
 
 
 class TauSolver(Protocol):
-    """What the loop needs of a solver: states with tau on a given active set.
+    """Interface of a solver, as the loop needs it: states with tau on a given active set.
 
     residual : of the whole problem
     stagnated : the last solve did not converge
@@ -106,7 +106,7 @@ class TauSolver(Protocol):
 
     @property
     def contact(self) -> Mask:
-        """Where the present pressure is positive."""
+        """Elements with positive present pressure."""
 
     def solve(self, tolerance: float, active: Mask, excluded: Mask | None = None) -> bool:
         """Solve with tau on ``active``; return whether the residual meets the tolerance.
@@ -119,7 +119,7 @@ class TauSolver(Protocol):
 
 
 class TauResult(NamedTuple):
-    """How the rule ended.
+    """End of the rule.
 
     settled : the active set reproduces itself
     excluded : elements that the rule leaves without adhesive shear
@@ -145,7 +145,7 @@ def iterate(solver: TauSolver, law: FrictionLaw, tolerance: float) -> TauResult:
     """Solve on one active set after the other by the rule; the solver is left at the last state.
 
     A state before the last needs only its contact set, so its solve may end early. Of a cycle's states mu is
-    reported as well: those whose solve had ended early are solved again. A law without a jump holds on every
+    reported as well: those whose solve ended early are solved again. A law without a jump holds on every
     element, as its shear vanishes with the pressure: one solve is enough.
     """
     rule = TauActiveSet(solver.contact.shape)

@@ -88,22 +88,22 @@ class LevelSolver:
 
     @property
     def contact(self) -> Mask:
-        """Where the present pressure is positive."""
+        """Elements with positive present pressure."""
         return self.cg.pressure > 0
 
     @property
     def exhausted(self) -> bool:
-        """Whether the lagged terms diverged, under pressures far beyond the moduli."""
+        """True if the lagged terms diverged, under pressures far beyond the moduli."""
         return self.lagged.diverged
 
     @property
     def needs_mixing(self) -> bool:
-        """Whether the lagged terms feed back so strongly that updates are mixed."""
+        """True if the lagged terms feed back so strongly that updates are mixed."""
         return self._control.mixing is not None
 
     @property
     def window_too_small(self) -> bool:
-        """Whether the contact of one of tau's states meets the window's edge, which is not the grid's."""
+        """True if the contact of one of tau's states meets the window's edge, which is not the grid's."""
         adhesive = self.problem.friction.jump > 0
         return adhesive and self.window.on_edge(self.contact, self.whole.grid.shape)
 
@@ -125,7 +125,7 @@ class LevelSolver:
         self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=self.needs_mixing)
         self.stagnated = False
         for _ in range(constants.UPDATE_LIMIT):
-            # the residual is that of the terms which the pressure asked for before it was scaled to the load
+            # the residual is that of the terms computed from the pressure before it was scaled to the load
             if has_lag and self.residual <= goal:
                 self.residual = self.lagged.update()
             if self.residual <= goal or self._next_set_differs():
