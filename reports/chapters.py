@@ -53,7 +53,7 @@ CHAPTERS = (
     Chapter(
         "codes",
         "Other codes, and yours",
-        "The suite that any contact solver can be run through, what it makes of published codes, and proof "
+        "The suite that any contact solver can be run through, its results for published codes, and proof "
         "that it sees what it is there to see.",
         ("contestant", "contestants"),
         ("cross_code",),

@@ -22,7 +22,7 @@ def build(document: Document) -> Exhibit:
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
     last = runs[-1]["conditions"]
     told = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
-    versions = [version for version in told if not version.endswith(" None")]  # those have their commit alone
+    versions = [version for version in told if not version.endswith(" None")]  # a development version has its commit alone
     return Exhibit(
         "Speed beside published solvers",
         (
@@ -119,7 +119,7 @@ def _record(runs: Sequence[Row]) -> Table:
         "date", "commit", "problem", "rounds", "threads", "load average", "fastest peer, as recommended",
         "fastest set-up of any peer", "fastest peer over our solver alone", "the same, second solve",
     )  # fmt: skip
-    caption = "Every run so far, with the peers' seconds over ours; none is ever taken out."
+    caption = "Every run so far, with the peers' ratio to this code; no run is ever removed."
     return Table(caption, head, rows)
 
 

@@ -39,7 +39,7 @@ def build(document: Document) -> Exhibit:
         f"{solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
     )
     return Exhibit(
-        "Accuracy asked for, and kept",
+        "Accuracy requested, and kept",
         (summary, *_reference(document)),
         (_by_number(document), *(_by_class(judged) for judged in document["accuracies"]), _beside(document)),
         tuple((FIGURE, _series(judged)) for judged in document["accuracies"]),

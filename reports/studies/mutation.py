@@ -40,7 +40,7 @@ def build(document: Document) -> Exhibit:
 
 
 def notes(document: Document) -> tuple[str, ...]:
-    """What the sample can speak of: tests were written against the survivors of the first seed's."""
+    """Scope of the sample: tests were written against the survivors of the first seed's."""
     if document["seed"] != 1:
         return ("No test was written and no mutant explained because of this sample before it was judged.",)
     return (

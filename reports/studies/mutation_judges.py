@@ -1,4 +1,4 @@
-"""Mutation testing of what judges: cases, contestants, error bars, benchmarks, reports."""
+"""Mutation testing of the verification code: cases, its suite, error bars, benchmarks, reports."""
 
 from __future__ import annotations
 
