@@ -21,7 +21,6 @@ from refimpl.operators.threads import allowed_threads
 Complex = NDArray[np.complex128]
 
 
-
 class Library(Protocol):
     """Interface of a library of transforms, as operators need it; ``workers`` are threads.
 

@@ -17,7 +17,7 @@ from refimpl.errors import InputError
 from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
 
 APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
-VERSION = 1
+VERSION = 2
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
 _OURS = [APPLICATION_ID, VERSION]
 _PRIMARY = 0xFF  # of a result code; the other bits say which kind of it
