@@ -55,7 +55,7 @@ class Contact:
 
     `approach` counts from first contact (mean planes' relative displacement); `normal` and `friction` are the
     resultants across and along the mean plane; `ends` are the contact's deformed abscissae, `material_ends`
-    those they had in the undeformed lower and upper surface; `x` and `pressure` the pressure's nodes;
+    those in the undeformed lower and upper surface; `x` and `pressure` the pressure's nodes;
     `penetration` the most negative weighted gap per length, `updates` how often the geometry was updated.
     """
 

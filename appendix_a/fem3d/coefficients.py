@@ -41,7 +41,7 @@ class Quality(StrEnum):
 
 
 class Width(StrEnum):
-    """Length that equals 2a: the loaded element's edge in projection (the contact grid's), or along the facet."""
+    """Meaning of 2a: the loaded element's edge in projection (the contact grid's), or along the facet."""
 
     PROJECTED = "projected"
     FACET = "facet"

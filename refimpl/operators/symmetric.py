@@ -18,7 +18,7 @@ def even_hat(quarter: Array, workers: int) -> Array:
 
 
 def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
-    """Symbols of the sum of kernels odd along the first axis and along the second (if any), even along the other.
+    """Symbols of the sum of kernels odd along the first axis and the second (if any), even along the other.
 
     Opposite 0 they are taken to be zero where they are odd: the caller sees to it that nobody needs that.
     """

@@ -61,7 +61,7 @@ class Inspection:
 
     @cached_property
     def autocorrelation(self) -> Autocorrelation:
-        """Parameters of the levelled map."""
+        """Autocorrelation of the levelled map."""
         return Autocorrelation.of(self.z, self.pixel)
 
     @cached_property

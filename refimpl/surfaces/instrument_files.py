@@ -34,8 +34,8 @@ UPWARDS = ("x3p", "sdf", "nc", "npy", "npz", "mat", "h5")
 
 MARKLESS = ("mat", "nms", "hgt")  # read for their suffix alone
 
-# Errors that a reader may raise on bytes that do not have the format of their mark. SurfaceTopography's own errors are
-# plain Exceptions and join these where it is imported.
+# Errors that a reader may raise on bytes that do not have the format of their mark. SurfaceTopography's own
+# errors are plain Exceptions and join these where it is imported.
 BROKEN: tuple[type[Exception], ...] = (
     ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
     RuntimeError, SyntaxError, TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile,

@@ -1,4 +1,4 @@
-"""Interface of surfaces: heights at the element centres of any grid; arrays of heights, and sums of surfaces."""
+"""Surfaces: heights at the element centres of any grid; arrays of heights, and sums of surfaces."""
 
 from __future__ import annotations
 

@@ -24,8 +24,8 @@ def build(document: Document) -> Exhibit:
     paragraphs = [
         "Every code solves the problems that it can pose, by its own recommended set-up; what it cannot pose "
         "is not counted for or against it. Peers stop at tolerances derived from those of the suite.",
-        "The set-ups marked as negative controls use a peer so that it reports success on a wrong solution: they "
-        "stand here to show that the suite notices.",
+        "The set-ups marked as negative controls use a peer so that it reports success on a wrong solution; "
+        "the suite must detect them.",
     ]
     if absent:
         paragraphs.append(f"Not measured: {', '.join(absent)}.")

@@ -25,7 +25,7 @@ def build(document: Document) -> Exhibit:
             f"A stratified sample of {document['tried']} of {document['candidates']} small faults "
             "(operators, numbers, comparisons, removed statements), seed "
             f"{document['seed']}, was put into the modules of {', '.join(document['by_subject'])} one at "
-            "a time; each module's own fast tests had to notice.",
+            "a time; each module's own fast tests must notice.",
             "A mutant that exceeds its processor time counts as noticed; an equivalent one, which computes "
             "the same, counts neither way. Bounds are Clopper and Pearson's, at "
             f"{document['confidence']:.0%}; counted as survivors, equivalent ones leave a score of "

@@ -1,4 +1,4 @@
-"""The cost-accuracy table: work-precision diagrams, the cheapest settings for every error, growth with size."""
+"""The cost-accuracy table: work-precision diagrams, cheapest settings for every error, growth with size."""
 
 from __future__ import annotations
 
