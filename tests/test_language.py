@@ -21,12 +21,39 @@ PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 PATTERNS = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))["pattern"]
 FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
-EXCEPTIONS: dict[tuple[str, str], str] = {}
+VERDICT = "verdict in recorded results"
+SUMMITS = "summits in the sense of Nayak, and of Greenwood and Tripp"
+KEY = "key of recorded results"
+FAULT = "name of a fault in recorded results"
+
+EXCEPTIONS: dict[tuple[str, str], str] = {
+    ("reports/recorded.py", "withheld"): "former key, in the example of a renamed one",
+    ("reports/reproduction_figures.py", "summits"): SUMMITS,
+    ("reports/studies/benchmarks.py", "seconds again"): KEY,
+    ("reports/studies/extremes.py", "honest failure"): VERDICT,
+    ("reports/studies/tradeoff.py", "left out"): KEY,
+    ("verification/benchmarks/summary.py", "seconds again"): KEY,
+    ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
+    ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
+    ("verification/cases/paper/contact.py", "summit"): SUMMITS,
+    ("verification/cases/paper/contact.py", "summits"): SUMMITS,
+    ("verification/cases/solvers/extremes.py", "honest failure"): VERDICT,
+    ("verification/cli/tradeoff.py", "left out"): KEY,
+    ("verification/contestants/check.py", "left out"): FAULT,
+    ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
+    ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
+    ("verification/extremes/state.py", "honest failure"): VERDICT,
+    ("verification/matrix/appendix_faults.py", "left out"): FAULT,
+    ("verification/matrix/faults.py", "left out"): FAULT,
+    ("verification/reproduction/fig6.py", "summit"): SUMMITS,
+    ("verification/reproduction/fig6.py", "summits"): SUMMITS,
+    ("verification/tradeoff/study.py", "left out"): KEY,
+}
 """Reasons, by file and matched text."""
 
 
 def texts(source: str) -> Iterator[tuple[int, str]]:
-    """Line and text of comments, of public docstrings and of all other strings with a space (messages)."""
+    """Line and text of comments, public docstrings, messages (other strings with a space); no keys."""
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
         if token.type == tokenize.COMMENT:
             yield token.start[0], token.string
@@ -41,6 +68,8 @@ def texts(source: str) -> Iterator[tuple[int, str]]:
                 private.add(docstring)
                 if not named.startswith("_"):
                     yield docstring.lineno, f'"""{docstring.value}'
+        if isinstance(node, ast.Subscript | ast.Dict):  # keys belong to file formats
+            private.update([node.slice] if isinstance(node, ast.Subscript) else node.keys)
     for node in ast.walk(tree):
         message = isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value
         if message and node not in private:
