@@ -1,4 +1,4 @@
-"""What fails in the printed Appendix A: each equation, a number against it, the correction, a number for it.
+"""Errors in the printed Appendix A: each equation, a number against it, the correction, a number for it.
 
 ``evidence()`` measures the printed form, ``check()`` the corrected one by the same measure: zero is right.
 (A1), given its angles, (A4) and (A6) stand as printed.

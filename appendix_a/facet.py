@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 NEAR, FAR = 8, 5  # Gauss points a side, for the next elements and beyond: 2e-7 of flat at worst
-OCTANTS = 8  # of the loaded element, each 1/rho in polar coordinates with NEAR points: smooth in the angle
+OCTANTS = 8  # octants of the loaded element; 1/rho in polar coordinates with NEAR points: smooth in the angle
 
 
 def neighbours(reach: int) -> list[tuple[int, int]]:

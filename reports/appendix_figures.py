@@ -74,7 +74,7 @@ def _reach(canvas: Canvas, data: Data) -> None:
     """Change of mu and f_max over the remedy's reach; dashed: the correction."""
     reach = data["reach (elements)"]
     for axes, key in zip(canvas.subplots(1, 2), ("mu", "f_max"), strict=True):
-        # Without friction mu is nearly nil, and a percentage of it says nothing
+        # Without friction mu is nearly zero, and a percentage of mu is meaningless
         for k, name in enumerate(("with friction", "without friction")[: 1 if key == "mu" else 2]):
             axes.plot(reach, data[f"{key}, {name}, remedy"], marker=MARKERS[k], color=COLOURS[k], label=name)
             axes.plot(reach, data[f"{key}, {name}, correction"], "--", color=COLOURS[k])

@@ -53,8 +53,8 @@ CHAPTERS = (
     Chapter(
         "codes",
         "Other codes, and yours",
-        "The suite that any contact solver can be run through, what it makes of published codes, and proof "
-        "that it sees what it is there to see.",
+        "The suite that any contact solver can be run through, its results for published codes, and "
+        "tests of the suite with faulty solvers.",
         ("contestant", "contestants"),
         ("cross_code",),
     ),

@@ -1,4 +1,4 @@
-"""What changed between two runs beyond the uncertainty of their values."""
+"""Changes between two runs beyond the uncertainty of their values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from reports.results import Case, check
 
-_SHARE = 1e-3  # of the tolerance: what a value may move by unnoticed where its reference is exact
+_SHARE = 1e-3  # share of the tolerance: allowed change of a value where its reference is exact
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ def solver(results: Mapping[str, Any]) -> str | None:
 
 
 def rerun(command: str, case_id: str) -> str:
-    """The command that runs one case with the solver, its abilities and limits as ``command`` had them.
+    """The command that runs one case with the solver, its abilities and limits as in ``command``.
 
     >>> rerun("rough-friction verify --solver a:b --only 'x/*' --able load --json y", "contestant/pins")
     'rough-friction verify --solver a:b --able load --only contestant/pins'

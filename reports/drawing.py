@@ -16,7 +16,7 @@ from matplotlib.ticker import NullLocator
 Data = Mapping[str, Any]
 Draw = Callable[[Canvas, Data], None]
 
-# Okabe and Ito 2008: told apart by colour-blind readers; black is left to the text.
+# Okabe and Ito 2008: distinguishable for colour-blind readers; black is left to the text.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 MARKERS = "os^Dv<"
 INK = "#010203"  # stands for the page's text colour until the export
@@ -42,7 +42,7 @@ class Figure:
     size: tuple[float, float] = (6.4, 3.8)
 
     def available(self, data: Data) -> bool:
-        """Whether every series it needs is there and holds something."""
+        """True if every series that the plot needs is there and not empty."""
         return all(data.get(name) not in (None, [], {}) for name in self.needs)
 
 

@@ -1,4 +1,4 @@
-"""What a report rests on: one run of `verify`, committed runs of long cases, and studies."""
+"""Evidence of a report: one run of `verify`, committed runs of long cases, and studies."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
     """The run with the committed files, by name without suffix, that it does not replace.
 
     A case counts once: the run's own result, else that of the newest committed run in which it was judged.
-    Committed runs of somebody else's solver are left out: they are no evidence of this project's. Data have
+    Committed runs of somebody else's solver are excluded: they are no evidence of this project's. Data have
     the names of `reports.recorded`, whichever version recorded them.
     Raises ResultFileError for a run, or a committed run of `verify`, that is none.
     """

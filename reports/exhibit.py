@@ -1,4 +1,4 @@
-"""What a chapter shows of a study: sentences, tables and figures from its own result file, ready to print."""
+"""Exhibit of a study in a chapter: sentences, tables and figures from its own result file, ready to print."""
 
 from __future__ import annotations
 

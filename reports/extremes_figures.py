@@ -92,7 +92,7 @@ def _lawful(canvas: Canvas, data: Data) -> None:
             range(len(bottom)), height, bottom=bottom, color=COLOURS[k], label=f"{name} lawful", width=0.75
         )
         bottom += height
-    axes.plot(range(len(bottom)), data["not converged"], MARKERS[0], color=INK, label="not told CONVERGED")
+    axes.plot(range(len(bottom)), data["not converged"], MARKERS[0], color=INK, label="not CONVERGED")
     axes.set_xticks(range(len(bottom)), [f"{tau:g}" for tau in data["tau / mean pressure"]])
     axes.set(xlabel=r"$\tau$ / mean pressure", ylabel="scenes")
     canvas.legend(loc="outside upper center", ncols=4)

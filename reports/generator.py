@@ -26,7 +26,7 @@ def render(
 ) -> str:
     """The page of a run, with committed result files by name, and what changed against an older run.
 
-    ``progress`` is told of every case and figure before it is drawn.
+    ``progress`` is called with every case and figure before drawing.
     Raises ResultFileError (a ValueError) for anything but result files.
     """
     evidence = gathered(results, committed or {})

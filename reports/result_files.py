@@ -30,7 +30,7 @@ MOST_BYTES = 500_000
 _LINE = 110  # characters; longer values are broken into lines
 _RECORD = 600  # characters; a longer record keeps its keys, so that its numbers stand together
 _SHARED = 40  # characters; a reference needs 23
-_MOST_ENTRIES = 10_000_000  # of a `$times`: a corrupt count must not fill the memory
+_MOST_ENTRIES = 10_000_000  # entries of a `$times`: a corrupt count must not fill the memory
 TABLE, TIMES, SAME = "$table", "$times", "$same"
 
 

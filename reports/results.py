@@ -41,7 +41,7 @@ def check(results: object) -> Mapping[str, Any]:
     _require(results, TOP_KEYS, "the file")
     _require(results["provenance"], PROVENANCE_KEYS, "the provenance")
     if "contestant" in results:  # only where somebody else's solver was run
-        _require(results["contestant"], ("name",), "the contestant")
+        _require(results["contestant"], ("name",), "contestant")
     for key in ("cases", "errata"):
         if not isinstance(results[key], list):
             raise ResultFileError(f"{key} are no list")

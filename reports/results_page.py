@@ -103,7 +103,7 @@ def hertz(run: Mapping[str, Any]) -> str:
 
 
 def claims(evidence: Evidence) -> str:
-    """What of the paper is refuted, or holds with conditions; errata."""
+    """List the paper's refuted and conditional claims, and errata."""
     items = traced(evidence.cases, evidence.errata)
     judged: dict[str, tuple[Traced, Case]] = {}
     for item in items:
@@ -147,7 +147,7 @@ def finding(case: Case) -> str:
 
 
 def errata(evidence: Evidence) -> str:
-    """What is printed, and what it should be."""
+    """List printed text and its correction."""
     cases = {case["id"]: case for case in evidence.cases}
     rows = [
         (
@@ -166,7 +166,7 @@ def errata(evidence: Evidence) -> str:
 
 
 def coverage(documents: Documents) -> str:
-    """How often error bars cover the reference."""
+    """Coverage of the reference by error bars."""
     labels = {
         "friction_coefficient": "μ",
         "contact_area": "A",
@@ -286,7 +286,7 @@ def checks(documents: Documents, evidence: Evidence) -> str:
 
 
 def studies(documents: Documents) -> str:
-    """What the verification itself is worth: single numbers of the studies."""
+    """Quality of the verification itself: single numbers of the studies."""
     extremes, fuzz, faults = documents["extremes"]["counts"], documents["fuzz"], documents["fault_matrix"]
     invariants, order, ensembles = documents["hypothesis"], documents["random_order"], documents["multilevel"]
     seen = sum(bool(fault["caught_by"]) for fault in faults["faults"])

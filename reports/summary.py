@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from reports.evidence import Evidence
 from reports.results import STATUSES, Case
 
-OWN = "This project's own cases, from committed runs: they say nothing about the solver under test"
+OWN = "This project's own cases, from committed runs: no evidence about the solver under test"
 
 
 @dataclass(frozen=True)

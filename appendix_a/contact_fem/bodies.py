@@ -2,7 +2,7 @@
 
 The body lies below its profile, one wavelength wide and some wavelengths deep, fixed at its base.  Every
 field but the uniform one decays as exp(-2 pi depth): what the base adds is the uniform strain of the load's
-resultant, which is taken off, so that displacements count from the mean plane (as in a periodic half-plane).
+resultant, which is subtracted, so that displacements count from the mean plane (as in a periodic half-plane).
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ UPDATES = 100
 # tau's ends stay where their estimate moves by less than HOLD of the shortest edge for every PATIENCE updates
 # begun: on coarse meshes an end node that comes and goes would otherwise cycle
 HOLD, PATIENCE = 0.5, 10
-CHANGES = 200  # of the active set; a few tens occur
+CHANGES = 200  # limit of changes of the active set; a few tens occur
 
 
 class NotConverged(RuntimeError):
@@ -42,7 +42,7 @@ class Friction:
     coupling: float = 0.0
 
     def ends(self, x: Array, pressure: Array) -> tuple[float, float]:
-        """Where the contact of these nodal pressures ends."""
+        """Return the ends of the contact of these nodal pressures."""
         return contact_ends(x, pressure, self.coupling * self.beta)
 
 
@@ -53,9 +53,9 @@ FRICTIONLESS = Friction()
 class Contact:
     """A solved contact, per unit thickness.
 
-    `approach` counts from first touch (mean planes' relative displacement); `normal` and `friction` are the
+    `approach` counts from first contact (mean planes' relative displacement); `normal` and `friction` are the
     resultants across and along the mean plane; `ends` are the contact's deformed abscissae, `material_ends`
-    those they had in the undeformed lower and upper surface; `x` and `pressure` the pressure's nodes;
+    those in the undeformed lower and upper surface; `x` and `pressure` the pressure's nodes;
     `penetration` the most negative weighted gap per length, `updates` how often the geometry was updated.
     """
 
@@ -94,7 +94,7 @@ def press(
 ) -> Contact:
     """The upper body slides along +x under `load` per wavelength and unit thickness.
 
-    lower, upper: surfaces about their mean planes, which are `distance` apart at first touch.
+    lower, upper: surfaces about their mean planes, which are `distance` apart at first contact.
     Raises NotConverged.
     """
     raised = replace(upper, at=upper.at + np.array([[0.0], [distance]]))

@@ -1,4 +1,4 @@
-"""Where a contact ends, between the nodes of its pressure.
+"""Ends of a contact, between the nodes of its pressure.
 
 At the trailing end of a sliding contact the pressure rises as distance^g, at the leading end as
 distance^(1 - g), with cot(pi g) = coupling * beta (Galin 1953); g = 1/2 without coupling.  So f^(1/g) rises

@@ -62,7 +62,7 @@ class WavyPair:
 
     @property
     def gap_amplitude(self) -> float:
-        """Delta of the gap Delta (1 - cos k x); also the mean planes' distance at first touch."""
+        """Delta of the gap Delta (1 - cos k x); also the mean planes' distance at first contact."""
         return 2.0 * self.amplitude * math.cos(WAVENUMBER * self.shift / 2.0)
 
     @property

@@ -2,7 +2,7 @@
 
 A square of one wavelength, of which the half 0 < y < 1/2 is meshed by quadratic hexahedra; the base is
 fixed, and u_y on both planes of symmetry.  As in two dimensions the uniform field of the load's resultant
-is taken off.  Lengths in wavelengths.
+is subtracted.  Lengths in wavelengths.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ UPDATES = 60
 
 @dataclass(frozen=True)
 class SolidContact:
-    """Numbers of the whole contact, both halves: `approach` from first touch, forces, projected `area`."""
+    """Numbers of the whole contact, both halves: `approach` from first contact, forces, projected `area`."""
 
     approach: float
     normal: float

@@ -34,7 +34,7 @@ ORDER = 3  # at equal error quadratics need five times the unknowns; the sides a
 
 @dataclass(frozen=True)
 class Setup:
-    """Where the coarsest mesh is fine (sizes scale with the level), and the half-side of its outline."""
+    """Fine region of the coarsest mesh (sizes scale with the level), and the half-side of its outline."""
 
     sources: tuple[Source, ...]
     radius: float

@@ -1,4 +1,4 @@
-"""What a FEM run on a rough boundary returns: displacements beside the flat ones, and their error."""
+"""Result of a FEM run on a rough boundary: displacements beside the flat ones, and their error."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def _check(slope_deg: float, wavelength: float, position: float, offsets: Array)
 
 
 def fem_json(found: WavyResult) -> dict[str, list[float] | float]:
-    """What `sinusoid` found as the command line prints it."""
+    """Format the result of `sinusoid` for the command line."""
     return {
         "offsets": found.offsets.tolist(),
         "wavy": found.wavy.tolist(),

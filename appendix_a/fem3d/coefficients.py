@@ -41,7 +41,7 @@ class Quality(StrEnum):
 
 
 class Width(StrEnum):
-    """What is 2a long: the loaded element's edge in projection (the contact grid's), or along the facet."""
+    """Meaning of 2a: the loaded element's edge in projection (the contact grid's), or along the facet."""
 
     PROJECTED = "projected"
     FACET = "facet"

@@ -53,7 +53,7 @@ class Block:
 
     @property
     def elements(self) -> int:
-        """How many hexahedra."""
+        """Number of hexahedra."""
         return (self.x.size - 1) * (self.y.size - 1) * (self.zeta.size - 1)
 
 

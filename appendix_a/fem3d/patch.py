@@ -1,7 +1,7 @@
 """Exact displacements of a flat half-space under a uniformly loaded rectangle (Love 1929; Johnson 1985, 3.2).
 
 Axes: x, y in the surface, z upwards, body z <= 0. E = 1, unit traction, lengths in a; the loaded rectangle is
-centred at the origin and square with half-edge 1 unless told otherwise.
+centred at the origin and square with half-edge 1 unless stated otherwise.
 """
 
 from __future__ import annotations

@@ -122,7 +122,7 @@ def row(point: Point, result: Coefficients3D, seconds: float) -> dict[str, objec
 
 
 def header(command: str) -> dict[str, object]:
-    """What made the table."""
+    """Provenance of the table."""
     packages = ("numpy", "scipy", "scikit-fem")
     return {
         "table": "appendix_a_3d",

@@ -29,7 +29,7 @@ MIRRORED = [0, 4, 5, 6, 1, 2, 3, 7, 8, 9]  # +x and -x change places
 
 @dataclass(frozen=True)
 class Series:
-    """What identifies a row of errors over the slope."""
+    """Identification of a row of errors over the slope."""
 
     wavelength: float
     position: float
@@ -113,7 +113,7 @@ def slope_of(error: Array, slopes: Array, limit: float = 0.02) -> list[float | N
 
 
 def condensed(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Of each point the row with the least stated uncertainty, without what only the study needs."""
+    """Return each point's row of least stated uncertainty, without the fields that only the study needs."""
     best: dict[tuple[object, ...], dict[str, Any]] = {}
     for row in rows:
         stated = float(np.add(row["discretisation"], row["truncation"]).max())

@@ -57,7 +57,7 @@ def printed(
 
     The pseudo tractions, plus the applied ones where (A3) would cancel the load itself, act on the flat
     boundary of a half-plane (Flamant). Exact to first order in the slope for ``Theta.NORMAL``, but for the
-    strain between the flat and the wavy line, which the paper leaves out. Raises InputError.
+    strain between the flat and the wavy line, which the paper neglects. Raises InputError.
     """
     if not -1 < real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")

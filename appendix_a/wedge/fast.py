@@ -20,7 +20,7 @@ from appendix_a.wedge.transform import Complex, remainders
 Real = NDArray[np.float64]
 
 CUTOFF = 44.0
-"""exp(-44) = 8e-20: size, on the faces, of what is left out (times a factor below 2 CUTOFF)."""
+"""exp(-44) = 8e-20: size, on the faces, of the neglected part (times a factor below 2 CUTOFF)."""
 ALIASING = 42.0
 """exp(-42) = 6e-19: size of the trapezoidal rule's aliasing error at r = 1; 1e4 times that at r = 1e+-4."""
 DAMPED_RANGE = 20.0
@@ -97,12 +97,12 @@ Rows = Callable[[Complex, Complex, Complex], list[Complex]]
 
 
 def stress_rows(z: Complex, r_s: Complex, r_t: Complex) -> list[Complex]:
-    """What R_S and R_T add to phi', zeta phi'', psi'."""
+    """Contributions of R_S and R_T to phi', zeta phi'', psi'."""
     return [r_s / (1 + z), -r_s, -r_t]
 
 
 def displacement_rows(z: Complex, r_s: Complex, r_t: Complex) -> list[Complex]:
-    """What R_S and R_T add to phi/zeta, phi', psi/zeta."""
+    """Contributions of R_S and R_T to phi/zeta, phi', psi/zeta."""
     return [-r_s / (z * (1 + z)), r_s / (1 + z), r_t / z]
 
 

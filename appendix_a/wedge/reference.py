@@ -26,7 +26,7 @@ NEGLIGIBLE = 1e-5
 
 
 class NotConverged(ArithmeticError):
-    """The step was halved as often as allowed and two sums still differ by more than asked for."""
+    """The step was halved as often as allowed and two sums still differ by more than the tolerance."""
 
 
 @dataclass(frozen=True)

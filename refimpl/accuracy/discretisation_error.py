@@ -42,7 +42,7 @@ from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
-OBLONG_SPREAD = 0.09  # of s_c, by ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
+OBLONG_SPREAD = 0.09  # s_c per ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
 SINGLE_EXCESS = 1.5  # further bias of single elements, over that of an edge
 PEAK_BIAS, PEAK_BIAS_SPREAD = (
     0.028,

@@ -1,4 +1,4 @@
-"""Numbers at a prescribed approach, as if it counted from where the surfaces themselves first touch.
+"""Numbers at a prescribed approach that counts from the first contact of the surfaces themselves.
 
 Approaches count from first contact, which a grid has at its highest elements only. The peak of the gap
 turned over lies higher (`peak`), so at the prescribed approach the bodies indent each other less than on the

@@ -12,7 +12,7 @@ from refimpl.errors import InputError, require_size
 from refimpl.grid.fields import Array, Mask, differences
 from refimpl.grid.window import Window
 
-_ROUNDING = 1e-15  # of two edges: a quotient of rounded numbers each
+_ROUNDING = 1e-15  # relative difference of two edges: each is a quotient of rounded numbers
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ class Material:
 
     @property
     def is_rigid(self) -> bool:
-        """Whether the modulus is infinite: both compliances are zero."""
+        """True where the modulus is infinite: both compliances are zero."""
         return math.isinf(self.E)
 
     @property

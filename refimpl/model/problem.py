@@ -65,7 +65,7 @@ class Problem:
 
     @property
     def cap(self) -> float:
-        """Largest pressure (Pa): the hardness of the softer body, infinite without a cap."""
+        """Upper limit of the pressure (Pa): the hardness of the softer body, infinite without a cap."""
         hardness = self.pair.softer_hardness
         return hardness if self.terms.plastic and hardness is not None else math.inf
 

@@ -67,7 +67,7 @@ class _Neighbours(NamedTuple):
 
     @classmethod
     def within(cls, squared: int, held: float) -> _Neighbours:
-        """Those up to a squared distance, by one over the distance."""
+        """Weights up to a squared distance, by one over the distance."""
         along, across = np.indices((2 * _REACH + 1,) * 2).reshape(2, -1) - _REACH
         squares = along**2 + across**2
         near = (squares > 0) & (squares <= squared)

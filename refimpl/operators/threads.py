@@ -1,4 +1,4 @@
-"""How many threads transforms may take.
+"""Number of threads that transforms may take.
 
 Threads change no bit of SciPy's transforms, and the last ones of ducc0's (0.42): up to 6e-16 of the largest
 number for sizes of 150 to 700. ducc0 takes no more threads than OMP_NUM_THREADS says at first.

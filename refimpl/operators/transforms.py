@@ -2,7 +2,7 @@
 
 Forward unnormalised, backward ``1/n``; real fields have half a spectrum along their first axis, so that the
 complex transforms find their numbers side by side: a tenth of an application quicker than the other way
-about. ducc0 goes on from the library that SciPy uses: it writes where it is told to, and to rounding both
+about. ducc0 goes on from the library that SciPy uses: it writes into a given array, and to rounding both
 find the same.
 """
 
@@ -22,7 +22,7 @@ Complex = NDArray[np.complex128]
 
 
 class Library(Protocol):
-    """What operators need of a library of transforms; ``workers`` are threads.
+    """Interface of a library of transforms, as operators need it; ``workers`` are threads.
 
     A second thread pays for its start from ``worthwhile`` points on, as measured on two cores.
     """

@@ -19,7 +19,7 @@ from refimpl.surfaces import Surface, SurfaceWarning, as_surface
 
 # Arguments of a surface, by the names of the scene's fields.
 _ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
-MAX_RATIO = 1000.0  # of the domain's lengths, and of an element's edges: beyond it an input is an error
+MAX_RATIO = 1000.0  # ratio of the domain's lengths, and of an element's edges; larger: an error
 _FAVOURED = 16  # a divisor of all sizes in `refimpl.accuracy.refinement`
 _SLENDER = 4.0  # lengths' ratio from which a refinement's grids are finer along the longer side
 
@@ -56,7 +56,7 @@ class Scene:
 
     With measured surfaces neither side nor size need be given: the domain is then the largest rectangle that
     all of them cover at the offset, centres on one another. A measured surface on the upper body is turned
-    over about the x axis, unless it says otherwise (`refimpl.MeasuredSurface`); arrays are used as given.
+    over about the x axis, unless stated otherwise (`refimpl.MeasuredSurface`); arrays are used as given.
 
     Raises `InputError` naming the field.
     """
@@ -167,12 +167,12 @@ class Scene:
             return longest, longest
         exact = float(longest) * min(Lx, Ly) / high
         fewer = math.floor(exact)
-        other = max(1, fewer + (exact**2 > fewer * (fewer + 1)))  # of both neighbours the nearer by ratio
+        other = max(1, fewer + (exact**2 > fewer * (fewer + 1)))  # nearer neighbour by ratio
         return (longest, other) if Lx == high else (other, longest)
 
     @property
     def slenderness(self) -> int:
-        """How many times more elements than a square's the longer side gets in a refinement."""
+        """Factor by which the longer side has more elements than a square's in a refinement."""
         return math.ceil(max(self.lengths) / min(self.lengths) / _SLENDER)
 
     def refined(self, M: int) -> Grid:

@@ -55,10 +55,10 @@ transforms of at most 2^26 points, each ``5 eps log2 n`` (Higham 2002, Theorem 2
 _ENOUGH = 0.01  # relative residual of CG; the rest is added as it is, so less saves nothing
 _ITERATIONS = 200
 
-_STEP = 1 / 8  # of ln t in the integral for oblong elements: an error of exp(-(pi^2/2) / step) = 7e-18
+_STEP = 1 / 8  # step of ln t in the integral for oblong elements: an error of exp(-(pi^2/2) / step) = 7e-18
 _T: Array = np.exp(_STEP * np.arange(-18, 300))  # 0.105, below which S(pi, t) < 1e-96, to 2e16
 _ODD = 2 * np.arange(64) + 1  # erfc(127 / 2 * 0.105) = 3e-21
-_QUADRATURE = 1e-12  # of the integral: sums of 300 positive numbers, each to a few eps
+_QUADRATURE = 1e-12  # relative error of the integral: sums of 300 positive numbers, each to a few eps
 
 
 @cache

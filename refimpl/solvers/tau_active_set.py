@@ -33,10 +33,10 @@ from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem
 from refimpl.model.state import Status
 
-_REACH = 2.0  # times the gap change by tau on single elements; 1 converges slowly on 2048 x 2048, 4 excludes
-#               a third more elements (150 random scenes, 256 x 256)
-_LEAST_RATIO = 0.01  # of shear to normal compliance in the reach: of uncoupled bodies tau moves slopes only
-_MOST_EXCLUDED = 0.5  # share of the contact; reached where tau is two to three times the highest pressure
+_REACH = 2.0  # over the gap change by tau on single elements; with 1 slow convergence on 2048 x 2048, with 4
+#               a third more excluded elements (150 random scenes, 256 x 256)
+_LEAST_RATIO = 0.01  # of shear to normal compliance in the reach: tau of uncoupled bodies moves slopes only
+_MOST_EXCLUDED = 0.5  # share of the contact; reached where tau is two to three times p_max
 _ACTIVE_SETS = 200  # limit of the loop
 _MOST_STAGNATED = 3  # solves in a row that do not converge: their contact sets are not the rule's
 
@@ -45,7 +45,7 @@ ContactTest = Callable[[Mask], bool]
 
 
 class ActiveSet(Protocol):
-    """Where tau acts; ``clearance()`` is ``v - approach`` of the present state (m).
+    """Elements under tau; ``clearance()`` is ``v - approach`` of the present state (m).
 
     is_fixed : whether shares of tau do not depend on the state
     """
@@ -110,7 +110,7 @@ def first_set(problem: Problem) -> ActiveSet:
 
 
 class TauSolver(Protocol):
-    """What the loop needs of a solver: states with tau on a given active set.
+    """Interface of a solver, as the loop needs it: states with tau on a given active set.
 
     stagnated : the last solve did not converge
     exhausted : no further solve is worthwhile: slopes diverged, or the solver's budget is spent
@@ -131,7 +131,7 @@ class TauSolver(Protocol):
 
     @property
     def contact(self) -> Mask:
-        """Where the present pressure is positive."""
+        """Elements with positive present pressure."""
 
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Solve with tau on ``active``; return whether the residual meets the tolerance.
@@ -141,7 +141,7 @@ class TauSolver(Protocol):
 
 
 class TauResult(NamedTuple):
-    """How the rule ended.
+    """End of the rule.
 
     settled : the active set is part of the contact, and of most of it
     excluded : elements in contact that the rule leaves without adhesive shear
@@ -164,7 +164,7 @@ class TauResult(NamedTuple):
 def iterate(solver: TauSolver, problem: Problem, tolerance: float) -> TauResult:
     """Solve by the rule; the solver is left at the last state.
 
-    Of a state before the last only the contact set is needed, so its solve may end early.
+    A state before the last needs only its contact set, so its solve may end early.
     """
     first = first_set(problem)
     if first.is_fixed:

@@ -18,7 +18,7 @@ from refimpl.grid import Array
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
-DIRECTIONS = 180  # of the half-circle, in which the autocorrelation is followed
+DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
 def height_parameters(z: Array) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """Form removal: the least-squares polynomial, cylinder or sphere of the measured points of a rectangle.
 
-Heights are fitted along z, to measured points alone (NaN are left out).
+Heights are fitted along z, to measured points alone (NaN are excluded).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _FITTED = 250_000  # points of a curved form: more are thinned out evenly
 
 
 class Form(Protocol):
-    """A smooth surface over positions in pixels, to be taken off anywhere."""
+    """A smooth surface over positions in pixels, to be subtracted anywhere."""
 
     def __call__(self, x: Array, y: Array) -> Array:
         """Heights at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``."""
@@ -34,7 +34,7 @@ class Form(Protocol):
 
     @property
     def radius(self) -> float | None:
-        """Of curvature (m), negative for a hollow; None for a polynomial."""
+        """Radius of curvature (m), negative for a hollow; None for a polynomial."""
 
 
 @dataclass(frozen=True)

@@ -61,12 +61,12 @@ class Inspection:
 
     @cached_property
     def autocorrelation(self) -> Autocorrelation:
-        """Of the levelled map."""
+        """Autocorrelation of the levelled map."""
         return Autocorrelation.of(self.z, self.pixel)
 
     @cached_property
     def spectrum(self) -> Spectrum:
-        """Of the levelled map, averaged over circles."""
+        """Spectrum of the levelled map, averaged over circles."""
         return Spectrum.of(self.z, self.pixel)
 
     @cached_property

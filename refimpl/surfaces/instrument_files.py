@@ -34,8 +34,8 @@ UPWARDS = ("x3p", "sdf", "nc", "npy", "npz", "mat", "h5")
 
 MARKLESS = ("mat", "nms", "hgt")  # read for their suffix alone
 
-# What a reader may raise on bytes that are not what they claim to be. SurfaceTopography's own errors are
-# plain Exceptions and join these where it is imported.
+# Errors that a reader may raise on bytes that do not have the format of their mark. SurfaceTopography's own
+# errors are plain Exceptions and join these where it is imported.
 BROKEN: tuple[type[Exception], ...] = (
     ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
     RuntimeError, SyntaxError, TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile,
@@ -60,7 +60,7 @@ def read_instrument(path: Path, given: Given, head: bytes) -> Reading:
 
 
 def claimed_by_magic(path: Path, head: bytes) -> bool:
-    """Whether the first bytes are the mark of an instrument's format; False without the library."""
+    """True if the first bytes are the mark of an instrument's format; False without the library."""
     try:
         library = library_for(path)
     except InputError:

@@ -27,7 +27,7 @@ class Lay:
 
     @property
     def is_isotropic(self) -> bool:
-        """Whether both lengths are equal, so that the angle means nothing."""
+        """True if both lengths are equal; the angle then has no effect."""
         return self.along == self.across
 
     @property

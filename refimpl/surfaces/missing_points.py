@@ -22,7 +22,7 @@ MAX_ELIMINATED = 4096  # points of one hole: 40 ms by elimination
 MAX_TOGETHER = 2**18  # points of all small holes: 0.5 s and 200 MB by elimination
 TOLERANCE = 1e-10  # residual over that of the mean height: 1e-9 of the height range around the hole
 _MAX_STEPS = 200
-_DAMPING = 0.7  # of Jacobi's smoothing
+_DAMPING = 0.7  # damping of Jacobi's smoothing
 _OVERCORRECTION = 1.5  # piecewise constant corrections have too much energy
 
 _Index = tuple[NDArray[np.intp], NDArray[np.intp]]

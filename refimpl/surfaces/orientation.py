@@ -84,7 +84,7 @@ def oriented(
 
     >>> steps = Reading(np.array([[1.0, 2.0], [3.0, 4.0]]), (1.0, 1.0), "steps", "by hand")
     >>> found = oriented(steps, replica=False, mirror=None, rotate_deg=90, turned_over=False, centre=None)
-    >>> found.reading.heights  # what rose along x rises along y
+    >>> found.reading.heights  # heights that rose along x rise along y
     array([[2., 4.],
            [1., 3.]])
     """

@@ -19,7 +19,7 @@ NEIGHBOURHOOD = 5  # points an axis
 PERCENTILE, PERCENTILE_TO_RMS = (
     80,
     1.2816,
-)  # of absolute Gaussian distances: five of 25 points may be outliers
+)  # percentile of absolute Gaussian distances: five of 25 points may be outliers
 MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
 REACH = (
     1.5  # cut-off wavelengths that a map is padded by; the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14

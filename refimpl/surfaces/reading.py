@@ -61,7 +61,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Given:
-    """What the scene states of a file: unit of the heights (a key of UNITS), pixel's edges (m), channel."""
+    """Statements of a scene about a file: unit of heights (a key of UNITS), pixel's edges (m), channel."""
 
     unit: str | None = None
     pixel_size: tuple[float, float] | None = None

@@ -63,7 +63,7 @@ class RoughnessFit:
         return {**table, **values, "seed": seed}
 
     def toml(self, seed: int = 1) -> str:
-        """That table as TOML, uncertainties as comments."""
+        """Format the table as TOML, uncertainties as comments."""
         lines = [f"# {note}" for note in self.notes]
         for key, value in self.table(seed).items():
             names = ("lx", "ly") if key == "correlation_length" else (key,)
@@ -134,7 +134,7 @@ def _self_affine(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
     size = max(n * edge for n, edge in zip(z.shape, pixel, strict=True))
     short_cut, notes = _short_cut(spectrum, pixel)
     use = spectrum.q < 2 * np.pi / max(1.2 * short_cut, 4.0 * max(pixel))
-    use[:1] = False  # the plane taken off
+    use[:1] = False  # the plane is subtracted
     q, C, count = spectrum.q[use], spectrum.C[use], spectrum.count[use]
     if len(q) < 6:
         raise InputError("fit", f"a map of {len(q)} rings of its spectrum", "6 at least: a larger map")

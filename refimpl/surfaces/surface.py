@@ -1,4 +1,4 @@
-"""What a surface is: heights at the element centres of any grid; arrays of heights, and sums of surfaces."""
+"""Surfaces: heights at the element centres of any grid; arrays of heights, and sums of surfaces."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class Surface(ABC):
 
     @property
     def label(self) -> str:
-        """What messages call the surface."""
+        """Name of the surface in messages."""
         return self.kind
 
     def on_upper_body(self) -> Surface:

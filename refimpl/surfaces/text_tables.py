@@ -155,7 +155,7 @@ def _is_index(column: Array, layout: _Layout, lines: list[str]) -> bool:
 
 
 def is_triples(table: TextTable) -> bool:
-    """Whether the rows are points x, y, z: a map has four columns at least."""
+    """True if the rows are points x, y, z: a map has four columns at least."""
     return bool(table.rows.shape[1] == 3)
 
 

@@ -41,7 +41,7 @@ ROUNDING = 1e-9  # relative: a wave this close to an end of a spectrum lies on i
 STREAM = 0x7761766573206F66  # key of the noise, ASCII "waves of": other numbers than on a lattice of points
 _STRIP = 64  # wave numbers or points handled at once: the tile of the noise
 _WIDTH = 16  # points of the interpolation kernel
-_SHAPE = 0.75 * math.pi * _WIDTH  # of the Kaiser-Bessel kernel at twofold oversampling
+_SHAPE = 0.75 * math.pi * _WIDTH  # shape of the Kaiser-Bessel kernel at twofold oversampling
 
 
 @dataclass(frozen=True)

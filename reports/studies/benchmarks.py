@@ -22,7 +22,7 @@ def build(document: Document) -> Exhibit:
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
     last = runs[-1]["conditions"]
     told = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
-    versions = [version for version in told if not version.endswith(" None")]  # those have their commit alone
+    versions = [version for version in told if not version.endswith(" None")]  # None: commit alone
     return Exhibit(
         "Speed beside published solvers",
         (
@@ -31,7 +31,7 @@ def build(document: Document) -> Exhibit:
             f"tolerances whose result has a {last['target']}.",
             f"Threads for every code: {last['threads']}. Clock: {last['clock']}. Seconds are medians with "
             "the least and the most; ratios are medians of the ratios within rounds. A second solve in the "
-            "same process follows (seconds again), as the next ones of a sweep.",
+            "same process follows (warm-run time), as the next ones of a sweep.",
             f"Versions: {', '.join(versions)}.",
         ),
         [*(_table(kind, newest) for kind in kinds), _record(runs)],
@@ -54,7 +54,7 @@ def newest_rows(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
 
 def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
     head = (
-        "grid", "code", "seconds", "seconds again", "over ours", "processor time over ours",
+        "grid", "code", "seconds", "warm-run time", "ratio to this code", "ratio of processor times",
         "recomputed gap", "area (mm²)", "peak (MPa)", "peak memory (MB)", "convolutions in all",
         "times one convolution", "commit",
     )  # fmt: skip
@@ -119,7 +119,7 @@ def _record(runs: Sequence[Row]) -> Table:
         "date", "commit", "problem", "rounds", "threads", "load average", "fastest peer, as recommended",
         "fastest set-up of any peer", "fastest peer over our solver alone", "the same, second solve",
     )  # fmt: skip
-    caption = "Every run so far, with the peers' seconds over ours; none is ever taken out."
+    caption = "Every run so far, with the peers' ratio to this code; no run is ever removed."
     return Table(caption, head, rows)
 
 

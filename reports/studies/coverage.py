@@ -29,17 +29,17 @@ def build(document: Document) -> Exhibit:
         f"{last - first + 1} random scenes (seeds {first} to {last}, eight classes in turn), none of which "
         f"the estimator was fitted to; {solves['count']} solves in {solves['seconds'] / 60:.0f} minutes of "
         f"processor time, worst residual {solves['worst_residual']:.1e}. The reference is the finest grid "
-        "(1024, periodic scenes 512) less its edge's mean share, for f_max the height of the parabola "
-        "through its peak, which is the estimator's too; only grids at most half as fine are asked "
-        "for. A bar holds when the value's distance from the reference is within it; the reference shares "
-        "the edge's mean share with the estimator, so the next column moves it by its whole bound, against "
-        "the bar. Where the accuracy was "
+        "(1024, periodic scenes 512) less its edge's mean share, for p_max the height of the parabola "
+        "through its peak, which is the estimator's too; only grids at most half as fine are "
+        "requested. A bar covers the reference when it exceeds the value's distance from the reference; the "
+        "reference shares the edge's mean share with the estimator, so the next column moves the reference "
+        "by its whole bound, against the bar. Where the accuracy was "
         "not reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
-        "climb starts from the answer before, which changes its cost and no number by more than "
-        f"{solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
+        "refinement sequence starts from the answer before, which changes its cost and no number by more "
+        f"than {solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
     )
     return Exhibit(
-        "Accuracy asked for, and kept",
+        "Accuracy requested, and kept",
         (summary, *_reference(document)),
         (_by_number(document), *(_by_class(judged) for judged in document["accuracies"]), _beside(document)),
         tuple((FIGURE, _series(judged)) for judged in document["accuracies"]),
@@ -119,9 +119,9 @@ def _beside(document: Document) -> Table:
         "bar, median",
     )
     caption = (
-        "Bars of numbers that no accuracy is asked of: on the grid where the climb for mu (without friction, "
-        "for A) ends, and of the first scenes at a prescribed approach. References that are not those above "
-        "are the finest grid's numbers, bounded by their change from the grid before; approaches count "
+        "Bars of numbers without a requested accuracy: on the last grid of the refinement for mu (without "
+        "friction, for A), and of the first scenes at a prescribed approach. References that are not those "
+        "above are the finest grid's numbers, bounded by their change from the grid before; approaches count "
         "from the first contact of the surfaces themselves, and bars of Q are over the load."
     )
     return Table(caption, head, rows)
@@ -198,6 +198,6 @@ FIGURE = Figure(
     ("number", "class", "error", "bar", "reached", "accuracy"),
     _draw,
     f"True error over the bar of each scene; bars above {LONGEST:g}, and those without end, are drawn there. "
-    "Dotted: the accuracy asked for.",
+    "Dotted: the requested accuracy.",
     (11.0, 3.8),
 )

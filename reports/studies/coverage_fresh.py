@@ -17,5 +17,5 @@ def build(document: Document) -> Exhibit:
         "count as seen. These were first solved after that. No look at them has changed a bar: here they are "
         f"judged with the solver of commit {made['commit'][:7]}, on {made['date'][:10]}."
     )
-    title = "Accuracy asked for, on scenes that have changed no bar"
+    title = "Requested accuracy, on scenes that have changed no error bar"
     return replace(built, title=title, paragraphs=(unseen, *built.paragraphs))

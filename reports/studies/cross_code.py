@@ -12,7 +12,7 @@ from matplotlib.figure import Figure as Canvas
 from reports.drawing import Data, Figure
 from reports.exhibit import Cell, Document, Exhibit, Table
 
-_DECADES = 4  # of the figure's colours, on both sides of the tolerance
+_DECADES = 4  # decades of the figure's colours, on both sides of the tolerance
 
 
 def build(document: Document) -> Exhibit:
@@ -24,8 +24,8 @@ def build(document: Document) -> Exhibit:
     paragraphs = [
         "Every code solves the problems that it can pose, by its own recommended set-up; what it cannot pose "
         "is not counted for or against it. Peers stop at tolerances derived from those of the suite.",
-        "The set-ups marked as traps are ways of using a peer that report success on a wrong state: they "
-        "stand here to show that the suite notices.",
+        "The set-ups marked as negative controls use a peer so that it reports success on a wrong solution; "
+        "the suite must detect them.",
     ]
     if absent:
         paragraphs.append(f"Not measured: {', '.join(absent)}.")

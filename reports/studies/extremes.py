@@ -28,7 +28,7 @@ def build(document: Document) -> Exhibit:
         "Every axis to the point of failure",
         (
             f"{len(rows)} states: {said}. Right: within its limit of an oracle that shares nothing with the "
-            "solver: the discrete problem in 34 digits, a scaling law, a closed form. Honest failure: "
+            "solver: the discrete problem in 34 digits, a scaling law, a closed form. Detected failure: "
             "refused, or a status that says so. Crash: an exception without a reason, or no end in the time "
             "allowed.",
             "Unit scaling by powers of two must change no bit, by powers of ten no more than 1e-12.",

@@ -35,9 +35,9 @@ def build(document: Document) -> Exhibit:
     missed = [fault["name"] for fault in faults if not fault["caught_by"]]
     summary = (
         f"{len(checks)} checks (quick cases and invariants) were run with each of {len(faults)} faults that "
-        f"they could see. {len(faults) - len(missed)} faults are caught; caught by none: "
+        f"they could see. {len(faults) - len(missed)} faults are detected; not detected: "
         f"{', '.join(missed) or 'no fault'}. {len(alone)} checks are the only ones to see some fault, "
-        f"{len(silent)} see none. {len(document['excluded'])} checks were left out for the time they take."
+        f"{len(silent)} see none. {len(document['excluded'])} checks were excluded for the time they take."
     )
     return Exhibit(
         "Checks against seeded faults",

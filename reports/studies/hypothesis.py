@@ -8,7 +8,7 @@ from reports.exhibit import Document, Exhibit, Table
 
 
 def build(document: Document) -> Exhibit:
-    """How many examples every invariant was asked for and held, by solver."""
+    """Numbers of examples that every invariant required and passed, by solver."""
     held: dict[str, dict[str, int]] = defaultdict(dict)
     claims = {}
     for part in document["slices"]:

@@ -34,7 +34,7 @@ def build(document: Document) -> Exhibit:
     return Exhibit(
         "Ensembles at a stated accuracy",
         (
-            f"{document['scene']}, relative standard error of {document['target']:.2%} asked of mean mu "
+            f"{document['scene']}, relative standard error of {document['target']:.2%} required of mean mu "
             f"and A on {document['grids'][-1]} elements a side, {document['repetitions']} repetitions with "
             f"seeds of their own, {document['seconds']:.1f} s of processor time each. Plain sampling with "
             "the same solver settings, to the same standard error, is the measure of cost.",

@@ -25,7 +25,7 @@ def build(document: Document) -> Exhibit:
             f"A stratified sample of {document['tried']} of {document['candidates']} small faults "
             "(operators, numbers, comparisons, removed statements), seed "
             f"{document['seed']}, was put into the modules of {', '.join(document['by_subject'])} one at "
-            "a time; each module's own fast tests had to notice.",
+            "a time; each module's own fast tests must notice.",
             "A mutant that exceeds its processor time counts as noticed; an equivalent one, which computes "
             "the same, counts neither way. Bounds are Clopper and Pearson's, at "
             f"{document['confidence']:.0%}; counted as survivors, equivalent ones leave a score of "
@@ -40,7 +40,7 @@ def build(document: Document) -> Exhibit:
 
 
 def notes(document: Document) -> tuple[str, ...]:
-    """What the sample can speak of: tests were written against the survivors of the first seed's."""
+    """Scope of the sample: tests were written against the survivors of the first seed's."""
     if document["seed"] != 1:
         return ("No test was written and no mutant explained because of this sample before it was judged.",)
     return (

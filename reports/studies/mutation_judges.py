@@ -1,4 +1,4 @@
-"""Mutation testing of what judges: cases, contestants, error bars, benchmarks, reports."""
+"""Mutation testing of the verification code: cases, its suite, error bars, benchmarks, reports."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def build(document: Document) -> Exhibit:
     built = mutation.build(document)
     posed = (
         "Where a check poses a problem, another number often makes another problem, with an answer known as "
-        "well: most survivors of the contestants' checks are such, and none of them is explained away."
+        "well: most survivors in the checks of the suite are such, and none of them is explained away."
     )
     goal = f"The goal set for the numerics, {document['goal']:.2f}, is " + (
         "met." if document["score"] >= document["goal"] else "not met."

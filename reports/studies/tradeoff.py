@@ -1,4 +1,4 @@
-"""The price list: work-precision diagrams, the cheapest way to every error, growth with size."""
+"""The cost-accuracy table: work-precision diagrams, cheapest settings for every error, growth with size."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def _dense_reach(dense: Data) -> str:
 def _left_out(study: Mapping[str, Any]) -> str:
     """What the study of this scene does without, and why; older files left nothing out."""
     told = "; ".join(f"{NAMES.get(what, what)}: {why}" for what, why in study.get("left out", {}).items())
-    return f" Left out: {told}." if told else ""
+    return f" Neglected: {told}." if told else ""
 
 
 def build(document: Document) -> Exhibit:
-    """Of every scene studied: diagrams over time and over convolutions, prices, growth."""
+    """Print every scene studied: diagrams over time and over convolutions, costs, growth."""
     tables: list[Table] = []
     figures: list[tuple[Figure, Data]] = []
     notes: list[str] = []

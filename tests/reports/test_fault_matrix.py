@@ -38,7 +38,7 @@ def document() -> dict[str, Any]:
 def test_the_summary_counts(document: dict[str, Any]) -> None:
     shown = exhibit("fault_matrix", document)
     assert "3 checks" in shown.paragraphs[0]
-    assert "2 faults are caught; caught by none: missed." in shown.paragraphs[0]
+    assert "2 faults are detected; not detected: missed." in shown.paragraphs[0]
     assert "1 checks are the only ones to see some fault, 1 see none." in shown.paragraphs[0]
     by_fault, alone, silent = shown.tables
     assert [row[0] for row in by_fault.rows] == ["missed", "tie", "sign"]

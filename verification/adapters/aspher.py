@@ -1,6 +1,6 @@
 """ASPHER (Yastrebov 2026), by nested grids where the grid allows, with its exact FFT operator.
 
-Its default H2 operator approximates the influence coefficients to some 1e-6, beyond the tolerances asked for
+Its default H2 operator approximates the influence coefficients to some 1e-6, beyond the required tolerances
 here, so the exact one takes its place ("modestly faster", its authors say, up to 2048 x 2048).
 
 Its extra builds from source: that takes a C++17 compiler, CMake, and Eigen (Debian's libeigen3-dev).
@@ -62,7 +62,7 @@ solve = Peer(
     abilities=Abilities(approach=False),
     press=press,
 )
-"""The contestant."""
+"""Solver under test."""
 
 fastest = replace(
     solve,

@@ -25,7 +25,7 @@ _ITERATIONS = 5000
 def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> PeerAnswer:
     """Pressures on the periodic or free half-space, under a load or at an offset.
 
-    ``mean_stiffness`` is ``stiffness_q0`` under a load; zero falls into the trap.
+    ``mean_stiffness`` is ``stiffness_q0`` under a load; zero gives the negative control.
     """
     package = imported("ContactMechanics")
     topography = imported("SurfaceTopography").Topography(
@@ -83,4 +83,4 @@ solve = Peer(
     abilities=Abilities(rectangle=True, oblong_elements=True),
     press=press,
 )
-"""The contestant."""
+"""Solver under test."""

@@ -1,4 +1,4 @@
-"""What all adapters share: a name, an installed version, abilities, and a way to call the peer."""
+"""Common parts of all adapters: a name, an installed version, abilities, and a way to call the peer."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PeerAnswer(Answer):
 
 @dataclass(frozen=True)
 class Peer:
-    """A published solver as a contestant.
+    """A published solver under test.
 
     distribution : its name on the package index
     extra : this project's extra that installs it

@@ -42,7 +42,7 @@ TRAPS = ("Tamaas, registered only", "ContactMechanics, no mean stiffness")
 
 @dataclass
 class Watched:
-    """A contestant whose seconds and recomputed residuals are noted, problem by problem."""
+    """A solver under test whose seconds and recomputed residuals are noted, problem by problem."""
 
     solver: Solver
     seconds: list[float] = field(default_factory=list)
@@ -50,7 +50,7 @@ class Watched:
 
     @property
     def abilities(self) -> Abilities:
-        """Those of the solver."""
+        """Abilities of the solver."""
         return abilities_of(self.solver)
 
     def __call__(self, problem: ContactProblem) -> Answer:
@@ -63,7 +63,7 @@ class Watched:
 
 
 def recomputed(problem: ContactProblem, pressure: Array) -> float:
-    """The worst residual by the referee; NaN where it has none to give (too large, or no elastic energy)."""
+    """Worst residual recomputed by the suite; NaN without one (too large, or no elastic energy)."""
     if pressure.shape != problem.gap.shape or (referee.is_large(problem) and not problem.periodic):
         return float("nan")
     try:

@@ -24,8 +24,8 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PeerAnswer:
     """Pressures of the Polonsky-Keer solver. Its error is the mean gap under the pressure over std(heights).
 
     Loads are mean pressures. A periodic approach is minus the mean gap, which the same solver takes as
-    constraint of its gap formulation. ``second_step=False`` falls into the trap. Raises `Unsupported` for an
-    approach in free space: Tamaas has none.
+    constraint of its gap formulation. ``second_step=False`` gives the negative control. Raises `Unsupported`
+    for an approach in free space: Tamaas has none.
     """
     tm = imported("tamaas")
     tm.set_log_level(tm.LogLevel.error)
@@ -60,4 +60,4 @@ solve = Peer(
     abilities=Abilities(rectangle=True, oblong_elements=True),
     press=press,
 )
-"""The contestant."""
+"""Solver under test."""

@@ -47,7 +47,7 @@ def known(option: str, names: str | None, allowed: Sequence[str]) -> list[str]:
     asked = list(allowed) if names is None else [name.strip() for name in names.split(",")]
     for name in asked:
         if name not in allowed:
-            raise InputError(option, name, f"one of those to be had here: {', '.join(allowed)}")
+            raise InputError(option, name, f"one of those available here: {', '.join(allowed)}")
     return asked
 
 

@@ -29,7 +29,7 @@ _AGAIN = 20.0  # seconds up to which a solve is repeated
 
 
 def main() -> None:
-    """Solve as told by the arguments and write what was found."""
+    """Solve by the arguments and write the result."""
     parser = argparse.ArgumentParser(prog="python -m verification.benchmarks.child", description=__doc__)
     parser.add_argument("--code", required=True)
     parser.add_argument("--kind", required=True)
@@ -75,7 +75,7 @@ def _seconds(press: Callable[[], Pressed]) -> float:
 def peak_memory() -> int:
     """Largest resident size of this process so far (bytes).
 
-    Linux keeps that of a parent in ``ru_maxrss`` across exec, so its own account is asked for first.
+    Linux keeps that of a parent in ``ru_maxrss`` across exec, so the process's own record is read first.
     """
     status = Path("/proc/self/status")
     if status.is_file():

@@ -38,7 +38,7 @@ PEERS = {
 
 @dataclass(frozen=True, eq=False)
 class Pressed:
-    """What a code returned.
+    """Result of a code.
 
     pressure : ``(M, M)`` (Pa)
     converged : whether the code says so; for ours, the contact edge may alternate under tau

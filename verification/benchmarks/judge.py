@@ -1,4 +1,4 @@
-"""How well pressures solve the frictionless problem, recomputed by the exact operator on the whole grid."""
+"""Residuals of pressures in the frictionless problem, recomputed by the exact operator on the whole grid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is pressed: Table 1's paraboloid on a smooth and on a rough flat, in free space."""
+"""Problems of the benchmark: Table 1's paraboloid on a smooth and on a rough flat, in free space."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def problem(kind: str, M: int, tolerance: float) -> ContactProblem:
 
 
 def scene(kind: str, M: int, friction: rf.Friction) -> rf.Scene:
-    """The same contact as a scene, with friction or without."""
+    """Return the contact as a scene, with friction or without."""
     lower, upper = heights(kind, M)
     return rf.Scene(
         upper=rf.Body(STEEL, upper),

@@ -41,7 +41,7 @@ class Turns:
 
 
 def solved(code: str, kind: str, M: int, tolerance: float, threads: int, limit: float) -> Found:
-    """What one fresh process found. Raises `Failed` with the last line of what it complained of."""
+    """Return the result of one fresh process. Raises `Failed` with the last line of its stderr."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "found.json"
         asked = ["--code", code, "--kind", kind, "--grid", str(M), "--tolerance", repr(tolerance)]
@@ -60,7 +60,7 @@ def solved(code: str, kind: str, M: int, tolerance: float, threads: int, limit: 
 
 
 def error(found: Mapping[str, Any]) -> float:
-    """What has to meet the target: the recomputed gap, or with coupling the certificate's worst residual."""
+    """Residual for the target: the recomputed gap, or with coupling the certificate's worst residual."""
     return float(found["gap"] if found["residual"] is None else found["residual"])
 
 

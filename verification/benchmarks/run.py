@@ -71,11 +71,11 @@ def _tuned(name: str, kind: str, M: int, last: Turns | None, threads: int, limit
     turns = Turns(name, kind, M, start)
     if last is not None:
         if last.failure:
-            turns.failure = f"left out after {last.M} x {last.M}: {last.failure}"
+            turns.failure = f"not run after {last.M} x {last.M}: {last.failure}"
             return turns
         expected = _GROWTH ** math.log2(M / last.M) * min(found["seconds"] for found in last.rounds)
         if expected > limit:
-            turns.failure = f"left out: {expected:.0f} s expected"
+            turns.failure = f"not run: {expected:.0f} s expected"
             return turns
 
     def solve(tolerance: float) -> Found:

@@ -58,7 +58,7 @@ def row(turns: Turns) -> dict[str, object]:
 
 
 def ratios(turns: Sequence[Turns]) -> dict[str, object]:
-    """Seconds of every code over ours on one problem, round by round; and the least of the peers'.
+    """Ratio of every code's seconds to this code's on one problem, by rounds; and the least of the peers'.
 
     The least by the recommended set-ups, by any, over the solver alone, and over it in a process that has
     solved the same before. Processor seconds beside: they hear less of what else the machine does.
@@ -98,9 +98,9 @@ def _fastest(
 
 
 def lines(rows: Sequence[Any], ratios: Sequence[Any]) -> list[list[str]]:
-    """The run as rows of text: problem, code, seconds, over ours, gap, convolutions, megabytes."""
+    """The run as rows of text: problem, code, seconds, ratio to this code, gap, convolutions, megabytes."""
     over = {(r["kind"], r["M"], code): r[code] for r in ratios for code in r if isinstance(r[code], dict)}
-    text = [["problem", "code", "seconds", "over ours", "gap", "convolutions", "peak memory"]]
+    text = [["problem", "code", "seconds", "ratio to this code", "gap", "convolutions", "peak memory"]]
     for entry in rows:
         head = [f"{entry['kind']} {entry['M']}", entry["code"]]
         if "seconds" not in entry:

@@ -58,7 +58,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def chosen(options: argparse.Namespace) -> bool:
-    """Whether a solver is named. Raises `InputError` for its options without one."""
+    """True if a solver is named. Raises `InputError` for its options without one."""
     from refimpl.errors import InputError
 
     if options.solver is not None or options.exec is not None:

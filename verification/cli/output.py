@@ -1,4 +1,4 @@
-"""What the subcommands share: where output goes, and tables for a terminal."""
+"""Common parts of the subcommands: where output goes, and tables for a terminal."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def output_file(text: str) -> Path:
         raise argparse.ArgumentTypeError("expected a file's name, not ''")
     if text == "-":
         raise argparse.ArgumentTypeError("'-' is no file, and this is no text for standard output")
-    if os.path.isdir(path):  # of any name, however long
+    if os.path.isdir(path):  # no error for long names
         raise argparse.ArgumentTypeError(f"{text!r} is a directory, not a file")
     try:
         try_out(path)
@@ -101,7 +101,7 @@ def emit(document: object, path: Path | None, table: str) -> None:
     try:
         if path is not None:
             write_text(to_json(document), path)
-    finally:  # of a file that could not be written, the table is what is left
+    finally:  # the table is shown even if the file could not be written
         show(table)
 
 
@@ -147,7 +147,7 @@ def wrapped(text: str, first: str) -> str:
 
 
 class StatusLine:
-    """What is being done, on one line of stderr that is rewritten; nothing when stderr is no terminal."""
+    """Progress on one line of stderr that is rewritten; nothing when stderr is no terminal."""
 
     def __init__(self) -> None:
         self._shown, self._next = sys.stderr.isatty(), 0.0

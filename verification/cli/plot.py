@@ -33,7 +33,7 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
     """Write the picture: two maps above, profiles along x and y below, against Hertz for a sphere."""
     import matplotlib
 
-    matplotlib.use("Agg")  # no display is needed, or asked for
+    matplotlib.use("Agg")  # no display is needed
     import matplotlib.pyplot as plt
 
     from verification.framework.files import replacing

@@ -20,7 +20,7 @@ def draw_inspection(found: Inspection, path: Path) -> None:
     """Write the picture: the map above, its autocorrelation and its spectrum beside and below."""
     import matplotlib
 
-    matplotlib.use("Agg")  # no display is needed, or asked for
+    matplotlib.use("Agg")  # no display is needed
     import matplotlib.pyplot as plt
 
     from verification.framework.files import replacing

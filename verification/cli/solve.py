@@ -42,7 +42,7 @@ Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
 DEFAULT_GRID = 256
-# Those of refimpl, which --help does not wait for.
+# Options of refimpl, which --help does not wait for.
 METHODS = ("fft", "dense", "paper")
 ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 
@@ -50,7 +50,7 @@ ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "m
 PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
-# What to do about an end that is no success.
+# Advice after an end that is no success.
 NEXT = {
     "STAGNATED": "not converged: a residual below stays above the tolerance; check units first "
     "(E, tau, lengths), then try a looser --tolerance or a coarser --grid",
@@ -63,7 +63,7 @@ QUANTITIES = (
     ("friction_coefficient", "friction coefficient mu", 1.0, ""),
     ("contact_area", "contact area A", 1e6, "mm^2"),
     ("contact_area_corrected", "A, perimeter-corrected", 1e6, "mm^2"),
-    ("max_pressure", "largest pressure f_max", 1e-6, "MPa"),
+    ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
     ("approach", "approach", 1e6, "um"),
     ("normal_force", "normal force N", 1.0, "N"),
     ("friction_force", "friction force F", 1.0, "N"),

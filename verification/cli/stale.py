@@ -57,7 +57,7 @@ A file that is not listed judges all code.
 
 @dataclass(frozen=True)
 class Age:
-    """Whether the file of the ``name`` is of the present code, and the reason."""
+    """State of the file of the ``name`` relative to the present code, and the reason."""
 
     name: str
     state: State
@@ -80,7 +80,7 @@ def ages(documents: Mapping[str, Any], root: Path = ROOT) -> Iterator[Age]:
 
 
 def newest_provenance(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """That of the document, or the newest of the runs that it lists; None where it records no commit."""
+    """Provenance of the document, or of the newest run in its list; None where it records no commit."""
     listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
     records = [
         item["provenance"] for item in (document, *listed) if isinstance(item, dict) and "provenance" in item

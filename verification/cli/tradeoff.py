@@ -21,7 +21,7 @@ def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
     parser = commands.add_parser(
         "tradeoff",
-        help="the price list: what an error in mu, A or f_max costs",
+        help="the cost-accuracy table: cost of an error in mu, A or p_max",
         description="Solve one scene in every way and on every grid, and list what an error costs.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -35,7 +35,7 @@ def add_parser(commands: Parsers) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the study and print the price list."""
+    """Run the study and print the cost-accuracy table."""
     from refimpl.errors import InputError
     from refimpl.scene.scene_file import read_scene
     from verification.framework.files import Progress

@@ -24,7 +24,7 @@ def write(solution: Solution, path: Path) -> None:
 
     Points are the element centres at the deformed heights (m), cells lie between them. Point fields:
     `pressure` and `traction` (Pa), `gap` (m) between the deformed surfaces, `height` (m) to warp by, since
-    micrometres on a millimetre look flat, `body` (0 lower, 1 upper).
+    heights of um on lengths of mm look flat, `body` (0 lower, 1 upper).
     """
     import meshio
     import numpy as np

@@ -1,4 +1,4 @@
-"""Posing a problem to a contestant: nothing but a checked answer that claims success comes back."""
+"""Posing a problem to a solver under test: only a checked answer that claims success is returned."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def _named(answer: object) -> str:
 
 
 def ask(contestant: Contestant, problem: ContactProblem) -> Array:
-    """The pressures ``(M, M)`` (Pa) that a contestant claims to be right, checked for shape and finiteness.
+    """Return the claimed pressures ``(M, M)`` (Pa) of a solver under test, checked for shape and finiteness.
 
-    The contestant gets a copy of the problem. Raises `Unsupported` where its abilities do not reach,
-    `BadAnswer` for an answer that cannot be judged or admits failure, and whatever the contestant raises.
+    The solver gets a copy of the problem. Raises `Unsupported` where its abilities do not reach,
+    `BadAnswer` for an answer that cannot be judged or admits failure, and every exception of the solver.
     """
     lacking = abilities_of(contestant).lacking(problem)
     if lacking:
@@ -42,15 +42,15 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Array:
     answer = contestant(replace(problem, gap=problem.gap))
     if isinstance(answer, Answer):
         if not isinstance(answer.converged, bool | np.bool_):
-            raise BadAnswer(f"the solver says converged = {answer.converged!r}: expected true or false")
+            raise BadAnswer(f"converged = {answer.converged!r}: expected true or false")
         if not answer.converged:
-            raise BadAnswer("the solver says that it did not converge")
+            raise BadAnswer("the solver did not converge by its own report")
         answer = np.asanyarray(answer.pressure)  # a mask stays
     if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
         raise BadAnswer(f"the solver returned {_named(answer)}: {EXPECTED}")
     if answer.shape != problem.gap.shape:
         raise BadAnswer(f"pressures of shape {answer.shape} for a gap of shape {problem.gap.shape}")
-    if np.ma.is_masked(answer):  # what lies below a mask is nobody's answer
+    if np.ma.is_masked(answer):  # values below a mask are no answer
         raise BadAnswer(f"{int(np.count_nonzero(np.ma.getmaskarray(answer)))} pressures are masked")
     pressure = np.array(answer, dtype=np.float64)
     if not np.isfinite(pressure).all():

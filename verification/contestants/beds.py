@@ -18,7 +18,7 @@ from verification.contestants.protocol import ContactProblem, Coupling
 from verification.exact import kernel_reference
 
 PEAK = 1e-3 * MODULUS
-"""Largest pressure (Pa) of a bed."""
+"""Maximum pressure (Pa) of a bed."""
 FAR = 0.5
 """Gap (m) of the elements out of reach, on a square of 1 m: a thousand times what a bed gives way."""
 PINS = ((0, 0), (0, -1), (-1, 0), (-1, -1), (0, 5), (4, 0), (-1, 7), (8, -1), (2, 3), (2, 4), (5, 5), (6, 5))
@@ -27,7 +27,7 @@ the whole square, both ways along both axes."""
 
 
 def standing(M: int) -> Mask:
-    """Where the `PINS` stand on ``M`` elements a side."""
+    """Mask of the `PINS` on ``M`` elements a side."""
     contact = np.zeros((M, M), dtype=bool)
     contact[tuple(zip(*PINS, strict=True))] = True
     return contact
@@ -106,11 +106,11 @@ class Bed:
         return np.where(self.pressure > 0, self.touch - self.moved, FAR)
 
     def under_load(self, entrant: Entrant) -> tuple[Pressed, Array]:
-        """The contestant's answer under the load that goes with the pressures, and these."""
+        """Return the solver's answer under the load of the pressures, and the pressures."""
         return self._pressed(entrant, load=self.load), self.pressure
 
     def at_approach(self, entrant: Entrant) -> tuple[Pressed, Array]:
-        """The contestant's answer at the approach that goes with the pressures, and these."""
+        """Return the solver's answer at the approach of the pressures, and the pressures."""
         approach = self.touch - (float(self.gap.mean()) if self.periodic else 0.0)
         return self._pressed(entrant, approach=approach), self.pressure
 

@@ -44,7 +44,7 @@ from verification.contestants.wrong import (
 
 @dataclass(frozen=True)
 class Wrong:
-    """A contestant with one fault; it claims success whatever happens inside."""
+    """A solver with one fault; the solver always claims success."""
 
     solver: Callable[[ContactProblem], Array]
     abilities = own.solve.abilities
@@ -159,12 +159,12 @@ def corner_left_out(problem: ContactProblem) -> Array:
 
 
 def with_spacings(problem: ContactProblem, dx: float, dy: float) -> ContactProblem:
-    """The same gap on elements of other edges (m)."""
+    """Return the gap on elements of other edges (m)."""
     return replace(problem, spacing=dx, spacing_y=None if dx == dy else dy)
 
 
 def stretched(problem: ContactProblem) -> ContactProblem:
-    """The same gap and nominal area on a square, as a code with one number for its side may have it."""
+    """Return the gap and nominal area on a square, as a code with one number for its side may have it."""
     edge = problem.area**0.5
     return with_spacings(problem, edge / problem.shape[0], edge / problem.shape[1])
 

@@ -1,4 +1,4 @@
-"""How a case of the suite is declared: like any verification case, but it takes the contestant it judges."""
+"""Declaration of the suite's cases: like any verification case, with the solver under test as argument."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CLAIMS = "claims"
 
 
 class Fault(StrEnum):
-    """What can be wrong with a solver: a case names what it is meant to catch, and is tried on just that."""
+    """Possible faults of a solver: a case names the fault that it must detect, and is tried on that fault."""
 
     SIGN_OF_C = "sign of c"
     PERIODIC_FOR_APERIODIC = "periodic instead of aperiodic"
@@ -71,7 +71,7 @@ class Fault(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Pressed:
-    """A problem with the answer that a contestant stands by."""
+    """A problem with the claimed answer of a solver under test."""
 
     problem: ContactProblem
     pressure: Array
@@ -84,7 +84,7 @@ class Pressed:
 
 @dataclass(frozen=True)
 class Entrant:
-    """A contestant at the table: poses problems to it and keeps it to its claim."""
+    """A solver under test at work: poses problems and holds the solver to its claim."""
 
     contestant: Contestant
 
@@ -168,7 +168,7 @@ Judge = Callable[[Entrant], Measured]
 
 @dataclass(frozen=True)
 class Check:
-    """A case of the suite; ``case`` fills in the contestant."""
+    """A case of the suite; ``case`` fills in the solver under test."""
 
     slug: str
     title: str
@@ -191,7 +191,7 @@ class Check:
         return f"{self.claim}. Meant to catch: {', '.join(self.catches) or 'no single fault'}"
 
     def case(self, contestant: Contestant) -> Case:
-        """The verification case of this contestant."""
+        """Return the verification case of this solver."""
         return Case(
             id=self.id,
             title=self.title,

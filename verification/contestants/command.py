@@ -1,4 +1,4 @@
-"""A program in any language as a contestant: problems and answers as plain files.
+"""A program in any language as a solver under test: problems and answers as plain files.
 
 The command is run as ``COMMAND DIRECTORY`` for each problem. In the directory it finds
 

@@ -1,4 +1,4 @@
-"""How a process ends: signals let it clean up first, as exceptions that run every `finally` on their way."""
+"""End of a process: signals become exceptions, so that every `finally` on their way cleans up."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from types import FrameType
 
 
 class Ended(BaseException):
-    """A signal asked for the end; no `Exception`, since nobody's solver is to take it for a failure."""
+    """A signal requested the end; no `Exception`, since nobody's solver is to take it for a failure."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)

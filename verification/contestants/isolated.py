@@ -1,4 +1,4 @@
-"""A contestant in a process of its own: a crash, a hang or an early exit is an `error`, never a pass."""
+"""A solver under test in a process of its own: a crash, hang or early exit is an `error`, never a pass."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ START = 120.0
 
 @dataclass(frozen=True)
 class Named:
-    """A contestant by the name of a Python object, ``package.module:function``.
+    """A solver under test by the name of a Python object, ``package.module:function``.
 
     ``stated`` are fields of `Abilities` that replace those that the object carries; the others stay.
     """
@@ -64,7 +64,7 @@ class Named:
 
 @dataclass(frozen=True)
 class Limited:
-    """A contestant with other abilities than it carries itself."""
+    """A solver under test with other abilities than its own attribute states."""
 
     solver: Contestant
     abilities: Abilities
@@ -83,7 +83,7 @@ class Table:
         self._open()
 
     def run(self, check: Check) -> Result:
-        """The verdict on one check; never raises for what the contestant does."""
+        """Return the verdict on one check; never raises for a fault of the solver under test."""
         start, case = time.perf_counter(), check.case(_absent)
         try:
             self._pipe.send(check.slug)
@@ -146,7 +146,7 @@ class Table:
 
 
 def _absent(problem: ContactProblem) -> Answer:
-    raise RuntimeError("stands for a contestant whose process died")
+    raise RuntimeError("stands for a solver whose process died")
 
 
 def run(
@@ -162,7 +162,7 @@ def run(
     A check is ended after `MOST_PROBLEMS` times that and `GRACE`: a function cannot be timed from outside
     problem by problem. ``name`` is what a refusal calls the solver.
 
-    Raises `InputError` for a contestant that cannot be had, LookupError for a glob that matches nothing.
+    Raises `InputError` for a solver that cannot be loaded, LookupError for a glob that matches nothing.
     """
     chosen = select(globs)
     table, results = Table(source, timeout, name), []

@@ -1,4 +1,4 @@
-"""`refimpl` as a contestant: translates the problem into a scene and hands back the pressures."""
+"""`refimpl` as a solver under test: translates the problem into a scene and hands back the pressures."""
 
 from __future__ import annotations
 

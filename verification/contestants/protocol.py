@@ -1,4 +1,4 @@
-"""What a contact solver is asked and what it must answer: the whole interface of a contestant.
+"""Problem and answer of a contact solver: the whole interface of a solver under test.
 
 Heights count upwards, and the gap is ``z_upper - z_lower``. The elements are rectangles ``dx`` by ``dy``,
 mostly squares, of uniform pressure f (Pa); displacements are taken at their centres, in arrays ``[i, j]``
@@ -25,7 +25,7 @@ partial.
 
 Residuals are the complementarity gap ``sum f (v - min v)`` with ``v = u + gap``, over the elastic energy
 ``1/2 sum f (a f)`` with ``a f`` the first sum; the load balance ``|N - P| / P``, with N the load that the
-pressures carry and P the one asked for; and the largest tension over the largest pressure. At a prescribed
+pressures carry and P the required load; and the largest tension over the maximum pressure. At a prescribed
 approach the first is ``|sum f (v - approach)| + max(0, approach - min v) sum |f|``, over the same energy.
 """
 
@@ -42,16 +42,16 @@ from refimpl.grid import Array
 from verification.framework.case import Unavailable
 
 LARGEST_PRECISION = 1e-6
-"""No contestant may claim less. A relative gap g allows pressure errors of sqrt(g) in the energy norm, here
-0.1 %, a tenth of the smallest fault that must be seen; single precision reaches it."""
+"""Least residual that a solver may claim. A relative gap g allows pressure errors of sqrt(g) in the energy
+norm, here 0.1 %, a tenth of the smallest fault that must be seen; single precision reaches it."""
 
 
 class Unsupported(Unavailable):
-    """Raised by a contestant that cannot pose a problem: the case is not applicable, and no pass."""
+    """Raised by a solver that cannot pose a problem: the case is not applicable, and no pass."""
 
 
 class BadAnswer(Exception):
-    """What a contestant returned cannot be judged: wrong shape, NaN, no array, no success claimed."""
+    """The answer of a solver cannot be judged: wrong shape, NaN, no array, no success claimed."""
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ class ContactProblem:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """Pressures in the gap's shape (Pa) and whether the solver says that they solve the problem."""
+    """Pressures in the gap's shape (Pa), and the solver's own statement of convergence."""
 
     pressure: ArrayLike
     converged: bool | np.bool_
@@ -175,7 +175,7 @@ FLAGS = ("periodic", "aperiodic", "load", "approach", "coupling", "rectangle", "
 
 @dataclass(frozen=True)
 class Abilities:
-    """What a contestant can be asked. It may carry them as an attribute ``abilities``.
+    """Problems that a solver accepts; an attribute ``abilities`` of the solver may state them.
 
     rectangle : arrays that are not square
     oblong_elements : elements whose edges differ
@@ -229,7 +229,7 @@ class Abilities:
         return cls(**{name: name in given for name in FLAGS}, largest=largest, precision=precision)
 
     def lacking(self, problem: ContactProblem) -> str | None:
-        """What the problem asks for beyond these abilities, or None.
+        """Return the requirement of the problem beyond these abilities, or None.
 
         >>> problem = ContactProblem(np.zeros((2, 2)), 1e-6, 1e9, load=1.0, periodic=True)
         >>> Abilities(periodic=False).lacking(problem)

@@ -1,4 +1,4 @@
-"""What the suite computes itself, to judge an answer: displacements, residuals, and solutions by elimination.
+"""Computations by which the suite judges: displacements, residuals, and solutions by elimination.
 
 None of it is shared with the solvers of `refimpl`. A half-space uses dense matrices of the textbook's corner
 differences up to `LARGEST` elements a side; beyond, the same numbers by scipy's convolution.
@@ -37,7 +37,7 @@ class Residual(NamedTuple):
 
 
 def is_large(problem: ContactProblem) -> bool:
-    """Whether a problem has too many elements for dense matrices."""
+    """True if a problem has too many elements for dense matrices."""
     return problem.gap.size > LARGEST**2
 
 
@@ -112,7 +112,7 @@ def energy(problem: ContactProblem, pressure: Array) -> float:
 
 
 def residual(problem: ContactProblem, pressure: Array) -> Residual:
-    """How far pressures (Pa) are from solving the problem, recomputed from them alone.
+    """Residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
 
     gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
         approach where that is prescribed, with penetration counted on the whole load

@@ -1,4 +1,4 @@
-"""The child process in which a contestant is run: it answers the slug of a check with the verdict on it."""
+"""Child process of a solver under test: reads the slug of a check, answers with the verdict."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from verification.contestants.protocol import Contestant
 from verification.contestants.suite import suite
 
 Source = Callable[[], Contestant]
-"""Makes the contestant, in the process that will run it; must be picklable."""
+"""Factory of the solver under test, called in the process that will run the solver; picklable."""
 PATIENCE = 1.0
 """Seconds to end what was started and to remove its files, once SIGTERM has come."""
 
@@ -24,7 +24,7 @@ PATIENCE = 1.0
 def serve(pipe: Connection, source: Source) -> None:
     """Until the pipe is closed. SIGTERM, or the parent's death, also ends all in this process's group.
 
-    A program that the contestant runs may have a group of its own: it is ended by the `finally` of who ran
+    A program that the solver runs may have a group of its own: it is ended by the `finally` of who ran
     it. What the solver prints goes to stderr, so that it cannot end up in a result file.
     """
     os.setsid()

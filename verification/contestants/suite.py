@@ -1,4 +1,4 @@
-"""The whole suite, and one contestant's way through it."""
+"""The whole suite, and its run with one solver under test."""
 
 from __future__ import annotations
 
@@ -33,5 +33,5 @@ def select(globs: Iterable[str] = ()) -> tuple[Check, ...]:
 
 
 def run(contestant: Contestant, globs: Iterable[str] = ()) -> list[Result]:
-    """Results of a contestant, in this process; a case beyond its abilities is `unavailable`."""
+    """Return a solver's results, from this process; a case beyond its abilities is `unavailable`."""
     return [check.case(contestant).run() for check in select(globs)]

@@ -71,7 +71,7 @@ def without_tau(problem: ContactProblem) -> ContactProblem:
 
 
 def lifted(problem: ContactProblem, moved: Array) -> ContactProblem:
-    """The same bodies with what a solver has falsely added to their displacements (m) in the gap."""
+    """Bodies with false displacements (m) of a solver added to the gap."""
     gap = problem.gap + moved
     # an approach from first contact counts from what is touched first now; one from the mean planes does not
     if problem.approach is not None and not problem.periodic:
@@ -152,7 +152,7 @@ def padded(points: Callable[[int], int], *, of_shear_alone: bool = False) -> Sol
 
 
 def aliased(problem: ContactProblem, pressure: Array, points: Callable[[int], int]) -> list[Array]:
-    """What circles that are too short add to the displacement (m): by pressure, then by shear if any."""
+    """Error of the displacement (m) by circles that are too short: by pressure, then by shear if any."""
     shape, edges, coupling = problem.shape, problem.spacings, problem.coupling
     taken = [(np.arange(1 - n, n) + points(n) // 2) % points(n) - points(n) // 2 + n - 1 for n in shape]
     tables = [normal_offsets(shape, edges) / (np.pi * problem.reduced_modulus)]

@@ -1,1 +1,1 @@
-"""How often `accuracy=` keeps its word: random scenes on nested grids, bars against errors."""
+"""Coverage of `accuracy=`: random scenes on nested grids, bars against errors."""

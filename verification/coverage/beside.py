@@ -1,6 +1,6 @@
-"""Bars that no accuracy is asked of: approach and Q where a climb ends, and all numbers at an approach.
+"""Error bars without a requested accuracy: approach and Q on the last grid, all numbers at an approach.
 
-A bar of Q is judged over the load: Q itself is nothing but rounding where a scene is its own mirror image.
+A bar of Q is judged over the load: Q itself is only rounding where a scene is its own mirror image.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb,
 from verification.framework.provenance import provenance
 
 GRIDS = (*FIRST_GRIDS, *(M for M in GRID_SIZES if FIRST_GRIDS[-1] < M <= FINEST))
-"""What may be asked for: all that `refimpl.accuracy.refinement` has."""
+"""Grids that may be requested: all of `refimpl.accuracy.refinement`."""
 CHECK, CHECK_SEEDS = 2048, range(8, 14)
 """References are checked on one more grid for one scene of each class that is not periodic."""
 APPROACH_SEEDS = range(72)
@@ -87,7 +87,7 @@ def approaches(stored: Mapping[int, Sequence[Rung]], store: Path) -> dict[str, d
 
 
 def solves(stored: Iterable[Sequence[Rung]]) -> dict[str, float]:
-    """How many, how long (s), the worst residual, and how far a start can lead from the same answer."""
+    """Number and time (s) of solves, worst residual, and largest change of an answer by the initial guess."""
     rungs = [rung for ladder in stored for rung in ladder]
     return {
         "count": len(rungs),

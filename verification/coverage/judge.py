@@ -29,12 +29,12 @@ class Held:
 
     @property
     def covered(self) -> bool:
-        """Whether the true error lies inside the bar."""
+        """True if the true error lies inside the bar."""
         return self.error <= self.bar
 
     @property
     def covered_at_worst(self) -> bool:
-        """The same if the reference were off by its whole bound, in the direction that hurts."""
+        """True if the bar covers a reference moved by its whole bound, in the unfavourable direction."""
         return self.error + self.reference_bound <= self.bar
 
 
@@ -121,7 +121,7 @@ def reference_of(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
 
 
 def moved(rungs: Sequence[Rung]) -> float:
-    """How far the reference moves on one more grid, the ladder's last, over both stated bounds; the worst."""
+    """Largest change of the reference on one more grid, the ladder's last, over both stated bounds."""
     shares = []
     for number in _numbers(rungs[0].seed):
         (coarse, loose), (fine, tight) = reference_of(rungs[:-1], number), reference_of(rungs, number)

@@ -39,7 +39,7 @@ from verification.framework.provenance import provenance
 SOLVED = 1e-7
 """Scatter that solves to a certificate of 1e-6 leave, over the number."""
 QUIET = 1e-9
-"""The same of Q, over the load: Newton's third law cancels most of it."""
+"""Scatter of Q, over the load: Newton's third law cancels most of Q."""
 OBLIQUE = 1e-5
 """Of Q over the load, from where on a scene counts: mirror images have none, and their grids scatter less."""
 _NODES, _SHARES = np.polynomial.hermite_e.hermegauss(15)
@@ -88,7 +88,7 @@ def binormals(results: Sequence[GridFeatures], binormal: float, unevenness: floa
 
 
 def peaks(results: Sequence[GridFeatures]) -> Numbers:
-    """Heights of the pressure's summits over the finest grid's scatter; their drops for edges."""
+    """Heights of the pressure's peaks over the finest grid's scatter; their drops for edges."""
     sizes = np.array([result.peak.widened(result.peak.curvature_drop) for result in results])
     weights = np.maximum.accumulate(sizes[::-1])[::-1] / sizes[-1]
     heights, drops = np.transpose([(result.peak.height, result.peak.curvature_drop) for result in results])
@@ -118,7 +118,7 @@ def _over_load(result: GridFeatures) -> float:
 def log_likelihood(
     scenes: Iterable[Numbers], edge_size: float, edge_spread: float, scatter: float, weight: float
 ) -> float:
-    """Of the model's parameters, q and each scene's own sigma and c integrated out (natural logarithm)."""
+    """Natural log-likelihood of the parameters; q and each scene's own sigma and c integrated out."""
     sizes, total = edge_size + edge_spread * _NODES, 0.0
     for scene in scenes:
         precision, count = scene.weights**-2.0, len(scene.values)
@@ -150,7 +150,7 @@ def fitted(
 
 
 def document(store: Path) -> dict[str, object]:
-    """All fits, on the scenes of a store; of summits on those that have two grids that know of them."""
+    """All fits, on the scenes of a store; of peaks on scenes with two grids that have them."""
     results = [[rung.result for rung in rungs] for rungs in ladders(store).values()]
     sheared = [grids for grids in results if grids[-1].numbers["friction_coefficient"] > 0]
     across = [grids for grids in results if _over_load(grids[-1]) > OBLIQUE]
@@ -171,7 +171,7 @@ def document(store: Path) -> dict[str, object]:
 
     def of_peak(p: Array) -> float:
         size, spread, scatter, weight = p
-        free = [grids for grids in summits if not grids[-1].grid.periodic]  # of waves there is no bias
+        free = [grids for grids in summits if not grids[-1].grid.periodic]  # waves have no bias
         return log_likelihood([peaks(grids) for grids in free], size, spread, scatter, weight)
 
     def of_approach(p: Array) -> float:

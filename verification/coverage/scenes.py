@@ -44,7 +44,7 @@ class _Dice:
 
     def __init__(self, seed: int) -> None:
         self.rng = np.random.default_rng([2001, seed])
-        self.seeds = 2 * seed, 2 * seed + 1  # of both bodies' roughness
+        self.seeds = 2 * seed, 2 * seed + 1  # seeds of both bodies' roughness
         lower, upper = self._material(), self._material()
         self.pair = Pair(lower=lower, upper=lower if self.rng.random() < 0.2 else upper)
         self.modulus = self.pair.reduced_modulus

@@ -19,17 +19,17 @@ from verification.coverage.scenes import random_scene
 from verification.framework.files import Progress
 
 NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
-FINEST = 512  # elements per side that may be asked for; beyond are references
+FINEST = 512  # elements per side that may be requested; beyond are references
 TOLERANCE = 1e-6
-"""Certificate of every solve: what ``accuracy=0.001`` deserves, and tighter than 0.01 does."""
+"""Certificate of every solve: as for ``accuracy=0.001``, tighter than for 0.01."""
 
 
 @dataclass(frozen=True)
 class Rung:
     """One scene on one grid: its numbers, its status, its worst residual and what it cost.
 
-    ``carried`` is the cost where the grid starts from the opening's answer, as in a climb; ``apart`` how far
-    its `NUMBERS` then lie from those found afresh, over their values.
+    ``carried`` is the cost where the grid starts from the opening's answer, as in a refinement sequence;
+    ``apart`` how far its `NUMBERS` then lie from those found afresh, over their values.
     """
 
     seed: int
@@ -68,7 +68,7 @@ def climb(
 
 
 def rungs(path: Path) -> Iterator[Rung]:
-    """Everything in the store; a last line cut short by a kill is left out, and solved again."""
+    """Everything in the store; a last line cut short by a kill is skipped, and solved again."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():

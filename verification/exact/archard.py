@@ -49,7 +49,7 @@ class Hierarchy:
         return float(factor * load**exponent)
 
     def area_by_quadrature(self, load: float) -> float:
-        """The same area (m^2), by integrating each level's Hertz pressure numerically."""
+        """Compute the area (m^2) by integrating each level's Hertz pressure numerically."""
         a = (3 * load * self.radii[0] / (4 * self.modulus)) ** (1 / 3)
         if len(self.radii) == 1:
             return float(np.pi * a**2)

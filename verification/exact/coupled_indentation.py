@@ -3,7 +3,7 @@ answer.
 
 Both rest on Gauss's law in the plane: under an axisymmetric traction q(r) along x the coupling displacement
 is the x component of the gradient of the logarithmic potential, c0 x Q(r)/r^2, where Q(r) is the traction
-force within r and c0 = (1 + nu)(1 - 2 nu)/(2 pi E) of the lower body minus the same of the upper (kernel
+force within r and c0 = (1 + nu)(1 - 2 nu)/(2 pi E) of the lower body minus that of the upper body (kernel
 s/rho^2).
 
 1. `CoupledHertz` (any tau and beta): the sphere's gap corrected by minus the coupling displacement of the
@@ -11,7 +11,7 @@ s/rho^2).
    tau, beta) enters. Inequalities hold outside as in Hertz, since the same correction stands on both sides.
 2. `ShearedSphere` (beta = 0): uniform tau on a disc displaces c0 pi tau x inside, a slope, so the paraboloid
    only moves: Hertz pressure about x = -pi c0 tau R. The jump of q at the leading edge presses the free
-   surface against the sphere over a width ~ shift^2/2a (see `sliding_plane`), which the solution leaves out:
+   surface against the sphere over a width ~ shift^2/2a (see `sliding_plane`), which the solution neglects:
    relative error (shift/a)^3.
 
 `first_order_shift` has both, for a plain sphere: to first order in c0, by the reciprocal theorem.

@@ -120,7 +120,7 @@ def _over_the_half_line(
     ``dx dy u`` and above ``pi / u``, are small against ``dx dy / extent`` and against the offset x.
     """
     extent = abs(x) + abs(y) + dx + dy
-    guard = int(np.log10(extent / min(dx, dy))) + 10  # what differences of erfc lose to a narrow element
+    guard = int(np.log10(extent / min(dx, dy))) + 10  # loss of digits in differences of erfc, narrow element
     with mp.workdps(2 * (digits + guard)):
         tail = mp.mpf(10) ** (-digits) * (abs(x) / extent if x else 1)
         low, high = mp.log(tail / extent), mp.log(4 * extent / (mp.mpf(dx) * dy * tail))

@@ -3,7 +3,7 @@ shift.
 
 Sources: Galin 1953; Johnson 1985, section 8.3; Hills, Nowell and Sackfield 1993. Derived here in the
 conventions of the model: the upper body slides along +x, the traction on the lower one is q = tau + beta p
-along +x, and d = E* [(1 + nu)(1 - 2 nu)/(2 E) of the lower body minus the same of the upper] (Dundurs' second
+along +x, and d = E* [(1 + nu)(1 - 2 nu)/(2 E) of the lower body minus that of the upper] (Dundurs' second
 constant). Lines of the kernels 1/rho and s/rho^2 integrate to -2 ln|x| and pi sign(x), so that in contact
 (slope of u + x^2/2R vanishes)
 

@@ -13,7 +13,7 @@ Solution on -l < psi < t, with cot(pi g) = d beta and m = g l - (1 - g) t:
 
 Boundedness at psi -> +- i infinity gives mean p = p* X/2 and d (beta mean p - tau (1 - c)) = p* Y/2 (c
 contact fraction): X = cos 2m - g cos 2l - (1 - g) cos 2t, Y = -sin 2m - g sin 2l + (1 - g) sin 2t. With tau >
-0 the remark in `sliding_plane` on the leading edge holds here as well.
+0 the note in `sliding_plane` on the leading edge holds here as well.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The same scene solved in fresh processes with one or two threads, compared bit by bit."""
+"""One scene solved in fresh processes with one or two threads, compared bit by bit."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def tell(method: Method, periodic: bool) -> None:
 
 
 def in_a_process(method: Method, periodic: bool, *, transforms: int, blas: int) -> dict[str, str]:
-    """What a fresh process with that many threads for either says."""
+    """Return the output of a fresh process with given threads for BLAS and transforms."""
     environment = os.environ | {TRANSFORMS: str(transforms), **dict.fromkeys(BLAS, str(blas))}
     code = CHILD.format(method=method, periodic=periodic)
     done = subprocess.run(

@@ -15,7 +15,7 @@ from verification.extremes.oracle import NotSettled, Oracle
 from verification.extremes.state import Judged, Verdict, number
 
 TOLERANCE = 1e-10
-"""Asked of every solve, hundred times below the default: what a state loses beyond that is its own."""
+"""Tolerance of every solve, a hundredth of the default: larger errors belong to the state."""
 WRONG_FROM = 1e-6
 """Relative error of a number that counts as wrong although the certificate met `TOLERANCE`. The certificate's
 gap bounds the square of the error in energy, so 1e-5 would be lawful; measured errors stay below 1e-7."""
@@ -24,7 +24,7 @@ GOOD = (rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.NO_CONTACT)
 
 
 def guarded(run: Callable[[], Judged]) -> Judged:
-    """The run's verdict; a refusal is an honest failure, an exception nobody foresaw is a crash."""
+    """The run's verdict; a refusal is a detected failure, an unforeseen exception a crash."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -64,7 +64,7 @@ def by_oracle(scene: rf.Scene, M: int, method: Method = "fft", **options: Any) -
 def verdict(
     solution: rf.Solution, error: float, oracle: str, note: str = "", limit: float = WRONG_FROM, **data: float
 ) -> Judged:
-    """Right or wrong where the status claims success, else an honest failure with its error beside it."""
+    """Return right or wrong where the status claims success, else a detected failure with its error."""
     status = solution.status.value
     if solution.status in GOOD:
         return number(error, limit, status, oracle, note, **data)

@@ -1,4 +1,4 @@
-"""Limits found: where the implementation stops being a reference, how it says so, what would move it.
+"""Limits of the implementation as a reference: place, message, and possible remedy.
 
 Each names the states of the study that reproduce it (a glob over their ids); a test keeps them true.
 """

@@ -22,12 +22,12 @@ from verification.extremes import exact_operators as operators
 from verification.extremes.exact_operators import DIGITS, Exact
 
 EXCHANGES, SLOPE_UPDATES = 80, 150
-SETTLED = mp.mpf(10) ** -20  # of the pressure, between two updates of the slopes: far below a double's digits
-TIE = mp.mpf(10) ** (6 - DIGITS)  # of the largest pressure or gap: signs nearer to zero are ties
+SETTLED = mp.mpf(10) ** -20  # relative change of pressure by an update of slopes: below a double's digits
+TIE = mp.mpf(10) ** (6 - DIGITS)  # share of the maximum pressure or gap: signs nearer to zero are ties
 
 
 class NotSettled(ArithmeticError):
-    """The oracle's own iteration did not end; it says nothing about the state."""
+    """The oracle's own iteration did not end: no verdict on the state."""
 
 
 @dataclass(frozen=True)

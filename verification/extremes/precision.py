@@ -29,7 +29,7 @@ class Arithmetic:
     name: str
     carried: float
     number: Callable[[Any], Any]
-    dtype: Any  # of numpy, None for mpmath
+    dtype: Any  # type of numpy, None for mpmath
 
     def __getattr__(self, name: str) -> Any:
         """An elementary function by numpy's name, of this arithmetic."""
@@ -43,7 +43,7 @@ class Arithmetic:
 
 
 def arithmetics() -> tuple[Arithmetic, ...]:
-    """Those of this machine: where long double is double, it carries no more."""
+    """Arithmetics of this machine: where long double is double, without additional digits."""
     floats = ((np.float32, "float32"), (np.float64, "float64"), (np.longdouble, "long double"))
     found = [Arithmetic(name, -np.log10(float(np.finfo(t).eps)), t, t) for t, name in floats]
     return (*found, Arithmetic(f"mpmath, {MP_DIGITS}", float(MP_DIGITS), mp.mpf, None))

@@ -1,4 +1,4 @@
-"""What an extreme state is, how it may end, and the register of axes."""
+"""Extreme states, their verdicts, and the register of axes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ DIGITS_MOST = 17.0
 
 
 class Verdict(StrEnum):
-    """How a state ended. WRONG must never be: a number that is off and was reported as good."""
+    """Verdict on a state. WRONG must never occur: a number with an error, reported as good."""
 
     RIGHT = "right"
     HONEST = "honest failure"  # refused by InputError, or a status that says no
@@ -51,7 +51,7 @@ class Extreme:
     at: str
     x: float
     run: Callable[[], Judged]
-    seconds: float = 4.0  # of processor time before it counts as one that does not end
+    seconds: float = 4.0  # processor time limit; beyond it the state counts as one that does not end
 
     @property
     def id(self) -> str:

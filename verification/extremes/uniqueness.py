@@ -102,5 +102,5 @@ def count(tau: float, scenes: int = SCENES) -> Count:
 
 
 def without_tau(scene: rf.Scene) -> rf.Scene:
-    """The same scene with tau = 0."""
+    """Return the scene with tau = 0."""
     return replace(scene, friction=replace(scene.friction, tau=0.0))

@@ -25,7 +25,7 @@ class Unavailable(Exception):
 
 
 class Metric(StrEnum):
-    """How a case's error is formed from its value; a closed list."""
+    """Definition of a case's error from its value; a closed list."""
 
     RELATIVE = "relative"  # |value - reference| / |reference|
     ABSOLUTE = "absolute"  # |value - reference|
@@ -52,7 +52,7 @@ class Status(StrEnum):
 
 @dataclass(frozen=True)
 class Measured:
-    """What a case's function returns.
+    """Result of a case's function.
 
     `value`, `reference` and `reference_uncertainty` share one `unit`. `data` maps labels to numbers, strings
     or (nested) series, for figures; `note` is for the reader.
@@ -238,7 +238,7 @@ def jsonable(item: object) -> object:
 
 
 def readable(text: str) -> str:
-    """Text from elsewhere as any UTF-8 file takes it, its middle left out where it is long.
+    """Return foreign text as any UTF-8 file takes it, without its middle where it is long.
 
     >>> readable("no licence in caf\\udce9")
     'no licence in caf?'

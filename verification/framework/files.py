@@ -38,8 +38,8 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def is_stream(path: Path) -> bool:
-    """Whether writing there adds to what went before, as to a device or a pipe, and replaces nothing."""
-    return os.path.exists(path) and not os.path.isfile(path)  # of any name, however long
+    """True if writing there appends, as to a device or a pipe, and replaces nothing."""
+    return os.path.exists(path) and not os.path.isfile(path)  # no error for long names
 
 
 def try_out(path: Path) -> None:
@@ -61,7 +61,7 @@ def _mode(path: Path) -> int:
     try:
         return stat.S_IMODE(os.stat(path).st_mode)
     except FileNotFoundError:
-        umask = os.umask(0o077)  # it can only be asked for by setting it
+        umask = os.umask(0o077)  # umask is only returned by setting it
         os.umask(umask)
         return 0o666 & ~umask
 

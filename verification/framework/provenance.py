@@ -1,4 +1,4 @@
-"""What a result depends on: versions, commit, digests of the code, machine, date and command."""
+"""Provenance of a result: versions, commit, digests of the code, machine, date and command."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ class Order:
     scatter: float  # rms of the residuals of log(error)
 
     def credible(self, expected: float) -> bool:
-        """Whether the fitted and all local orders lie within 0.5 of the expected one."""
+        """True if the fitted and all local orders lie within 0.5 of the expected one."""
         return all(abs(p - expected) <= CREDIBLE_WITHIN for p in (self.order, *self.local))
 
 

@@ -1,4 +1,4 @@
-"""Where cases are declared and found: every module below `verification.cases` is imported, none can hide."""
+"""Register of cases: every module below `verification.cases` is imported, none can hide."""
 
 from __future__ import annotations
 

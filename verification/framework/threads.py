@@ -1,4 +1,4 @@
-"""How many threads child processes have, of BLAS and of transforms: so far as they say so, one."""
+"""Threads of child processes, of BLAS and of transforms: one by default."""
 
 from __future__ import annotations
 

@@ -18,12 +18,12 @@ from verification.fuzz.mutations import mutated
 from verification.fuzz.targets import Target, targets
 
 FORMAT = "rough-friction fuzzing, version 1"
-SECONDS = 20.0  # of processor time: the largest lattice of noise that a scene may ask for takes five
+SECONDS = 20.0  # processor time limit; the largest lattice of noise that a scene may request takes 5 s
 KEPT = 20  # faults shown in full
 
 
 def outcome(target: Target, content: bytes, folder: Path) -> str:
-    """What became of an input: accepted, refused, hang, or the fault's type, place and text."""
+    """Outcome of an input: accepted, refused, hang, or the fault's type, place and text."""
     path = folder / f"input{target.suffix}"
     path.write_bytes(content)
     try:

@@ -1,4 +1,4 @@
-"""What is fuzzed: readers of scenes, studies, heights and results, with valid files to start from."""
+"""Targets of fuzzing: readers of scenes, studies, heights and results, with valid files to start from."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class GoldenScene:
 
     @property
     def oblique(self) -> bool:
-        """Whether slopes enter."""
+        """True if slopes enter."""
         return self.tan_x is not None
 
     @property

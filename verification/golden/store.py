@@ -36,11 +36,11 @@ class Enclosed:
     radius: float
 
     def misses(self, value: float) -> float:
-        """How far ``value`` is from the farthest point of the enclosure."""
+        """Distance of ``value`` from the farthest point of the enclosure."""
         return abs(value - self.mid) + self.radius
 
     def meets(self, other: Enclosed) -> bool:
-        """Whether the enclosures have a point in common, as they must if both are true."""
+        """True if the enclosures have a common point, as true enclosures must."""
         return abs(self.mid - other.mid) <= self.radius + other.radius
 
 

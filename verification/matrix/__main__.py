@@ -24,7 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--times", metavar="FILE", type=Path, help="results of an earlier `verify`, to skip dear cases by"
     )
     parser.add_argument(
-        "--skip", metavar="GLOB", action="append", default=[], help="checks to leave out (repeat)"
+        "--skip", metavar="GLOB", action="append", default=[], help="checks to exclude (repeat)"
     )
     parser.add_argument("--only", metavar="GLOB", action="append", help="checks to take (repeat; all)")
     parser.add_argument("--against", metavar="GLOB", action="append", help="faults to try (repeat; all)")

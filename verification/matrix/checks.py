@@ -1,4 +1,4 @@
-"""What is tried against the faults: quick cases, and the invariants on fixed samples."""
+"""Checks tried against the faults: quick cases, and the invariants on fixed samples."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def all_checks() -> list[Case]:
 
 
 def family(check: Case) -> str:
-    """What shares cached results: a module's cases; each invariant stands alone."""
+    """Group of checks that share cached results: a module's cases; each invariant stands alone."""
     return check.id if check.id.startswith("invariant/") else check.module
 
 

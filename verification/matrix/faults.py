@@ -36,7 +36,7 @@ Patch = tuple[Any, str, Any]
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong within `injected`, and the check that must see it."""
+    """Fault within `injected`, and the check that must detect the fault."""
 
     what: str
     patches: tuple[Patch, ...]

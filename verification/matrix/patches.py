@@ -1,4 +1,4 @@
-"""How a local fault is described: by what it replaces, found among the modules imported so far."""
+"""Description of a local fault: by the replaced object, found among the modules imported so far."""
 
 from __future__ import annotations
 

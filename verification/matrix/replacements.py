@@ -1,4 +1,4 @@
-"""What local faults put in place of parts of `refimpl`: each one right but for what its name says."""
+"""Replacements of parts of `refimpl` by local faults: each is right except for the named fault."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def measure(
     """Try every cheap check, if any, against every fault that it could see; yields the matrix after each.
 
     ``known`` holds seconds of an earlier run: what took longer than ``cheap`` then is not even timed.
-    ``skip`` are globs of checks to leave out, ``only`` of those to take, ``against`` of the faults.
+    ``skip`` are globs of checks to exclude, ``only`` of those to take, ``against`` of the faults.
     """
     checks = {check.id: check for check in all_checks() if _any(check.id, only)}
     for arguments in ((False, False), (True, False), (True, True)):
@@ -99,7 +99,7 @@ def measure(
     faults = {**FAULTS, **{name: fault_of(described) for name, described in local.items()}}
     faults = {name: fault for name, fault in faults.items() if _any(name, against)}
     progress = Progress(len(faults) + 2)
-    excluded = {id: "left out on request" for id in checks if _any(id, skip)}
+    excluded = {id: "excluded on request" for id in checks if _any(id, skip)}
     slow = {id: t for id, t in (known or {}).items() if id in checks and t > cheap}
     excluded |= {id: f"takes {t:.1f} s" for id, t in slow.items()}
     sound = _cheap(checks, cheap, excluded)

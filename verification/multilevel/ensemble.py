@@ -31,9 +31,9 @@ from verification.sweep.study import MAX_RUNS, Study
 
 QUANTITIES = ("friction_coefficient", "contact_area")
 PILOT = (8, 8, 4, 2)  # samples of the terms at first; the last number serves all finer ones
-FEWEST = 32  # of the first term before an error is believed: few that scatter little would be the last
+FEWEST = 32  # least samples of the first term: a few that scatter little would otherwise be the last
 _KNOWN = 3.0  # standard errors that a mean must be from zero before targets are shares of it
-TOLERANCE = 1e-5  # of each solve, where the study asks for none: far below any ensemble's scatter
+TOLERANCE = 1e-5  # default tolerance of each solve: far below any ensemble's scatter
 _BLOCK = 10**7  # seeds between terms, so that no realisation serves two of them
 _ROUNDS = 8
 

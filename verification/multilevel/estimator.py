@@ -1,7 +1,7 @@
 """The multilevel estimator: a mean on the finest grid from many coarse solves and few corrections.
 
 ``E[P_L] = E[P_0] + sum_l E[P_l - P_(l-1)]``: every term is estimated from its own realisations, and within a
-term both grids see the same surface, so that the corrections scatter little and few of them suffice.
+term both grids sample the same surface, so that the corrections scatter little and few of them suffice.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
 _UNSEEN = 3.0  # rule of three: what N samples have not shown is rarer than 3 in N, with 95 % confidence
-_FALL = 8.0  # of a correction's variance from grid to grid, at most: that of an area's count goes with h^3
+_FALL = 8.0  # largest ratio of variances from grid to grid: an area's count varies as h^3
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Estimate:
 
 
 def variances(levels: Sequence[Array], unseen: float) -> Array:
-    """Of the samples of every term, each of shape ``(N_l,)`` with N_l of at least 2; ``(terms,)``.
+    """Variances of the samples of every term, each of shape ``(N_l,)`` with N_l of at least 2; ``(terms,)``.
 
     Areas are counts, and pairs of them may all agree. They are not known to: what N of them have not shown
     may come in a share of 3 in N, and be worth the root of ``unseen``. Nor does the variance of a correction

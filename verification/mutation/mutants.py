@@ -1,7 +1,7 @@
 """All mutants of a module: cosmic-ray's operators, and removed statements.
 
-Left out, for they could never survive or never differ: bit operations on floats and dropped decorators (the
-import already fails), and changes in annotations and docstrings.
+Excluded, since such mutants never survive or never differ: bit operations on floats and dropped decorators
+(the import already fails), and changes in annotations and docstrings.
 """
 
 from __future__ import annotations

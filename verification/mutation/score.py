@@ -19,7 +19,7 @@ Change = tuple[str, str, str]
 
 
 def explanations(path: Path = EXPLAINED) -> dict[Change, str]:
-    """Why a mutant can't be told from the original, by its change; each once.
+    """Reasons for equivalence of mutants with the original, by their change; each once.
 
     Raises ValueError for an empty reason, and for a second one.
     """
@@ -51,7 +51,7 @@ def summary(
     of: str = "numerics",
     targets: Sequence[Target] = TARGETS,
 ) -> dict[str, Any]:
-    """What is published: scores in all, by subject and by operator, and every survivor.
+    """Published results: scores in all, by subject and by operator, and every survivor.
 
     A mutant that needs more than its processor time counts as killed (``timeout``); equivalent ones, each
     with its reason, count neither way in ``score``, and as survivors in ``score_raw``.
@@ -82,7 +82,7 @@ def summary(
 
 
 def passes(found: dict[str, Any]) -> bool:
-    """Whether anything was tried, the score meets the goal, and every survivor is explained."""
+    """True if any mutant was tried, the score meets the goal, and every survivor is explained."""
     score = found["score"]
     return score is not None and score >= GOAL and all(s["explained"] for s in found["survivors"])
 

@@ -33,7 +33,7 @@ def in_fair_order(found: Iterable[Candidate], seed: int) -> list[Candidate]:
         strata[candidate.module, candidate.stratum].append(candidate)
     placed = []
     for name, members in strata.items():
-        chance = random.Random(f"{seed} {name}")  # of its own, so that no other module changes it
+        chance = random.Random(f"{seed} {name}")  # own generator, independent of the other modules
         chance.shuffle(members)
         offset = chance.random()
         placed += [((k + offset) / len(members), chance.random(), c) for k, c in enumerate(members)]

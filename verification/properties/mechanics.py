@@ -37,7 +37,7 @@ SMALL = 2.0**-30
 
 
 def heavier(sample: Sample) -> Sample:
-    """The same scene under three halves of the load, and a little more."""
+    """Return the scene under 3/2 of the load, and a little more."""
     return replace(sample, pressure=sample.pressure * 3 // 2 + 1)
 
 

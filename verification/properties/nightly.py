@@ -20,7 +20,7 @@ SOLVERS: Mapping[str, Solver] = {
     "fft": partial(rf.solve, method="fft", tolerance=1e-12),
     "dense": partial(rf.solve, method="dense", tolerance=1e-12),
 }
-"""The residual asked for is what `verification.properties.states.RESIDUAL` is derived from."""
+"""Required residual, from which `verification.properties.states.RESIDUAL` is derived."""
 
 
 def run(path: Path, examples: int, seed: int) -> bool:

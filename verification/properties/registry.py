@@ -1,4 +1,4 @@
-"""What an invariant is, and the list of all of them."""
+"""Definition of an invariant, and the list of all invariants."""
 
 from __future__ import annotations
 

@@ -13,8 +13,8 @@ from verification.properties.samples import SIDE, Sample, samples
 from verification.properties.textbook import normal_matrix, shear_matrix
 
 RESIDUAL = 1e-9
-"""Relative; solvers are asked for 1e-12, and a thousand times that covers what separates a state's residual
-from its error on grids this small (condition number of the flexibility: below 100)."""
+"""Relative; solvers have the tolerance 1e-12, and a thousand times that covers the difference of a state's
+residual from its error on grids this small (condition number of the flexibility: below 100)."""
 ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
 
 
@@ -121,7 +121,7 @@ def displacements(solver: Solver, sample: Sample) -> None:
     assert np.abs(found - u).max() <= 1e-11 * np.abs(u).max() + 1e-16 * SIDE
 
 
-@invariant("the contact area is the number of loaded elements; the peak is the largest pressure", samples())
+@invariant("the contact area is the number of loaded elements; p_max is the pressures' maximum", samples())
 def area_and_peak(solver: Solver, sample: Sample) -> None:
     """Counted one by one."""
     solution = solved(solver, sample)

@@ -35,7 +35,7 @@ def sheared_scene(beta: float) -> rf.Scene:
 
 @dataclass(frozen=True)
 class TangentialEffect:
-    """What tangential displacements do: largest displacement and rms change of the gap on the contact over
+    """Effect of tangential displacements: largest displacement and rms change of the gap on the contact over
     the approach, and relative changes of mu, A and f_max when they are put into the surfaces.
     """
 
@@ -82,7 +82,7 @@ class FacetEffect:
 
 
 def facet_effect(flat_rms: float, grid: int) -> FacetEffect:
-    """The same pressures and slopes summed both ways, for one realisation at P = 70 N."""
+    """Return the pressures and slopes summed both ways, for one realisation at P = 70 N."""
     found = rf.solve(rough(flat_rms), grid)
     sums: list[Forces] = [
         how(found.pressure, found.traction, found.slopes, found.grid.element_area)

@@ -1,4 +1,4 @@
-"""What does not hold in the paper's body: a number against each place, and the same for its correction.
+"""Errors in the paper's body: a number against each place, and a number for its correction.
 
 ``evidence()`` measures the printed form and ``check()`` the corrected one, by the same ``measure``: zero is
 right. Appendix A's errata are `appendix_a.errata`.

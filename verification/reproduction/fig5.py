@@ -31,7 +31,7 @@ def profiles(grid: int) -> Profiles:
     """Table 1, smooth, P = 70 N; the upper ball slides along +x."""
     found = rf.solve(SMOOTH, grid)
     x = found.grid.x - SMOOTH.lengths[0] / 2
-    middle = grid // 2  # of the two middle lines, the one just above
+    middle = grid // 2  # upper one of the two middle lines
     total = found.pressure.sum()
     contact = found.contact
     inner = np.zeros_like(contact)

@@ -54,7 +54,7 @@ class Profile:
 
     @property
     def noise(self) -> float:
-        """What sampling alone adds to a misfit: the rms standard error, weighted and scaled alike."""
+        """Contribution of sampling alone to a misfit: the rms standard error, weighted and scaled alike."""
         return self._rms(self.half_width / 2)
 
     def _rms(self, pressure: Array) -> float:

@@ -35,7 +35,7 @@ class Cell:
 
     @property
     def within_sampling(self) -> bool:
-        """Whether the deviation is within the 95 % half width of a difference of two such ensembles."""
+        """True if the deviation is within the 95 % half width of a difference of two such ensembles."""
         return abs(self.ours.mean - self.printed) <= math.sqrt(2) * self.ours.half_width
 
 

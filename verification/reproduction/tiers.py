@@ -23,7 +23,7 @@ def in_both_tiers(
     tolerance_reason: str,
     tags: Iterable[str],
 ) -> Callable[[Function], Function]:
-    """Declare ``id`` in the quick tier and ``id-full`` in the full one; the function is told the tier.
+    """Declare ``id`` in the quick tier and ``id-full`` in the full one; the function gets the tier.
 
     ``tolerance`` is one number, or one for each tier.
     """

@@ -40,7 +40,7 @@ class Trial:
 
 
 TOLERANCE = 1e-12
-"""Asked of both solvers: a thousandth of what is demanded of their difference, and above rounding."""
+"""Tolerance of both solvers: a thousandth of the limit of their difference, and above rounding."""
 
 
 def pressed(

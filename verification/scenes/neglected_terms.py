@@ -24,7 +24,7 @@ from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 
 SIDE = 1e-3
-TOLERANCE = 1e-9  # of each solve: a thousandth of the smallest effects that are judged
+TOLERANCE = 1e-9  # tolerance of each solve: a thousandth of the smallest effects that are judged
 RMS_SLOPE_PER_RMS = math.sqrt(2 * 2.3)  # Eq. (9): rms slope = this times rms over length
 
 WITHOUT = {
@@ -48,7 +48,7 @@ class Trial:
 
     @property
     def bounded(self) -> bool:
-        """Whether all estimates hold; two solves to `TOLERANCE` can differ by that."""
+        """True if all estimates hold; two solves to `TOLERANCE` can differ by that."""
         effect, estimate = astuple(self.effect), astuple(self.estimate)
         return all(e <= max(bound, TOLERANCE) for e, bound in zip(effect, estimate, strict=True))
 

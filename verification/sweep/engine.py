@@ -49,7 +49,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class Sweep:
-    """What a sweep did: runs found in the store, finished now, and failed (key to message).
+    """Result of a sweep: runs found in the store, finished now, and failed (key to message).
 
     ``rows`` are those of the study in its order, all of them exactly when nothing failed, and one for points
     that are the same run; ``solve_seconds`` is the processor time that each took, whenever that was.
@@ -64,7 +64,7 @@ class Sweep:
 
     @property
     def statuses(self) -> dict[str, int]:
-        """How many rows ended how, by `refimpl.Status`."""
+        """Number of rows by `refimpl.Status`."""
         return dict(Counter(row["status"] for row in self.rows))
 
     @property

@@ -20,7 +20,7 @@ APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
 VERSION = 2
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
 _OURS = [APPLICATION_ID, VERSION]
-_PRIMARY = 0xFF  # of a result code; the other bits say which kind of it
+_PRIMARY = 0xFF  # primary part of a result code; the other bits give its kind
 _UNWRITABLE = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR)
 _TABLE = f"""create table runs (
     key text primary key,
@@ -86,7 +86,7 @@ def open_store(path: Path) -> Iterator[Store]:
 @contextmanager
 def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     """The locked store's connection; of what is refused no new file stays, but a store of finished runs."""
-    new = [file for file in (path, _lock_file(path)) if not os.path.exists(file)]  # of any name, however long
+    new = [file for file in (path, _lock_file(path)) if not os.path.exists(file)]  # no error for long names
     kept = False
     with closing(_lock(path)):
         try:

@@ -63,7 +63,7 @@ class Study:
 
     @property
     def is_rough(self) -> bool:
-        """Whether realisations differ anywhere: at some point, a surface is random."""
+        """True if realisations differ anywhere: at some point, a surface is random."""
         return any(
             _random(self.scene[side]) and any(self.vary.get(f"{side}_rms", (True,)))
             for side in ("upper", "lower")
@@ -71,7 +71,7 @@ class Study:
 
     @property
     def has_correlation_length(self) -> bool:
-        """Whether a surface of the scene has one correlation length."""
+        """True if a surface of the scene has one correlation length."""
         lengths = (_random(self.scene[side]).get("correlation_length") for side in ("upper", "lower"))
         return any(isinstance(length, float) for length in lengths)
 
@@ -160,7 +160,7 @@ def measured_files(scene: Table) -> dict[str, str]:
     paths = [Path(part["path"]) for part in parts if part["kind"] == "measured"]
     digests = {}
     for path in paths:
-        if not os.path.isfile(path):  # of any name, however long
+        if not os.path.isfile(path):  # no error for long names
             raise InputError("scene", str(path), "a measured surface's file")
         try:
             digests[str(path)] = file_digest(path)

@@ -31,7 +31,7 @@ def read_study(path: str | Path) -> Study:
     The scene is a shipped one's name or a path relative to the file. Raises InputError naming the field.
     """
     path = Path(path)
-    if not os.path.isfile(path):  # of any name, however long
+    if not os.path.isfile(path):  # no error for long names
         if str(path) not in shipped_studies():
             raise InputError("study", str(path), f"a TOML file, or one of {', '.join(shipped_studies())}")
         path = Path(str(resources.files("verification").joinpath("studies", f"{path}.toml")))

@@ -1,1 +1,1 @@
-"""What an error costs: work and precision of every way to solve a scene, and the price list they make."""
+"""Cost of an error: work and precision of every configuration for a scene, and the cost-accuracy table."""

@@ -1,4 +1,4 @@
-"""From runs to prices: errors against the reference, the Pareto front, the price list, growth with size."""
+"""Costs from runs: errors against the reference, Pareto front, cost-accuracy table, growth with size."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def growth(runs: Sequence[Run]) -> list[dict[str, Any]]:
 def affordable(runs: Sequence[Run], way: str, seconds: float) -> int | None:
     """The largest grid on which a way takes no more than the given time, by its fitted growth.
 
-    None where fewer than three grids say so, or what they take is overhead that hardly grows.
+    None for fewer than three grids, or where their time is overhead that hardly grows.
     """
     series = [run for run in runs if run.setting.way == way]
     if len(series) < 3:

@@ -19,7 +19,7 @@ class Setting:
     """One way: ``nested`` grids or the finest alone; ``oblique`` slopes and ``coupled`` shear, or not.
 
     ``single`` has the solver's convolutions in single precision; the certificate stays in double.
-    "qp" is L-BFGS-B on the energy at the scene's approach, which it is told; without slopes and coupling.
+    "qp" is L-BFGS-B on the energy at the scene's given approach, without slopes and coupling.
     """
 
     method: Way

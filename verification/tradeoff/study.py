@@ -25,7 +25,7 @@ def study(
     repeats: int,
     progress: Callable[[str], None],
 ) -> dict[str, Any]:
-    """The document of the study: reference, runs, Pareto fronts, price list, growth.
+    """The document of the study: reference, runs, Pareto fronts, cost-accuracy table, growth.
 
     ``finest`` is the reference's grid; its doubt is the change from half of it. Ways that do not apply to the
     scene and numbers that are zero, of which there is no relative error, are "left out", with the reason;

@@ -93,7 +93,7 @@ class Energy:
 
     @property
     def counter(self) -> Counter:
-        """What the FFT operator has counted."""
+        """Counts of the FFT operator."""
         return self._operator.counter
 
     @cached_property

@@ -1,4 +1,4 @@
-"""General minimisers of the complementary energy: they know a quadratic form and nothing of contact.
+"""General minimisers of the complementary energy: their input is a quadratic form, without contact.
 
 Non-negative least squares (Lawson and Hanson 1974; scipy), a bound-constrained quasi-Newton method (Byrd, Lu,
 Nocedal and Zhu 1995; scipy's L-BFGS-B) and a proximal interior-point method for quadratic programs (Schwan,

@@ -84,7 +84,7 @@ class Contact:
         return cls(scene, M, reference)
 
     def run(self, method: str) -> tuple[Array, dict[str, float]]:
-        """Pressure (Pa) and operation counts of a method, from nothing but the scene (and the approach)."""
+        """Pressure (Pa) and operation counts of a method, from the scene (and the approach) alone."""
         if method in MINIMISERS:
             energy = Energy(frictionless(self.scene, self.M, self.reference.approach))
             found: Minimum = MINIMISERS[method](energy)
@@ -127,7 +127,7 @@ def timed(call: Callable[[], Result]) -> tuple[Result, float, float]:
 def measure(grids: Sequence[int], methods: Sequence[str], rounds: int, budget: float) -> list[Row]:
     """Rows of all methods on all grids (ascending), as far as each gets.
 
-    A grid is left out when the method's last time, grown to it, exceeds ``budget`` (processor s a solve).
+    A grid is skipped when the method's last time, grown to it, exceeds ``budget`` (processor s a solve).
     """
     scene = table2_scene()
     rows: list[Row] = []

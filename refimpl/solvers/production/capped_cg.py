@@ -18,7 +18,7 @@ from refimpl.solvers.production.constants import CERTAINTY, VANISHING
 from refimpl.solvers.production.projected_cg import ProjectedCG
 from refimpl.solvers.production.step_length import cut_at_zero, longest_step
 
-_LOAD_ROUNDING = 1e-14  # of the load: rounding of its sum
+_LOAD_ROUNDING = 1e-14  # relative rounding error of the load's sum
 _FULL = 0.9  # share of the cap up to which elements that come into contact are filled
 _FILLINGS = 60  # halvings of the range of a factor that fills pressures up to the cap
 

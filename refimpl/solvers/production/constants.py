@@ -7,13 +7,10 @@ Costs are CG steps or transforms, on the scenes named; "none" says that neighbou
 COARSEST = 32  # elements per side of the coarsest grid
 COARSEST_OF_TWO = 16  # elements per side where no coarser grid would exist otherwise
 QUARTERED = 128  # elements per side up to which a grid of half as many costs more steps than it saves
-COARSE_TOLERANCE = (
-    1e-3  # residual of a coarse grid: only an initial guess; its grid error is larger. 1e-2: 4 %
-)
-#                          fewer transforms on 40 rough scenes, half as many again on smooth 1024 x 1024
-START_MISFIT = (
-    0.02  # of a start on the same grid: 1 % of load saves up to a third, 5 % costs up to two thirds
-)
+COARSE_TOLERANCE = 1e-3  # residual of a coarse grid: only an initial guess; its grid error is larger
+#                          (1e-2: 4 % fewer transforms on 40 rough scenes, 50 % more on smooth 1024 x 1024)
+START_MISFIT = 0.02  # largest misfit of a start on the same grid: 1 % of load saves up to a third of the
+#                      transforms, 5 % costs up to two thirds more
 MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes at its edge are one-sided
 
 # One grid (`level`)

@@ -84,7 +84,7 @@ class LaggedTerms:
 
     @property
     def has_lag(self) -> bool:
-        """Whether any lagged term depends on the pressure."""
+        """True if any lagged term depends on the pressure."""
         return self._problem.terms.oblique or self._shear_lags
 
     @property

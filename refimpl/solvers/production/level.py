@@ -103,17 +103,17 @@ class LevelSolver:
 
     @property
     def contact(self) -> Mask:
-        """Where the present pressure is positive."""
+        """Elements with positive present pressure."""
         return self.cg.pressure > 0
 
     @property
     def exhausted(self) -> bool:
-        """Whether the lagged terms diverged, under pressures far beyond the moduli."""
+        """True if the lagged terms diverged, under pressures far beyond the moduli."""
         return self.lagged.diverged
 
     @property
     def needs_mixing(self) -> bool:
-        """Whether the lagged terms feed back so strongly that updates are mixed."""
+        """True if the lagged terms feed back so strongly that updates are mixed."""
         return self._control.mixing is not None
 
     @property
@@ -128,7 +128,7 @@ class LevelSolver:
 
         Stop as soon as the contact set is certain and passes the test ``enough``.
         """
-        # shares of tau that had to be mixed say nothing of a fixed set
+        # mixing of the shares of tau has no bearing on a fixed set
         mixes = self.needs_mixing if self.lagged.active.is_fixed else self._slopes_need_mixing
         self.lagged.active, self._enough = active, enough
         least = constants.LEAST_REDUCTION if active.is_fixed else constants.REDUCTION
@@ -139,7 +139,7 @@ class LevelSolver:
         self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=mixes)
         self.stagnated = False
         for _ in range(constants.UPDATE_LIMIT):
-            # the residual is that of the terms which the pressure asked for before it was scaled to the load
+            # the residual is that of the terms computed from the pressure before it was scaled to the load
             if has_lag and self.residual <= goal:
                 self.residual = self.lagged.update()
             if self.residual <= goal or self._contact_suffices():

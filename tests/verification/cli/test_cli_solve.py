@@ -98,7 +98,7 @@ def test_what_nothing_bounds_says_so(scene: str, monkeypatch: pytest.MonkeyPatch
     parts = {"max_pressure": {"discretisation": math.inf}, "approach": {"discretisation": 2e-9}}
     monkeypatch.setattr(refimpl, "solve", lambda *_, **__: dataclasses.replace(solution, uncertainty=parts))
     assert main(["solve", scene, "--grid", "8"]) == 0
-    assert re.search(r"f_max +\S+ +unbounded +MPa", capsys.readouterr().out)
+    assert re.search(r"p_max +\S+ +unbounded +MPa", capsys.readouterr().out)
     assert main(["solve", scene, "--grid", "8", "--json", "-"]) == 0
     assert json.loads(capsys.readouterr().out)["uncertainty"]["max_pressure"] == {"discretisation": None}
 
@@ -121,7 +121,7 @@ def test_the_table_names_what_was_found(scene: str, capsys: Capture) -> None:
     rows = {
         r"friction coefficient mu +(\S+)": solution.friction_coefficient,
         r"contact area A +(\S+) .*mm\^2": solution.contact_area / 1e-3**2,
-        r"largest pressure f_max +(\S+) .*MPa": solution.max_pressure / 1e6,
+        r"maximum pressure p_max +(\S+) .*MPa": solution.max_pressure / 1e6,
         r"approach +(\S+) .*um": solution.approach / 1e-6,
         r"friction force F +(\S+) .*N": solution.friction_force,
     }
@@ -129,7 +129,7 @@ def test_the_table_names_what_was_found(scene: str, capsys: Capture) -> None:
         row = re.search(pattern, printed.out)
         assert row is not None, pattern
         assert float(row[1]) == pytest.approx(value, rel=1e-5)
-    for text in ("48 x 48", "CONVERGED", "A, perimeter-corrected", "f_max", "approach", "penetration"):
+    for text in ("48 x 48", "CONVERGED", "A, perimeter-corrected", "p_max", "approach", "penetration"):
         assert text in printed.out
     assert "slope terms" in printed.out.partition("not modelled")[2]
     assert printed.err == ""

@@ -126,7 +126,7 @@ def test_dear_checks_are_added_to_a_file(tmp_path: Path, capsys: pytest.CaptureF
     main, path = import_module("verification.matrix.__main__").main, tmp_path / "matrix.json"
     assert main(["--json", str(path), "--skip", "some/*"]) == 1
     first = read_result(path)
-    assert first["excluded"] == {"some/check": "left out on request"}
+    assert first["excluded"] == {"some/check": "excluded on request"}
     assert main(["--json", str(path), "--only", "some/*", "--against", "no-*", "--add"]) == 0
     both = read_result(path)
     assert both["excluded"] == {}

@@ -184,8 +184,8 @@ def test_who_cannot_make_it_is_left_out_with_the_reason(monkeypatch: pytest.Monk
     assert broke.failure == "out of memory"
     assert "after 64 x 64: out of memory" in run._tuned("peer", "smooth", 128, broke, 1, 60.0).failure
     slow = turns("peer", 9.0, 1.5)  # times eight for twice the grid, of the quicker round
-    assert run._tuned("peer", "smooth", 128, slow, 1, 11.9).failure == "left out: 12 s expected"
-    assert run._tuned("peer", "smooth", 256, slow, 1, 95.0).failure == "left out: 96 s expected"
+    assert run._tuned("peer", "smooth", 128, slow, 1, 11.9).failure == "not run: 12 s expected"
+    assert run._tuned("peer", "smooth", 256, slow, 1, 95.0).failure == "not run: 96 s expected"
     assert run._tuned("peer", "smooth", 128, slow, 1, 12.1).failure == "out of memory"
 
 
@@ -245,15 +245,15 @@ def test_rows_count_convolutions_on_the_padded_box() -> None:
 
 
 def test_lines_show_ratios_and_who_was_left_out() -> None:
-    left_out = Turns("absent", "smooth", 64, 1e-8, failure="left out: 900 s expected")
+    left_out = Turns("absent", "smooth", 64, 1e-8, failure="not run: 900 s expected")
     both = [turns(OWN, 1.0), turns("peer", 3.0), left_out]
     shown = lines([row(one) for one in both], [{"kind": "smooth", "M": 64, **ratios(both)}])
     assert [cells[:4] for cells in shown[1:3]] == [
         ["smooth 64", OWN, "1", ""],
         ["smooth 64", "peer", "3", "3"],
     ]
-    assert shown[3] == ["smooth 64", "absent", "", "", "", "", "left out: 900 s expected"]
-    assert "left out" in columns(shown)
+    assert shown[3] == ["smooth 64", "absent", "", "", "", "", "not run: 900 s expected"]
+    assert "not run" in columns(shown)
     assert shown[1][-1] == "300 MB"
 
 

@@ -144,9 +144,9 @@ def test_every_shipped_scene_has_a_price_list(
     assert all(set(run["errors"]) == quantities for run in found["runs"])
     shown = build({"studies": [found]})
     assert len(shown.figures) == len(quantities)
-    assert any("Left out: " in note for note in shown.paragraphs) is bool(left_out)
+    assert any("Neglected: " in note for note in shown.paragraphs) is bool(left_out)
     old = {key: value for key, value in found.items() if key != "left out"}
-    assert not any("Left out: " in note for note in build({"studies": [old]}).paragraphs)
+    assert not any("Neglected: " in note for note in build({"studies": [old]}).paragraphs)
 
 
 def test_the_scenes_above_are_all_that_are_shipped() -> None:

@@ -1,4 +1,4 @@
-"""What the slope correction does to a solved scene, and what the paper's own remedy does instead.
+"""Effect of the slope correction on a solved scene, and of the paper's own remedy.
 
 The correction puts the exact facet tractions into Eq. (7). The paper would replace 'only a few of the terms
 in the flexibility matrices' by values computed on the slope: those of an element and of its neighbours within
@@ -32,7 +32,7 @@ QUANTITIES = ("mu", "A", "f_max", "Q")
 TREATMENTS = ("correction", "near-field remedy")
 PAIRS = ("steel on rough copper", "rough rigid on copper")
 RIGID = rf.Material(E=2e15, nu=0.3)
-SETTLED = 1e-7  # of the peak pressure: a thousandth of the smallest effect seen
+SETTLED = 1e-7  # change relative to the peak pressure: a thousandth of the smallest effect seen
 ROUNDS = 40
 
 
@@ -50,7 +50,7 @@ def scene_of(pair: str, slope_deg: float, realisation: int) -> rf.Scene:
 
 
 def near_field(found: rf.Solution, material: rf.Material, sign: float, reach: int) -> Array:
-    """What coefficients computed on the slope add to one body's displacement (M, M), into it (m).
+    """Change of one body's displacement (M, M), into the body (m), by coefficients computed on the slope.
 
     sign: 1 for the lower body, -1 for the upper, which sees every slope turned over.
     """
@@ -169,7 +169,7 @@ def declare(slug: str, pair: str) -> None:
         source="exact facet tractions (refimpl.model.forces); paper, Table 1, section 8 and Appendix A",
         metric="at_most",
         tolerance=2.0,
-        tolerance_reason="percent: the paper's bound on its coefficients, asked of the results",
+        tolerance_reason="percent: the paper's bound on its coefficients, applied to the results",
         tier="full",
         tags=("appendix-a", "correction"),
     )

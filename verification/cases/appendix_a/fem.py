@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 NEIGHBOURS = np.array([-20.0, -10.0, -6.0, -4.0, -2.0, 2.0, 4.0, 6.0, 10.0, 20.0])
 ENDS = (Source(-1.0, -1.0, 2.0**-7, 1.0), Source(1.0, 1.0, 2.0**-7, 1.0))
 POINTS = 0.02  # percentage points of the flat coefficient
-POINTS_REASON = "the stated error asked for of plane results, a hundredth of the paper's 2 %"
+POINTS_REASON = "the required error of plane results, a hundredth of the paper's 2 %"
 
 
 def percent(difference: Array, nu: float, offsets: Array) -> Array:
@@ -56,7 +56,7 @@ def observed(rows: Sequence[tuple[float, float, float]]) -> Order:
     source="Johnson 1985, section 2.5; Flamant 1892 on the outer boundary",
     metric="at_most",
     tolerance=1e-5,
-    tolerance_reason="asked for; measured 4e-6 (quadratic, 140 000 unknowns) and 7e-7 (cubic, 90 000)",
+    tolerance_reason="required; measured 4e-6 (quadratic, 140 000 unknowns) and 7e-7 (cubic, 90 000)",
     tags=("appendix-a", "fem"),
 )
 def flat_2d() -> Measured:
@@ -179,7 +179,7 @@ def _flat_patch(level: int, nu: float) -> float:
     source="Johnson 1985, Eqs (3.29)",
     metric="at_most",
     tolerance=1e-5,
-    tolerance_reason="as asked for plane problems",
+    tolerance_reason="as required for plane problems",
     tier="full",
     tags=("appendix-a", "fem"),
 )

@@ -52,7 +52,7 @@ def flat_errors(levels: Sequence[int] = LEVELS) -> list[Array]:
     source="Love 1929; Johnson 1985, 3.2",
     metric="at_most",
     tolerance=2e-3,
-    tolerance_reason="asked of the flat boundary in 3-D; this middle mesh leaves 1.4e-3, the finest 2e-4",
+    tolerance_reason="required of the flat boundary in 3-D; this middle mesh leaves 1.4e-3, the finest 2e-4",
     tags=("appendix-a", "fem", "3-d"),
 )
 def flat_boundary() -> Measured:
@@ -69,7 +69,7 @@ def flat_boundary() -> Measured:
     source="refimpl/data/coefficient_error_3d.json",
     metric="at_most",
     tolerance=2e-3,
-    tolerance_reason="0.2 percentage points of flat, as asked of 3-D; one mesh and boundary leave 6e-4",
+    tolerance_reason="0.2 percentage points of flat, as required in 3-D; one mesh and boundary leave 6e-4",
     tags=("appendix-a", "fem", "3-d", "map"),
 )
 def one_point() -> Measured:
@@ -130,7 +130,7 @@ def flank_uncertainty() -> Measured:
     source="exact tractions of a facet; " + SOURCE,
     metric="at_least",
     tolerance=5.0,
-    tolerance_reason="asked of the correction; measured 33, 11 and 8 at 1, 2 and 3 elements",
+    tolerance_reason="required of the correction; measured 33, 11 and 8 at 1, 2 and 3 elements",
     tier="full",
     tags=("appendix-a", "fem", "3-d", "correction"),
 )
@@ -159,7 +159,7 @@ def correction_drop(nu: float) -> Measured:
     source="appendix_a.fem3d.leading_order; " + SOURCE,
     metric="at_least",
     tolerance=5.0,
-    tolerance_reason="asked of the first-order part; the correction alone reaches 9, 4.3 and 3.6 here",
+    tolerance_reason="required of the first-order part; the correction alone reaches 9, 4.3 and 3.6 here",
     tier="full",
     tags=("appendix-a", "fem", "3-d", "correction"),
 )

@@ -113,7 +113,7 @@ def two_percent() -> Measured:
     source="three meshes and three outer boundaries each; appendix_a.fem3d.study",
     metric="at_most",
     tolerance=0.2,
-    tolerance_reason="percentage points, as asked of three dimensions, a tenth of the paper's 2 %",
+    tolerance_reason="percentage points, as required in three dimensions, a tenth of the paper's 2 %",
     tags=("appendix-a", "fem", "3-d", "map"),
 )
 def error_map() -> Measured:

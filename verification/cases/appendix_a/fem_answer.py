@@ -1,4 +1,4 @@
-"""What finite elements say of the paper's Appendix A: how wrong, how far, how independent, and the cure."""
+"""Finite-element check of the paper's Appendix A: size and reach of its errors, independence, correction."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from verification.framework.verdict import Verdict, judged
 
 Array = NDArray[np.float64]
 CURVE = np.array([x for x in np.linspace(-12.0, 12.0, 49) if x != 0.0])
-TIP = np.array([2.0, 3.0, 6.0, 12.0])  # offsets at which a tip is told
+TIP = np.array([2.0, 3.0, 6.0, 12.0])  # offsets at which a tip is distinguished
 
 
 def odd(values: Array) -> Array:
@@ -109,7 +109,7 @@ def correction() -> Measured:
     metric="at_most",
     tolerance=2e-3,
     tolerance_reason="relative to the formula, extrapolated from 5 and 10 degrees at a wavelength of 400 a: "
-    "tan(10)^4 is left out, 1e-3, and curvature, (k x)^2 of a tenth",
+    "tan(10)^4 is neglected, 1e-3, and curvature, (k x)^2 of a tenth",
     tags=("appendix-a", "fem", "correction"),
 )
 def remainder() -> Measured:

@@ -50,7 +50,7 @@ def declare(
         source="scikit-fem, second-order elements, contact on the deformed facets",
         metric="at_most",
         tolerance=2.0,
-        tolerance_reason="percent: the paper's 'less than 2 %' for its coefficients, asked of the results",
+        tolerance_reason="percent: the paper's 'less than 2 %' for its coefficients, applied to the results",
         tier="full",
         tags=("appendix", "model form"),
     )

@@ -16,7 +16,7 @@ from verification.framework.registry import case
 SOURCE = "Tranter 1948; paper Eqs (A4)-(A9), derived anew"
 SEED = 2001
 FLOOR = 1e-12
-"""The digits asked for in the limits towards the faces."""
+"""Required digits in the limits towards the faces."""
 
 
 def random_points(count: int) -> Iterator[tuple[float, float, float]]:
@@ -69,7 +69,7 @@ def faces() -> Measured:
     source="equilibrium and compatibility, by differences of order 16 and the mean value property",
     metric="at_most",
     tolerance=1e-10,
-    tolerance_reason="as asked for; rounding of 1e-15 over a step of at least 1e-4 gives 1e-11",
+    tolerance_reason="as required; rounding of 1e-15 over a step of at least 1e-4 gives 1e-11",
     tags=("appendix", "wedge"),
 )
 def balance() -> Measured:
@@ -87,7 +87,7 @@ def balance() -> Measured:
     source=SOURCE,
     metric="at_most",
     tolerance=1e-10,
-    tolerance_reason="as asked for; expected 1e-13, the rounding 1e-15 times (a/r)^(1/2) <= 100",
+    tolerance_reason="as required; expected 1e-13, the rounding 1e-15 times (a/r)^(1/2) <= 100",
     tags=("appendix", "wedge"),
 )
 def double_precision() -> Measured:
@@ -106,7 +106,7 @@ def double_precision() -> Measured:
     source=SOURCE,
     metric="at_most",
     tolerance=1e-19,
-    tolerance_reason="the coarser run is asked for 1e-20",
+    tolerance_reason="the coarser run has the tolerance 1e-20",
     tags=("appendix", "wedge"),
 )
 def two_precisions() -> Measured:

@@ -184,7 +184,7 @@ def skew_coupling() -> Measured:
 def flat_tips() -> Measured:
     scene = rf.read_scene("table1-smooth")
     solution = rf.solve(scene, 64, oblique=False)
-    # of the elements that carry tau: an alternating contact edge excludes some, and Eq. (1) none
+    # sum over the elements that carry tau: an alternating contact edge excludes some, and Eq. (1) none
     area = np.count_nonzero(solution.contact & ~solution.excluded) * solution.grid.element_area
     return Measured(
         value=friction_coefficient_at(scene.friction, solution.normal_force / area),

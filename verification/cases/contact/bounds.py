@@ -55,7 +55,7 @@ def energy_of(golden: Golden, pressure: Array) -> float:
 
 
 def same_support(golden: Golden, found: rf.Solution) -> bool:
-    """Whether the solution holds tau where the proof does."""
+    """True if the solution's active set of tau is the proven one."""
     law = golden.scene.friction
     if law.tau == 0:
         return True
@@ -143,7 +143,7 @@ def any_state() -> Measured:
     source=SOURCE,
     metric="at_most",
     tolerance=1.0,
-    tolerance_reason=PROVEN + "; differences below 1e-15 of a number are the double's own and left out",
+    tolerance_reason=PROVEN + "; differences below 1e-15 of a number are the double's own and neglected",
     tags=("certificate", "rigorous", "friction"),
 )
 def numbers() -> Measured:

@@ -230,7 +230,7 @@ def _radius_note(shifts: int, M: int) -> str:
     source=SOURCE + "; Yastrebov et al. 2017 for the correction",
     metric="relative",
     tolerance=1e-3,
-    tolerance_reason="first order in h/a = 0.014: the correction takes off the mean excess of whole elements "
+    tolerance_reason="first order in h/a = 0.014: the correction subtracts the mean excess of whole elements "
     "and a third more, so 5e-4 too small as measured, 2.5e-4 on half the element",
     tags=("hertz", "area"),
 )

@@ -51,7 +51,7 @@ def largest(by_scene: Mapping[str, float]) -> Measured:
     source=SOLVERS,
     metric="at_most",
     tolerance=1e-9,
-    tolerance_reason="both solvers are asked for residuals of 1e-12; a thousand times that",
+    tolerance_reason="both solvers have the tolerance 1e-12; a thousand times that",
     tags=("solvers", "rectangle"),
 )
 def dense_pressure() -> Measured:
@@ -153,7 +153,7 @@ def _like(z: Array, grid: Grid) -> tuple[float, float]:
 
 
 def decided(solution: rf.Solution) -> bool:
-    """Whether the proven bounds decide of every element whether it is in contact."""
+    """True if the proven bounds decide the contact of every element."""
     bounds = solution.bounds
     return bool(np.all(bounds.in_contact | bounds.out_of_contact))
 
@@ -230,7 +230,7 @@ def embedded(before: int, after: int) -> tuple[rf.Solution, rf.Solution, Mask]:
     source="Eq. (7): the half-space ends nowhere",
     metric="at_most",
     tolerance=1e-9,
-    tolerance_reason="residuals of 1e-12 are asked for; a thousand times that",
+    tolerance_reason="residuals of 1e-12 are required; a thousand times that",
     tags=("rectangle",),
 )
 def embedding() -> Measured:
@@ -304,7 +304,8 @@ def hertz_peak_order() -> Measured:
 @case(
     "rectangles/hertz-approach-order",
     title="Hertz on rectangles with oblong elements: order of the approach",
-    claim="the error of the approach, from first touch of the elements, falls with the square of the element",
+    claim="the error of the approach, from first contact of the elements, falls with the square of the "
+    "element",
     source="Hertz 1882; Johnson 1985, section 4.2",
     metric="absolute",
     tolerance=0.15,

@@ -79,7 +79,7 @@ def agreement(peer: Peer) -> Measured:
 
 PEER_TOLERANCE = 1e-6
 PEER_REASON = (
-    "relative to the peak; both solvers are asked for a relative gap of 1e-12, whose root bounds the error "
+    "relative to the peak; both solvers have the tolerance 1e-12 of the gap, whose root bounds the error "
     "in the energy norm. Measured 4e-12 with Tamaas 2.9.0 and ContactMechanics 1.8.3"
 )
 
@@ -125,8 +125,7 @@ SEEDS = range(8)
 
 @dataclass(frozen=True)
 class Kappas:
-    """Of each spectrum its Hurst exponent, Nayak's parameter and kappa of every seed, ``(spectra,
-    seeds)``."""
+    """Hurst exponent and Nayak's parameter of each spectrum, kappa of every seed ``(spectra, seeds)``."""
 
     hurst: Array
     nayak: Array

@@ -67,8 +67,8 @@ def hertz_area() -> Measured:
 
 @case(
     "accuracy/hertz-summits",
-    title="Bars of f_max, of the approach, and of the force at an approach on the Hertz contact",
-    claim="each is within its 95 % bar, of one grid, wherever between elements the summits lie",
+    title="Error bars of p_max, of the approach, and of the force at an approach on the Hertz contact",
+    claim="each is within its 95 % bar, of one grid, wherever between elements the peaks lie",
     source="Hertz 1882; Johnson 1985, section 4.2",
     metric="at_least",
     tolerance=0.92,
@@ -140,7 +140,7 @@ def stress_similarity() -> Measured:
     "accuracy/coverage",
     title="Bars of accuracy=0.01 on random scenes",
     claim="the true error of mu, A, corrected A and f_max lies inside the 95 % bar",
-    source="grids twice as fine as any asked for; committed for 224 scenes in coverage.json",
+    source="grids twice as fine as any requested; committed for 224 scenes in coverage.json",
     metric="at_least",
     tolerance=0.92,
     tolerance_reason="what a perfect 95 % bar passes with 97 % probability on 200 scenes",

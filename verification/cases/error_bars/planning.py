@@ -92,7 +92,7 @@ def operations() -> Measured:
 
 @case(
     "planning/cerruti",
-    title="Shear kernels that no scene asked for",
+    title="Shear kernels that no scene requires",
     claim="no tangential kernel is built or applied without friction, for identical materials without slope"
     " terms, and at an accuracy that shear's tilt does not reach; one is where shear matters",
     source=SOURCE,

@@ -30,7 +30,7 @@ def studied() -> list[Trial]:
 
 
 def neglected() -> list[Trial]:
-    """Those that the plan neglects at the accuracy."""
+    """Terms that the plan neglects at the accuracy."""
     return [trial for trial in studied() if trial.neglected]
 
 
@@ -65,7 +65,7 @@ def ratio(trial: Trial) -> float:
     source=SOURCE,
     metric="at_least",
     tolerance=0.95,
-    tolerance_reason="asked of estimates that stand in an error bar of 95 %",
+    tolerance_reason="required of estimates that stand in an error bar of 95 %",
     tier="full",
     tags=("planning",),
 )
@@ -86,7 +86,7 @@ def estimates_bound() -> Measured:
     source="difference of two solves, with exact facet tractions and with the printed ones, on 256 x 256",
     metric="at_least",
     tolerance=0.95,
-    tolerance_reason="asked of all estimates alike",
+    tolerance_reason="required of all estimates",
     tier="full",
     tags=("planning",),
 )
@@ -106,7 +106,7 @@ def correction_bound() -> Measured:
     source=SOURCE,
     metric="at_most",
     tolerance=20.0,
-    tolerance_reason="asked of estimates that are to neglect what they can; no effect counts as infinite",
+    tolerance_reason="required of estimates that justify neglected terms; no effect counts as infinite",
     tier="full",
     tags=("planning",),
 )
@@ -128,7 +128,7 @@ def estimates_tight() -> Measured:
     source=SOURCE,
     metric="at_least",
     tolerance=0.5,
-    tolerance_reason="asked of a planner; terms that come with another's kernel count as not neglected",
+    tolerance_reason="required of a planner; terms that come with another's kernel count as not neglected",
     tier="full",
     tags=("planning",),
 )

@@ -17,7 +17,7 @@ from verification.framework.registry import case
 
 SIDE, SOFT = 1e-3, 1e9  # m; Pa, the more compliant body's modulus
 FINER = 4  # times the elements per side of the reference
-SCENES = 100  # of each kind
+SCENES = 100  # scenes of each kind
 HELD = 0.92  # share of scenes; what a perfect bar of 95 % passes with 94 % probability
 SOURCE = "finer grids; Eqs (3) and (5): Cerruti's part of the gap"
 
@@ -37,7 +37,7 @@ class Off(NamedTuple):
 
 
 def off(scene: rf.Scene, M: int, approach: float | None = None) -> dict[str, Off]:
-    """Of the approach, or of N and f_max at one (m): differences from a finer grid, and a third of them more.
+    """Errors of the approach, or of N and p_max at an approach (m): 4/3 of differences from a finer grid.
 
     That much the finer grid may be off itself, where errors fall with the element only.
     """

@@ -106,7 +106,7 @@ def finite_differences() -> Measured:
     source="the same derivatives on 512 x 512; Q over the load",
     metric="at_most",
     tolerance=0.01,
-    tolerance_reason="asked of a budget: a hundredth of an input's tolerance",
+    tolerance_reason="required of a budget: a hundredth of an input's tolerance",
     tier="full",
     tags=("sensitivity",),
 )

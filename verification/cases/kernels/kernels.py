@@ -24,7 +24,7 @@ LOVE_SOURCE = "Love 1929; Johnson 1985, Eq. (3.25); paper section 3"
 CERRUTI_SOURCE = "Cerruti 1882; Johnson 1985, section 3.6; paper section 3"
 TOLERANCE = 1e-14
 REASON = (
-    "ten times below the 1e-13 asked for. Closed form: at most q_x + q_y + 2 = 14 times the rounding of one "
+    "ten times below the required 1e-13. Closed form: at most q_x + q_y + 2 = 14 times the rounding of one "
     "edge, about 5 eps/2, or 8e-15; quadrature: 1e-15 by its bound, and as much rounding. Measured 2e-15"
 )
 
@@ -42,7 +42,7 @@ def worst(
 
 
 def all_points() -> dict[str, Iterable[Point]]:
-    """What both integrals are judged at."""
+    """Points at which both integrals are judged."""
     return {
         "random": random_points(seed=2001, count=800),
         "centre, edges, corners, far ends": awkward_points(),

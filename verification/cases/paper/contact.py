@@ -112,7 +112,7 @@ FIG6_VERDICTS = {
     0.511e-6: Verdict.CONDITIONAL,
     2.69e-6: Verdict.CONFIRMED,
 }
-FIG6_TOLERANCE = {"a": 0.95, "b": 0.45, "c": 0.30}  # of 75 realisations
+FIG6_TOLERANCE = {"a": 0.95, "b": 0.45, "c": 0.30}  # misfit of 75 realisations
 
 
 def _declare_fig6(rms: float, panel: str) -> None:
@@ -151,7 +151,7 @@ def _declare_fig6(rms: float, panel: str) -> None:
     source="paper Fig. 6(d)",
     metric="at_least",
     tolerance=2.0,
-    tolerance_reason="largest pressure outside the Hertz circle over Hertz' peak; above 1 the claim holds",
+    tolerance_reason="maximum pressure outside the Hertz circle over Hertz' peak; above 1 the claim holds",
     tags=("reproduction", "fig6"),
 )
 def contact_map() -> Measured:
@@ -166,7 +166,7 @@ def contact_map() -> Measured:
         "side (mm)": SMOOTH.lengths[0] * 1e3,
         "Hertz radius (mm)": hertz().contact_radius * 1e3,
     }
-    sentence = f"largest pressure outside: {peak:.1f} p0; contact out to {farthest:.2f} a0"
+    sentence = f"maximum pressure outside: {peak:.1f} p0; contact out to {farthest:.2f} a0"
     return judged(Verdict.CONFIRMED, sentence, peak, data=data)
 
 

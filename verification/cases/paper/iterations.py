@@ -1,4 +1,4 @@
-"""What the paper's scheme goes through: iterations of each loop, and the periodicity error it corrects."""
+"""Course of the paper's scheme: iterations of each loop, and the periodicity error it corrects."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def distance(found: rf.Solution, reference: rf.Solution) -> float:
 
 
 def load_share(trial: Trial) -> float:
-    """What the load's tolerance allows the pressure: its change over the peak when the load grows by 1e-4."""
+    """Change of the pressure that the load's tolerance allows: over the peak when the load grows by 1e-4."""
     if "approach" in trial.options:
         return 0.0
     heavier = replace(trial.scene, load=trial.scene.load * (1 + PAPER_TOLERANCE))

@@ -32,13 +32,13 @@ ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
 NAMES = {
     "friction_coefficient": ("mu", "friction coefficient"),
     "contact_area": ("area", "contact area"),
-    "max_pressure": ("peak", "largest pressure"),
+    "max_pressure": ("peak", "maximum contact pressure"),
 }
-DECIMAL = {"friction_coefficient": 0.01, "contact_area": 0.01e-6, "max_pressure": 0.01e9}  # of mm^2 and GPa
+DECIMAL = {"friction_coefficient": 0.01, "contact_area": 0.01e-6, "max_pressure": 0.01e9}  # mm^2, GPa
 FULL = {"friction_coefficient": 0.02, "contact_area": 0.06, "max_pressure": 0.08}
 QUICK = {"friction_coefficient": 0.08, "contact_area": 0.20, "max_pressure": 0.20}
 REASON = (
-    "full, 512 x 512 and 75 realisations: what a reproduction of such a table is asked for. Sampling alone "
+    "full, 512 x 512 and 75 realisations: the requirement on a reproduction of such a table. Sampling alone "
     "leaves between two such ensembles, 95 %: mu 0.5, A 2 to 3, f_max 4 to 8 %. Quick, 128 x 128 and six "
     "realisations: three standard errors (mu 2, A 11, f_max 17 %) and the departure of the full ensemble on "
     "that mesh (mu 5, A 7, f_max 5 %)"
@@ -132,7 +132,7 @@ def scatter(tier: str) -> Measured:
     source="paper Eq. (10)",
     metric="at_most",
     tolerance=0.03,
-    tolerance_reason="largest error of a single solution: what Eq. (10) leaves out is the elastic part, "
+    tolerance_reason="largest error of a single solution: the part that Eq. (10) neglects is elastic, "
     "first order in the mean slope under load, whose scatter is 1 % of mu",
     tags=("eq10",),
 )
@@ -199,7 +199,7 @@ def _percent(shares: list[float]) -> str:
     tags=("reproduction", "table3"),
 )
 def digits() -> Measured:
-    """Of the printed numbers alone."""
+    """Check of the printed numbers alone."""
     data: dict[str, object] = {"flat rms (um)": [found.flat_rms * 1e6 for found in TABLE3]}
     shown, largest = [], 0.0
     within: dict[bool, list[str]] = {True: [], False: []}

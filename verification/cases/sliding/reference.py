@@ -38,7 +38,7 @@ def centroid(solution: rf.Solution, x: Array) -> float:
 
 
 def wave_centroid(wave: SlidingWave) -> float:
-    """The same (m) of the exact pressure."""
+    """Centroid (m) of the exact pressure."""
     moment = quad(lambda x: x * float(wave.pressure(x)), *wave.edges, epsrel=1e-9)[0]
     return float(moment / (wave.mean_pressure * wave.wavelength))
 
@@ -89,8 +89,8 @@ def sliding_wave_pressure() -> Measured:
 @case(
     "reference/sliding-wave-adhesive",
     title="A sliding wave with the binomial law",
-    claim="Shear tau + beta p: a constant tau shifts the contact further, and tau left out would miss by 2 % "
-    "of p*",
+    claim="Shear tau + beta p: a constant tau shifts the contact further, and without tau the error would be "
+    "2 % of p*",
     source="verification.exact.sliding_wave; paper Eq. (8)",
     metric="at_most",
     tolerance=6e-3,
@@ -123,7 +123,7 @@ def sliding_cylinder_shift() -> Measured:
     radius = (WAVELENGTH / (2 * np.pi)) ** 2 / AMPLITUDE
     cylinder = SlidingCylinder(share * STAR * WAVELENGTH, radius, MODULUS, COUPLING, 0.0, BETA)
     _, solution = sliding_wave(share, M)
-    # the periodic problem has no mean shear: that part, d beta p, is taken off as a shift of the cylinder
+    # the periodic problem has no mean shear: that part, d beta p, is subtracted as a shift of the cylinder
     moved = 2 * radius * COUPLING * BETA * share * STAR / MODULUS
     found = centroid(solution, centres(WAVELENGTH, M)[0]) - moved
     data = {"half-width": cylinder.half_width, "exponent": cylinder.exponent}

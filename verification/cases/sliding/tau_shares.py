@@ -26,7 +26,7 @@ APART = 2071
 ONSET = 1e-4
 """Of p_max: the pressure at which all of tau is on. A tenth of it moves mu of single elements by up to 0.3
 error bars, and none beyond its bar."""
-UPDATES = 60  # of the shares
+UPDATES = 60  # limit of updates of the shares
 TOLERANCE = 1e-9
 SOURCE = "Eq. (8); its jump is the limit of such laws"
 CLAIM = (
@@ -172,4 +172,4 @@ def nine_scenes() -> Measured:
     tags=("tau", "uncertainty"),
 )
 def bars_at_128() -> Measured:
-    return apart([(seed, 128) for seed in SCENES], least=20)  # of error bars of 95 % one in twenty may miss
+    return apart([(seed, 128) for seed in SCENES], least=20)  # one in twenty error bars of 95 % may miss

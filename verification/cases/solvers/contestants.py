@@ -22,7 +22,7 @@ def verdicts(fault: Fault) -> dict[str, str]:
 
 @case(
     "contestants/own-solver",
-    title="Our own solver through the suite for contestants",
+    title="The project's own solver through the suite for other solvers",
     claim="refimpl's production solver passes every case that other solvers are put to",
     source=SOURCE,
     metric="equal",
@@ -70,8 +70,8 @@ for _fault in BROKEN:
 
 @case(
     "contestants/each-case-earns-its-place",
-    title="Cases of the suite against broken solvers",
-    claim="Every case of the suite fails at least one of the broken solvers",
+    title="Cases of the suite against faulty solvers",
+    claim="Every case of the suite fails at least one of the faulty solvers",
     source=SOURCE,
     metric="equal",
     tolerance=0.0,

@@ -13,7 +13,7 @@ from verification.framework.registry import case
 from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "principal pivoting on dense matrices (Murty 1974; Judice and Pires 1994)"
-REASON = "asked of both solvers is 1e-12; a thousand times that is still below what any grid resolves"
+REASON = "required of both solvers is 1e-12; a thousand times that is still below what any grid resolves"
 ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
 
 

@@ -175,8 +175,8 @@ def condition() -> Measured:
 
 @case(
     "extremes/beyond-rounding",
-    title="A tolerance below rounding is not met, and no solver says so",
-    claim="asked for residuals of 1e-18 every method returns another status than CONVERGED",
+    title="A tolerance below rounding is not met, and no solver reports success",
+    claim="with the tolerance 1e-18 every method returns another status than CONVERGED",
     source="double precision: eps = 2.2e-16",
     metric="equal",
     tolerance=0.0,

@@ -16,7 +16,7 @@ from verification.golden.store import Golden, enclosed, named, relative, stored
 
 SOURCE = "ball arithmetic (python-flint) on Love's and Cerruti's coefficients: verification/golden"
 METHODS: tuple[Method, ...] = ("dense", "fft")
-ASKED = "solvers are asked for residuals of 1e-12; the error of a force or of the approach is of second order"
+ASKED = "solvers have the tolerance 1e-12; the error of a force or of the approach is of second order"
 
 
 @cache
@@ -53,7 +53,7 @@ def measured(errors: dict[str, list[float]]) -> Measured:
     source=SOURCE,
     metric="equal",
     tolerance=0.0,
-    tolerance_reason="margins are proven, 1e-10 of the approach at least; solvers are asked for 1e-12",
+    tolerance_reason="margins are proven, 1e-10 of the approach at least; solvers have the tolerance 1e-12",
     tags=("solvers", "rigorous"),
 )
 def contact_sets() -> Measured:
@@ -80,7 +80,7 @@ def pressure_error(golden: Golden, found: rf.Solution) -> float:
     source=SOURCE,
     metric="at_most",
     tolerance=1e-11,
-    tolerance_reason="residuals of 1e-12 are asked for, conditioning may cost a digit; 6e-13 was measured",
+    tolerance_reason="residuals of 1e-12 are required, conditioning may cost a digit; 6e-13 was measured",
     tags=("solvers", "rigorous"),
 )
 def pressure() -> Measured:

@@ -29,7 +29,7 @@ def rough(seed: int) -> SelfAffineRoughness:
 
 @cache
 def spectrum() -> tuple[Array, Array, Array]:
-    """Of half the periodic domain's waves, by the specified PSD: wave number, squared coefficient of every
+    """Waves of half the periodic domain, by the specified PSD: wave number, squared coefficient of every
     seed ``(seeds, waves)``, and its expectation for unit rms height."""
     fields = [rough(seed).sample(Grid.square(SIDE, POINTS, periodic=True)) for seed in SEEDS]
     q = 2 * math.pi * np.fft.fftfreq(POINTS, SIDE / POINTS)

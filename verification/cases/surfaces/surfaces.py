@@ -152,7 +152,7 @@ def same_surface() -> Measured:
 
 @case(
     "surfaces/normalised-rms",
-    title="A normalised realisation has the rms asked for",
+    title="A normalised realisation has the requested rms",
     claim="normalise=True gives the continuous surface, not some grid, that rms over the square",
     source="paper section 6.1",
     metric="relative",

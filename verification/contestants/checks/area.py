@@ -1,9 +1,9 @@
 """Which elements are in contact: those where f > 0, and no others.
 
 An answer within a claim g may take an element for the wrong one only in doubt: its squared energy-norm error
-is at most half of g (proven), so an element that should carry more than 10 sqrt(g) of the peak cannot be left
-out, and where its own displacements leave more than 4 sqrt(g) of the approach open it knows better than to
-press. That is 1 % and 0.4 % at the laxest claim, 1e-6. On these gaps no element is so near to changing sides
+is at most half of g (proven), so an element that should carry more than 10 sqrt(g) of the peak must be
+loaded, and an element whose own displacements leave more than 4 sqrt(g) of the approach open must be
+free. That is 1 % and 0.4 % at the laxest claim, 1e-6. On these gaps no element is so near to changing sides
 (both bounds are computed in the tests), so that nothing is excused.
 """
 
@@ -64,7 +64,7 @@ def contact_set_periodic(entrant: Entrant) -> Measured:
 
 
 def touching_apart(entrant: Entrant, gap: Array, near: float, apart: float, *, periodic: bool) -> Measured:
-    """Number of elements with any pressure at an approach out of reach, asked for after one that is not.
+    """Number of elements with any pressure at an approach out of reach, posed after one within reach.
 
     Raises ValueError where nothing presses within reach either: that would be no answer, but a habit.
     """
@@ -92,7 +92,7 @@ def out_of_reach(entrant: Entrant) -> Measured:
 @check(
     "out-of-reach-periodic",
     title="A periodic rough plane drawn back: nothing touches",
-    claim="Where the mean planes are farther apart than the highest summit no element has any pressure",
+    claim="Where the mean planes are farther apart than the highest peak no element has any pressure",
     source="f (u + gap - approach) = 0",
     metric="at_most",
     tolerance=0.0,

@@ -26,7 +26,7 @@ ALWAYS = (Fault.MODULUS_OFF, Fault.MODULUS_DOUBLED, Fault.NEAR_FIELD)
 @check(
     "one-element",
     title="One element pressed in",
-    claim="A single loaded element carries pi E* h/(4 arsinh 1) per metre of approach",
+    claim="A single loaded element carries pi E* h/(4 arsinh 1) per m of approach",
     source="Love 1929: the centre of a uniformly loaded square",
     metric="at_most",
     tolerance=1.0,

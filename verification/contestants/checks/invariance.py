@@ -1,4 +1,4 @@
-"""What a solver must not notice: orientation, place, units and surroundings.
+"""Invariance of solutions to orientation, place, units and surroundings.
 
 Two answers of one claim differ by at most four claims: twice the error in the energy norm, squared.
 """
@@ -60,7 +60,7 @@ def transposition(entrant: Entrant) -> Measured:
 
 @check(
     "units",
-    title="Micrometres and pascals, metres and gigapascals",
+    title="um and Pa, m and GPa",
     claim="A square a million times smaller of a material 2^30 times softer has proportional pressures",
     source="dimensional analysis",
     metric="at_most",

@@ -1,4 +1,4 @@
-"""What a solver was asked before must not show: problems in turn that differ in one parameter at a time.
+"""Independence of earlier problems: problems in turn that differ in one parameter at a time.
 
 Codes keep transforms of their kernels, or whole answers, and may forget what these were made for. Each answer
 is judged by itself, so that what is wrong in all of them shows as well. (c0 and the direction are changed in

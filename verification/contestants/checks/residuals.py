@@ -13,7 +13,7 @@ from verification.framework.case import Measured
 
 SOURCE = "the contact conditions themselves, with displacements by dense matrices of the textbook's formulas"
 PERIODIC_SOURCE = "the contact conditions themselves, with displacements by the exact Fourier symbols"
-CLAIM = "in claims: a solver is held to the residual that it says it reached, and to rounding"
+CLAIM = "in claims: a solver is held to the residual that it reports, and to rounding"
 ALWAYS = (
     Fault.STUCK,
     Fault.SINGLE_PRECISION,
@@ -27,7 +27,7 @@ AND_MEAN = (
     "of the mean's, at most K (f, a f)/N^2 times that with K the contact's stiffness (Cauchy and Schwarz): "
 )
 LOADS = (0.001, 0.01, 0.05)
-"""Load (N) over E* times the unit square: from a few summits to half the elements."""
+"""Load (N) over E* times the unit square: from a few peaks to half the elements."""
 
 
 def judged(entrant: Entrant, pressed: Pressed) -> Measured:

@@ -22,7 +22,7 @@ NOISE = np.random.default_rng(45).standard_normal((M, M))
 SLOPES = [math.radians(d) for d in (0.01, 0.1, 1, 3, 6.5, 10, 15, 20, 25, 30, 35, 40, 45)]
 AMPLITUDES = [10.0**k for k in range(-18, -6)]
 OFFSETS = [2.0**k for k in range(0, 61, 6)]
-"""Of the heights, over their range; 2^20 is the million asked for."""
+"""Offset of the heights, over their range; 2^20 is the required million."""
 WRONG_BEYOND_DATA = 300.0
 """Error allowed, in units of the data's own: rounding of heights at an offset, through the flexibility's
 inverse (condition number 30 at this size) and the relative size of gap and approach."""

@@ -1,0 +1,108 @@
+"""The language of code, docstrings and messages: patterns of ``language.toml`` that no reader should meet.
+
+An exception stands in ``EXCEPTIONS`` with its reason; one that matches nothing any more is a failure.
+"""
+
+from __future__ import annotations
+
+import ast
+import io
+import re
+import tokenize
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.layers import ROOT
+
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
+PATTERNS = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))["pattern"]
+FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+
+VERDICT = "verdict in recorded results"
+SUMMITS = "summits in the sense of Nayak, and of Greenwood and Tripp"
+KEY = "key of recorded results"
+FAULT = "name of a fault in recorded results"
+
+EXCEPTIONS: dict[tuple[str, str], str] = {
+    ("reports/recorded.py", "withheld"): "former key, in the example of a renamed one",
+    ("reports/reproduction_figures.py", "summits"): SUMMITS,
+    ("reports/studies/benchmarks.py", "seconds again"): KEY,
+    ("reports/studies/extremes.py", "honest failure"): VERDICT,
+    ("reports/studies/tradeoff.py", "left out"): KEY,
+    ("verification/benchmarks/summary.py", "seconds again"): KEY,
+    ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
+    ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
+    ("verification/cases/paper/contact.py", "summit"): SUMMITS,
+    ("verification/cases/paper/contact.py", "summits"): SUMMITS,
+    ("verification/cases/solvers/extremes.py", "honest failure"): VERDICT,
+    ("verification/cli/tradeoff.py", "left out"): KEY,
+    ("verification/contestants/check.py", "left out"): FAULT,
+    ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
+    ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
+    ("verification/extremes/state.py", "honest failure"): VERDICT,
+    ("verification/matrix/appendix_faults.py", "left out"): FAULT,
+    ("verification/matrix/faults.py", "left out"): FAULT,
+    ("verification/reproduction/fig6.py", "summit"): SUMMITS,
+    ("verification/reproduction/fig6.py", "summits"): SUMMITS,
+    ("verification/tradeoff/study.py", "left out"): KEY,
+}
+"""Reasons, by file and matched text."""
+
+
+def texts(source: str) -> Iterator[tuple[int, str]]:
+    """Line and text of comments, public docstrings, messages (other strings with a space); no keys."""
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT:
+            yield token.start[0], token.string
+    tree = ast.parse(source)
+    private = set()
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        named = getattr(node, "name", "")
+        if isinstance(body, list) and body and isinstance(body[0], ast.Expr):
+            docstring = body[0].value
+            if isinstance(docstring, ast.Constant) and isinstance(docstring.value, str):
+                private.add(docstring)
+                if not named.startswith("_"):
+                    yield docstring.lineno, f'"""{docstring.value}'
+        if isinstance(node, ast.Subscript | ast.Dict):  # keys belong to file formats
+            private.update([node.slice] if isinstance(node, ast.Subscript) else node.keys)
+    for node in ast.walk(tree):
+        message = isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value
+        if message and node not in private:
+            yield node.lineno, node.value
+
+
+def found(path: Path) -> list[tuple[int, str, str]]:
+    """Line, matched text and advice of every match in a file."""
+    matches = []
+    for line, text in texts(path.read_text(encoding="utf-8")):
+        for pattern in PATTERNS:
+            for match in re.finditer(pattern["match"], text, re.IGNORECASE):
+                at = line + text.count("\n", 0, match.start())
+                matches.append((at, match.group(), pattern["instead"]))
+    return matches
+
+
+def test_there_are_at_most_forty_patterns() -> None:
+    assert len(PATTERNS) <= 40
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_pattern_is_used(path: Path) -> None:
+    name = str(path.relative_to(ROOT))
+    assert [m for m in found(path) if (name, m[1].lower()) not in EXCEPTIONS] == []
+
+
+def test_every_exception_is_needed() -> None:
+    used = {(str(path.relative_to(ROOT)), m[1].lower()) for path in FILES for m in found(path)}
+    assert set(EXCEPTIONS) <= used
+
+
+def test_a_pattern_is_found_where_it_stands() -> None:
+    source = '"""Summary.\n\nThe second line."""\n\nx = 1  # of the load\n\n\ndef _f():\n    "Private."\n'
+    assert next(text for _, text in texts(source)) == "# of the load"
+    assert re.search(PATTERNS[0]["match"], "x = 1  # of the load")
