@@ -35,7 +35,7 @@ from refimpl.model.state import Status
 
 _REACH = 2.0  # over the gap change by tau on single elements; with 1 slow convergence on 2048 x 2048, with 4
 #               a third more excluded elements (150 random scenes, 256 x 256)
-_LEAST_RATIO = 0.01  # of shear to normal compliance in the reach: tau of uncoupled bodies moves slopes only
+_LEAST_RATIO = 0.01  # least shear compliance in the reach, over the normal one: else tau moves only slopes
 _MOST_EXCLUDED = 0.5  # share of the contact; reached where tau is two to three times p_max
 _ACTIVE_SETS = 200  # limit of the loop
 _MOST_STAGNATED = 3  # solves in a row that do not converge: their contact sets are not the rule's
@@ -81,6 +81,7 @@ class FixedSet:
 class GradualSet:
     """All of tau on the contact, and a share of it up to a clearance of ``reach`` (m).
 
+    >>> from refimpl.model.friction import Friction
     >>> law = Friction(tau=2.0)
     >>> GradualSet(reach=1e-9).traction(law, np.array([5.0, 0.0, 0.0]), lambda: np.array([0.0, 5e-10, 2e-9]))
     array([2., 1., 0.])

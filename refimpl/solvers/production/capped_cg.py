@@ -14,7 +14,7 @@ import numpy as np
 from refimpl.grid import Array, Mask, inner
 from refimpl.model.certificate import relative_gap
 from refimpl.operators.preconditioner import Apply
-from refimpl.solvers.production.constants import CERTAINTY, VANISHING
+from refimpl.solvers.production.constants import VANISHING
 from refimpl.solvers.production.projected_cg import ProjectedCG
 from refimpl.solvers.production.step_length import cut_at_zero, longest_step
 
@@ -66,17 +66,13 @@ class CappedCG(ProjectedCG):
         return max(relative_gap(gap, energy), missed), max(0.0, approach - lowest) / (abs(approach) or 1.0)
 
     def contact_is_certain(self, stiffness: float) -> bool:
-        """Return whether the remaining error of the separation can change no element's contact.
+        """Return what `ProjectedCG` returns where no pressure is at the cap or near it, else False.
 
-        Without free elements nothing measures that error.
+        Load that elements at the cap do not bear may bring others into contact, however small the error of
+        the separation on the free ones is.
         """
-        if not self.free.any():
-            return False
-        v, approach = self.separation, self.approach
-        margin = CERTAINTY * float((np.abs(v - approach) * self.free).max())
-        pressing = np.count_nonzero(self.pressure > stiffness * margin)
-        close = np.count_nonzero(v <= approach + margin)
-        return bool(pressing == close == np.count_nonzero(self.contact))
+        below_cap = not self.capped.any() and bool(self._pressing.max(initial=0.0) < _FULL * self._cap)
+        return below_cap and super().contact_is_certain(stiffness)
 
     def iterate(self) -> None:
         """One step on the free elements, then the exchange of elements at both bounds."""
