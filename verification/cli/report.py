@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.errors import InputError
     from reports.generator import render
     from reports.result_files import result_paths
-    from reports.results import ResultFileError
+    from reports.results import CaseDataError, ResultFileError
     from verification.framework.files import write_text
 
     results = read_run(options.results)
@@ -75,7 +75,9 @@ def run(options: argparse.Namespace) -> int:
     line = StatusLine()
     try:
         page = render(results, committed, against, line.show)
-    except ResultFileError as alien:  # the runs are checked: it is a study
+    except ResultFileError as alien:
+        if isinstance(alien, CaseDataError) and alien.origin is None:
+            raise InputError("--results", str(options.results), f"a result file ({alien})") from alien
         raise InputError("--committed", str(folder), f"result files ({alien})") from alien
     finally:
         line.close()
@@ -131,14 +133,19 @@ def _checked(option: str, path: Path, found: object) -> Any:
 def _read(option: str, path: Path) -> Any:
     from refimpl.errors import InputError
     from reports.result_files import read_result
+    from verification.framework.files import is_stream
 
     try:
+        if is_stream(path) and not os.path.isdir(path):  # it may have no end
+            raise InputError(option, str(path), "a regular file")
         return read_result(path)
     except FileNotFoundError as missing:
         allowed = "a result file; make one with 'rough-friction verify --json FILE'"
         raise InputError(option, str(path), allowed) from missing
     except OSError as refused:
         raise InputError(option, str(path), f"a file that can be read ({refused.strerror})") from refused
+    except InputError:
+        raise
     except (ValueError, RecursionError) as broken:  # JSON, UTF-8, or thousands of digits
         raise InputError(option, str(path), f"JSON ({broken})") from broken
 
