@@ -13,14 +13,16 @@ from functools import partial
 import numpy as np
 
 import refimpl as rf
-from refimpl.driver.options import Request
-from refimpl.grid import Array, Grid
-from refimpl.model.problem import pose
+from refimpl.driver.options import Options
+from refimpl.grid import Array
+from refimpl.model.friction import is_frictionless
 from refimpl.operators.fft import Counter
+from refimpl.planning.terms import RequestedTerms
+from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
 from verification.adapters.peer import Peer
-from verification.benchmarks.problems import FRICTION, SIDE, problem, scene
+from verification.benchmarks.problems import FRICTION, problem, scene
 from verification.framework.provenance import DISTRIBUTION, versions
 
 OWN = "refimpl"
@@ -75,7 +77,7 @@ def _own(friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: flo
     def press() -> Pressed:
         found = rf.solve(posed, grid=M, oblique=oblique, tolerance=tolerance)
         work = {f"{name} products": float(n) for name, n in found.cost.applications.items()}
-        coupled = None if friction.is_zero and not oblique else found.certificate.worst
+        coupled = None if is_frictionless(friction) and not oblique else found.certificate.largest
         return Pressed(
             found.pressure,
             found.status in (rf.Status.CONVERGED, rf.Status.CYCLED),
@@ -87,15 +89,16 @@ def _own(friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: flo
 
 
 def _alone(kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
-    frictionless = Request(scene=scene(kind, M, rf.Friction()), grid=M, oblique=False)
-    posed = pose(frictionless.scene, Grid(SIDE, M), frictionless.plan().switches, None)
+    frictionless = scene(kind, M, rf.Friction())
+    plan = Options(scene=frictionless, grid=M, requested=RequestedTerms(oblique=False)).plan()
+    posed = discretise(frictionless, plan.grid, plan.switches)
 
     def press() -> Pressed:
         counter = Counter()
-        outcome, _ = solve_fft(posed, tolerance, counter)
+        result, _ = solve_fft(posed, tolerance, counter)
         work = {f"{name} products": float(n) for name, n in counter.tally.items()}
-        converged = outcome.status is rf.Status.CONVERGED
-        return Pressed(outcome.pressure, converged, work | {"n log2 n": counter.point_logs})
+        converged = result.status is rf.Status.CONVERGED
+        return Pressed(result.pressure, converged, work | {"n log2 n": counter.point_logs})
 
     return press
 

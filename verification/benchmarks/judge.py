@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft as sfft
 
-from refimpl.grid import Array, Grid
-from refimpl.grid.window import Window
+from refimpl.grid import Array, Grid, Window
 from refimpl.operators.fft import FFTInfluence
 from verification.contestants.protocol import ContactProblem
 
@@ -41,7 +40,7 @@ def judged(problem: ContactProblem, pressure: Array) -> Judgement:
     """
     if problem.load is None or problem.periodic or problem.coupling is not None:
         raise ValueError("only frictionless problems under a load, in free space")
-    operator = FFTInfluence(Grid(problem.side, problem.M), direction=0.0)
+    operator = FFTInfluence(Grid.square(problem.side, problem.M), direction=0.0)
     u = operator.normal(pressure) / (math.pi * problem.reduced_modulus)
     v, dA = u + problem.gap, problem.element_area
     energy = 0.5 * float(np.vdot(pressure, u)) * dA

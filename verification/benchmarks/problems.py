@@ -23,7 +23,7 @@ FLATS: dict[str, rf.Surface] = {
 @cache
 def heights(kind: str, M: int) -> tuple[Array, Array]:
     """Heights of flat and paraboloid at the element centres, each ``(M, M)`` (m)."""
-    grid = Grid(SIDE, M)
+    grid = Grid.square(SIDE, M)
     return FLATS[kind].heights(grid), SPHERE.heights(grid)
 
 

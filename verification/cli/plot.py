@@ -75,8 +75,8 @@ def _map(axes: Axes, solution: Solution, name: str, colours: str) -> None:
     import numpy as np
 
     field = np.ma.masked_equal(getattr(solution, name) / MEGA, 0.0)
-    edge = solution.grid.side / MILLI
-    image = axes.imshow(field.T, origin="lower", extent=(0, edge, 0, edge), cmap=colours)
+    width, height = (length / MILLI for length in solution.grid.lengths)
+    image = axes.imshow(field.T, origin="lower", extent=(0, width, 0, height), cmap=colours)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", title=name.capitalize())
     axes.figure.colorbar(image, ax=axes, label="MPa")
 
@@ -85,8 +85,10 @@ def _profile(axes: Axes, solution: Solution, hertz: HertzSphere | None, axis: in
     """Pressure and traction (MPa) along the line of elements next to the centre."""
     import numpy as np
 
-    middle = solution.grid.M // 2
-    s = solution.grid.centres - solution.grid.side / 2
+    grid = solution.grid
+    centred = [centres - length / 2 for centres, length in zip((grid.x, grid.y), grid.lengths, strict=True)]
+    s, across = centred[axis], centred[1 - axis]
+    middle = len(across) // 2
     for name, colour in (("pressure", BLUE), ("traction", ORANGE)):
         line = np.take(getattr(solution, name), middle, axis=1 - axis)
         axes.plot(s / MILLI, line / MEGA, color=colour, label=name, marker=".", markersize=3, linewidth=1)
@@ -95,7 +97,7 @@ def _profile(axes: Axes, solution: Solution, hertz: HertzSphere | None, axis: in
         label = "Hertz, smooth and frictionless"
         axes.plot(
             fine / MILLI,
-            hertz.pressure(np.hypot(fine, s[middle])) / MEGA,
+            hertz.pressure(np.hypot(fine, across[middle])) / MEGA,
             "--",
             color=BLACK,
             lw=1,

@@ -33,8 +33,8 @@ EPILOG = """examples:
   rough-friction solve scene.toml --approach 1.2e-6
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
-exit status: 0 CONVERGED, or CYCLED: a settled cycle of the elements that carry tau, certified too,
-and error bars hold what it may make; 1 any other status; 2 bad input
+exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge under tau, certified
+too, and error bars include what that leaves open; 1 any other status; 2 bad input
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
@@ -44,10 +44,15 @@ DEFAULT_GRID = 256
 METHODS = ("fft", "dense", "paper")
 ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 
+# Options with the names of `refimpl.solve`, and the switches of terms among them.
+PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
+SWITCHES = ("coupled", "oblique", "tilted", "slope_correction")
+
 # What to do about an end that is no success.
 NEXT = {
-    "STAGNATED": "a residual below stopped above the tolerance: loosen --tolerance, or coarsen --grid",
-    "ITERATION_LIMIT": "not done within the limits: a looser --tolerance or --accuracy, or more memory",
+    "STAGNATED": "not converged: a residual below stays above the tolerance; check units first "
+    "(E, tau, lengths)",
+    "ITERATION_LIMIT": "not converged within the limits: a looser --tolerance or --accuracy, or more memory",
     "NO_CONTACT": "nothing touches: prescribe a larger --approach, or leave it out to press with the load",
 }
 
@@ -95,19 +100,19 @@ def add_parser(commands: Parsers) -> None:
         "--oblique",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="keep or drop every slope term (default: the scene decides)",
+        help="include or exclude every slope term (default: the scene decides)",
     )
     add(
         "--coupled",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="keep or drop what shear does to the gap (default: the scene decides)",
+        help="include or exclude normal-tangential coupling (default: the scene decides)",
     )
     add(
         "--tilted",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="keep or drop what shear does to the slopes (default: the scene decides)",
+        help="include or exclude the slope change by shear (default: the scene decides)",
     )
     add("--slope-correction", action="store_true", help="exact tractions of oblique facets in Eq. (7)")
     add("--explain", action="store_true", help="print what the scene requires, and solve nothing")
@@ -126,8 +131,9 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
-    from refimpl.driver.options import Request
+    from refimpl.driver.options import Options
     from refimpl.errors import InputError
+    from refimpl.planning.terms import RequestedTerms
     from refimpl.scene.scene_file import read_tolerances
     from verification.cli import budget as budget_lines
     from verification.cli import explain, plot, vtk
@@ -138,23 +144,15 @@ def run(options: argparse.Namespace) -> int:
     scene = refimpl.read_scene(options.scene)
     inputs = [Path(options.scene), *files_of(scene)]
     check_outputs(inputs, json=options.json, plot=options.plot, vtk=options.vtk)
-    request = Request(
-        scene=scene,
-        grid=DEFAULT_GRID if options.grid is None and options.accuracy is None else options.grid,
-        accuracy=options.accuracy,
-        quantity=options.quantity,
-        method=options.method,
-        approach=options.approach,
-        oblique=options.oblique,
-        slope_correction=options.slope_correction,
-        coupled=options.coupled,
-        tilted=options.tilted,
-        tolerance=options.tolerance,
-    )
+    if options.grid is None and options.accuracy is None:
+        options.grid = DEFAULT_GRID
+    keywords = {name: getattr(options, name) for name in PASSED_ON}
+    switches = {name: getattr(options, name) for name in SWITCHES}
+    checked = Options(scene=scene, requested=RequestedTerms(**switches), **keywords)
     if options.explain:
-        plan = request.plan()
-        found = explain.document(plan, options.scene)
-        emit(found, options.json, explain.explained(plan, options.scene))
+        plan = checked.plan()
+        found = explain.document(checked, plan, options.scene)
+        emit(found, options.json, explain.explained(checked, plan, options.scene))
         return 0
     if options.budget and options.approach is not None:
         raise InputError(
@@ -163,7 +161,7 @@ def run(options: argparse.Namespace) -> int:
     tolerances = read_tolerances(options.scene)
     line = StatusLine()
     try:
-        solution = refimpl.solve(**vars(request), progress=line.show)
+        solution = refimpl.solve(scene, **keywords, **switches, progress=line.show)
     finally:
         line.close()
     if options.plot is not None:
@@ -181,7 +179,7 @@ def run(options: argparse.Namespace) -> int:
             found["budget"] = plain(budget_lines.document(budgets))
             text = f"\n{budget_lines.table(budgets)}"
     emit(found, options.json, text)
-    return 0 if solution.converged else 1  # a settled cycle is certified as well
+    return 0 if solution.converged else 1
 
 
 def _refuse_ignored(options: argparse.Namespace) -> None:
@@ -205,8 +203,7 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
 
 
 def table(solution: Solution, scene: str) -> str:
-    """What was found, how well it converged, what was left out, and the warnings."""
-    size = f"{solution.grid.M} x {solution.grid.M}"
+    """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
     found = [
         [
             name,
@@ -218,17 +215,17 @@ def table(solution: Solution, scene: str) -> str:
     ]
     summary = solution.summary()
     certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
-    left_out = [
+    not_modelled = [
         [term["term"], term["reason"], _change(term["effect"])]
         for term in summary["plan"]
         if not term["included"]
     ]
     parts = [
-        f"{scene}: {size} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
+        f"{scene}: {solution.grid} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
         + wrapped(NEXT.get(solution.status.name, ""), f"status: {solution.status.name}  "),
         columns(found),
         f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
-        f"left out:\n{columns(left_out)}" if left_out else "",
+        f"not modelled:\n{columns(not_modelled)}" if not_modelled else "",
         *(_warned(warning) for warning in summary["warnings"]),
     ]
     return "\n\n".join(part for part in parts if part)
@@ -240,7 +237,7 @@ def error_bar(solution: Solution, quantity: str) -> float:
 
 
 def _change(effect: Mapping[str, float]) -> str:
-    """What leaving a term out changes, in words; nothing where it is exactly nothing."""
+    """Return the effect of neglecting a term, in words; nothing where it is exactly zero."""
     if not any(effect.values()):
         return ""
     return f"estimated change of mu {effect['friction']:.1e}, of A {effect['area']:.1e}"

@@ -90,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.errors import InputError
     from verification.sweep import engine, export, posable
     from verification.sweep.store import files_of
-    from verification.sweep.study import read_study
+    from verification.sweep.study_file import read_study
 
     if options.workers < 1:
         raise InputError("--workers", options.workers, "at least one worker process")

@@ -31,19 +31,18 @@ def write(solution: Solution, path: Path) -> None:
 
     from verification.framework.files import replacing
 
-    M = solution.grid.M
-    x, y = np.meshgrid(solution.grid.centres, solution.grid.centres, indexing="ij")
+    x, y = np.meshgrid(solution.grid.x, solution.grid.y, indexing="ij")
     sheets = [np.column_stack([x.ravel(), y.ravel(), z.ravel()])
               for z in (solution.surface_lower, solution.surface_upper)]  # fmt: skip
-    number = np.arange(M * M).reshape(M, M)
+    number = np.arange(x.size).reshape(x.shape)
     around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
     squares = np.stack(around, axis=-1).reshape(-1, 4)
     contact = {"pressure": solution.pressure, "traction": solution.traction, "gap": solution.separation}
     fields = {name: np.tile(values.ravel(), 2) for name, values in contact.items()}
     fields["height"] = np.concatenate([sheet[:, 2] for sheet in sheets])
-    fields["body"] = np.repeat([0.0, 1.0], M * M)
+    fields["body"] = np.repeat([0.0, 1.0], x.size)
     mesh = meshio.Mesh(
-        np.vstack(sheets), [("quad", np.vstack([squares, squares + M * M]))], point_data=fields
+        np.vstack(sheets), [("quad", np.vstack([squares, squares + x.size]))], point_data=fields
     )
     with replacing(path) as temporary:
         mesh.write(temporary)

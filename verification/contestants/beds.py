@@ -11,8 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 from verification.contestants import referee
 from verification.contestants.check import MODULUS, Entrant, Pressed
 from verification.contestants.protocol import ContactProblem, Coupling

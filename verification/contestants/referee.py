@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
-from refimpl.grid import Array, Grid
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Grid, Mask
 from verification.contestants.protocol import ContactProblem
 from verification.exact.fourier import symbol_at
 from verification.properties.textbook import normal_matrix, normal_offsets, shear_matrix, shear_offsets
@@ -42,7 +41,7 @@ def _unit_matrix(M: int, direction: float | None) -> Array:
     """``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between elements of unit edge; ``(M^2, M^2)``."""
     if M > LARGEST:
         raise ValueError(f"{M} elements a side are too many for dense matrices")
-    grid = Grid(float(M), M)
+    grid = Grid.square(float(M), M)
     return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
 
 

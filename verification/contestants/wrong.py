@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal import fftconvolve
 
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 from verification.contestants import own, referee
 from verification.contestants.protocol import ContactProblem
 from verification.properties.textbook import normal_offsets, shear_offsets

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.accuracy.refinement import OPENING, uncertainty
+from refimpl.accuracy.refinement import FIRST_GRIDS, size_of, uncertainty
+from refimpl.model.friction import is_frictionless
 from verification.coverage.judge import Held, Verdict, bounded, ratio_of, reference_of
 from verification.coverage.scenes import random_scene
 from verification.coverage.store import NUMBERS, Rung
@@ -40,16 +41,16 @@ def where_climbs_end(ladders: Mapping[int, Sequence[Rung]], verdicts: Sequence[V
 def at_approach(ladders: Mapping[int, Sequence[Rung]]) -> list[Bar]:
     """All numbers on all `GRIDS`, each after the opening's."""
     return [
-        _bar(rungs, tuple(dict.fromkeys((*OPENING, M))), number)
+        _bar(rungs, tuple(dict.fromkeys((*FIRST_GRIDS, M))), number)
         for seed, rungs in ladders.items()
         for number in AT_APPROACH
         for M in GRIDS
-        if number != "friction_coefficient" or not random_scene(seed).scene.friction.is_zero
+        if number != "friction_coefficient" or not is_frictionless(random_scene(seed).scene.friction)
     ]
 
 
 def _bar(rungs: Sequence[Rung], grids: Sequence[int], number: str) -> Bar:
-    at = {rung.result.M: rung.result for rung in rungs}
+    at = {rung.M: rung.result for rung in rungs}
     results = [at[M] for M in grids]
     fine = results[-1]
     reference, bound = _reference(rungs, number)
@@ -59,7 +60,7 @@ def _bar(rungs: Sequence[Rung], grids: Sequence[int], number: str) -> Bar:
         seed=rungs[0].seed,
         kind=random_scene(rungs[0].seed).kind,
         number=number,
-        grid=fine.M,
+        grid=size_of(fine),
         bar=sum(uncertainty(results)[number].values()) / unit,
         error=abs(value - reference) / unit,
         reference_bound=bound / unit,
@@ -71,7 +72,7 @@ def _reference(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
     if number in NUMBERS:
         return reference_of(rungs, number)
     before, finest = (
-        rung.result.numbers[number] + (rung.result.touch.height if number == "approach" else 0.0)
+        rung.result.numbers[number] + (rung.result.first_contact.height if number == "approach" else 0.0)
         for rung in rungs[-2:]
     )
     return finest, abs(finest - before)

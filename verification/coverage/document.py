@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from refimpl.accuracy.refinement import LADDER, OPENING
+from refimpl.accuracy.refinement import FIRST_GRIDS, GRID_SIZES
 from verification.coverage.beside import AT_APPROACH, BESIDE, Bar, at_approach, where_climbs_end
 from verification.coverage.beside import GRIDS as BARS
 from verification.coverage.beside import summary as summary_of_bars
@@ -16,7 +16,7 @@ from verification.coverage.scenes import CLASSES
 from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb, ladders, solved_at
 from verification.framework.provenance import provenance
 
-GRIDS = (*OPENING, *(M for M in LADDER if OPENING[-1] < M <= FINEST))
+GRIDS = (*FIRST_GRIDS, *(M for M in GRID_SIZES if FIRST_GRIDS[-1] < M <= FINEST))
 """What may be asked for: all that `refimpl.accuracy.refinement` has."""
 CHECK, CHECK_SEEDS = 2048, range(8, 14)
 """References are checked on one more grid for one scene of each class that is not periodic."""
@@ -38,7 +38,7 @@ def document(accuracies: Sequence[float], seeds: Sequence[int], store: Path) -> 
         climb(store, [seed], grids_of(seed))
     wanted = {seed: set(grids_of(seed)) for seed in seeds}
     stored = {
-        seed: [rung for rung in rungs if rung.result.M in wanted[seed]]
+        seed: [rung for rung in rungs if rung.M in wanted[seed]]
         for seed, rungs in ladders(store).items()
         if seed in wanted
     }
@@ -60,7 +60,7 @@ def reference_check(seeds: Sequence[int], store: Path) -> dict[str, object]:
     climb(store, chosen, [CHECK])
     found = ladders(store)
     wanted = {seed: {*grids_of(seed), CHECK} for seed in chosen}
-    shares = [moved([rung for rung in found[seed] if rung.result.M in wanted[seed]]) for seed in chosen]
+    shares = [moved([rung for rung in found[seed] if rung.M in wanted[seed]]) for seed in chosen]
     return {
         "grid": CHECK,
         "seeds": chosen,
@@ -74,10 +74,10 @@ def approaches(stored: Mapping[int, Sequence[Rung]], store: Path) -> dict[str, d
     beside = store.with_name(f"{store.stem}-approach{store.suffix}")
     chosen = {seed: rungs for seed, rungs in stored.items() if seed in APPROACH_SEEDS}
     for seed, rungs in chosen.items():
-        loaded = {rung.result.M: rung.result for rung in rungs}
+        loaded = {rung.M: rung.result for rung in rungs}
         approach = loaded[BARS[-1]].numbers["approach"]
         reference = grids_of(seed)[-1]
-        grids = dict.fromkeys((*OPENING, *BARS, reference // 2, reference))
+        grids = dict.fromkeys((*FIRST_GRIDS, *BARS, reference // 2, reference))
         climb(beside, [seed], grids, partial(solved_at, approach))
     bars = at_approach({seed: rungs for seed, rungs in ladders(beside).items() if seed in chosen})
     return {

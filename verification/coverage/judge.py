@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.refinement import OPENING, climb, relative_bar
+from refimpl.accuracy.refinement import FIRST_GRIDS, refine_until, relative_bound, size_of
+from refimpl.model.friction import is_frictionless
 from verification.coverage.scenes import random_scene
 from verification.coverage.store import NUMBERS, Rung
 
@@ -67,19 +68,19 @@ def verdicts(ladders: Mapping[int, Sequence[Rung]], accuracy: float) -> list[Ver
 
 def _numbers(seed: int) -> tuple[str, ...]:
     """The numbers to judge: all, but for friction where there is none."""
-    return NUMBERS[1:] if random_scene(seed).scene.friction.is_zero else NUMBERS
+    return NUMBERS[1:] if is_frictionless(random_scene(seed).scene.friction) else NUMBERS
 
 
 def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> Verdict:
     """A grid is asked for only if the reference is at least twice as fine."""
     reference, bound = reference_of(rungs, number)
-    usable = {rung.result.M: rung for rung in rungs if 2 * rung.result.M <= rungs[-1].result.M}
-    ladder = [M for M in usable if M not in OPENING]
-    climbed = climb(lambda M: usable[M].result, accuracy, number, ladder)
-    value = climbed.results[-1].numbers[number]
-    grids = tuple(result.M for result in climbed.results)
-    met = not climbed.refusal
-    candidates = (OPENING[-1], *ladder)
+    usable = {rung.M: rung for rung in rungs if 2 * rung.M <= rungs[-1].M}
+    ladder = [M for M in usable if M not in FIRST_GRIDS]
+    refined = refine_until(lambda M: usable[M].result, accuracy, number, ladder)
+    value = refined.results[-1].numbers[number]
+    grids = tuple(map(size_of, refined.results))
+    met = not refined.refusal
+    candidates = (FIRST_GRIDS[-1], *ladder)
     errors = {M: _relative_error(usable[M], number, reference) for M in candidates}
     cheapest = next((M for M in errors if all(errors[N] <= accuracy for N in errors if N >= M)), None)
     work = usable[grids[0]].point_logs + sum(usable[M].carried or usable[M].point_logs for M in grids[1:])
@@ -90,7 +91,7 @@ def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> V
         accuracy=accuracy,
         grids=grids,
         met=met,
-        bar=relative_bar(climbed.results, number),
+        bar=relative_bound(refined.results, number),
         error=abs(value - reference) / abs(value),
         reference_bound=bound / abs(value),
         cheapest=cheapest,
@@ -110,8 +111,10 @@ def reference_of(rungs: Sequence[Rung], number: str) -> tuple[float, float]:
     if number == "max_pressure":
         return finest.peak.height, abs(finest.peak.height - before.peak.height)
     if number == "friction_coefficient":
-        rest, rest_before = (r.numbers[number] - r.slip * r.numbers["contact_area"] for r in (finest, before))
-        edge = finest.slip * finest.edge
+        rest, rest_before = (
+            r.numbers[number] - r.dmu_dA * r.numbers["contact_area"] for r in (finest, before)
+        )
+        edge = finest.dmu_dA * finest.edge
         return value - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge + abs(rest - rest_before)
     area = finest.numbers["contact_area"]
     return area - EDGE_SIZE * finest.edge, EDGE_SIZE_BOUND * finest.edge

@@ -25,12 +25,12 @@ from refimpl.accuracy.discretisation_error import (
     EDGE_SIZE_SPREAD,
     OTHER,
     PEAK,
-    SINGLES,
-    SUMMIT,
-    SUMMIT_SPREAD,
+    PEAK_BIAS,
+    PEAK_BIAS_SPREAD,
+    SINGLE_EXCESS,
 )
-from refimpl.accuracy.first_contact import TOUCH, first_touch
-from refimpl.accuracy.grid_features import GridResult
+from refimpl.accuracy.first_contact import PEAK_ERROR, first_contact_error
+from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.grid import Array
 from verification.coverage.store import ladders, rungs
 from verification.framework.files import write_result
@@ -54,63 +54,64 @@ class Numbers:
     edge: Array
 
 
-def areas(results: Sequence[GridResult], singles: float) -> Numbers:
+def areas(results: Sequence[GridFeatures], singles: float) -> Numbers:
     """Contact areas over the finest grid's scatter; a lone element's edge counts ``1 + singles`` times."""
     area = np.array([result.numbers["contact_area"] for result in results])
     edge = np.array([result.edge for result in results])
     scatter = discretisation_error.area_scatter(results)
-    wider = edge * (1 + singles * discretisation_error.singleness(results) ** 2)
+    wider = edge * (1 + singles * discretisation_error.single_element_share(results) ** 2)
     return Numbers(area / scatter[-1], scatter / scatter[-1], wider / scatter[-1])
 
 
-def rests(results: Sequence[GridResult], bulk: float, unevenness: float) -> Numbers:
+def rests(results: Sequence[GridFeatures], bulk: float, unevenness: float) -> Numbers:
     """Friction without tau's share, for a scatter of one: both parts of its size are given."""
     numbers = [result.numbers for result in results]
     mu = np.array([found["friction_coefficient"] for found in numbers])
     area = np.array([found["contact_area"] for found in numbers])
-    slip, uneven = np.array([result.slip for result in results]), discretisation_error.unevenness(results)
-    thin = discretisation_error.thinness(results) * abs(mu[-1])
+    dmu_dA = np.array([result.dmu_dA for result in results])
+    uneven = discretisation_error.slope_scatter(results)
+    thin = discretisation_error.edge_scatter(results) * abs(mu[-1])
     size = np.hypot.reduce([bulk * thin, unevenness * uneven, np.full(thin.shape, SOLVED * abs(mu[-1]))])
     weights = np.maximum.accumulate(size[::-1])[::-1]
-    return Numbers(mu - slip * area, weights, np.zeros_like(mu))
+    return Numbers(mu - dmu_dA * area, weights, np.zeros_like(mu))
 
 
-def binormals(results: Sequence[GridResult], binormal: float, unevenness: float) -> Numbers:
+def binormals(results: Sequence[GridFeatures], binormal: float, unevenness: float) -> Numbers:
     """Binormal forces over the load, for a scatter of one: both parts of its size are given."""
     forces, loads = np.transpose(
         [(result.numbers["binormal_force"], result.numbers["normal_force"]) for result in results]
     )
-    thin, uneven = discretisation_error.thinness(results), discretisation_error.unevenness(results)
+    thin, uneven = discretisation_error.edge_scatter(results), discretisation_error.slope_scatter(results)
     size = np.hypot.reduce([binormal * thin, unevenness * uneven, np.full(thin.shape, QUIET)])
     weights = np.maximum.accumulate(size[::-1])[::-1]
     return Numbers(forces / loads[-1], weights, np.zeros_like(forces))
 
 
-def peaks(results: Sequence[GridResult]) -> Numbers:
+def peaks(results: Sequence[GridFeatures]) -> Numbers:
     """Heights of the pressure's summits over the finest grid's scatter; their drops for edges."""
-    sizes = np.array([result.peak.widened(result.peak.drop) for result in results])
+    sizes = np.array([result.peak.widened(result.peak.curvature_drop) for result in results])
     weights = np.maximum.accumulate(sizes[::-1])[::-1] / sizes[-1]
-    heights, drops = np.transpose([(result.peak.height, result.peak.drop) for result in results])
+    heights, drops = np.transpose([(result.peak.height, result.peak.curvature_drop) for result in results])
     return Numbers(heights / sizes[-1], weights, drops / sizes[-1])
 
 
-def approaches(results: Sequence[GridResult], other: float, touch: float) -> Numbers:
+def approaches(results: Sequence[GridFeatures], other: float, touch: float) -> Numbers:
     """Approaches from the surfaces' own first touch, for a scatter of one: both parts of it are given."""
     found = np.array([result.numbers["approach"] for result in results])
-    thin = other * discretisation_error.thinness(results) * abs(found[-1])
+    thin = other * discretisation_error.edge_scatter(results) * abs(found[-1])
     hung = np.array([result.peak.widened(size, 0.5) for result, size in zip(results, thin, strict=True)])
-    touched = np.array([first_touch(result) for result in results]) * (touch / TOUCH)
+    touched = np.array([first_contact_error(result) for result in results]) * (touch / PEAK_ERROR)
     size = np.hypot.reduce([hung, touched, np.full(thin.shape, SOLVED * abs(found[-1]))])
     weights = np.maximum.accumulate(size[::-1])[::-1]
-    return Numbers(found + [result.touch.height for result in results], weights, np.zeros_like(found))
+    return Numbers(found + [result.first_contact.height for result in results], weights, np.zeros_like(found))
 
 
-def bounded(results: Sequence[GridResult]) -> list[GridResult]:
-    """The grids on which neither the peak nor the first touch is open to any height."""
-    return [result for result in results if np.isfinite(result.peak.openness * result.touch.openness)]
+def bounded(results: Sequence[GridFeatures]) -> list[GridFeatures]:
+    """The grids on which the error factors of the peak and of first contact are finite."""
+    return [r for r in results if np.isfinite(r.peak.error_factor * r.first_contact.error_factor)]
 
 
-def _over_load(result: GridResult) -> float:
+def _over_load(result: GridFeatures) -> float:
     return abs(result.numbers["binormal_force"]) / result.numbers["normal_force"]
 
 
@@ -170,7 +171,7 @@ def document(store: Path) -> dict[str, object]:
 
     def of_peak(p: Array) -> float:
         size, spread, scatter, weight = p
-        free = [grids for grids in summits if not grids[-1].periodic]  # of waves there is no bias
+        free = [grids for grids in summits if not grids[-1].grid.periodic]  # of waves there is no bias
         return log_likelihood([peaks(grids) for grids in free], size, spread, scatter, weight)
 
     def of_approach(p: Array) -> float:
@@ -182,17 +183,17 @@ def document(store: Path) -> dict[str, object]:
         "edge_size_spread": EDGE_SIZE_SPREAD,
         "scatter": AREA.scatter,
         "weight": AREA.weight,
-        "singles": SINGLES,
+        "singles": SINGLE_EXCESS,
     }
     adopted_rest = {"bulk": BULK.scatter, "unevenness": 1.0, "weight": BULK.weight}
     adopted_binormal = {"binormal": BINORMAL.scatter, "unevenness": 1.0, "weight": BINORMAL.weight}
     adopted_peak = {
-        "summit": SUMMIT,
-        "summit_spread": SUMMIT_SPREAD,
+        "summit": PEAK_BIAS,
+        "summit_spread": PEAK_BIAS_SPREAD,
         "scatter": PEAK.scatter,
         "weight": PEAK.weight,
     }
-    adopted_approach = {"other": OTHER.scatter, "touch": TOUCH, "weight": OTHER.weight}
+    adopted_approach = {"other": OTHER.scatter, "touch": PEAK_ERROR, "weight": OTHER.weight}
     return {
         "study": "priors of the error bars, by likelihood on training scenes",
         "scenes": len(results),

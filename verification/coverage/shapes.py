@@ -20,8 +20,9 @@ class Barrel(rf.Surface):
     along: float
     kind: ClassVar[str] = "barrel"
 
-    def _sample(self, grid: rf.Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        x, y = (grid.centres + shift - 0.5 * grid.side for shift in offset)
+    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
+        x = grid.x + offset[0] - 0.5 * grid.lengths[0]
+        y = grid.y + offset[1] - 0.5 * grid.lengths[1]
         return np.asarray(x[:, None] ** 2 / (2 * self.across) + y[None, :] ** 2 / (2 * self.along))
 
 
@@ -34,10 +35,12 @@ class Waves(rf.Surface):
     phases: tuple[float, float]
     kind: ClassVar[str] = "waves"
 
-    def _sample(self, grid: rf.Grid, offset: tuple[float, float], periodic: bool) -> Array:
+    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
         x, y = (
-            np.cos(2 * math.pi * number * (grid.centres + shift) / grid.side + phase)
-            for number, phase, shift in zip(self.numbers, self.phases, offset, strict=True)
+            np.cos(2 * math.pi * number * (centres + shift) / length + phase)
+            for number, phase, shift, centres, length in zip(
+                self.numbers, self.phases, offset, (grid.x, grid.y), grid.lengths, strict=True
+            )
         )
         return np.asarray(self.amplitude * (x[:, None] + y[None, :]))
 

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from refimpl.accuracy.grid_features import GridResult
-from refimpl.accuracy.peak import Summit
-from refimpl.accuracy.refinement import OPENING
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import Peak
+from refimpl.accuracy.refinement import FIRST_GRIDS, size_of
+from refimpl.model.friction import is_frictionless
 from verification.coverage.scenes import random_scene
 from verification.framework.files import Progress
 
@@ -32,13 +33,18 @@ class Rung:
     """
 
     seed: int
-    result: GridResult
+    result: GridFeatures
     status: str
     worst: float
     point_logs: float
     seconds: float
     carried: float | None = None
     apart: float | None = None
+
+    @property
+    def M(self) -> int:
+        """Elements per side."""
+        return size_of(self.result)
 
 
 def climb(
@@ -47,7 +53,7 @@ def climb(
     """Solve what the store has not yet, by ``solve(seed, M)``; each finished solve is appended at once."""
     solve = solve or _solved
     seeds, grids = list(seeds), list(grids)
-    known = {(rung.seed, rung.result.M) for rung in rungs(path)}
+    known = {(rung.seed, rung.M) for rung in rungs(path)}
     todo = [(seed, M) for seed in seeds for M in grids if (seed, M) not in known]
     progress = Progress(len(todo))
     cut = path.exists() and not path.read_bytes().endswith(b"\n")
@@ -70,11 +76,14 @@ def rungs(path: Path) -> Iterator[Rung]:
             record = json.loads(line)
         except json.JSONDecodeError:
             continue
-        yield Rung(**{**record, "result": _result(record["result"])})
+        yield Rung(**{**record, "result": _features(record["result"])})
 
 
-def _result(record: dict[str, Any]) -> GridResult:
-    return GridResult(**{**record, "peak": Summit(**record["peak"]), "touch": Summit(**record["touch"])})
+def _features(record: dict[str, Any]) -> GridFeatures:
+    peaks = {name: Peak(**record[name]) for name in ("peak", "first_contact")}
+    grid = record["grid"]
+    restored = rf.Grid(tuple(grid["shape"]), tuple(grid["lengths"]), grid["periodic"])
+    return GridFeatures(**{**record, **peaks, "grid": restored})
 
 
 def ladders(path: Path) -> dict[int, list[Rung]]:
@@ -82,7 +91,7 @@ def ladders(path: Path) -> dict[int, list[Rung]]:
     found: dict[int, list[Rung]] = {}
     for rung in rungs(path):
         found.setdefault(rung.seed, []).append(rung)
-    return {seed: sorted(found[seed], key=lambda rung: rung.result.M) for seed in sorted(found)}
+    return {seed: sorted(found[seed], key=lambda rung: rung.M) for seed in sorted(found)}
 
 
 def _solved(seed: int, M: int) -> Rung:
@@ -110,9 +119,9 @@ def _timed(seed: int, M: int, approach: float | None = None) -> tuple[rf.Solutio
 def _rung(seed: int, solution: rf.Solution, seconds: float) -> Rung:
     return Rung(
         seed=seed,
-        result=GridResult.of(solution),
+        result=solution.features,
         status=solution.status.value,
-        worst=solution.certificate.worst,
+        worst=solution.certificate.largest,
         point_logs=solution.cost.point_logs,
         seconds=seconds,
     )
@@ -120,19 +129,19 @@ def _rung(seed: int, solution: rf.Solution, seconds: float) -> Rung:
 
 def _begun(seed: int, M: int) -> rf.Solution | None:
     """The solution that starts from the opening's, if a climb may come by and the opening has converged."""
-    coarser = [grid for grid in OPENING if grid < M <= FINEST]
+    coarser = [grid for grid in FIRST_GRIDS if grid < M <= FINEST]
     start = _opened(seed, coarser[-1]) if coarser else None
     if start is None or not start.converged:
         return None
     return rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE, start=start)
 
 
-@lru_cache(maxsize=len(OPENING))
+@lru_cache(maxsize=len(FIRST_GRIDS))
 def _opened(seed: int, M: int) -> rf.Solution:
     return _begun(seed, M) or rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE)
 
 
 def _apart(one: rf.Solution, other: rf.Solution) -> float:
     """The largest relative difference of the numbers; without friction mu is rounding and left out."""
-    names = NUMBERS[1:] if one.friction.is_zero else NUMBERS
+    names = NUMBERS[1:] if is_frictionless(one.friction) else NUMBERS
     return max(abs(float(getattr(one, name)) / float(getattr(other, name)) - 1) for name in names)

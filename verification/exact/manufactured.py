@@ -124,7 +124,7 @@ def _displacements(M: int, angle: Any, down: Exact, along: Exact, across: Exact)
 @cache
 def _tables(M: int) -> tuple[Exact, Exact]:
     """``I[1/rho]`` and ``I[x/rho^2]`` at offsets ``(i, j)`` (m)."""
-    h = Grid(SIDE, M).spacing
+    h = Grid.square(SIDE, M).spacings[0]
     a, c = np.empty((2, M, M), dtype=object)
     for i in range(M):
         for j in range(M):

@@ -16,7 +16,7 @@ def measure(M: int) -> dict[str, float]:
 
     The right-hand side is formed in long double from known pressures: the solve's error is its own.
     """
-    matrix = DenseInfluence(Grid(float(M), M), 0.0).normal_matrix
+    matrix = DenseInfluence(Grid.square(float(M), M), 0.0).normal_matrix
     values = np.linalg.eigvalsh(matrix)
     known = np.random.default_rng(M).random(M * M)
     right = (matrix.astype(np.longdouble) @ known.astype(np.longdouble)).astype(np.float64)

@@ -78,7 +78,7 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
     displacement that one element's peak pressure makes; forces to N. A contact set that differs by elements
     further than rounding from the edge of contact counts as an error of 1.
     """
-    M = solution.grid.M
+    M = len(solution.pressure)
     oracle = Oracle(
         scene, M,
         approach=options.get("approach"),

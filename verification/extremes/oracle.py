@@ -58,11 +58,11 @@ class Oracle:
         oblique: bool = True,
         slope_correction: bool = False,
     ) -> None:
-        grid = rf.Grid(scene.side, M)
+        grid = scene.grid(M)
         self.scene, self.M, self.oblique, self.correction = scene, M, oblique, slope_correction
         self.spacing = mp.mpf(scene.side) / M
-        self.z_lower = _exact(scene.lower.surface.heights(grid, periodic=scene.periodic))
-        self.z_upper = _exact(scene.upper.surface.heights(grid, periodic=scene.periodic))
+        self.z_lower = _exact(scene.lower.surface.heights(grid))
+        self.z_upper = _exact(scene.upper.surface.heights(grid))
         gap = self.z_upper - self.z_lower
         self.h = gap - min(gap)
         self.approach = None

@@ -56,9 +56,9 @@ def scene(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
 
 def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
     """All lawful contact sets, each as ``(M, M)``."""
-    grid, pair = rf.Grid(scene.side, M), scene.materials
-    a = pair.normal_compliance * normal(M, False).astype(float) * grid.spacing
-    x, y = (c.astype(float) * grid.spacing for c in tangential(M, False))
+    grid, pair = scene.grid(M), scene.materials
+    a = pair.normal_compliance * normal(M, False).astype(float) * grid.element_size
+    x, y = (c.astype(float) * grid.element_size for c in tangential(M, False))
     c = pair.shear_compliance * (np.cos(scene.sliding_direction) * x + np.sin(scene.sliding_direction) * y)
     lower, upper = scene.heights(grid)
     h = (upper - lower - (upper - lower).min()).ravel()

@@ -16,7 +16,7 @@ import refimpl as rf
 from refimpl.surfaces import MeasuredSurface
 from reports.result_files import compact
 from verification.cli.report import read_run
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 GRID, PIXEL = 8, 1e-6
 SIDE = 8 * PIXEL
@@ -72,15 +72,15 @@ def _packaged(package: str, folder: str) -> Iterator[bytes]:
 def _scene(path: Path) -> None:
     """Read a scene, and ask its surfaces for heights where the file is a scene."""
     scene = rf.read_scene(path)
-    scene.heights(rf.Grid(scene.side, GRID))
+    scene.heights(scene.grid(GRID))
 
 
 def _plain(path: Path) -> None:
-    MeasuredSurface(path, unit="nm", pixel_size=PIXEL, max_missing=0.5).heights(rf.Grid(SIDE, GRID))
+    MeasuredSurface(path, unit="nm", pixel_size=PIXEL, max_missing=0.5).heights(rf.Grid.square(SIDE, GRID))
 
 
 def _instrument(path: Path) -> None:
-    MeasuredSurface(path, max_missing=0.5).heights(rf.Grid(SIDE, GRID))
+    MeasuredSurface(path, max_missing=0.5).heights(rf.Grid.square(SIDE, GRID))
 
 
 def _rezipped(path: Path) -> None:

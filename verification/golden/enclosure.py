@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.model.friction import Mask
+from refimpl.grid import Mask
 from verification.framework.case import Unavailable
 from verification.golden.scenes import SIDE, GoldenScene
 

@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 from verification.framework.files import to_json, write_text
 from verification.framework.provenance import provenance
 from verification.golden.enclosure import BITS, Ball, Proof, arb

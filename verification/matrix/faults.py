@@ -18,15 +18,17 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.grid import Array
+from refimpl.grid import Array, fields
 from refimpl.kernels import normal_integral, tangential_integral
-from refimpl.model import certificate, forces, friction, problem, slopes
+from refimpl.model import certificate, forces
+from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators import dense, fft, kernel_tables
 from refimpl.operators.fft import FFTInfluence
-from refimpl.solvers.production import level
+from refimpl.scene import discretise
+from refimpl.solvers.production import constants
 
 Patch = tuple[Any, str, Any]
 """Owner, name, replacement."""
@@ -56,7 +58,7 @@ def _scaled(function: Callable[..., Any], factor: float) -> Callable[..., Any]:
 
 def _tables_of(kind: str, factor: float) -> Patch:
     right = kernel_tables._TABLES[kind]
-    wrong = {**kernel_tables._TABLES, kind: lambda n, m, dx, known: factor * right(n, m, dx)}
+    wrong = {**kernel_tables._TABLES, kind: lambda n, m, dx, dy, known: factor * right(n, m, dx, dy)}
     return kernel_tables, "_TABLES", wrong
 
 
@@ -80,16 +82,24 @@ def _circle_off_by_one(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
 
 def _periodic_images(self: FFTInfluence) -> Any:
     """Padding left out: the circle is the domain, and offsets beyond its half are those of an image."""
-    M = self.grid.M
-    return tuple(circle - M * np.rint(circle / M).astype(int) for circle in _offsets(self))
+    circles = zip(_offsets(self), self.grid.shape, strict=True)
+    return tuple(circle - n * np.rint(circle / n).astype(int) for circle, n in circles)
 
 
-def _posed(change: Callable[[Array], Array]) -> tuple[Patch, ...]:
-    def wrong(*args: Any) -> Problem:
-        right = _pose(*args)
+def _discretised(change: Callable[[Array], Array]) -> tuple[Patch, ...]:
+    def wrong(*args: Any, **kwargs: Any) -> Problem:
+        right = _discretise(*args, **kwargs)
         return replace(right, gap=change(right.gap), mean_surface=change(right.mean_surface))
 
-    return everywhere(_pose, wrong)
+    return everywhere(_discretise, wrong)
+
+
+def _law(tau_on: Callable[[NDArray[np.bool_]], Any]) -> tuple[Patch, ...]:
+    """Patches of the friction law: tau where a function of the active set says."""
+    return (
+        (Friction, "traction", lambda law, f, active: law.tau * tau_on(active) + law.beta * f),
+        (Friction, "held_traction", lambda law, f, active: law.tau * tau_on(active).astype(np.float64)),
+    )
 
 
 def _resultants(change: Callable[[forces.Forces], forces.Forces]) -> tuple[Patch, ...]:
@@ -100,13 +110,13 @@ def _in_single_precision(self: FFTInfluence, source: Array, hat: Any) -> Array:
     return _convolve(self, source, hat).astype(np.float32).astype(np.float64)
 
 
-def _tilted(heights: Array, axis: int, periodic: bool) -> Array:
+def _forward_differences(values: Array, axis: int, *, periodic: bool = False) -> Array:
     """Forward differences in place of central ones; they wrap around at the border."""
-    return np.roll(heights, -1, axis) - heights
+    return np.roll(values, -1, axis) - values
 
 
-def _weights_of_other_sign(self: Problem, at: Slopes, support: Any) -> tuple[Array, float]:
-    weights, offset = _load_weights(self, at, support)
+def _weights_of_other_sign(self: Problem, at: Slopes, held_traction: Array) -> tuple[Array, float]:
+    weights, offset = _load_weights(self, at, held_traction)
     return 2 * at.cos_x * at.cos_y - weights, -offset
 
 
@@ -117,7 +127,7 @@ def _certified_blindly(*args: Any) -> Any:
     return replace(state, certificate=clean)
 
 
-_pose, _right_resultants, _certify = problem.pose, forces.resultants, certificate.certify
+_discretise, _right_resultants, _certify = discretise.discretise, forces.resultants, certificate.certify
 _load_weights, _convolve = Problem.load_weights, FFTInfluence._convolve
 _offsets: Callable[[FFTInfluence], Any] = vars(FFTInfluence)["_offsets"].func
 _negative_shear = property(lambda m: -(1 + m.nu) * (1 - 2 * m.nu) / (2 * math.pi * m.E))
@@ -173,18 +183,18 @@ FAULTS = {
     ),
     "tau-missing": Fault(
         "friction without tau",
-        everywhere(friction.local_friction, lambda law, f, on: np.asarray(law.beta * f)),
+        _law(np.zeros_like),
         "local_friction_law",
     ),
     "tau-everywhere": Fault(
         "tau outside the contact as well",
-        everywhere(friction.local_friction, lambda law, f, on: np.asarray(law.tau + law.beta * f)),
+        _law(np.ones_like),
         "local_friction_law",
     ),
-    "transposed": Fault("x and y exchanged in the gap", _posed(lambda z: z.T.copy()), "displacements"),
+    "transposed": Fault("x and y exchanged in the gap", _discretised(lambda z: z.T.copy()), "displacements"),
     "half-element": Fault(
         "heights half an element off",
-        _posed(lambda z: 0.5 * (z + np.roll(z, 1, axis=0))),
+        _discretised(lambda z: 0.5 * (z + np.roll(z, 1, axis=0))),
         "displacements",
     ),
     "modulus": Fault(
@@ -211,7 +221,9 @@ FAULTS = {
         "Q with the other sign", _resultants(lambda f: f._replace(binormal=-f.binormal)), "load_balance"
     ),
     "differences": Fault(
-        "forward differences for slopes", ((slopes, "_difference", _tilted),), "complementarity"
+        "forward differences for slopes",
+        everywhere(fields.differences, _forward_differences),
+        "complementarity",
     ),
     "load-weights": Fault(
         "r sin theta_x added to N in the balance",
@@ -223,7 +235,7 @@ FAULTS = {
     ),
     "stuck": Fault(
         "three CG steps and a certificate that is always clean",
-        ((level, "_CG_LIMIT", 3), *everywhere(_certify, _certified_blindly)),
+        ((constants, "CG_LIMIT", 3), *everywhere(_certify, _certified_blindly)),
         "complementarity",
     ),
 }

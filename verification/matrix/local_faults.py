@@ -10,10 +10,11 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from refimpl.accuracy import discretisation_error, peak
+from refimpl.accuracy import discretisation_error, iteration_error, peak
 from refimpl.accuracy.bayesian_line import Estimate
+from refimpl.grid import fields
 from refimpl.kernels import points, quadrature, tables
-from refimpl.model import certificate, forces, slopes
+from refimpl.model import certificate, forces, friction
 from refimpl.model.problem import Problem
 from refimpl.model.state import Status
 from refimpl.operators.dense import DenseInfluence
@@ -21,7 +22,8 @@ from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.budget import Budget
-from refimpl.solution import bounds, energy_norm, gathered, influence_error
+from refimpl.solution import bounds, energy_norm, influence_error, solution
+from refimpl.solution.solution import Solved
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness
@@ -56,8 +58,8 @@ IN_REFIMPL: dict[str, LocalFault] = {
         lambda: _method(PeriodicInfluence, "_tangential_symbol", wrong.nyquist_kept),
     ),
     "periodic-datum": (
-        "periodic approach counted from first touch",
-        lambda: everywhere(gathered.gathered, wrong.from_first_touch),
+        "periodic approach counted from first contact",
+        lambda: wrapped(solution.assemble, wrong.from_first_contact),
     ),
     "across-sign": (
         "shear across the sliding direction with the other sign, in both operators",
@@ -74,7 +76,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
         "slopes of the deformed lower surface's own displacement, not of the common surface",
         lambda: _method(Problem, "slopes", wrong.lower_surface_only),
     ),
-    "border-slopes": ("slopes zero at the border", lambda: ((slopes, "_difference", wrong.flat_border),)),
+    "border-slopes": ("slopes zero at the border", lambda: everywhere(fields.differences, wrong.flat_border)),
     "slide-sign": (
         "the lower surface slides backwards",
         lambda: _method(Scene, "sampled", wrong.slid_backwards),
@@ -93,9 +95,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "eq-10": (
         "beta 1 % too large in Eq. (10)",
-        lambda: everywhere(
-            forces.smooth_friction_coefficient, lambda tau, beta, pressure: tau / pressure + 1.01 * beta
-        ),
+        lambda: everywhere(friction.friction_coefficient_at, wrong.larger_beta),
     ),
     "plasticity-index": (
         "2.0 in place of 2.2 in Eq. (12)",
@@ -116,7 +116,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "not-normalised": (
         "normalise=True ignored",
-        lambda: _method(GaussianRoughness, "_scale", lambda self, side, period: 1.0),
+        lambda: _method(GaussianRoughness, "_scale", lambda self, grid: 1.0),
     ),
     "forward-slopes": (
         "forward differences in the statistics",
@@ -129,7 +129,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "always-converged": (
         "status CONVERGED whatever the certificate says",
-        lambda: ((gathered, "_final_status", lambda *a: Status.CONVERGED),),
+        lambda: _method(Solved, "status", property(lambda self: Status.CONVERGED)),
     ),
     "bounds-quartered": (
         "proven bounds divided by four",
@@ -137,7 +137,7 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "least-eigenvalue": (
         "the least eigenvalue 2 % too large",
-        lambda: ((energy_norm, "SMALLEST_SYMBOL", 1.02 * energy_norm.SMALLEST_SYMBOL),),
+        lambda: wrapped(energy_norm.smallest_symbol, lambda x: 1.02 * x),
     ),
     "never-corrected": (
         "the paper's scheme without its residual correction",
@@ -149,15 +149,15 @@ IN_REFIMPL: dict[str, LocalFault] = {
     ),
     "bars-quartered": (
         "error bars divided by four",
-        lambda: _method(Estimate, "bar", wrong.quarter_of_a_bar),
+        lambda: _method(Estimate, "error_bound", wrong.quarter_of_a_bound),
     ),
     "tau-bar": (
-        "the bar of tau's support knows of a cycle's states alone",
-        lambda: ((gathered, "_spread_by_support", wrong.states_alone),),
+        "the error bar of tau's active set contains a cycle's states alone",
+        lambda: everywhere(iteration_error.active_set_parts, wrong.states_alone),
     ),
     "touch-of-elements": (
         "approaches counted from the highest elements",
-        lambda: everywhere(peak.deepest, lambda field: peak.LEVEL),
+        lambda: everywhere(peak.deepest, lambda field: peak.NO_PEAK),
     ),
     "edge-not-expected": (
         "error bars that know of no edge's excess",

@@ -8,40 +8,45 @@ from typing import Any
 
 import numpy as np
 
+from refimpl.accuracy import iteration_error
 from refimpl.accuracy.bayesian_line import Estimate
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array, Grid, Mask, fields
 from refimpl.kernels import cerruti, quadrature
-from refimpl.model import forces, slopes
+from refimpl.model import forces, friction
+from refimpl.model.certificate import State
+from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.model.state import SolverResult
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
-from refimpl.solution import bounds, gathered, influence_error
+from refimpl.solution import bounds, influence_error
+from refimpl.solution.solution import Solution
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import white_noise
 
 _normal_symbol = vars(PeriodicInfluence)["_normal_symbol"].func
 _fft_across, _dense_along = FFTInfluence.shear_across, DenseInfluence._along
 _tractions, _problem_slopes = Problem.tractions, Problem.slopes
-_spread_by_support = gathered._spread_by_support
-_iterate, _gathered, _difference = paper._Scheme._iterate, gathered.gathered, slopes._difference
+_active_set_parts, _coefficient_at = iteration_error.active_set_parts, friction.friction_coefficient_at
+_iterate, _differences = paper._Scheme._iterate, fields.differences
 _complementarity, _scene_sampled = pivoting.complementarity, Scene.sampled
 _perimeter, _departure = forces.perimeter_corrected_area, influence_error._departure
-_white_noise, _order_for, _bar = white_noise.white_noise, quadrature.order_for, Estimate.bar
+_white_noise, _order_for, _bound = white_noise.white_noise, quadrature.order_for, Estimate.error_bound
 
 
 def mean_displaces(self: PeriodicInfluence) -> Array:
     symbol = np.array(_normal_symbol(self))
-    symbol[0, 0] = self.grid.side
+    symbol[0, 0] = self.grid.size
     return symbol
 
 
 def averaged(self: PeriodicInfluence) -> Array:
     q_x, q_y, _ = self._wavevectors
-    h = self.grid.spacing / (2 * np.pi)
-    return np.asarray(_normal_symbol(self) * np.sinc(q_x * h) * np.sinc(q_y * h))
+    h_x, h_y = (edge / (2 * np.pi) for edge in self.grid.spacings)
+    return np.asarray(_normal_symbol(self) * np.sinc(q_x * h_x) * np.sinc(q_y * h_y))
 
 
 def nyquist_kept(self: PeriodicInfluence, angle: float) -> Any:
@@ -62,8 +67,8 @@ def lower_surface_only(self: Problem, lower: Array, upper: Array) -> Slopes:
     return _problem_slopes(self, 2 * lower, np.zeros_like(upper))
 
 
-def flat_border(heights: Array, axis: int, periodic: bool) -> Array:
-    d = np.array(_difference(heights, axis, periodic))
+def flat_border(values: Array, axis: int, *, periodic: bool = False) -> Array:
+    d = np.array(_differences(values, axis, periodic=periodic))
     edges = np.moveaxis(d, axis, 0)
     if not periodic:
         edges[0] = edges[-1] = 0.0
@@ -74,9 +79,8 @@ def slid_backwards(self: Scene, grid: Grid) -> Any:
     return _scene_sampled(replace(self, sliding_offset=-self.sliding_offset), grid)
 
 
-def from_first_touch(posed: Problem, *args: Any) -> Any:
-    found = _gathered(posed, *args)
-    return replace(found, approach=found.approach + float(posed.gap.mean())) if posed.periodic else found
+def from_first_contact(found: Solution) -> Solution:
+    return replace(found, approach=found.approach + found.problem.datum)
 
 
 def small_dropped(*args: Any) -> Any:
@@ -89,8 +93,8 @@ def never_corrected(self: Any, u: Array, inside: Any, *, periodic: bool) -> Any:
     return _iterate(self, u, inside, periodic=True)
 
 
-def one_grid(posed: Problem) -> list[Problem]:
-    return [posed]
+def one_grid(problem: Problem) -> list[Problem]:
+    return [problem]
 
 
 def lattice_from_zero(seed: int, rows: range, columns: range) -> Array:
@@ -103,8 +107,9 @@ def uniform(seed: int, rows: range, columns: range) -> Array:
     return np.asarray(math.sqrt(12) * (ndtr(_white_noise(seed, rows, columns)) - 0.5))
 
 
-def forward(z: Array, spacing: float) -> tuple[Array, Array]:
-    return (np.roll(z, -1, axis=0) - z) / spacing, (np.roll(z, -1, axis=1) - z) / spacing
+def forward(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array]:
+    dx, dy = spacing if isinstance(spacing, tuple) else (spacing, spacing)
+    return (np.roll(z, -1, axis=0) - z) / dx, (np.roll(z, -1, axis=1) - z) / dy
 
 
 def quartered(found: bounds.Bounds) -> bounds.Bounds:
@@ -136,17 +141,21 @@ def fft_across_reversed(self: FFTInfluence, traction: Array) -> Array:
     return -_fft_across(self, traction)
 
 
-def half_the_perimeter(contact: Any, spacing: float, *, periodic: bool = False) -> float:
-    corrected = _perimeter(contact, spacing, periodic=periodic)
-    return 0.5 * (corrected + float(contact.sum()) * spacing**2)
+def half_the_perimeter(contact: Mask, grid: Grid) -> float:
+    return 0.5 * (_perimeter(contact, grid) + forces.contact_area(contact, grid))
 
 
-def quarter_of_a_bar(self: Estimate, found: float) -> float:
-    return _bar(self, found) / 4
+def larger_beta(law: FrictionLaw, mean_pressure: float) -> float:
+    return _coefficient_at(law, mean_pressure) + 0.01 * law.slope
 
 
-def states_alone(outcome: Any, found: Any, unlawful: float, load: float) -> Any:
-    return _spread_by_support(outcome, found, 0.0, load)
+def quarter_of_a_bound(self: Estimate, found: float) -> float:
+    return _bound(self, found) / 4
+
+
+def states_alone(problem: Problem, result: SolverResult, state: State) -> Any:
+    lawful = replace(state.certificate, law_violations=0)
+    return _active_set_parts(problem, result, replace(state, certificate=lawful))
 
 
 def low_departure(*args: Any) -> Any:

@@ -12,7 +12,7 @@ import numpy as np
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 from verification.multilevel.ensemble import QUANTITIES, TOLERANCE, Ensemble, ensemble
-from verification.sweep.study import study_from_dict
+from verification.sweep.study_file import study_from_dict
 
 SCENE = "table1-rough"
 GRIDS = [64, 128, 256, 512]

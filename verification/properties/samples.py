@@ -51,7 +51,7 @@ class Sample:
     @property
     def grid(self) -> Grid:
         """The grid the sample is meant for."""
-        return Grid(SIDE, self.M)
+        return Grid.square(SIDE, self.M, periodic=self.periodic)
 
     @cached_property
     def scene(self) -> rf.Scene:

@@ -19,7 +19,7 @@ Corner = Callable[[Array, Array], Array]
 
 def normal_matrix(grid: Grid) -> Array:
     """``I[1/rho]`` between all pairs of elements (m), shape ``(M^2, M^2)``, field by row."""
-    return _corners(*_pairs(grid), grid.spacing, _love)
+    return _corners(*_pairs(grid), grid.element_size, _love)
 
 
 def normal_offsets(M: int) -> Array:
@@ -30,7 +30,7 @@ def normal_offsets(M: int) -> Array:
 
 def shear_matrix(grid: Grid, direction: float) -> Array:
     """``I[s/rho^2]`` between all pairs (m), ``s`` along ``direction`` (rad) from source to field."""
-    return _cerruti(*_pairs(grid), grid.spacing, direction)
+    return _cerruti(*_pairs(grid), grid.element_size, direction)
 
 
 def shear_offsets(M: int, direction: float) -> Array:
@@ -51,7 +51,7 @@ def _cerruti(X: Array, Y: Array, edge: float, direction: float) -> Array:
 
 def _pairs(grid: Grid) -> tuple[Array, Array]:
     """Offsets along x and y between all element centres, field by row."""
-    x, y = (axis.ravel() for axis in np.meshgrid(grid.centres, grid.centres, indexing="ij"))
+    x, y = (axis.ravel() for axis in np.meshgrid(grid.x, grid.y, indexing="ij"))
     return x[:, None] - x[None, :], y[:, None] - y[None, :]
 
 

@@ -14,7 +14,8 @@ from scipy.stats import t as student
 
 from verification.sweep.engine import sweep
 from verification.sweep.run import CERTIFIED, Row
-from verification.sweep.study import Study, read_study
+from verification.sweep.study import Study
+from verification.sweep.study_file import read_study
 
 FOLDER = "ROUGH_FRICTION_SWEEPS"  # environment variable: keep stores there; they outlive a killed run
 CONFIDENCE = 0.95

@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import refimpl as rf
-from refimpl.model.forces import plasticity_index, smooth_friction_coefficient
+from refimpl.model.forces import plasticity_index
+from refimpl.model.friction import friction_coefficient_at
 from verification.reproduction import table3
 from verification.reproduction.ensemble import column, estimate
 from verification.reproduction.printed import (
@@ -33,7 +34,7 @@ from verification.reproduction.printed import (
 from verification.reproduction.table1 import RADIUS, SMOOTH, hertz
 
 ROUNDED_RADIUS = 0.1430  # m: printed as 0.14
-TAU, BETA = SMOOTH.friction.tau, SMOOTH.friction.beta
+LAW = SMOOTH.friction
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def _hertz_misfit(radius: float) -> float:
 
 def _smooth_column_misfit(radius: float) -> float:
     area = math.pi * hertz(radius=radius).contact_radius ** 2
-    mu = smooth_friction_coefficient(TAU, BETA, SMOOTH.load / area)
+    mu = friction_coefficient_at(LAW, SMOOTH.load / area)
     printed = TABLE3[0]
     return max(_off(printed.contact_area[-1], area), _off(printed.friction_coefficient[-1], mu))
 
@@ -89,7 +90,7 @@ def _limit_misfit(*, elastic: bool) -> float:
     if not elastic:
         return _off(printed, LOWEST_FRICTION)
     pressure = SMOOTH.load / _ours("contact_area", TABLE3[-1].flat_rms)
-    return _off(printed, smooth_friction_coefficient(TAU, BETA, pressure))
+    return _off(printed, friction_coefficient_at(LAW, pressure))
 
 
 def _coarse_misfit(*, printed: bool) -> float:
@@ -99,7 +100,7 @@ def _coarse_misfit(*, printed: bool) -> float:
         A, mu = found.contact_area[0], found.friction_coefficient[0]
         if not printed:
             A, mu = (_ours(quantity, found.flat_rms) for quantity in ("contact_area", "friction_coefficient"))
-        misfits.append(_off(mu, smooth_friction_coefficient(TAU, BETA, SMOOTH.load / A)))
+        misfits.append(_off(mu, friction_coefficient_at(LAW, SMOOTH.load / A)))
     return max(misfits)
 
 

@@ -46,9 +46,9 @@ def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
     scene = rough(FLAT_RMS, BALL_RMS, realisation)
     found = rf.solve(scene, grid)
     lower, _ = scene.heights(found.grid)
-    x = found.grid.centres - scene.side / 2
+    x = found.grid.x - scene.side / 2
     nominal = np.hypot(x[:, None], x[None, :]) <= hertz().contact_radius
-    slope = np.degrees(np.arctan(np.gradient(lower, found.grid.spacing, axis=0)))
+    slope = np.degrees(np.arctan(np.gradient(lower, found.grid.spacings[0], axis=0)))
     return (
         lower[nominal] * 1e6,
         slope[nominal],

@@ -34,7 +34,7 @@ def surface(realisation: int, grid: int, *, ball: bool = False) -> Array:
     """Normalised heights (unit rms) of the flat's roughness, or the ball's."""
     seed = FIRST_SEED + 2 * realisation + (not ball)
     roughness = rf.GaussianRoughness(1.0e-6, CORRELATION_LENGTH, seed, normalise=True)
-    return roughness.heights(rf.Grid(SIDE, grid)) * 1e6
+    return roughness.heights(rf.Grid.square(SIDE, grid)) * 1e6
 
 
 def measured(realisations: int, grid: int) -> Statistics:

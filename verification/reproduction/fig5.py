@@ -30,13 +30,13 @@ class Profiles:
 def profiles(grid: int) -> Profiles:
     """Table 1, smooth, P = 70 N; the upper ball slides along +x."""
     found = rf.solve(SMOOTH, grid)
-    x = found.grid.centres - SMOOTH.side / 2
+    x = found.grid.x - SMOOTH.side / 2
     middle = grid // 2  # of the two middle lines, the one just above
     total = found.pressure.sum()
     contact = found.contact
     inner = np.zeros_like(contact)
     inner[1:-1, 1:-1] = contact[2:, 1:-1] & contact[:-2, 1:-1] & contact[1:-1, 2:] & contact[1:-1, :-2]
-    lawful = contact & ~inner & ~found.withheld
+    lawful = contact & ~inner & ~found.excluded
     return Profiles(
         x=x,
         pressure=(found.pressure[:, middle], found.pressure[middle]),

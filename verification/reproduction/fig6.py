@@ -96,8 +96,7 @@ def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
 
 def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
     """The averaged pressure, and both theories at the same radii."""
-    elements = rf.Grid(SMOOTH.side, grid)
-    centres = elements.centres - SMOOTH.side / 2
+    centres = SMOOTH.grid(grid).x - SMOOTH.side / 2
     distance = np.hypot(centres[:, None], centres[None, :])
     ring = (distance / BIN).astype(int)
     rings = int(SMOOTH.side / 2 / BIN)  # whole annuli only

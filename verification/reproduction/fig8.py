@@ -16,7 +16,7 @@ from verification.reproduction.ensemble import column, estimate, reduced, rows, 
 from verification.reproduction.printed import CORRELATION_LENGTH, HARDNESS, LOADS, SPHERE_RMS
 from verification.reproduction.table1 import SMOOTH, rough
 from verification.sweep.run import Row
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 QUICK_REALISATIONS, QUICK_MESH = 3, 128
 QUICK_RMS = (0.0, 0.252e-6, 0.504e-6, 1.008e-6, 1.680e-6)  # m

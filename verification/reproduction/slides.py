@@ -11,7 +11,7 @@ import numpy as np
 from refimpl.grid import Array
 from verification.reproduction.ensemble import reduced, rows, rows_of
 from verification.sweep.run import Row
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 QUICK_MESH = 128
 QUICK_OFFSETS = tuple(k * 50e-6 for k in range(8))  # m

@@ -12,7 +12,7 @@ from verification.reproduction.ensemble import Estimate, column, estimate, reduc
 from verification.reproduction.printed import MESHES, TABLE3, Column
 from verification.reproduction.table1 import SMOOTH
 from verification.sweep.run import Row
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 QUANTITIES = ("contact_area", "friction_coefficient", "max_pressure")
 UNITS = {"contact_area": "m^2", "friction_coefficient": "", "max_pressure": "Pa"}

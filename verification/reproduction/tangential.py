@@ -68,8 +68,8 @@ def displacements(scene: rf.Scene, found: rf.Solution) -> Tangential:
     """
     if scene.sliding_direction != 0:
         raise ValueError("written for sliding along x")
-    h = found.grid.spacing
-    kernels = element_integrals(found.grid.M, h)
+    h = found.grid.spacings[0]
+    kernels = element_integrals(found.grid.shape[0], h)
     lower = _relative(_of_body(scene.lower.material, kernels, found.pressure, found.traction), found)
     upper = _relative(_of_body(scene.upper.material, kernels, found.pressure, -found.traction), found)
     z_lower, z_upper = scene.heights(found.grid)
@@ -105,7 +105,7 @@ def _relative(u: Array, found: rf.Solution) -> Array:
 def with_tangential(scene: rf.Scene, found: rf.Solution) -> rf.Scene:
     """The scene with the solution's tangential displacements worked into both undeformed surfaces."""
     moved = displacements(scene, found)
-    h = found.grid.spacing
+    h = found.grid.spacings[0]
     bodies = []
     heights = scene.heights(found.grid)
     for body, u, z in ((scene.lower, moved.lower, heights[0]), (scene.upper, moved.upper, heights[1])):

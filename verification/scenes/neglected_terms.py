@@ -1,4 +1,4 @@
-"""Random scenes on which the plan's estimates are held against what leaving each term out really changes.
+"""Random scenes on which the plan's estimates are compared with what neglecting each term really changes.
 
 Four kinds: smooth balls (on a flat or in a cup), balls on roughness, rough planes (free or periodic), and
 two rough bodies. Moduli over 2.5 decades, Poisson's ratios of 0 to 0.5 (a quarter of the pairs identical),
@@ -10,19 +10,17 @@ friction, of mu itself.
 from __future__ import annotations
 
 import math
-import warnings
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Grid
-from refimpl.model.problem import Problem, Terms, pose
+from refimpl.model.problem import Problem, Terms
 from refimpl.operators.fft import Counter
-from refimpl.planning import term_effects
 from refimpl.planning.plan import Plan, make_plan
-from refimpl.planning.term_effects import Effect, Scales
-from refimpl.scene.discretise import EVERYTHING
+from refimpl.planning.term_effects import ESTIMATES, NONE, Effect, Scales
+from refimpl.planning.terms import LABELS
+from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 
 SIDE = 1e-3
@@ -30,29 +28,23 @@ TOLERANCE = 1e-9  # of each solve: a thousandth of the smallest effects that are
 RMS_SLOPE_PER_RMS = math.sqrt(2 * 2.3)  # Eq. (9): rms slope = this times rms over length
 
 WITHOUT = {
-    "shear coupling": Terms(coupled=False, oblique=True, slope_correction=False),
-    "shear tilt": Terms(coupled=True, oblique=True, slope_correction=False, tilted=False),
-    "obliqueness": Terms(coupled=True, oblique=False, slope_correction=False),
+    "coupled": Terms(coupled=False),
+    "tilted": Terms(tilted=False),
+    "oblique": Terms(oblique=False),
 }
-CORRECTION = "slope correction"  # put in rather than left out: Eq. (7) is printed without it
-WITH = {CORRECTION: Terms(coupled=True, oblique=True, slope_correction=True)}
-ESTIMATES = {
-    "shear coupling": term_effects.shear_coupling,
-    "shear tilt": term_effects.shear_tilt,
-    "obliqueness": term_effects.obliqueness,
-    CORRECTION: term_effects.slope_correction,
-}
+WITH = {"slope_correction": Terms(slope_correction=True)}  # added: Eq. (7) is printed without it
+CORRECTION = LABELS["slope_correction"]
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One term in one scene: its estimate, its effect, and whether the plan at an accuracy leaves it out."""
+    """One term, by its label, in one scene: estimate, effect, and whether the plan neglects it."""
 
     scene: int
     term: str
     estimate: Effect
     effect: Effect
-    left_out: bool
+    neglected: bool
 
     @property
     def bounded(self) -> bool:
@@ -117,35 +109,30 @@ def trials(seed: int, scenes: int, M: int, accuracy: float) -> list[Trial]:
     found: list[Trial] = []
     for number in range(scenes):
         scene = random_scene(rng)
-        plan = make_plan(scene, M, "fft", demand=accuracy)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rf.SurfaceWarning)
-            problem = pose(scene, Grid(SIDE, M), EVERYTHING, None)
-        found += _trials_of(number, problem, plan)
+        problem = discretise(scene, scene.grid(M))
+        found += _trials_of(number, problem, make_plan(problem, demand=accuracy))
     return found
 
 
 def _trials_of(number: int, problem: Problem, plan: Plan) -> list[Trial]:
-    scales = Scales(plan.outlook, problem.pair, problem.friction)
+    scales = Scales(plan.contact, problem.pair, problem.friction)
     whole = _mu_and_area(problem)
     result = []
     for name, terms in {**WITHOUT, **WITH}.items():
         estimate = ESTIMATES[name](scales)
-        if estimate == term_effects.NONE and name in WITHOUT:  # no choice of the plan's: nothing is left out
+        if estimate == NONE and name in WITHOUT:  # exactly zero: the plan has no choice
             continue
-        mu, area = _mu_and_area(replace(problem, terms=terms))
+        mu, area = _mu_and_area(problem.with_terms(terms))
         change, larger = abs(mu - whole[0]), abs(area - whole[1]) / whole[1]
         effect = Effect(change / scales.mu, larger) if scales.mu else Effect(0.0, larger, bare=change)
         out = name in WITHOUT and not plan.includes(name)
-        result.append(Trial(number, name, estimate, effect, out))
+        result.append(Trial(number, LABELS[name], estimate, effect, out))
     return result
 
 
 def _mu_and_area(problem: Problem) -> tuple[float, float]:
     """Friction coefficient and contact area (m^2); raises `RuntimeError` without convergence."""
-    outcome, state = solve_fft(problem, TOLERANCE, Counter())
-    if not state.certificate.meets(10 * TOLERANCE):
-        raise RuntimeError(f"{outcome.status.value}: {state.certificate.worst:.1e}")
-    assert problem.load is not None
-    area = float(np.count_nonzero(state.pressure > 0)) * problem.grid.element_area
-    return state.forces.friction / problem.load, area
+    solved, state = solve_fft(problem, TOLERANCE, Counter())
+    if not state.certificate.satisfies(10 * TOLERANCE):
+        raise RuntimeError(f"{solved.status.value}: {state.certificate.largest:.1e}")
+    return state.friction_coefficient, state.contact_area

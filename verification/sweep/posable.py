@@ -1,4 +1,4 @@
-"""What posing a run would refuse, found before any run: each limit where the study comes closest to it."""
+"""Refusals of runs, found before any run: each limit where the study comes closest to it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,17 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from refimpl.driver.options import Request
+from refimpl.driver.options import Options
 from refimpl.grid import Grid
 from refimpl.planning.plan import memory_of
+from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_from_dict
-
-if TYPE_CHECKING:
-    from verification.sweep.study import Study
+from verification.sweep.study import Study
 
 FINEST = 256  # elements a side that heights are sampled on: 0.01 s, and 0.4 % from where the domain ends
+_SWITCHES = ("oblique", "slope_correction")
 _SMALL, _LARGE, _BOTH = (min,), (max,), (min, max)
 _CLOSEST = {"upper_rms": _LARGE, "lower_rms": _LARGE, "correlation_length": _BOTH, "sliding_offset": _BOTH}
 
@@ -26,22 +25,25 @@ _CLOSEST = {"upper_rms": _LARGE, "lower_rms": _LARGE, "correlation_length": _BOT
 def check(study: Study) -> None:
     """Raise InputError, naming the field, for what `refimpl.solve` would refuse of any run but its memory.
 
-    Requests are made of every point of one realisation (0.1 ms each). Heights are sampled, of the first
+    Options are made of every point of one realisation (0.1 ms each). Heights are sampled, of the first
     realisation, only where a limit may be met, 8 times at most: the largest roughness (peak-to-valley), the
     shortest and the longest correlation (noise nodes; period), the farthest slides either way in the
     directions nearest to the axes (measured area). What remains for the runs: other realisations' peaks,
     and windows on the way of a slide that miss too many points.
     """
+    options = {key: value for key, value in study.settings.items() if key not in _SWITCHES}
+    requested = RequestedTerms(**{key: study.settings[key] for key in _SWITCHES if key in study.settings})
     for run in replace(study, realisations=1).runs():
         scene = scene_from_dict(run.inputs["scene"], Path())
-        Request(scene=scene, grid=run.inputs["grid"], **run.inputs["solve"])
+        Options(scene=scene, grid=run.inputs["grid"], requested=requested, **options)
     for scene in _closest(study):
-        scene.sampled(Grid(scene.side, min(FINEST, int(max(study.vary["grid"])))))
+        scene.sampled(scene.grid(min(FINEST, int(max(study.vary["grid"])))))
 
 
 def check_memory(study: Study) -> None:
     """Raise InputError where the finest grid does not fit into this machine's free memory."""
-    memory_of(study.settings.get("method", "fft"), int(max(study.vary["grid"])))
+    finest = Grid.square(study.scene["side"], int(max(study.vary["grid"])))
+    memory_of(study.settings.get("method", "fft"), finest)
 
 
 def _closest(study: Study) -> Iterator[Scene]:

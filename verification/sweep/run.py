@@ -28,8 +28,8 @@ OUTCOMES = (
     "friction_coefficient_cycle", "contact_area_cycle", "border_elements",
 )  # fmt: skip
 """What a run gives. ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
-that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` how far a settled cycle of
-tau's support reached; ``border_elements`` the elements in contact on the domain's border.
+that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` what an alternating contact
+edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border.
 """
 
 CERTIFIED = (rf.Status.CONVERGED.value, rf.Status.CYCLED.value)
@@ -102,7 +102,7 @@ def outcome(solution: rf.Solution) -> Row:
     spread = solution.uncertainty
 
     def cycle(name: str) -> float:
-        return float(spread.get(name, {}).get("tau support", 0.0))
+        return float(spread.get(name, {}).get("active set", 0.0))
 
     return {
         "status": solution.status.value,
@@ -115,7 +115,7 @@ def outcome(solution: rf.Solution) -> Row:
         "friction_force": solution.friction_force,
         "elastic_friction": elastic,
         "binormal_force": solution.binormal_force,
-        "residual": solution.certificate.worst,
+        "residual": solution.certificate.largest,
         "friction_coefficient_cycle": cycle("friction_coefficient"),
         "contact_area_cycle": cycle("contact_area"),
         "border_elements": int(contact.sum() - contact[1:-1, 1:-1].sum()),

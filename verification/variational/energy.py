@@ -11,25 +11,21 @@ positive, so elsewhere dV*/df > 0 whatever the pressure is. They are the unknown
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 import refimpl as rf
-from refimpl.grid import Grid
+from refimpl.grid import Array, Mask
 from refimpl.model.certificate import State, certify
-from refimpl.model.problem import Problem, Terms, pose
+from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.kernel_tables import unit_table
+from refimpl.scene.discretise import discretise
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
-FRICTIONLESS = Terms(coupled=False, oblique=False, slope_correction=False)
+FRICTIONLESS = Terms(coupled=False, oblique=False)
 
 
 def table2_scene() -> rf.Scene:
@@ -77,7 +73,7 @@ class Energy:
 
     def matrix(self) -> Array:
         """``I[1/rho]`` of unit elements between all pairs of unknowns, ``(n, n)``."""
-        table = unit_table("normal", self.problem.grid.M)
+        table = unit_table("normal", self.problem.grid.shape)
         i, j = np.nonzero(self.interference)
         pairs = np.empty((len(i), len(i)))
         for k in range(len(i)):
@@ -87,12 +83,12 @@ class Energy:
     def apply(self, x: Array) -> Array:
         """``A x`` by FFT, ``(n,)``."""
         displacement: Array = self._operator.normal(self._spread(x))[self.interference]
-        return displacement / self.problem.grid.spacing
+        return displacement / self.problem.grid.element_size
 
     def pressure(self, x: Array) -> Array:
         """Pressures on the whole grid, ``(M, M)`` (Pa)."""
         problem = self.problem
-        unit = self.approach / (problem.pair.normal_compliance * problem.grid.spacing)
+        unit = self.approach / (problem.pair.normal_compliance * problem.grid.element_size)
         return unit * self._spread(x)
 
     @property
@@ -112,9 +108,7 @@ class Energy:
 
 def frictionless(scene: rf.Scene, M: int, approach: float | None = None) -> Problem:
     """The scene on ``M x M`` elements without slopes and coupling, under its load or at an approach (m)."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.SurfaceWarning)  # coarse grids of one roughness are meant here
-        return pose(scene, Grid(scene.side, M), FRICTIONLESS, approach)
+    return discretise(scene, scene.grid(M), FRICTIONLESS, approach)
 
 
 def certified(problem: Problem, pressure: Array) -> State:

@@ -14,8 +14,9 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import minimize, nnls
 
+from refimpl.grid import Array
 from verification.framework.case import Unavailable
-from verification.variational.energy import Array, Energy
+from verification.variational.energy import Energy
 
 GRADIENT_TOLERANCE = 1e-6  # L-BFGS-B, of the projected gradient: penetration over approach
 INTERIOR_TOLERANCE = 1e-10  # PIQP, of its residuals, in units of the approach

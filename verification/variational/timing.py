@@ -17,8 +17,9 @@ from typing import TypeVar
 import numpy as np
 
 import refimpl as rf
+from refimpl.grid import Array
 from verification.framework.files import Progress
-from verification.variational.energy import Array, Energy, certified, frictionless, table2_scene
+from verification.variational.energy import Energy, certified, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, Minimum
 
 Result = TypeVar("Result")
@@ -78,7 +79,7 @@ class Contact:
         Raises RuntimeError when the reference is not certified to 1e-10.
         """
         reference = rf.solve(scene, grid=M, oblique=False, tolerance=1e-12)
-        if not reference.certificate.meets(1e-10):
+        if not reference.certificate.satisfies(1e-10):
             raise RuntimeError(f"no reference at M = {M}: {reference.certificate}")
         return cls(scene, M, reference)
 

@@ -11,7 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.errors import require_number
 from refimpl.surfaces import MeasuredSurface
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 SCENE = rf.scene_to_toml(rf.read_scene("hertz"))
 

@@ -11,7 +11,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from verification.sweep.study import Study, study_from_dict
+from verification.sweep.study import Study
+from verification.sweep.study_file import study_from_dict
 
 LONG = ["solve", "table1-rough", "--grid", "1024", "--tolerance", "1e-12"]
 STUDY = 'scene = "table1-rough"\nrealisations = 40\n[vary]\ngrid = [12, 16]\n'

@@ -12,7 +12,7 @@ import pytest
 from tests.verification.cli.children import LONG, STUDY, Ended, forked, rows, started
 from verification.cli import main
 from verification.sweep import engine
-from verification.sweep.study import study_from_dict
+from verification.sweep.study_file import study_from_dict
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL, signal.SIGTERM])

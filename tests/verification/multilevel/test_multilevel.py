@@ -31,7 +31,8 @@ from verification.multilevel.ensemble import (
 )
 from verification.multilevel.estimator import Estimate
 from verification.sweep import engine
-from verification.sweep.study import MAX_RUNS, Study, study_from_dict
+from verification.sweep.study import MAX_RUNS, Study
+from verification.sweep.study_file import study_from_dict
 
 
 def test_grids_too_coarse_to_help_are_dropped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

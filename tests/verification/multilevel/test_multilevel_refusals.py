@@ -10,7 +10,7 @@ import pytest
 from refimpl.errors import InputError
 from tests.verification.multilevel.drawn import TABLE, spied
 from verification.multilevel.ensemble import PILOT, ensemble
-from verification.sweep.study import study_from_dict
+from verification.sweep.study_file import study_from_dict
 
 
 @pytest.mark.parametrize("target", [1e-6, 1e-30, 1e-300])

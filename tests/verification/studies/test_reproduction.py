@@ -21,7 +21,7 @@ from verification.reproduction.table1 import SMOOTH, hertz, rough
 from verification.reproduction.tangential import displacements, element_integrals
 from verification.reproduction.tiers import in_both_tiers
 from verification.sweep.run import Row
-from verification.sweep.study import study_from_dict
+from verification.sweep.study_file import study_from_dict
 
 
 def test_the_printed_table_is_consistent_with_eq_10_on_its_finest_mesh() -> None:

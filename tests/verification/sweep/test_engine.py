@@ -20,7 +20,8 @@ from verification.sweep import engine
 from verification.sweep.export import to_csv
 from verification.sweep.run import Run, execute
 from verification.sweep.store import open_store
-from verification.sweep.study import Study, study_from_dict
+from verification.sweep.study import Study
+from verification.sweep.study_file import study_from_dict
 
 STUDY = """scene = "table1-rough"
 realisations = 10
@@ -163,7 +164,7 @@ import os, random, signal, sys, time
 from pathlib import Path
 from verification.sweep import engine
 from verification.sweep.export import to_csv
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 study, folder = read_study(sys.argv[1]), Path(sys.argv[2])
 started = time.perf_counter()
@@ -248,7 +249,7 @@ def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> Non
 
 
 def study_from_toml(folder: Path) -> Study:
-    from verification.sweep.study import read_study
+    from verification.sweep.study_file import read_study
 
     return read_study(folder / "study.toml")
 

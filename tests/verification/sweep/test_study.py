@@ -15,7 +15,8 @@ from refimpl.scene.scene_file import scene_from_dict
 from refimpl.surfaces import measured
 from verification.sweep import study as study_module
 from verification.sweep.run import COORDINATES, OUTCOMES, execute
-from verification.sweep.study import Study, read_study, shipped_studies, study_from_dict
+from verification.sweep.study import Study
+from verification.sweep.study_file import read_study, shipped_studies, study_from_dict
 
 BASE: dict[str, Any] = {"scene": "table1-rough", "realisations": 2, "vary": {"grid": [16]}}
 

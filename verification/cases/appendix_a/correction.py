@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from appendix_a.facet import facet_coefficient, neighbours
-from refimpl.grid import Grid
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.reproduction.ensemble import estimate
@@ -57,8 +56,8 @@ def near_field(found: rf.Solution, material: rf.Material, sign: float, reach: in
     """
     loaded = np.argwhere(found.contact)
     tan_x, tan_y = (sign * part[found.contact] for part in (found.slopes.tan_x, found.slopes.tan_y))
-    size, level = found.grid.M, np.zeros(1)
-    scale = found.pressure[found.contact] * 0.5 * found.grid.spacing / material.E
+    size, level = len(found.pressure), np.zeros(1)
+    scale = found.pressure[found.contact] * 0.5 * found.grid.element_size / material.E
     added = np.zeros((size, size))
     for step in neighbours(reach):
         change = facet_coefficient(tan_x, tan_y, material.nu, step) - facet_coefficient(
@@ -75,7 +74,7 @@ def remedied(scene: rf.Scene, size: int, reach: int = 1) -> rf.Solution:
 
     Raises RuntimeError if that does not settle.
     """
-    lower, upper = scene.heights(Grid(scene.side, size))
+    lower, upper = scene.heights(scene.grid(size))
     found = rf.solve(scene, size)
     for _ in range(ROUNDS):
         steep = found.slopes.obliqueness  # Eq. (6) divides displacements by it, and not heights

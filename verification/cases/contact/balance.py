@@ -9,7 +9,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
-from refimpl.model.forces import facet_resultants, plasticity_index, smooth_friction_coefficient
+from refimpl.model.forces import facet_resultants, plasticity_index
+from refimpl.model.friction import friction_coefficient_at
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
 from verification.framework.case import Measured
@@ -30,9 +31,11 @@ def solved(name: str, M: int) -> rf.Solution:
 def normal_force(solution: rf.Solution) -> float:
     """Eq. (2) with trigonometric functions of angles measured on the returned surfaces, exactly summed."""
     common = (solution.surface_lower + solution.surface_upper) / 2
-    border = 1 if solution.problem.periodic else 0
-    wide, inner = np.pad(common, border, mode="wrap"), slice(border, solution.grid.M + border)
-    along_i, along_j = (np.gradient(wide, solution.grid.spacing, axis=k)[inner, inner] for k in (0, 1))
+    border = 1 if solution.grid.periodic else 0
+    wide, inner = np.pad(common, border, mode="wrap"), slice(border, len(common) + border)
+    along_i, along_j = (
+        np.gradient(wide, edge, axis=k)[inner, inner] for k, edge in enumerate(solution.grid.spacings)
+    )
     phi = solution.sliding_direction
     theta_x = np.arctan(math.cos(phi) * along_i + math.sin(phi) * along_j)
     theta_y = np.arctan(math.cos(phi) * along_j - math.sin(phi) * along_i)
@@ -141,7 +144,7 @@ def _fields(M: int) -> tuple[Array, Array]:
 )
 def reciprocity() -> Measured:
     one, two = _fields(200)
-    operator = FFTInfluence(Grid(1e-3, 200), 0.0)
+    operator = FFTInfluence(Grid.square(1e-3, 200), 0.0)
     there, back = operator.normal(two), operator.normal(one)
     scale = float(np.linalg.norm(one) * np.linalg.norm(there))
     return Measured(value=abs(float(np.vdot(one, there) - np.vdot(two, back))) / scale)
@@ -161,7 +164,7 @@ def skew_coupling() -> Measured:
     one, _ = _fields(200)
     worst = 0.0
     for angle in (0.0, 0.7, 2.0):
-        moved = FFTInfluence(Grid(1e-3, 200), angle).shear(one)
+        moved = FFTInfluence(Grid.square(1e-3, 200), angle).shear(one)
         share = abs(float(np.vdot(one, moved))) / float(np.linalg.norm(one) * np.linalg.norm(moved))
         worst = max(worst, share)
     return Measured(value=worst)
@@ -181,13 +184,12 @@ def skew_coupling() -> Measured:
 def flat_tips() -> Measured:
     scene = rf.read_scene("table1-smooth")
     solution = rf.solve(scene, 64, oblique=False)
-    tau, beta = scene.friction.tau, scene.friction.beta
     # of the elements that carry tau: a settled cycle withholds it from some, and Eq. (1) from none
-    area = np.count_nonzero(solution.contact & ~solution.withheld) * solution.grid.element_area
+    area = np.count_nonzero(solution.contact & ~solution.excluded) * solution.grid.element_area
     return Measured(
-        value=smooth_friction_coefficient(tau, beta, solution.normal_force / area),
+        value=friction_coefficient_at(scene.friction, solution.normal_force / area),
         reference=solution.friction_force / solution.normal_force,
-        note=f"{solution.status.value}, {int(solution.withheld.sum())} elements withheld from tau",
+        note=f"{solution.status.value}, {int(solution.excluded.sum())} elements withheld from tau",
     )
 
 

@@ -9,7 +9,6 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.model.friction import local_friction
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
@@ -41,15 +40,15 @@ def loose(name: str, tolerance: float) -> rf.Solution:
 
 def bounds_of(golden: Golden, problem: Problem, pressure: Array) -> Bounds:
     """Bounds of a pressure with the proof's slopes and support of tau."""
-    traction = local_friction(problem.friction, pressure, golden.contact)
+    traction = problem.friction.traction(pressure, golden.contact)
     return proven_bounds(problem, pressure, traction, held(golden))
 
 
 def energy_of(golden: Golden, pressure: Array) -> float:
     """``sum e (a e) dA`` of any pressure e (J), with the textbook's matrix where there is one."""
-    grid, e = rf.Grid(golden.scene.scene.side, golden.scene.M), pressure.ravel()
+    grid, e = golden.scene.scene.grid(golden.scene.M), pressure.ravel()
     if golden.scene.periodic:
-        a = DenseInfluence(grid, golden.scene.direction, periodic=True).normal_matrix
+        a = DenseInfluence(grid, golden.scene.direction).normal_matrix
     else:
         a = normal_matrix(grid)
     return float(e @ a @ e) * compliances(golden.scene.scene)[0] * grid.element_area
@@ -57,9 +56,10 @@ def energy_of(golden: Golden, pressure: Array) -> float:
 
 def same_support(golden: Golden, found: rf.Solution) -> bool:
     """Whether the solution holds tau where the proof does."""
-    if golden.scene.friction.tau == 0:
+    law = golden.scene.friction
+    if law.tau == 0:
         return True
-    held_tau = found.traction - found.friction.beta * found.pressure > 0.5 * found.friction.tau
+    held_tau = found.traction - law.beta * found.pressure > 0.5 * law.tau
     return np.array_equal(held_tau, golden.contact)
 
 

@@ -88,7 +88,7 @@ def profile_errors() -> list[float]:
 def peak_pressure() -> Measured:
     solution, r = solved(FINE), distance(FINE)
     middle = FINE // 2
-    x = (np.arange(FINE) + 0.5 - middle) * solution.grid.spacing * 1e3
+    x = (np.arange(FINE) + 0.5 - middle) * solution.grid.spacings[0] * 1e3
     coarse = slice(None, None, COARSENED)
     data = {
         "pressure": solution.pressure[coarse, coarse] / 1e6,

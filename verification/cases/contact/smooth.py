@@ -202,7 +202,7 @@ def patch_displacement() -> Measured:
     pressure[8:32, 20:32] = 1.0
     x0, y0 = float(x[8:32].mean()), float(y[:, 20:32].mean())
     block = Patch(pressure=1.0, width=24 / M, height=12 / M, modulus=MODULUS)
-    found = FFTInfluence(rf.Grid(side, M), 0.0).normal(pressure) / (np.pi * MODULUS)
+    found = FFTInfluence(rf.Grid.square(side, M), 0.0).normal(pressure) / (np.pi * MODULUS)
     exact = block.displacement(x - x0, y - y0)
     worst = float(np.max(np.abs(found - exact)) / exact.max())
     return Measured(worst, reference_uncertainty=PATCH_UNCERTAINTY)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 import refimpl as rf
+from refimpl.model.friction import is_frictionless
 from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, first_touch_approach, press
 from verification.exact import fourier, jgh, westergaard
 from verification.exact.westergaard import Wave
@@ -219,7 +220,7 @@ def _full_contact_error(friction: rf.Friction, coupling: float, direction: float
         WAVELENGTH,
         64,
         load=mean * WAVELENGTH**2,
-        friction=None if friction.is_zero else friction,
+        friction=None if is_frictionless(friction) else friction,
         direction=direction,
         periodic=True,
     )

@@ -60,7 +60,7 @@ def hertz_area() -> Measured:
     return Measured(
         value=sum(share <= 1 for share in shares) / len(shares) if all(kept) else 0.0,
         reference_uncertainty=UNCERTAINTY,
-        data={"grid": [solution.grid.M for solution in found], "error over bar": shares},
+        data={"grid": [solution.grid.shape[0] for solution in found], "error over bar": shares},
         note=f"in the middle {shares[0]:.3f} of its bar, elsewhere {max(shares[1:]):.3f} at most",
     )
 

@@ -8,17 +8,18 @@ from dataclasses import replace
 from functools import cache
 
 import refimpl as rf
-from refimpl.driver.options import Request
-from refimpl.grid import Grid
-from refimpl.model.problem import Terms, pose
+from refimpl.driver.options import Options
+from refimpl.model.problem import Terms
 from refimpl.operators.fft import Counter
+from refimpl.planning.terms import LABELS, RequestedTerms
+from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.cli.explain import explained
 from verification.framework.case import Measured
 from verification.framework.registry import case
 
 SOURCE = "the planner's own promise (README): what a scene does not require is neither built nor applied"
-BARE = Terms(coupled=False, oblique=False, slope_correction=False, tilted=False)
+BARE = Terms(coupled=False, oblique=False, tilted=False)
 M = 64
 RETURNED = (
     4 * 8
@@ -50,7 +51,7 @@ def scenes() -> dict[str, tuple[rf.Scene, bool | None]]:
 def bare(scene: rf.Scene) -> Counter:
     """The operations of normal contact alone, planned by nobody."""
     counter = Counter()
-    problem = pose(replace(scene, friction=rf.Friction()), Grid(scene.side, M), BARE, None)
+    problem = discretise(replace(scene, friction=rf.Friction()), scene.grid(M), BARE)
     solve_fft(problem, 1e-8, counter)
     return counter
 
@@ -155,15 +156,15 @@ def memory() -> Measured:
     tags=("planning",),
 )
 def explanation() -> Measured:
-    terms = ("shear coupling", "obliqueness", "shear tilt", "slope correction", "tau support")
     missing = []
     for name in ("frictionless, smooth", "identical materials, flat tips"):
         scene, oblique = scenes()[name]
-        text = explained(Request(scene=scene, grid=M, oblique=oblique).plan(), name)
+        options = Options(scene=scene, grid=M, requested=RequestedTerms(oblique=oblique))
+        text = explained(options, options.plan(), name)
         rows = {line.strip() for line in text.splitlines()}
         missing += [
             f"{name}: {term}"
-            for term in terms
+            for term in LABELS.values()
             if not any(row.startswith(term) and row.removeprefix(term).split()[0] == "out" for row in rows)
         ]
     return Measured(len(missing), 0.0, note="; ".join(missing))

@@ -1,4 +1,4 @@
-"""A hundred random scenes: do the plan's estimates bound what leaving terms out changes, and how tightly?"""
+"""A hundred random scenes: do the plan's estimates bound what neglecting terms changes, and how tightly?"""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def studied() -> list[Trial]:
     return [trial for trial in scenes() if trial.term != CORRECTION]
 
 
-def left_out() -> list[Trial]:
-    """Those that the plan leaves out at the accuracy."""
-    return [trial for trial in studied() if trial.left_out]
+def neglected() -> list[Trial]:
+    """Those that the plan neglects at the accuracy."""
+    return [trial for trial in studied() if trial.neglected]
 
 
 def series(found: list[Trial]) -> dict[str, object]:
@@ -46,7 +46,7 @@ def series(found: list[Trial]) -> dict[str, object]:
             "effect A": [t.effect.area for t in found if t.term == term],
             "estimate mu, no friction": [t.estimate.bare for t in found if t.term == term],
             "effect mu, no friction": [t.effect.bare for t in found if t.term == term],
-            "left out": [int(t.left_out) for t in found if t.term == term],
+            "neglected": [int(t.neglected) for t in found if t.term == term],
         }
         for term in terms
     }
@@ -59,9 +59,9 @@ def ratio(trial: Trial) -> float:
 
 @case(
     "planning/estimates-bound",
-    title="Estimates of terms left out",
-    claim="in 95 % of the terms left out of 100 random scenes, the change of mu and that of A are both within"
-    " the plan's estimates",
+    title="Estimates of neglected terms",
+    claim="in 95 % of the terms neglected in 100 random scenes, the change of mu and that of A are both"
+    " within the plan's estimates",
     source=SOURCE,
     metric="at_least",
     tolerance=0.95,
@@ -70,12 +70,12 @@ def ratio(trial: Trial) -> float:
     tags=("planning",),
 )
 def estimates_bound() -> Measured:
-    out = left_out()
+    out = neglected()
     share = float(np.mean([trial.bounded for trial in out]))
     whole = float(np.mean([trial.bounded for trial in studied()]))
     missed = [f"{t.term} of scene {t.scene}" for t in out if not t.bounded]
     all_terms = f"of all {len(studied())} terms {whole:.3f}"
-    note = f"{len(out)} left out; {all_terms}; missed: {', '.join(missed) or 'none'}"
+    note = f"{len(out)} neglected; {all_terms}; missed: {', '.join(missed) or 'none'}"
     return Measured(share, data=series(studied()), note=note)
 
 
@@ -101,11 +101,12 @@ def correction_bound() -> Measured:
 @case(
     "planning/estimates-tight",
     title="Estimates over effects",
-    claim="the median estimate of a term left out is at most 20 times its effect, the larger of mu's and A's",
+    claim="the median estimate of a neglected term is at most 20 times its effect, the larger of mu's and"
+    " A's",
     source=SOURCE,
     metric="at_most",
     tolerance=20.0,
-    tolerance_reason="asked of estimates that are to leave out what they can; no effect counts as infinite",
+    tolerance_reason="asked of estimates that are to neglect what they can; no effect counts as infinite",
     tier="full",
     tags=("planning",),
 )
@@ -115,29 +116,29 @@ def estimates_tight() -> Measured:
         for term in sorted({t.term for t in studied()})
     }
     return Measured(
-        float(np.median([ratio(trial) for trial in left_out()])),
+        float(np.median([ratio(trial) for trial in neglected()])),
         data={"median over all scenes": by_term},
     )
 
 
 @case(
     "planning/left-out",
-    title="What could be left out and is",
-    claim="at least half of the terms whose effect is below the accuracy asked for, 0.01, are left out",
+    title="What could be neglected and is",
+    claim="at least half of the terms whose effect is below the requested accuracy, 0.01, are neglected",
     source=SOURCE,
     metric="at_least",
     tolerance=0.5,
-    tolerance_reason="asked of a planner; terms that come with another's kernel count as not left out",
+    tolerance_reason="asked of a planner; terms that come with another's kernel count as not neglected",
     tier="full",
     tags=("planning",),
 )
-def share_left_out() -> Measured:
+def share_neglected() -> Measured:
     below = [trial for trial in studied() if trial.effect.larger <= ACCURACY]
-    wrongly = [trial for trial in left_out() if trial.effect.larger > ACCURACY]
+    wrongly = [trial for trial in neglected() if trial.effect.larger > ACCURACY]
     counts = {
-        term: [sum(t.left_out for t in below if t.term == term), sum(t.term == term for t in below)]
+        term: [sum(t.neglected for t in below if t.term == term), sum(t.term == term for t in below)]
         for term in sorted({t.term for t in below})
     }
-    share = sum(trial.left_out for trial in below) / len(below)
-    note = f"left out although above the accuracy: {len(wrongly)}"
-    return Measured(share, data={"left out, below": counts}, note=note)
+    share = sum(trial.neglected for trial in below) / len(below)
+    note = f"neglected although above the accuracy: {len(wrongly)}"
+    return Measured(share, data={"neglected, below": counts}, note=note)

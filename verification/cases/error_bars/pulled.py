@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 import refimpl as rf
-from refimpl.accuracy.grid_features import GridResult
 from refimpl.accuracy.refinement import uncertainty
 from refimpl.model.materials import Pair
 from verification.framework.case import Measured
@@ -45,8 +44,8 @@ def off(scene: rf.Scene, M: int, approach: float | None = None) -> dict[str, Off
     found, finer = (rf.solve(scene, grid=grid, approach=approach) for grid in (M, FINER * M))
     if not (found.converged and finer.converged):
         raise RuntimeError(f"{found.status.value} on {M} elements a side, {finer.status.value} on more")
-    true = dict(GridResult.of(finer).numbers, max_pressure=GridResult.of(finer).peak.height)
-    unpulled = uncertainty([replace(GridResult.of(found), pull=0.0)])
+    true = dict(finer.features.numbers, max_pressure=finer.features.peak.height)
+    unpulled = uncertainty([replace(found.features, shear_to_normal_ratio=0.0)])
     shares = {}
     for name in ("approach",) if approach is None else ("normal_force", "max_pressure"):
         error = FINER / (FINER - 1) * abs(getattr(found, name) - true[name])

@@ -96,7 +96,7 @@ def tangential(tier: str) -> Measured:
 def small(tier: str) -> Measured:
     before, contact = {}, {}
     for flat, solved in _solutions(tier).items():
-        before[flat] = max(_rms(*np.gradient(s.heights(f.grid)[0], f.grid.spacing)) for s, f in solved)
+        before[flat] = max(_rms(*np.gradient(s.heights(f.grid)[0], *f.grid.spacings)) for s, f in solved)
         contact[flat] = max(_rms(f.slopes.tan_x[f.contact], f.slopes.tan_y[f.contact]) for _, f in solved)
     sentence = "; ".join(
         f"at {flat * 1e6:g} um {before[flat]:.4f} before and {contact[flat]:.4f} rad in contact"

@@ -24,7 +24,7 @@ def _fig5_data(grid: int) -> dict[str, object]:
     found = fig5.profiles(grid)
     mu = found.solution.friction_coefficient
     x = found.x
-    smooth = hertz().pressure(np.hypot(x, found.solution.grid.spacing / 2))
+    smooth = hertz().pressure(np.hypot(x, found.solution.grid.spacings[1] / 2))
     return {
         "x (mm)": x * 1e3,
         "pressure (MPa)": found.pressure[0] / 1e6,
@@ -156,7 +156,7 @@ def _declare_fig6(rms: float, panel: str) -> None:
 )
 def contact_map() -> Measured:
     found = fig6.contact(FIG6_RMS[1], 0, MAP)
-    x = found.grid.centres - SMOOTH.side / 2
+    x = found.grid.x - SMOOTH.side / 2
     r = np.hypot(x[:, None], x[None, :])
     outside = r > hertz().contact_radius
     peak = float(found.pressure[outside].max()) / hertz().peak_pressure

@@ -120,7 +120,7 @@ def iterations() -> Measured:
         nested = traced(rf.read_scene(name), M, PAPER_TOLERANCE)[1]
         alone = traced(rf.read_scene(name), M + 1, PAPER_TOLERANCE)[1]
         runs = (*nested.coarser, nested, alone)
-        data[f"{name}: M"] = [run.M for run in runs]
+        data[f"{name}: M"] = [run.shape[0] for run in runs]
         for what in ("approaches", "passes", "periodic_steps", "correction_steps"):
             data[f"{name}: {what.replace('_', ' ')}"] = [getattr(run, what) for run in runs]
         data[f"{name}: residual before"] = [run.periodicity_before for run in runs]
@@ -142,6 +142,6 @@ def iterations() -> Measured:
 def nested_grids() -> Measured:
     size = 64
     _, trace = traced(rf.read_scene("table1-smooth"), size, PAPER_TOLERANCE)
-    visited = [level.M for level in (*trace.coarser, trace) if level.approaches > 0]
+    visited = [level.shape[0] for level in (*trace.coarser, trace) if level.approaches > 0]
     wrong = set(visited) ^ {size // 4, size // 2, size}
     return Measured(float(len(wrong)), 0.0, unit="grids", data={"elements per side": visited})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -10,10 +9,11 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array, Grid
-from refimpl.model.problem import pose
+from refimpl.driver.options import Options
+from refimpl.grid import Array
+from refimpl.model.friction import is_frictionless
 from refimpl.operators.fft import Counter
-from refimpl.planning.plan import make_plan
+from refimpl.scene.discretise import discretise
 from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
 from verification.framework.case import Measured
 from verification.framework.registry import case
@@ -45,12 +45,9 @@ def paper(name: str, tolerance: float) -> rf.Solution:
 
 def traced(scene: rf.Scene, M: int, tolerance: float) -> tuple[Array, Trace]:
     """Pressure (Pa) and trace of the scheme."""
-    plan = make_plan(scene, M, "paper", oblique=None, slope_correction=False)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.SurfaceWarning)  # coarse grids of one roughness are meant here
-        problem = pose(scene, Grid(scene.side, M), plan.switches, None)
-    outcome, _, trace = solve_paper(problem, tolerance, Counter())
-    return outcome.pressure, trace
+    plan = Options(scene=scene, grid=M, method="paper").plan()
+    result, _, trace = solve_paper(discretise(scene, plan.grid, plan.switches), tolerance, Counter())
+    return result.pressure, trace
 
 
 def distance(found: rf.Solution, reference: rf.Solution) -> float:
@@ -143,7 +140,7 @@ def own_tolerance_all() -> Measured:
     tags=("scheme",),
 )
 def own_tolerance_friction() -> Measured:
-    names = [name for name in QUICK if not trials()[name].scene.friction.is_zero]
+    names = [name for name in QUICK if not is_frictionless(trials()[name].scene.friction)]
     found = [paper(name, PAPER_TOLERANCE).friction_coefficient for name in names]
     reference = [trials()[name].dense.friction_coefficient for name in names]
     errors = np.abs(np.divide(found, reference) - 1)
@@ -165,7 +162,7 @@ def same_state() -> Measured:
     differing = {}
     for name in QUICK:
         found, dense = paper(name, TIGHT), trials()[name].dense
-        elements = (found.contact != dense.contact) | (found.withheld != dense.withheld)
+        elements = (found.contact != dense.contact) | (found.excluded != dense.excluded)
         differing[name] = int(np.count_nonzero(elements)) + (found.status is not dense.status)
     return Measured(sum(differing.values()), 0.0, unit="elements", data=differing)
 

@@ -13,7 +13,7 @@ from verification.reproduction.ensemble import column, estimate, reduced, rows, 
 from verification.reproduction.printed import LOADS, RESOLUTION, TABLE3
 from verification.reproduction.tiers import in_both_tiers
 from verification.sweep.run import Row
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
 LOADS_IN_WORDS = ", ".join(f"{load:g}" for load in LOADS) + " N"

@@ -16,7 +16,8 @@ from verification.framework.case import Measured, Unavailable
 from verification.framework.registry import case
 from verification.sweep.engine import sweep
 from verification.sweep.export import to_csv
-from verification.sweep.study import Study, study_from_dict
+from verification.sweep.study import Study
+from verification.sweep.study_file import study_from_dict
 
 COMMAND = (sys.executable, "-c", "from verification.cli import main; raise SystemExit(main())")
 STUDY = """scene = "table1-rough"

@@ -9,7 +9,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.model.forces import smooth_friction_coefficient
+from refimpl.model.friction import friction_coefficient_at
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged
@@ -26,7 +26,7 @@ from verification.reproduction.table1 import SMOOTH, rough
 from verification.reproduction.tiers import in_both_tiers
 from verification.sweep.run import Row
 
-TAU, BETA = SMOOTH.friction.tau, SMOOTH.friction.beta
+TAU = SMOOTH.friction.tau
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
 
 NAMES = {
@@ -142,7 +142,7 @@ def equation10(tier: str) -> Measured:
     for flat in ROUGH:
         where = {"lower_rms": flat, "grid": mesh}
         pressure = np.array(column(found, "normal_force", **where)) / column(found, "contact_area", **where)
-        simple = np.array([smooth_friction_coefficient(TAU, BETA, p) for p in pressure])
+        simple = np.array([friction_coefficient_at(SMOOTH.friction, p) for p in pressure])
         errors[flat] = simple / column(found, "friction_coefficient", **where) - 1
     worst = max(float(np.abs(e).max()) for e in errors.values())
     means = [float(e.mean()) for e in errors.values()]
@@ -178,7 +178,7 @@ def equation11(tier: str) -> Measured:
         "sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]],
         "mean pressure / H": ratio,
         "mu": mu,
-        "Eq. (11)": smooth_friction_coefficient(TAU, BETA, HARDNESS),
+        "Eq. (11)": friction_coefficient_at(SMOOTH.friction, HARDNESS),
     }
     return judged(Verdict.REFUTED, sentence, ratio[-1], data=data)
 

@@ -1,79 +1,113 @@
-"""Where tau's support cycles: what a law says that turns tau on with pressure, instead of at once."""
+"""Alternating contact edges under tau: mu of a law that turns tau on with pressure, instead of at once."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import cast
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
-from refimpl.operators.fft import Counter
-from refimpl.solvers.production.coarse_grids import Start
+from refimpl.grid import Array, Mask
+from refimpl.operators.influence import window_influence
+from refimpl.operators.preconditioner import SpectralPreconditioner, extended
 from refimpl.solvers.production.level import LevelSolver
-from refimpl.solvers.production.nested_solver import begun
 from verification.coverage.scenes import random_scene
 from verification.framework.case import Measured
 from verification.framework.registry import case
 
 SCENES = range(2000, 2200)
 AT_64 = (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)
-"""Those of the eleven scenes that cycle at 64 x 64 whose bars are the longest."""
+"""Those of the eleven scenes that cycle at 64 x 64 whose error bars are the longest."""
 APART = 2071
-"""The scene whose cycle's own states, at 128 x 128, are too close to each other to be its bar."""
+"""The scene whose cycle's own states, at 128 x 128, are too close to each other to be its error bar."""
 ONSET = 1e-4
-"""Of f_max: the pressure at which all of tau is on. A tenth of it moves mu of single elements by up to 0.3
-bars, and none beyond its bar."""
+"""Of p_max: the pressure at which all of tau is on. A tenth of it moves mu of single elements by up to 0.3
+error bars, and none beyond its bar."""
 UPDATES = 60  # of the shares
 TOLERANCE = 1e-9
 SOURCE = "Eq. (8); its jump is the limit of such laws"
 CLAIM = (
-    "if tau comes on between no pressure and a ten-thousandth of f_max, no support cycles and no element is "
-    "withheld: mu is that of our rule within the bar that it gives to tau's support"
+    "if tau comes on between no pressure and a ten-thousandth of p_max, no active set cycles and no element "
+    "is excluded: mu is that of our rule within the error bar that it gives to tau's active set"
 )
 REASON = (
-    "the bar itself. It holds all of tau on the contacts from which it is withheld; laws without a jump "
-    "leave them a share of it"
+    "the error bar itself. It contains all of tau on the contacts that the rule excludes; laws without a "
+    "jump leave them a share of tau"
 )
+
+
+@dataclass(frozen=True, eq=False)
+class SharesOfTau:
+    """A friction law whose elements each carry their own share of tau: ``r = share tau + beta f``.
+
+    jump, slope : tau (Pa) and beta
+    share : 0 to 1, in the grid's shape; it stands for an active set, and does not depend on the pressure
+    """
+
+    jump: float
+    slope: float
+    share: Array
+    is_linear = True
+
+    def traction(self, pressure: Array, active: Mask) -> Array:
+        """Return ``share tau + beta f`` (Pa)."""
+        return self.held_traction(pressure, active) + self.slope * pressure
+
+    def held_traction(self, pressure: Array, active: Mask) -> Array:
+        """Return ``share tau`` (Pa)."""
+        return self.jump * self.share
 
 
 def in_shares(solution: rf.Solution) -> tuple[float, float]:
-    """mu where elements bear ``tau min(1, f / (ONSET f_max))``, and how much it still moves.
+    """Return mu where elements carry ``tau min(1, f / (ONSET p_max))``, and how much it still moves.
 
-    Shares of tau go towards those that their pressures ask for, each by a length of its own: half as far
-    where it turned, a little further where it did not. The mean and the standard deviation of the last half.
+    Shares of tau approach those that their pressures ask for, each by a step length of its own: half as long
+    after a step back, a little longer otherwise. Mean and standard deviation of the last half of the updates.
     """
-    solver = _solver(solution)
+    solved = _solver(solution)
     onset = ONSET * solution.max_pressure
-    share: Array = ((solution.pressure > 0) & ~solution.withheld)[solver.window.slices].astype(float)
+    pressure, share = solution.pressure, (solution.contact & ~solution.excluded).astype(np.float64)
     length, last = np.full(share.shape, 0.5), np.zeros(share.shape)
     found = []
     for _ in range(UPDATES):
-        if not solver.settle(TOLERANCE, cast(Mask, share)):
-            raise RuntimeError(f"residual {solver.residual:.1e} with shares of tau held")
-        found.append(solver.visited().friction_coefficient)
-        change = np.clip(solver.cg.pressure / onset, 0.0, 1.0) - share
+        solver = solved(pressure, share)
+        pressure = solver.cg.pressure
+        found.append(solver.cycle_state().friction_coefficient)
+        change = np.clip(pressure / onset, 0.0, 1.0) - share
         length = np.where(change * last < 0, 0.5 * length, np.minimum(1.1 * length, 1.0))
         share, last = share + length * change, change
     late = found[UPDATES // 2 :]
     return float(np.mean(late)), float(np.std(late))
 
 
-def _solver(solution: rf.Solution) -> LevelSolver:
-    """The production solver's CG on the solution's own grid, from the solution."""
-    displacement = solution.clearance + solution.approach - solution.problem.gap
-    return begun(solution.problem, Start(solution.pressure, displacement, None), Counter())
+def _solver(solution: rf.Solution) -> Callable[[Array, Array], LevelSolver]:
+    """The production solver on the solution's whole grid, from a pressure and with shares of tau.
+
+    The function returned raises RuntimeError where the solver does not converge.
+    """
+    problem, tau = solution.problem, solution.friction.jump
+    operator = window_influence(problem.grid, problem.direction)
+    spectral = SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
+    precondition = extended(spectral, solution.contact)
+
+    def solved(pressure: Array, share: Array) -> LevelSolver:
+        law = SharesOfTau(tau, solution.friction.slope, share)
+        solver = LevelSolver(replace(problem, friction=law), operator, precondition, pressure)
+        if not solver.solve(TOLERANCE, share > 0):
+            raise RuntimeError(f"residual {solver.residual:.1e} with fixed shares of tau")
+        return solver
+
+    return solved
 
 
 def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
-    """The largest difference of mu over the bar that tau's support has, of the scenes that cycle.
+    """Return the largest difference of mu over the error bar of tau's active set, of the scenes that cycle.
 
-    Scenes are told by their seed and elements per side. Raises RuntimeError where fewer than ``least`` do.
+    Scenes are given by seed and elements per side. Raises RuntimeError where fewer than ``least`` cycle.
     """
     found: dict[str, list[float]] = {
-        "scene": [], "elements per side": [], "withheld": [],
+        "scene": [], "elements per side": [], "excluded": [],
         "mu": [], "mu in shares": [], "moves by": [], "bar": [],
     }  # fmt: skip
     for seed, M in scenes:
@@ -83,17 +117,17 @@ def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
         numbers = (
             float(seed),
             float(M),
-            float(solution.withheld.sum()),
+            float(solution.excluded.sum()),
             solution.friction_coefficient,
             *in_shares(solution),
-            solution.uncertainty["friction_coefficient"]["tau support"],
+            solution.uncertainty["friction_coefficient"]["active set"],
         )
         for column, number in zip(found.values(), numbers, strict=True):
             column.append(number)
     if len(found["scene"]) < least:
         raise RuntimeError(f"{len(found['scene'])} of {len(scenes)} scenes cycle: too few to judge by")
     off = np.abs(np.subtract(found["mu in shares"], found["mu"])) + found["moves by"]
-    names = [f"{s:.0f}: {n:.0f} withheld" for s, n in zip(found["scene"], found["withheld"], strict=True)]
+    names = [f"{s:.0f}: {n:.0f} excluded" for s, n in zip(found["scene"], found["excluded"], strict=True)]
     shares = dict(zip(names, (off / found["bar"]).tolist(), strict=True))
     return Measured(
         max(shares.values()),
@@ -104,7 +138,7 @@ def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
 
 @case(
     "accuracy/tau-shares",
-    title="Where tau's support cycles: mu of a law without a jump, nine scenes",
+    title="Alternating contact edges under tau: mu of a law without a jump, nine scenes",
     claim=CLAIM,
     source=SOURCE,
     metric="at_most",
@@ -119,7 +153,7 @@ def nine_scenes() -> Measured:
 
 @case(
     "accuracy/tau-shares-128",
-    title="Where tau's support cycles at 128 x 128: mu of a law without a jump",
+    title="Alternating contact edges under tau at 128 x 128: mu of a law without a jump",
     claim=CLAIM,
     source=SOURCE,
     metric="at_most",
@@ -129,4 +163,4 @@ def nine_scenes() -> Measured:
     tags=("tau", "uncertainty"),
 )
 def bars_at_128() -> Measured:
-    return apart([(seed, 128) for seed in SCENES], least=20)  # of a bar of 95 % one in twenty may miss
+    return apart([(seed, 128) for seed in SCENES], least=20)  # of error bars of 95 % one in twenty may miss

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from functools import cache
 
@@ -51,15 +50,9 @@ def pressure_difference(trial: Trial) -> float:
 
 
 def approach_difference(trial: Trial) -> float:
-    """Difference of the approaches, relative and from first touch, where a periodic one is never zero."""
+    """Difference of the approaches, relative and from first contact, where a periodic one is never zero."""
     dense, fft = trial.dense, trial.fft
-    datum = 0.0
-    if trial.scene.periodic:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rf.SurfaceWarning)  # coarse on purpose
-            lower, upper = trial.scene.heights(dense.grid)
-        datum = float((upper - lower).mean() - (upper - lower).min())
-    return abs(dense.approach - fft.approach) / abs(dense.approach + datum)
+    return abs(dense.approach - fft.approach) / abs(dense.approach + dense.problem.datum)
 
 
 @case(
@@ -77,7 +70,7 @@ def contact_sets() -> Measured:
         trial.name
         for trial in trials()
         if not np.array_equal(trial.dense.contact, trial.fft.contact)
-        or not np.array_equal(trial.dense.withheld, trial.fft.withheld)
+        or not np.array_equal(trial.dense.excluded, trial.fft.excluded)
         or trial.dense.status is not trial.fft.status
     ]
     cycled = [trial.name for trial in trials() if trial.dense.status is rf.Status.CYCLED]
@@ -85,7 +78,7 @@ def contact_sets() -> Measured:
         "scene": [trial.name for trial in trials()],
         "grid": [trial.M for trial in trials()],
         "in contact": [int(trial.dense.contact.sum()) for trial in trials()],
-        "withheld": [int(trial.dense.withheld.sum()) for trial in trials()],
+        "withheld": [int(trial.dense.excluded.sum()) for trial in trials()],
     }
     note = f"differing: {', '.join(differing) or 'none'}; cycled: {', '.join(cycled)}"
     return Measured(value=len(differing), reference=0.0, data=data, note=note)

@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
+from refimpl.grid import Array
 from reports.result_files import read_result
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged
-from verification.variational.energy import Array, Energy, frictionless, table2_scene
+from verification.variational.energy import Energy, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, Minimum, interior_point
 from verification.variational.timing import Contact, growth, measure, table
 

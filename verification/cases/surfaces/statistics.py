@@ -34,8 +34,8 @@ def whitened(seed: int, lengths: int, points: int) -> Array:
     The field's modes up to two waves per length, each over the root of its power by Eq. (9); a Gaussian
     field's are independent normal numbers, and so is their Fourier sum on ``points`` per side.
     """
-    grid = Grid(float(lengths), 6 * lengths)
-    modes = np.fft.fft2(GaussianRoughness(1.0, 1.0, seed).heights(grid, periodic=True))
+    grid = Grid.square(float(lengths), 6 * lengths, periodic=True)
+    modes = np.fft.fft2(GaussianRoughness(1.0, 1.0, seed).heights(grid))
     k = np.fft.fftfreq(points, 1 / points)
     root = np.exp(-(math.pi**2) * (k[:, None] ** 2 + k**2) / (4.6 * lengths**2))
     inside = np.outer(abs(k) < points / 2, abs(k) < points / 2)

@@ -25,7 +25,7 @@ AREA = len(SEEDS) * LENGTHS**2  # in squared correlation lengths
 
 def ensemble() -> list[Array]:
     """Realisations of unit rms on squares of 40 unit correlation lengths."""
-    grid = Grid(side=float(LENGTHS), M=LENGTHS * PER_LENGTH)
+    grid = Grid.square(float(LENGTHS), LENGTHS * PER_LENGTH)
     return [GaussianRoughness(1.0, 1.0, seed).heights(grid) for seed in SEEDS]
 
 
@@ -101,27 +101,23 @@ def _mean_product(z: Array, lag: int) -> float:
     tags=("eq9",),
 )
 def spectrum() -> Measured:
-    grid, seeds = Grid(side=12.0, M=96), range(1, 41)
+    grid, seeds = Grid.square(12.0, 96, periodic=True), range(1, 41)
+    M, side = grid.shape[0], grid.lengths[0]
     power = np.mean(
-        [
-            np.abs(np.fft.rfft2(GaussianRoughness(1.0, 1.0, s).heights(grid, periodic=True))) ** 2
-            for s in seeds
-        ],
+        [np.abs(np.fft.rfft2(GaussianRoughness(1.0, 1.0, s).heights(grid))) ** 2 for s in seeds],
         axis=0,
     )
     # Fourier series of the periodic sum of exp(-2.3 r^2): L^-2 pi / 2.3 exp(-pi^2 k^2 / (2.3 L^2)); images
     # add exp(-2.3 * 144) to the variance. Only columns 1 ... M/2 - 1: each of their modes is met once.
-    k = np.hypot(
-        np.fft.fftfreq(grid.M, 1.0 / grid.M)[:, None], np.fft.rfftfreq(grid.M, 1.0 / grid.M)[None, :]
-    )
-    eq9 = math.pi / 2.3 / grid.side**2 * np.exp(-(math.pi**2) * k**2 / 2.3 / grid.side**2)
+    k = np.hypot(np.fft.fftfreq(M, 1.0 / M)[:, None], np.fft.rfftfreq(M, 1.0 / M)[None, :])
+    eq9 = math.pi / 2.3 / side**2 * np.exp(-(math.pi**2) * k**2 / 2.3 / side**2)
     inside = (eq9 > 1e-12 * eq9[0, 0]) & (np.arange(k.shape[1]) > 0)
-    ratio, ring = (power / grid.M**4 / eq9)[inside], np.rint(k[inside]).astype(int)
+    ratio, ring = (power / M**4 / eq9)[inside], np.rint(k[inside]).astype(int)
     modes = np.bincount(ring)[1:]
     mean = np.bincount(ring, ratio)[1:] / modes
     sigma = 1.0 / np.sqrt(modes * len(seeds))
     data = {
-        "k l": 2.0 * math.pi * np.arange(1, len(mean) + 1) / grid.side,
+        "k l": 2.0 * math.pi * np.arange(1, len(mean) + 1) / side,
         "power / eq9": mean,
         "standard error": sigma,
         "decades below the peak": float(-np.log10(eq9[inside].min() / eq9[0, 0])),
@@ -145,10 +141,10 @@ def spectrum() -> Measured:
 def same_surface() -> Measured:
     side, M = 1.61e-3, 96
     roughness = GaussianRoughness(1.0, LENGTH, seed=1)
-    coarse = roughness.heights(Grid(side, M))
-    nested = {n: roughness.heights(Grid(side, n * M))[n // 2 :: n, n // 2 :: n] for n in (3, 5, 9)}
+    coarse = roughness.heights(Grid.square(side, M))
+    nested = {n: roughness.heights(Grid.square(side, n * M))[n // 2 :: n, n // 2 :: n] for n in (3, 5, 9)}
     shift = 41 * side / M
-    shifted = roughness.heights(Grid(side, M), (shift, -shift))
+    shifted = roughness.heights(Grid.square(side, M), (shift, -shift))
     errors = {f"{n} M": float(np.abs(z - coarse).max()) for n, z in nested.items()}
     errors["shifted window"] = float(np.abs(shifted[:-41, 41:] - coarse[41:, :-41]).max())
     return Measured(value=max(errors.values()), data={"largest difference / rms": errors})
@@ -169,7 +165,7 @@ def same_surface() -> Measured:
 )
 def normalised_rms() -> Measured:
     roughness = GaussianRoughness(RMS, LENGTH, seed=3, normalise=True)
-    variances = {M: float(np.var(roughness.heights(Grid(1.61e-3, M)))) for M in (64, 128, 256, 512)}
+    variances = {M: float(np.var(roughness.heights(Grid.square(1.61e-3, M)))) for M in (64, 128, 256, 512)}
     table = [np.array(list(variances.values()))]
     for order in (4.0, 16.0, 64.0):
         table.append((order * table[-1][1:] - table[-1][:-1]) / (order - 1.0))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 from verification.contestants.check import MODULUS, Entrant, Fault, Pressed, check, difference
 from verification.contestants.gaps import centres
 from verification.exact.hertz import UNCERTAINTY, Ellipse, Sphere

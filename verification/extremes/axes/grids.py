@@ -44,7 +44,7 @@ def against_hertz(M: int) -> Judged:
         )
         flipped = max(np.abs(found.pressure - p).max() for p in (found.pressure[::-1], found.pressure.T))
         symmetry = float(flipped) / found.max_pressure
-        cell = found.grid.spacing / exact.contact_radius
+        cell = found.grid.element_size / exact.contact_radius
         return verdict(
             found, error, "Hertz", f"asymmetry {symmetry:.0e}", limit=2 * cell**2 + 1e-7, symmetry=symmetry
         )
