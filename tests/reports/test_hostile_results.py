@@ -72,7 +72,8 @@ def test_every_field_with_every_other_kind_of_value_is_checked(path: tuple[Any, 
             assert "\n" not in str(refused)
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # logarithms of what is no error
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(PLACES), st.sampled_from(REPLACEMENTS), st.booleans())
 def test_what_passes_the_check_is_shown(path: tuple[Any, ...], value: object, older: bool) -> None:
     made = replaced(WHOLE, path, value)
@@ -86,7 +87,8 @@ DATA_VALUES = st.recursive(
 )
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # logarithms of what is no error
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.dictionaries(st.sampled_from(["offset", "textbook", "production", "M", "error"]), DATA_VALUES))
 def test_data_of_any_shape_are_shown_or_refused(data: dict[str, Any]) -> None:
     shown_or_refused(results(case("kernels/textbook-x-fails", data=data), case("a/1", data=data)))
