@@ -54,9 +54,9 @@ class Store:
         self._connection, self._path, self._lock = connection, path, lock
 
     def keys(self) -> set[str]:
-        """Keys of the finished runs; every row is compared with its checksum."""
+        """Keys of the finished runs."""
         with _refused(self._path):
-            return {self._checked(row)["key"] for row in self._connection.execute(_SELECT)}
+            return {key for (key,) in self._connection.execute("select key from runs")}
 
     def add(self, run: Run, row: Row, seconds: float) -> None:
         """Keep a finished run; raises sqlite3.IntegrityError for one that is there already."""
@@ -92,16 +92,17 @@ class Store:
             with _refused(self._path):
                 row = self._connection.execute(f"{_SELECT} where key = ?", (run.key,)).fetchone()
             if row is not None:
-                yield self._checked(row)
+                yield _checked(row, self._path)
 
-    def _checked(self, row: Sequence[Any]) -> Row:
-        """The row by column, if its checksum and its key are those of its values."""
-        *values, stored = row
-        found = dict(zip(_ALL, row, strict=True))
-        if checksum(values) != stored or _key(found["inputs"]) != found["key"]:
-            allowed = f"rows as they were written; that of key {str(found['key'])[:40]!r} is damaged"
-            raise InputError("store", str(self._path), allowed)
-        return found
+
+def _checked(row: Sequence[Any], path: Path) -> Row:
+    """The row by column, if its checksum and its key are those of its values."""
+    *values, stored = row
+    found = dict(zip(_ALL, row, strict=True))
+    if checksum(values) != stored or _key(found["inputs"]) != found["key"]:
+        allowed = f"rows as they were written; that of key {str(found['key'])[:40]!r} is damaged"
+        raise InputError("store", str(path), allowed)
+    return found
 
 
 def checksum(values: Sequence[Any]) -> str:
@@ -194,6 +195,8 @@ def _connect(path: Path) -> sqlite3.Connection:
                 connection.execute(_TABLE)
                 connection.execute("commit")
             _check_schema(connection, path)
+            for row in connection.execute(_SELECT):
+                _checked(row, path)
             connection.execute("pragma journal_mode = wal")
             connection.execute("pragma synchronous = normal")
         except BaseException:
@@ -228,9 +231,14 @@ def _refused(path: Path) -> Iterator[None]:
 
 
 def _unusable(path: Path, refused: sqlite3.OperationalError) -> InputError:
-    if refused.sqlite_errorcode & _PRIMARY in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
-        return InputError("store", str(path), f"a file that no other program has locked ({refused})")
-    return InputError("store", str(path), f"a file that can be written ({refused})")
+    """The error by its code; Python's own, of texts that are no UTF-8, have none."""
+    code = getattr(refused, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & _PRIMARY
+    reason = " ".join(str(refused).split())[:100]
+    if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+        return InputError("store", str(path), f"a file that no other program has locked ({reason})")
+    if code in (*_UNWRITABLE, sqlite3.SQLITE_CANTOPEN):
+        return InputError("store", str(path), f"a file that can be written ({reason})")
+    return InputError("store", str(path), f"an undamaged SQLite file of 'sweep' ({reason})")
 
 
 def _holds_runs(connection: sqlite3.Connection) -> bool:
