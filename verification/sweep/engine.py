@@ -204,7 +204,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int, Callable[[], None]]]
     except ModuleNotFoundError as missing:
         allowed = "dask.distributed installed: pip install 'rough-friction[cluster]'"
         raise InputError("--scheduler", address, allowed) from missing
-    with _quiet("distributed", "tornado", "asyncio"):
+    with _no_log():
         try:
             client = connect(address, timeout=CONNECT_SECONDS)
         except (OSError, ValueError) as unreachable:
@@ -248,17 +248,14 @@ class _Cluster:
 
 
 @contextmanager
-def _quiet(*names: str) -> Iterator[None]:
-    """No messages of these libraries about connections that break: `WorkersLost` is one line about them."""
-    loggers = [logging.getLogger(name) for name in names]
-    levels = [logger.level for logger in loggers]
+def _no_log() -> Iterator[None]:
+    """No messages of libraries about connections that break: `WorkersLost` is one line about them."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
     try:
-        for logger in loggers:
-            logger.setLevel(logging.CRITICAL + 1)
         yield
     finally:
-        for logger, level in zip(loggers, levels, strict=True):
-            logger.setLevel(level)
+        logging.disable(before)
 
 
 class _Meter:
