@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Mask
+from refimpl.model.certificate import displacement_rounding
 from refimpl.model.problem import Problem
 from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence
@@ -47,7 +48,8 @@ class LevelSolver:
         self.window = operator.source
         self.problem = problem.windowed(self.window)
         self.operator = operator
-        self.cg = ProjectedCG(pressure_compliance(self.problem, operator), precondition, pressure)
+        compliance = pressure_compliance(self.problem, operator)
+        self.cg = ProjectedCG(compliance, precondition, pressure, displacement_rounding(problem))
         self.lagged = LaggedTerms(self.problem, operator, self.cg)
         self.stagnated = False
         self.residual = math.inf
