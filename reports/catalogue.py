@@ -168,8 +168,8 @@ DECLARED = (
         Figure(
             f"accuracy/{name}",
             ("difference / bar",),
-            dots("difference / bar", xlabel="difference of mu / bar of tau's support", limit=1.0),
-            "Scenes that cycle, and how many elements tau is withheld from: what a law without a jump says.",
+            dots("difference / bar", xlabel="difference of mu / bar of tau's active set", limit=1.0),
+            "Alternating contact edges, and their elements excluded from tau; mu of a law without a jump.",
             (6.4, height),
         )
         for name, height in (("tau-shares", 3.4), ("tau-shares-128", 6.8))

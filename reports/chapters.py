@@ -91,8 +91,8 @@ CHAPTERS = (
     Chapter(
         "extremes",
         "Extremes, and only what a scene requires",
-        "Every axis to the point of failure, inputs that are broken on purpose, and terms that are left out "
-        "because they cannot matter.",
+        "Every axis to the point of failure, inputs that are broken on purpose, and terms that are "
+        "neglected because they cannot matter.",
         ("extremes", "planning", "validity"),
         ("extremes", "fuzz", "planning"),
     ),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from reports.contestant import solver
+from reports.recorded import renamed
 from reports.results import FORMAT, Case, check
 
 
@@ -32,25 +33,30 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
     """The run with the committed files, by name without suffix, that it does not replace.
 
     A case counts once: the run's own result, else that of the newest committed run in which it was judged.
-    Committed runs of somebody else's solver are left out: they are no evidence of this project's.
+    Committed runs of somebody else's solver are left out: they are no evidence of this project's. Data have
+    the names of `reports.recorded`, whichever version recorded them.
     Raises ResultFileError for a run, or a committed run of `verify`, that is none.
     """
     checked = check(run)
     runs = {name: check(file) for name, file in committed.items() if file.get("format") == FORMAT}
     own = {name: file for name, file in runs.items() if solver(file) is None}
     newest = sorted(own.items(), key=lambda item: str(item[1]["provenance"]["date"]), reverse=True)
-    cases = {case["id"]: {**case, "origin": None} for case in checked["cases"]}
+    cases = {case["id"]: _case(case, None) for case in checked["cases"]}
     errata = {erratum["equation"]: erratum for erratum in checked["errata"]}
     for judged in (True, False):
         for name, file in newest:
             for case in file["cases"]:
                 if (case["status"] in ("pass", "fail")) == judged:
-                    cases.setdefault(case["id"], {**case, "origin": _origin(name, file)})
+                    cases.setdefault(case["id"], _case(case, _origin(name, file)))
     for _, file in newest:
         for erratum in file["errata"]:
             errata.setdefault(erratum["equation"], erratum)
     studies = {name: file for name, file in committed.items() if name not in runs}
     return Evidence(checked, tuple(cases.values()), tuple(errata.values()), studies)
+
+
+def _case(case: Case, origin: dict[str, Any] | None) -> Case:
+    return {**case, "data": renamed(case["data"]), "origin": origin}
 
 
 def _origin(name: str, file: Mapping[str, Any]) -> dict[str, Any]:

@@ -115,11 +115,13 @@ class Options:
     def plan(self, discretiser: Discretiser | None = None) -> Plan:
         """Return the plan; with an accuracy, the terms for all grids.
 
-        ``discretiser`` samples the heights for it, and keeps them. Raises `InputError` for a grid that does
-        not fit into memory, before any heights are sampled.
+        ``discretiser`` samples the heights for it, and keeps them. Raises `InputError` for a grid to solve on
+        that does not fit into memory, before any heights are sampled. With an accuracy each grid is checked
+        when its turn comes.
         """
         grid = self.solve_grid
-        memory_of(self.method, grid, corrected=self.requested.slope_correction)
+        if self.grid is not None:
+            memory_of(self.method, grid, corrected=self.requested.slope_correction)
         discretiser = discretiser or Discretiser(self.scene, self.approach)
         return make_plan(
             discretiser.with_all_terms(grid),

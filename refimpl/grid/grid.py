@@ -12,6 +12,8 @@ from refimpl.errors import InputError, require_size
 from refimpl.grid.fields import Array, Mask, differences
 from refimpl.grid.window import Window
 
+_ROUNDING = 1e-15  # of two edges: a quotient of rounded numbers each
+
 
 @dataclass(frozen=True)
 class Grid:
@@ -53,6 +55,16 @@ class Grid:
     def spacings(self) -> tuple[float, float]:
         """Edges ``(dx, dy)`` of an element (m)."""
         return self.lengths[0] / self.shape[0], self.lengths[1] / self.shape[1]
+
+    @property
+    def aspect(self) -> float:
+        """``dy / dx``: exactly 1 where the edges differ by rounding of lengths and quotients alone.
+
+        >>> Grid((3, 2), (0.3, 0.2)).spacings, Grid((3, 2), (0.3, 0.2)).aspect
+        ((0.09999999999999999, 0.1), 1.0)
+        """
+        dx, dy = self.spacings
+        return 1.0 if math.isclose(dx, dy, rel_tol=_ROUNDING) else dy / dx
 
     @property
     def element_area(self) -> float:

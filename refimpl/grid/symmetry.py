@@ -33,7 +33,7 @@ def symmetry_multiplicity(contact: Mask, grid: Grid) -> float:
     else:
         box = contact[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         lines = sum(box.shape)
-    turned = (box, box.T) if grid.spacings[0] == grid.spacings[1] else (box,)
+    turned = (box, box.T) if grid.aspect == 1 else (box,)
     images = [image[::i, ::j] for image in turned for i in (1, -1) for j in (1, -1)]
     images = [image for image in images if image.shape == box.shape]
     if grid.periodic:

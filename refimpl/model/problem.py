@@ -75,9 +75,11 @@ class Problem:
         """Return the problem with other terms.
 
         Without slope terms nothing feels the common surface, and shear moves both bodies by what they are.
+        Facet tractions include shear: with the slope correction it always closes the gap.
         """
-        tilted = terms.tilted if terms.oblique else terms.coupled
-        elasticity = replace(self.elasticity, coupled=terms.coupled, tilted=tilted)
+        coupled = terms.coupled or terms.slope_correction
+        tilted = terms.tilted if terms.oblique else coupled
+        elasticity = replace(self.elasticity, coupled=coupled, tilted=tilted)
         return replace(self, terms=terms, elasticity=elasticity)
 
     def windowed(self, window: Window) -> Problem:

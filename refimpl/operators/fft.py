@@ -130,8 +130,8 @@ class FFTInfluence:
         Rows are offsets along that axis.
         """
         halves = [n // 2 + 1 for n in self._padded]
-        edge, other = self.grid.spacings[axis], self.grid.spacings[1 - axis]
-        return unit_table(kind, (halves[axis], halves[1 - axis]), other / edge) * edge
+        table = unit_table(kind, (halves[axis], halves[1 - axis]), self._aspect(axis))
+        return table * self.grid.spacings[axis]
 
     def _kept(self, hat: Array) -> Array | Complex:
         return factors(hat)
@@ -161,8 +161,12 @@ class FFTInfluence:
 
     def _signed(self, kind: str, axis: int = 0) -> Array:
         """A kernel at all offsets around the circles (m), rows along an axis."""
-        edge, other = self.grid.spacings[axis], self.grid.spacings[1 - axis]
-        return signed_table(kind, self._offsets[axis], self._offsets[1 - axis], other / edge) * edge
+        table = signed_table(kind, self._offsets[axis], self._offsets[1 - axis], self._aspect(axis))
+        return table * self.grid.spacings[axis]
+
+    def _aspect(self, axis: int) -> float:
+        """An element's other edge over that along an axis."""
+        return self.grid.aspect if axis == 0 else 1 / self.grid.aspect
 
     def _transformed(self, kernel: Array) -> Complex:
         return fourier.plane(kernel, self._padded, threads(self._points))

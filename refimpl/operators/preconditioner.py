@@ -40,6 +40,7 @@ class SpectralPreconditioner:
     def __init__(self, operator: WindowInfluence, symbol: Array) -> None:
         self._circle, self._counter = operator.circle, operator.counter
         if symbol[0, 0] == 0:
+            symbol = symbol.copy()
             symbol[0, 0] = 2 * symbol.max() or 1.0
         self._symbol = factors(1 / symbol)
 

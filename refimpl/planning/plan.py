@@ -19,10 +19,10 @@ METHODS: tuple[Method, ...] = ("dense", "fft", "paper")
 DECISION_GRID = 256  # elements along the longer side on which terms are decided for all grids of a refinement
 
 # Bytes per element at the peak, measured on the shipped scenes with slopes and coupling: FFT work arrays, two
-# kernel tables and their transforms; or dense matrices of Eq. (7), 5.2 of them without and 7.2 with the slope
-# correction, which has a kernel more (40 and 56 elements a side).
+# kernel tables and their transforms; or dense matrices of Eq. (7), 5.0 of them without and 8.0 with the slope
+# correction, which has a kernel more (24 to 56 elements a side).
 _FFT_BYTES = 520
-_DENSE_MATRICES, _DENSE_MATRICES_CORRECTED = 6, 8
+_DENSE_MATRICES, _DENSE_MATRICES_CORRECTED = 6, 9
 
 
 @dataclass(frozen=True)
@@ -98,20 +98,20 @@ def make_plan(
     demand: float = 1e-8,
     for_mu: bool = False,
 ) -> Plan:
-    """Decide the terms from the heights of a problem, and check that its grid fits into memory.
+    """Decide the terms from the heights of a problem, for its grid or for all grids of a refinement.
 
     ``demand`` is the relative accuracy asked of mu and A (``for_mu``: of mu above all) that each term's
-    effect is compared with. Raises `InputError` for a grid whose estimate exceeds the free memory.
+    effect is compared with. Memory is estimated and not checked: on a grid that is only decided on nothing
+    is solved (`memory_of`, `Plan.on`).
     """
     requested = requested or RequestedTerms()
-    memory = memory_of(method, problem.grid, corrected=requested.slope_correction)
     contact = expected_contact(problem)
     budget = budget_of(problem, contact, demand)
     return Plan(
         method=method,
         grid=problem.grid,
         terms=choose(problem, contact, requested, budget, for_mu=for_mu),
-        memory=memory,
+        memory=estimated_memory(method, problem.grid, corrected=requested.slope_correction),
         demand=demand,
         budget=budget,
         requested=requested,
@@ -120,12 +120,15 @@ def make_plan(
     )
 
 
-def memory_of(method: Method, grid: Grid, *, corrected: bool = False) -> int:
-    """Return the estimated bytes at the peak of a solve; raise `InputError` if they exceed the free
-    memory."""
+def estimated_memory(method: Method, grid: Grid, *, corrected: bool = False) -> int:
+    """Return the estimated bytes at the peak of a solve; ``corrected``: with the slope correction."""
     matrices = _DENSE_MATRICES_CORRECTED if corrected else _DENSE_MATRICES
-    memory = 8 * matrices * grid.elements**2 if method == "dense" else _FFT_BYTES * grid.elements
-    free = free_memory()
+    return 8 * matrices * grid.elements**2 if method == "dense" else _FFT_BYTES * grid.elements
+
+
+def memory_of(method: Method, grid: Grid, *, corrected: bool = False) -> int:
+    """Return the `estimated_memory`; raise `InputError` if it exceeds the free memory."""
+    memory, free = estimated_memory(method, grid, corrected=corrected), free_memory()
     if memory > free:
         allowed = f"a grid whose estimated {memory / 1e9:.3g} GB fit into the free {free / 1e9:.3g} GB"
         raise InputError("grid", max(grid.shape), allowed)

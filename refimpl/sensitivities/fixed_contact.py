@@ -71,21 +71,29 @@ class FixedContact:
         size = len(change)
         jacobian, plain = (
             LinearOperator((size, size), matvec=product, dtype=np.float64)
-            for product in (self._jacobian, self._plain_inverse)
+            for product in (self.jacobian, self.plain_inverse)
         )
         x, _ = gmres(jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES, M=plain)
         left = float(np.linalg.norm(jacobian @ x + change) / np.linalg.norm(change))
         return Response(*self._unpacked(x), left)
 
-    def _jacobian(self, x: Array) -> Array:
+    def jacobian(self, x: Array) -> Array:
+        """Return ``J x`` by a difference quotient.
+
+        ``x`` holds changes of the pressures on the set in base peaks, then that of the approach in base
+        approaches.
+        """
         x = np.ravel(x)
         scale = _STEP / max(float(np.abs(x).max()), np.finfo(float).tiny)
         pressure, approach = self._unpacked(scale * x)
         moved = self.residual(self.problem, self.pressure + pressure, self.approach + approach)
         return np.asarray((moved - self._base) / scale)
 
-    def _plain_inverse(self, x: Array) -> Array:
-        """About ``x`` of ``a f - delta = misfit`` under ``sum f dA = load``: flat, and without friction."""
+    def plain_inverse(self, x: Array) -> Array:
+        """Return ``y`` with ``J y`` about ``x``, by the system of flat surfaces without friction.
+
+        That is ``a f - delta = misfit`` under ``sum f dA = load``, with a preconditioner for the inverse of a.
+        """
         x = np.ravel(x)
         load = self.problem.load or float(self.pressure.sum()) * self.problem.grid.element_area
         misfit = np.zeros(self.contact.shape)

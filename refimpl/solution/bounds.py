@@ -38,8 +38,9 @@ both sides of (B1) makes ``a + m K K'`` definite; K.e is known as above. At a pr
 and no bound is claimed.
 
 Not proven, and not touched by these numbers: that slopes and tau's support are those of the solution of the
-whole problem (see the certificate's ``slope`` and ``unlawful``), and the grid's own error. Rounding of the
-products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of a number, is not.
+whole problem (see the certificate's ``slope`` and ``law_violations``), and the grid's own error. Rounding of
+the products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of a number, is
+not.
 """
 
 from __future__ import annotations
@@ -82,12 +83,12 @@ class Bounds:
 
 UNPROVEN = "slopes and tau's support are held as returned; the grid's own error is not included"
 NO_BOUND_CORRECTED = "the slope correction's matrix is not a plus a skew one: no bound"
-NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic square: no bound"
+NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic domain: no bound"
 NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressure: no bound"
 
 
 def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> Bounds:
-    """Bounds for any pressure and traction (Pa), in the grid's shape, at these slopes.
+    """Bounds for any pressure and traction (Pa) of the problem's shape, at these slopes.
 
     Costs some tens of products with ``a``. Where nothing can be proven all are infinite, and ``unproven``
     says why.

@@ -100,8 +100,7 @@ class EnergyNorm:
         self.diagonal = float(self.apply(impulse)[0, 0])
 
     def _free_floor(self, grid: Grid) -> float:
-        dx, dy = grid.spacings
-        return float(self._elasticity.symbol(np.array([smallest_symbol(dy / dx) * dx]))[0])
+        return float(self._elasticity.symbol(np.array([smallest_symbol(grid.aspect) * grid.spacings[0]]))[0])
 
     def _periodic_floor(self, grid: Grid) -> float:
         """``e = mean + rest``: ``(K.e)^2 >= (mean K.mean e)^2 / 2 - (K.rest)^2``."""

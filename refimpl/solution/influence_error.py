@@ -146,13 +146,18 @@ def _flat(nu: float) -> float:
     return -2 * (1 - nu**2) / math.pi * ((x + 1) * math.log(x + 1) - (x - 1) * math.log(x - 1))
 
 
-@cache
-def _table() -> dict[str, Any]:
-    text = resources.files("refimpl").joinpath("data", "coefficient_error.json").read_text(encoding="utf-8")
+def read_table(text: str) -> dict[str, Any]:
+    """Return the table of a JSON text, ``coefficient_error.json``; raise `InputError` for another version."""
     table: dict[str, Any] = json.loads(text)
     if table["version"] != _VERSION:
         raise InputError("coefficient_error.json", table["version"], f"version {_VERSION}")
     return table
+
+
+@cache
+def _table() -> dict[str, Any]:
+    file = resources.files("refimpl").joinpath("data", "coefficient_error.json")
+    return read_table(file.read_text(encoding="utf-8"))
 
 
 @cache

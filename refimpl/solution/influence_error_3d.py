@@ -82,12 +82,13 @@ def _error(slope: float, nu: float, slopes: Array, ratios: Array, errors: Array)
     return found
 
 
-@cache
-def _table() -> tuple[Array, Array, Array]:
-    """Slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
-    text = (
-        resources.files("refimpl").joinpath("data", "coefficient_error_3d.json").read_text(encoding="utf-8")
-    )
+def read_table(text: str) -> tuple[Array, Array, Array]:
+    """Return slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient].
+
+    ``text`` is the JSON of ``coefficient_error_3d.json``; of its points only projected ridges of wavelength
+    20 count, at slopes that were computed for all ratios and positions. Raises `InputError` for another
+    version.
+    """
     table = json.loads(text)
     if table["version"] != _VERSION:
         raise InputError("coefficient_error_3d.json", table["version"], f"version {_VERSION}")
@@ -104,3 +105,9 @@ def _table() -> tuple[Array, Array, Array]:
     )
     errors = [[[rows[nu, place, slope] for slope in slopes] for place in _POSITIONS] for nu in ratios]
     return np.array(slopes), np.array(ratios), np.array(errors)
+
+
+@cache
+def _table() -> tuple[Array, Array, Array]:
+    file = resources.files("refimpl").joinpath("data", "coefficient_error_3d.json")
+    return read_table(file.read_text(encoding="utf-8"))

@@ -122,9 +122,9 @@ class _Scheme:
         self.settled = True
         self._approach = approach
         # (1) [a] by the moving-grid argument: one row of it, translated; here on the FFT's circle
-        (n, m), (dx, dy) = problem.grid.shape, problem.grid.spacings
+        (n, m), dx = problem.grid.shape, problem.grid.spacings[0]
         circle = [np.minimum(np.arange(count), count - np.arange(count)) for count in (n, m)]
-        row = unit_table("normal", (1 + n // 2, 1 + m // 2), dy / dx)[np.ix_(*circle)] * dx
+        row = unit_table("normal", (1 + n // 2, 1 + m // 2), problem.grid.aspect)[np.ix_(*circle)] * dx
         self._periodic_hat: Array = problem.elasticity.symbol(sfft.rfft2(row).real)
 
     def result(self) -> SolverResult:

@@ -1,11 +1,10 @@
 """Surfaces: shapes, Gaussian roughness (Eq. 9), measured heights, arrays and their sums."""
 
-from refimpl.surfaces.arrays import ArraySurface
 from refimpl.surfaces.from_table import surface_from_dict
 from refimpl.surfaces.gaussian import GaussianRoughness
 from refimpl.surfaces.measured import MeasuredSurface
 from refimpl.surfaces.shapes import Flat, Sphere
-from refimpl.surfaces.surface import Surface, SurfaceSum, SurfaceWarning, as_surface
+from refimpl.surfaces.surface import ArraySurface, Surface, SurfaceSum, SurfaceWarning, as_surface
 
 __all__ = [
     "ArraySurface",

@@ -1,9 +1,8 @@
-"""Arrays of heights over the scene's square."""
+"""Heights given as an array over the domain: checked once, sampled at the element centres of any grid."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,70 +10,15 @@ from numpy.typing import NDArray
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.bicubic import resample, resample_periodic
-from refimpl.surfaces.surface import Surface
 
-_ALLOWED = "a 2-D array of finite heights in m over the scene's square, indexed [i, j] along x, y"
+_ALLOWED = "a 2-D array of finite heights in m over the domain, indexed [i, j] along x, y"
 
 
-@dataclass(frozen=True, eq=False)
-class ArraySurface(Surface):
-    """Heights (m) at the centres of ``shape[0] x shape[1]`` equal cells of the scene's square.
+def checked(data: NDArray[Any]) -> Array:
+    """Return a copy of the heights (m) that cannot be written to.
 
-    Used as they are on a grid of the same shape; otherwise resampled bicubically to the element centres
-    (sampled, not averaged). Within the outermost half cell the spline's end piece goes on. An offset that
-    leaves the square is refused unless the scene is periodic.
+    Raises `InputError` unless they are a 2-D array of finite real numbers; masked ones count as not finite.
     """
-
-    data: NDArray[np.float64]
-    kind: ClassVar[str] = "array"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "data", _checked(self.data))
-
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
-        if self.data.shape == grid.shape and offset == (0.0, 0.0):
-            return self.data.copy()
-        if min(self.data.shape) < 4:
-            shape = f"array of shape {self.data.shape}"
-            raise InputError("heights", shape, f"the grid's shape {grid.shape}, or at least 4 points an axis")
-        if not grid.periodic:
-            _refuse_leaving(grid, offset)
-        (nx, ny), (Lx, Ly) = self.data.shape, grid.lengths
-        x, y = (grid.x + offset[0]) * (nx / Lx) - 0.5, (grid.y + offset[1]) * (ny / Ly) - 0.5
-        return resample_periodic(self.data, x, y) if grid.periodic else resample(self.data, x, y)
-
-    def describe(self, grid: Grid) -> tuple[str, ...]:
-        if self.data.shape == grid.shape:
-            return (f"the array of {_by(self.data.shape)} heights is used as it is",)
-        return (
-            f"the array of {_by(self.data.shape)} heights is resampled bicubically to {grid}",
-            *self.cautions(grid),
-        )
-
-    def pitch(self, lengths: tuple[float, float]) -> float:
-        nx, ny = self.data.shape
-        return float(min(lengths[0] / nx, lengths[1] / ny))
-
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
-        if all(points >= n for points, n in zip(self.data.shape, grid.shape, strict=True)):
-            return ()
-        return (
-            f"the grid of {grid} is finer than the array of {_by(self.data.shape)} heights: "
-            "what lies between them is interpolated",
-        )
-
-    def to_dict(self) -> dict[str, Any]:
-        allowed = 'a surface that has a TOML form; save the array as .npy and read it by kind = "measured"'
-        raise InputError("surface", f"array of shape {self.data.shape}", allowed)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, ArraySurface) and np.array_equal(self.data, other.data)
-
-    def __hash__(self) -> int:
-        return hash((self.data.shape, float(self.data.sum())))
-
-
-def _checked(data: NDArray[Any]) -> Array:
     if not isinstance(data, np.ndarray) or data.ndim != 2 or data.size == 0:
         raise InputError("heights", getattr(data, "shape", data), _ALLOWED)
     if data.dtype.kind not in "fiu":
@@ -90,6 +34,41 @@ def _checked(data: NDArray[Any]) -> Array:
         )
     heights.setflags(write=False)
     return heights
+
+
+def sampled(data: Array, grid: Grid, offset: tuple[float, float]) -> Array:
+    """Return the heights (m) of ``data``, which spans the grid's domain, at the element centres.
+
+    ``data`` of the grid's shape is copied; other data are resampled bicubically. Raises `InputError` for
+    fewer than four points an axis, and for an offset (m) that leaves the domain unless the grid is periodic.
+    """
+    if data.shape == grid.shape and offset == (0.0, 0.0):
+        return data.copy()
+    if min(data.shape) < 4:
+        allowed = f"the grid's shape {grid.shape}, or at least 4 points an axis"
+        raise InputError("heights", f"array of shape {data.shape}", allowed)
+    if not grid.periodic:
+        _refuse_leaving(grid, offset)
+    (nx, ny), (Lx, Ly) = data.shape, grid.lengths
+    x, y = (grid.x + offset[0]) * (nx / Lx) - 0.5, (grid.y + offset[1]) * (ny / Ly) - 0.5
+    return resample_periodic(data, x, y) if grid.periodic else resample(data, x, y)
+
+
+def use_of(shape: tuple[int, ...], grid: Grid) -> str:
+    """Return how data of that shape are used on a grid, as a sentence."""
+    if shape == grid.shape:
+        return f"the array of {_by(shape)} heights is used as it is"
+    return f"the array of {_by(shape)} heights is resampled bicubically to {grid}"
+
+
+def cautions_of(shape: tuple[int, ...], grid: Grid) -> tuple[str, ...]:
+    """Return what a user should be warned of when data of that shape are used on a grid."""
+    if all(points >= n for points, n in zip(shape, grid.shape, strict=True)):
+        return ()
+    return (
+        f"the grid of {grid} is finer than the array of {_by(shape)} heights: "
+        "what lies between them is interpolated",
+    )
 
 
 def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:

@@ -34,12 +34,13 @@ class Crop:
         room = tuple((measured - length) / 2.0 for measured, length in zip(area, self.lengths, strict=True))
         if min(room) < -slack / 2:
             allowed = f"at most the measured {by(area)} m of {self.reading.name}"
-            raise InputError("side", max(self.lengths), allowed)
+            raise InputError("side", self.lengths[room.index(min(room))], allowed)
         if any(abs(o) > r + slack for o, r in zip(self.offset, room, strict=True)):
             raise InputError("offset", self.offset, f"at most {by(room)} m either way in {self.reading.name}")
-        if min(s.stop - s.start for s in self.points) < 4:
+        counts = tuple(s.stop - s.start for s in self.points)
+        if min(counts) < 4:
             least = f"at least 4 pixels of {self.reading.name}, each {by(self.reading.pixel)} m"
-            raise InputError("side", min(self.lengths), least)
+            raise InputError("side", self.lengths[counts.index(min(counts))], least)
 
     def positions(self, along: Array, axis: int) -> Array:
         """Pixel positions of points ``along`` an axis (m from the window's edge)."""

@@ -121,7 +121,7 @@ class GaussianRoughness(Surface):
         extent, farthest = float(x.max() - x.min()), float(np.abs(x).max())
         if extent / h + 2 * reach + 2 > MAX_NODES:
             least = extent / h / (MAX_NODES - 2 * reach - 2) * self.correlation_length
-            need = f"at least {least:.3g} m on this square ({MAX_NODES} noise nodes an axis)"
+            need = f"at least {least:.3g} m on this domain ({MAX_NODES} noise nodes an axis)"
             raise InputError("correlation_length", self.correlation_length, need)
         if farthest / h > MAX_FAR:
             raise InputError("offset", farthest, f"within {MAX_FAR:.3g} x {h:.3g} m: beyond, digits are lost")

@@ -1,4 +1,4 @@
-"""What a surface is: heights at the element centres of any grid, and sums of such surfaces."""
+"""What a surface is: heights at the element centres of any grid; arrays of heights, and sums of surfaces."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from refimpl.errors import LEAST, InputError, as_double
 from refimpl.grid import Array, Grid
+from refimpl.surfaces.arrays import cautions_of, checked, sampled, use_of
 
 
 class SurfaceWarning(UserWarning):
@@ -113,10 +114,47 @@ class SurfaceSum(Surface):
         return {"kind": self.kind, "terms": [term.to_dict() for term in self.terms]}
 
 
-def as_surface(value: Surface | NDArray[Any]) -> Surface:
-    """``value`` if it is a surface, an ``ArraySurface`` of it if it is an array; else InputError."""
-    from refimpl.surfaces.arrays import ArraySurface  # here: arrays are surfaces, and build on this module
+@dataclass(frozen=True, eq=False)
+class ArraySurface(Surface):
+    """Heights (m) at the centres of ``shape[0] x shape[1]`` equal cells of the domain.
 
+    Used as they are on a grid of the same shape; otherwise resampled bicubically to the element centres
+    (sampled, not averaged). Within the outermost half cell the spline's end piece goes on. An offset that
+    leaves the domain is refused unless the scene is periodic.
+    """
+
+    data: NDArray[np.float64]
+    kind: ClassVar[str] = "array"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", checked(self.data))
+
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        return sampled(self.data, grid, offset)
+
+    def describe(self, grid: Grid) -> tuple[str, ...]:
+        return use_of(self.data.shape, grid), *self.cautions(grid)
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        return cautions_of(self.data.shape, grid)
+
+    def pitch(self, lengths: tuple[float, float]) -> float:
+        nx, ny = self.data.shape
+        return float(min(lengths[0] / nx, lengths[1] / ny))
+
+    def to_dict(self) -> dict[str, Any]:
+        allowed = 'a surface that has a TOML form; save the array as .npy and read it by kind = "measured"'
+        raise InputError("surface", f"array of shape {self.data.shape}", allowed)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ArraySurface) and np.array_equal(self.data, other.data)
+
+    def __hash__(self) -> int:
+        return hash((self.data.shape, float(self.data.sum())))
+
+
+def as_surface(value: Surface | NDArray[Any]) -> Surface:
+    """Return ``value`` if it is a surface, an `ArraySurface` of it if it is an array; else InputError."""
     if isinstance(value, Surface):
         return value
     if isinstance(value, np.ndarray):

@@ -121,8 +121,8 @@ def _beside(document: Document) -> Table:
     caption = (
         "Bars of numbers that no accuracy is asked of: on the grid where the climb for mu (without friction, "
         "for A) ends, and of the first scenes at a prescribed approach. References that are not those above "
-        "are the finest grid's numbers, bounded by their change from the grid before; approaches count from "
-        "where the surfaces themselves touch, and bars of Q are over the load."
+        "are the finest grid's numbers, bounded by their change from the grid before; approaches count "
+        "from the first contact of the surfaces themselves, and bars of Q are over the load."
     )
     return Table(caption, head, rows)
 

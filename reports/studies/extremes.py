@@ -33,7 +33,7 @@ def build(document: Document) -> Exhibit:
             "allowed.",
             "Unit scaling by powers of two must change no bit, by powers of ten no more than 1e-12.",
             "For any beta a + beta c is positive definite (the proof is in the code), so at fixed slopes and "
-            "support of tau there is one state. It ends with tau, as the count of lawful states shows.",
+            "active set of tau there is one state. It ends with tau, as the count of lawful states shows.",
         ),
         [
             _by_axis(rows),

@@ -36,8 +36,8 @@ def build(document: Document) -> Exhibit:
     figures: list[tuple[Figure, Data]] = []
     notes: list[str] = []
     notes.append(
-        "A way is a method, its tolerance and what it leaves out: flat (no slopes), uncoupled (shear moves "
-        "nothing), one grid (no nesting), single (the solver's convolutions in single precision; the "
+        "A way is a method, its tolerance and what it neglects: flat (no slopes), uncoupled (shear closes no "
+        "gap), one grid (no nesting), single (the solver's convolutions in single precision; the "
         "certificate is of double precision and does not pass a tolerance that single cannot reach)."
     )
     for study in document["studies"]:

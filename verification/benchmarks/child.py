@@ -1,6 +1,6 @@
 """One timed solve in a process of its own: ``python -m verification.benchmarks.child``, called by `rounds`.
 
-A small solve comes first, so that imports and the first touch of a library are nobody's seconds; what a solve
+A small solve comes first, so that imports and the first use of a library are nobody's seconds; what a solve
 needs of kernels, plans and buffers at its own size is its own. A second solve then says what the next ones
 of a sweep take, with whatever a code keeps.
 """

@@ -41,7 +41,7 @@ class Pressed:
     """What a code returned.
 
     pressure : ``(M, M)`` (Pa)
-    converged : whether the code says so; for ours, tau's support may end in a settled cycle
+    converged : whether the code says so; for ours, the contact edge may alternate under tau
     operations : its own counts
     residual : the certificate's worst residual; only with coupling, where the frictionless judge cannot say
     """

@@ -33,8 +33,8 @@ EPILOG = """examples:
   rough-friction solve scene.toml --approach 1.2e-6
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
-exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge under tau, certified
-too, and error bars include what that leaves open; 1 any other status; 2 bad input
+exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge, certified too, and
+error bars include what that leaves open; 1 any other status; 2 bad input
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
@@ -51,7 +51,7 @@ SWITCHES = ("coupled", "oblique", "tilted", "slope_correction")
 # What to do about an end that is no success.
 NEXT = {
     "STAGNATED": "not converged: a residual below stays above the tolerance; check units first "
-    "(E, tau, lengths)",
+    "(E, tau, lengths), then try a looser --tolerance or a coarser --grid",
     "ITERATION_LIMIT": "not converged within the limits: a looser --tolerance or --accuracy, or more memory",
     "NO_CONTACT": "nothing touches: prescribe a larger --approach, or leave it out to press with the load",
 }

@@ -1,4 +1,4 @@
-"""`rough-friction tradeoff`: what an error costs, over method, grid, tolerance and what is left out."""
+"""`rough-friction tradeoff`: what an error costs, over method, grid, tolerance and neglected terms."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ class Bed:
 
     @property
     def touch(self) -> float:
-        """Approach (m) from first touch: what the first pin to be touched gives way."""
+        """Approach (m) from first contact: what the first pin to be touched gives way."""
         return float(self.moved[self.pressure > 0].max())
 
     @property

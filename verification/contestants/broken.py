@@ -19,7 +19,7 @@ from refimpl.kernels import normal_table
 from refimpl.operators import kernel_tables
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
-from refimpl.solvers.production import level
+from refimpl.solvers.production import constants
 from verification.contestants import own, referee
 from verification.contestants.check import Fault
 from verification.contestants.protocol import Answer, ContactProblem, Contestant
@@ -92,8 +92,8 @@ def between_nodes(problem: ContactProblem) -> ContactProblem:
     return with_gap(problem, (problem.gap + np.roll(problem.gap, 1, axis=0)) / 2)
 
 
-def from_first_touch(problem: ContactProblem) -> ContactProblem:
-    """A periodic approach measured downwards from first touch, with the mean gap forgotten."""
+def from_first_contact(problem: ContactProblem) -> ContactProblem:
+    """A periodic approach measured downwards from first contact, with the mean gap forgotten."""
     if not problem.periodic or problem.approach is None:
         return problem
     return replace(problem, approach=abs(problem.approach) - float(problem.gap.mean()))
@@ -158,12 +158,12 @@ def corner_left_out(problem: ContactProblem) -> Array:
     return pressure
 
 
-def _coarse_coefficients(rows: int, columns: int, edge: float, *, known: Array | None) -> Array:
+def _coarse_coefficients(rows: int, columns: int, dx: float, dy: float, *, known: Array | None) -> Array:
     """A point force at the centre of every element but the loaded one itself; ``known`` is made anew."""
-    table = normal_table(rows, columns, edge).copy()
+    table = normal_table(rows, columns, dx, dy).copy()
     i, j = np.indices(table.shape)
-    distance = np.hypot(i, j) * edge
-    return np.where(distance > 0, edge**2 / np.where(distance > 0, distance, 1.0), table)
+    distance = np.hypot(i * dx, j * dy)
+    return np.where(distance > 0, dx * dy / np.where(distance > 0, distance, 1.0), table)
 
 
 def _single(function: Callable[..., Array]) -> Callable[..., Array]:
@@ -175,7 +175,7 @@ _IN_SINGLE_PRECISION = (
     (PeriodicInfluence, "_filter", _single(PeriodicInfluence._filter)),
 )
 _POINT_FORCES = (kernel_tables, "_TABLES", {**kernel_tables._TABLES, "normal": _coarse_coefficients})
-_THREE_STEPS = (level, "_CG_LIMIT", 3)
+_THREE_STEPS = (constants, "CG_LIMIT", 3)
 
 BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.SIGN_OF_C: lambda: Wrong(asked(other_sign)),
@@ -189,7 +189,7 @@ BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.SINGLE_PRECISION: lambda: Wrong(inside(*_IN_SINGLE_PRECISION)),
     Fault.TAU_MISSING: lambda: Wrong(asked(without_tau)),
     Fault.MEAN_DISPLACEMENT_LOST: lambda: Wrong(mean_displacement_lost),
-    Fault.MEAN_PLANES_LOST: lambda: Wrong(asked(from_first_touch)),
+    Fault.MEAN_PLANES_LOST: lambda: Wrong(asked(from_first_contact)),
     Fault.MEAN_PRESSURE_LOST: lambda: Wrong(asked(mean_pressure_lost)),
     Fault.MEAN_PRESSURE_ADDED: lambda: Wrong(mean_pressure_added),
     Fault.NEAR_FIELD: lambda: Wrong(inside(_POINT_FORCES)),

@@ -38,7 +38,7 @@ class Own:
         return f"refimpl {version('rough-friction')}"
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """The pressures; converged when the solution is certified, with tau's support settled or cycling."""
+        """The pressures; converged when the solution is certified, alternating contact edges included."""
         solution = rf.solve(
             scene(problem),
             problem.M,

@@ -84,7 +84,7 @@ class ContactProblem:
     spacing : edge of one element (m)
     reduced_modulus : E* (Pa), ``1/E* = sum (1 - nu^2)/E``
     load : normal load on the square (N), or None
-    approach : prescribed approach (m), from first touch or, if periodic, from the mean planes; or None
+    approach : prescribed approach (m), from first contact or, if periodic, from the mean planes; or None
     periodic : the square repeats in both directions; otherwise the half-space is free around it
     tolerance : relative residual to reach: complementarity gap over elastic energy, and load balance
     coupling : friction, or None
@@ -106,7 +106,7 @@ class ContactProblem:
         if gap.ndim != 2 or gap.shape[0] != gap.shape[1] or not gap.size or not np.isfinite(gap).all():
             raise InputError("gap", gap.shape, "a square array of finite heights in m")
         if gap.min() != 0:
-            raise InputError("gap", float(gap.min()), "a gap whose least value is 0 m (first touch)")
+            raise InputError("gap", float(gap.min()), "a gap whose least value is 0 m (first contact)")
         object.__setattr__(self, "gap", gap)
         require_number("spacing", self.spacing, "a positive length in m", above=0)
         require_number("reduced_modulus", self.reduced_modulus, "a positive modulus in Pa", above=0)
@@ -135,7 +135,7 @@ class ContactProblem:
 
     @property
     def approach_from_touch(self) -> float | None:
-        """The prescribed approach counted from first touch, periodic or not (m); None under a load."""
+        """The prescribed approach counted from first contact, periodic or not (m); None under a load."""
         if self.approach is None or not self.periodic:
             return self.approach
         return self.approach + float(self.gap.mean())

@@ -169,7 +169,7 @@ class _Elimination:
         self.gap = problem.gap.ravel()
 
     def on(self, contact: Mask) -> tuple[Array, float]:
-        """Pressures (all elements) and approach from first touch."""
+        """Pressures (all elements) and approach from first contact."""
         k = np.flatnonzero(contact)
         block, approach = self.matrix[np.ix_(k, k)], self.problem.approach_from_touch
         f = np.zeros(len(self.gap))

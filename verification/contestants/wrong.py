@@ -17,7 +17,7 @@ Solver = Callable[[ContactProblem], Array]
 Change = Callable[[ContactProblem], ContactProblem]
 
 ROUNDS = 20
-"""Most times that a wrong support of tau is brought up to date."""
+"""Most times that a wrong active set of tau is brought up to date."""
 FEW_ROUNDS = 5
 """Times that displacements from afar, a hundredth of all, are brought up to date."""
 
@@ -38,7 +38,7 @@ def where_periodic(wrong: Solver) -> Solver:
 
 
 def with_gap(problem: ContactProblem, gap: Array) -> ContactProblem:
-    """The problem with another gap, shifted to first touch."""
+    """The problem with another gap, shifted to first contact."""
     return replace(problem, gap=gap - gap.min())
 
 
@@ -73,7 +73,7 @@ def without_tau(problem: ContactProblem) -> ContactProblem:
 def lifted(problem: ContactProblem, moved: Array) -> ContactProblem:
     """The same bodies with what a solver has falsely added to their displacements (m) in the gap."""
     gap = problem.gap + moved
-    # an approach from first touch counts from what is touched first now; one from the mean planes does not
+    # an approach from first contact counts from what is touched first now; one from the mean planes does not
     if problem.approach is not None and not problem.periodic:
         problem = replace(problem, approach=problem.approach - float(gap.min()))
     return with_gap(problem, gap)

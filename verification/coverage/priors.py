@@ -96,7 +96,7 @@ def peaks(results: Sequence[GridFeatures]) -> Numbers:
 
 
 def approaches(results: Sequence[GridFeatures], other: float, touch: float) -> Numbers:
-    """Approaches from the surfaces' own first touch, for a scatter of one: both parts of it are given."""
+    """Approaches from the surfaces' own first contact, for a scatter of one: both parts of it are given."""
     found = np.array([result.numbers["approach"] for result in results])
     thin = other * discretisation_error.edge_scatter(results) * abs(found[-1])
     hung = np.array([result.peak.widened(size, 0.5) for result, size in zip(results, thin, strict=True)])

@@ -72,7 +72,7 @@ class FullContact:
 
     @property
     def approach(self) -> float:
-        """Approach of the mean planes from first touch (m): mean gap minus least gap."""
+        """Approach of the mean planes from first contact (m): mean gap minus least gap."""
         return float(np.mean(self.gap) - np.min(self.gap))
 
 

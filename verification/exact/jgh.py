@@ -75,7 +75,7 @@ APPROACH = {
     0.8: 0.99615,
     0.9: 0.99935,
 }
-"""Approach of the mean planes over Delta, counted from first touch."""
+"""Approach of the mean planes over Delta, counted from first contact."""
 APPROACH_UNCERTAINTY = 1e-5
 """Twice the last digit; the fits over all grids and over the finer thirteen differ by less than 4e-6."""
 
@@ -107,7 +107,7 @@ def full_contact(
 
 
 def _cell(n: int) -> tuple[Array, Array]:
-    """Gap/Delta from first touch, and the symbol sqrt(2)/|(i, j)| that takes p/p* to a mean-free u/Delta;
+    """Gap/Delta from first contact, and the symbol sqrt(2)/|(i, j)| that takes p/p* to a mean-free u/Delta;
     ``(n, n)`` each.
     """
     x = (np.arange(n) + 0.5) / n * np.pi
@@ -175,6 +175,6 @@ def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float,
 
 
 def _approach(p: Array) -> float:
-    """Pressure-weighted mean of u + gap over Delta, the gap counted from first touch."""
+    """Pressure-weighted mean of u + gap over Delta, the gap counted from first contact."""
     shape, symbol = _cell(len(p))
     return float(np.sum(p * (_displacement(symbol, p) + shape)) / np.sum(p))

@@ -58,7 +58,7 @@ class Wave:
 
     @property
     def approach(self) -> float:
-        """Approach of the mean planes from first touch (m): Delta s^2 (1 - ln s^2) up to full contact, then
+        """Approach of the mean planes from first contact (m): Delta s^2 (1 - ln s^2) up to full contact, then
         constant.
         """
         return float(self.amplitude * self._sin2 * (1 - np.log(self._sin2)))

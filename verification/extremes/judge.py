@@ -72,7 +72,7 @@ def verdict(
 
 
 def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple[float, str]:
-    """Largest relative error of a solution's pressure, approach, N and F; and a remark.
+    """Largest relative error of a solution's pressure, approach, N and F; and a note.
 
     Pressures relative to the peak, approaches to their size or, where that nearly vanishes, to the
     displacement that one element's peak pressure makes; forces to N. A contact set that differs by elements

@@ -41,7 +41,7 @@ LIMITS = (
     Limit(
         "contact set/flat on flat, periodic dense/*",
         "periodic flats are STAGNATED by the dense solver although every digit is right",
-        "the approach from first touch is nearly zero and scales the certificate's penetration",
+        "the approach from first contact is nearly zero and scales the certificate's penetration",
         "scale by max(|approach|, compliance x peak x spacing)",
     ),
     Limit(

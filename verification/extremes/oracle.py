@@ -2,10 +2,10 @@
 
 Arrays stand before scalars in products: an mpf before an array asks for the array's text first, slowly.
 
-At fixed slopes and a fixed support of tau the problem has one solution (`positive_definite`), so where the
+At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
 search for it starts cannot bend the answer: the contact set under test is taken as a first guess, its linear
 equations are solved exactly, and elements are exchanged until every inequality of Eq. (6) holds exactly.
-Slopes are brought up to date until they stand. tau's support is that of the returned traction.
+Slopes are brought up to date until they stand. tau's active set is that of the returned traction.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class NotSettled(ArithmeticError):
 
 @dataclass(frozen=True)
 class Exactly:
-    """The exact state: pressure (Pa), approach from first touch (m), forces (N), and the contact's margin.
+    """The exact state: pressure (Pa), approach from first contact (m), forces (N), and the contact's margin.
 
     ``margin`` is how far, relative to the largest, the least pressure or gap is from zero: at 1e-16 no double
     can tell the contact set.
@@ -78,7 +78,7 @@ class Oracle:
         self.cos, self.sin = cos, sin
 
     def solve(self, pressure: Array, support: NDArray[np.bool_]) -> Exactly:
-        """The exact state that belongs to a returned pressure and to tau's support, both ``(M, M)``."""
+        """The exact state that belongs to a returned pressure and to tau's active set, both ``(M, M)``."""
         with mp.workdps(DIGITS):
             chi = np.array([mp.mpf(int(s)) for s in support.ravel()], dtype=object)
             f, contact = _exact(pressure), pressure.ravel() > 0
@@ -122,7 +122,7 @@ class Oracle:
     def _frozen(
         self, tan: tuple[Exact, Exact], chi: Exact, contact: NDArray[np.bool_]
     ) -> tuple[Exact, Exact, NDArray[np.bool_], float]:
-        """Pressure, approach, contact set and margin at fixed slopes and support of tau."""
+        """Pressure, approach, contact set and margin at fixed slopes and active set of tau."""
         tau, beta = mp.mpf(self.scene.friction.tau), mp.mpf(self.scene.friction.beta)
         a, c, (tan_x, tan_y) = sum(self.a), self.c[0] - self.c[1], tan
         cos_x, cos_y = _cos(tan_x), _cos(tan_y)

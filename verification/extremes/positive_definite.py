@@ -19,7 +19,7 @@ elements, square or oblong.
 
 **c.** ``I[s/rho^2]`` is odd in s, so c is skew: f.c f = 0, and f.(a + beta c) f = f.a f > 0 for every beta.
 Every principal submatrix has that property too, so a + beta c is a P-matrix, and the complementarity
-problem of Eqs (6) and (7) at a given approach has exactly one solution, slopes and tau's support being
+problem of Eqs (6) and (7) at a given approach has exactly one solution, slopes and tau's active set being
 held (Samelson, Thrall and Wesler 1958). Two approaches d1 < d2 with solutions f1, f2 give, since each
 pressure meets only gaps that are not negative,
 
@@ -27,7 +27,7 @@ pressure meets only gaps that are not negative,
 
 so that K.f grows with the approach, and without slopes (K = 1, N = sum f dA) each load has one state too.
 
-**Where it ends.** (1) tau's support: it follows the contact it changes; `lawful_states` counts. (2) Slopes:
+**Where it ends.** (1) tau's active set: it follows the contact; `lawful_states` counts states. (2) Slopes:
 K, the weights of the load and the mean surface follow the pressure. (3) The slope correction: the matrix
 is ``a (1 - beta tan theta_x) + ...``, whose symmetric part may vanish where beta tan theta_x reaches 1.
 """

@@ -55,7 +55,7 @@ class Measured:
     """What a case's function returns.
 
     `value`, `reference` and `reference_uncertainty` share one `unit`. `data` maps labels to numbers, strings
-    or (nested) series, for figures; `note` is a remark for the reader.
+    or (nested) series, for figures; `note` is for the reader.
     """
 
     value: float

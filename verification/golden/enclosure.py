@@ -38,7 +38,7 @@ class NotProven(ArithmeticError):
 class Proof:
     """Balls: pressures (Pa) on ``contact`` in row order, approach (m), forces (N) and w (m).
 
-    ``approach`` counts from first touch; ``separations`` are w off contact, in row order.
+    ``approach`` counts from first contact; ``separations`` are w off contact, in row order.
     """
 
     contact: Mask

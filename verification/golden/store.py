@@ -48,7 +48,7 @@ class Enclosed:
 class Golden:
     """A stored scene: contact set, pressure midpoints with their largest radius (Pa), enclosed numbers.
 
-    ``numbers`` holds the approach (m, from first touch), the forces (N) and the friction coefficient.
+    ``numbers`` holds the approach (m, from first contact), the forces (N) and the friction coefficient.
     """
 
     scene: GoldenScene

@@ -205,7 +205,7 @@ FAULTS = {
     "one-body": Fault(
         "the upper body taken as rigid in a",
         ((Pair, "normal_compliance", _lower_body_only),),
-        "cross-check",
+        "displacements",
     ),
     "force-scale": Fault(
         "N, F and Q times 1 + 1e-6",

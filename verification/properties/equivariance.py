@@ -11,7 +11,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from verification.properties.registry import Solver, invariant
 from verification.properties.samples import Sample, heights, samples, with_heights
-from verification.properties.states import ENDED_WELL, RESIDUAL, from_first_touch, solved
+from verification.properties.states import ENDED_WELL, RESIDUAL, from_first_contact, solved
 
 FORCES = ("normal_force", "friction_force")
 
@@ -25,7 +25,7 @@ def equal_states(moved: rf.Solution, pressure: Array, base: rf.Solution, sample:
     for name in FORCES:
         assert abs(getattr(moved, name) - getattr(base, name)) <= RESIDUAL * load
     assert abs(moved.binormal_force - sign * base.binormal_force) <= RESIDUAL * load
-    assert abs(moved.approach - base.approach) <= RESIDUAL * from_first_touch(sample, base)
+    assert abs(moved.approach - base.approach) <= RESIDUAL * from_first_contact(sample, base)
 
 
 @invariant("the mirror image slides like the original", samples())

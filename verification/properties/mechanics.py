@@ -14,7 +14,7 @@ from verification.properties.states import (
     RESIDUAL,
     compliances,
     displacement,
-    from_first_touch,
+    from_first_contact,
     solved,
 )
 from verification.properties.textbook import normal_matrix
@@ -30,7 +30,7 @@ FOUR_CORNERS = Sample(
     angle=0,
     periodic=False,
 )
-"""Symmetric without friction: slopes tip no element then, and the plan leaves out their 1e-7 of pressures."""
+"""Symmetric without friction: slopes tip no element then, and the plan neglects their 1e-7 of pressures."""
 
 SMALL = 2.0**-30
 """A friction law this many times weaker must change the state by about as little."""
@@ -85,7 +85,7 @@ def energy_is_work(solver: Solver, sample: Sample) -> None:
 def monotone_in_load(solver: Solver, sample: Sample) -> None:
     """Approach, contact set and pressure of every element grow with the load."""
     light, heavy = solved(solver, sample, oblique=False), solved(solver, heavier(sample), oblique=False)
-    assert from_first_touch(sample, heavy) >= from_first_touch(sample, light) * (1 - RESIDUAL)
+    assert from_first_contact(sample, heavy) >= from_first_contact(sample, light) * (1 - RESIDUAL)
     assert not np.any(light.contact & ~heavy.contact)
     assert np.all(heavy.pressure >= light.pressure - RESIDUAL * light.max_pressure)
 
@@ -106,7 +106,7 @@ def monotone_in_approach(solver: Solver, sample: Sample) -> None:
 def weak_friction(solver: Solver, sample: Sample) -> None:
     """tau, beta -> 0: at 1e-9 of the friction the pressure differs by as little.
 
-    With slopes in both: a plan may leave them out of the frictionless state alone, and say so.
+    With slopes in both: a plan may neglect them in the frictionless state alone, and say so.
     """
     friction = sample.scene.friction
     weak = replace(sample.scene, friction=rf.Friction(tau=SMALL * friction.tau, beta=SMALL * friction.beta))

@@ -73,7 +73,7 @@ class Sample:
 
     @cached_property
     def gap(self) -> Array:
-        """``z_upper - z_lower`` from first touch (m), shape ``(M, M)``."""
+        """``z_upper - z_lower`` from first contact (m), shape ``(M, M)``."""
         lower, upper = (heights(body, self.grid) for body in (self.scene.lower, self.scene.upper))
         gap: Array = upper - lower
         return gap - float(gap.min())

@@ -25,14 +25,14 @@ def solved(solver: Solver, sample: Sample, *, oblique: bool | None = None) -> rf
     return solution
 
 
-def from_first_touch(sample: Sample, solution: rf.Solution) -> float:
-    """Approach from first touch (m); a periodic one is reported from the mean planes."""
+def from_first_contact(sample: Sample, solution: rf.Solution) -> float:
+    """Approach from first contact (m); a periodic one is reported from the mean planes."""
     return solution.approach + (float(sample.gap.mean()) if sample.periodic else 0.0)
 
 
 def displacement(sample: Sample, solution: rf.Solution) -> Array:
     """Normal displacement of both bodies (m), from the returned surfaces."""
-    return solution.separation - sample.gap + from_first_touch(sample, solution)
+    return solution.separation - sample.gap + from_first_contact(sample, solution)
 
 
 def compliances(scene: rf.Scene) -> tuple[float, float]:
@@ -70,7 +70,7 @@ def positivity(solver: Solver, sample: Sample) -> None:
     assert pressure.max() > 0
 
 
-@invariant("r = tau + beta f in contact and 0 outside, but where tau is withheld", samples())
+@invariant("r = tau + beta f in contact and 0 outside, but for elements excluded from tau", samples())
 def local_friction_law(solver: Solver, sample: Sample) -> None:
     """Eq. (1), to the last bit but one."""
     solution, friction = solved(solver, sample), sample.scene.friction
@@ -85,7 +85,7 @@ def complementarity(solver: Solver, sample: Sample) -> None:
     solution = solved(solver, sample)
     tan_x, tan_y = slope_along_and_across(sample, solution)
     v = displacement(sample, solution) * np.sqrt((1 + tan_x**2) * (1 + tan_y**2)) + sample.gap
-    excess = v - from_first_touch(sample, solution)
+    excess = v - from_first_contact(sample, solution)
     scale = np.abs(v).max()
     assert excess.min() >= -RESIDUAL * scale
     assert np.abs(excess[solution.pressure > 0]).max() <= RESIDUAL * scale
@@ -179,7 +179,7 @@ def agrees_with_the_dense_reference(solver: Solver, sample: Sample) -> None:
 
 
 def same_pressure(one: rf.Solution, other: rf.Solution, sample: Sample) -> None:
-    """Equal contact sets, pressures to `RESIDUAL` of the peak; approaches to it from first touch."""
+    """Equal contact sets, pressures to `RESIDUAL` of the peak; approaches to it from first contact."""
     assert np.array_equal(one.contact, other.contact)
     assert np.abs(one.pressure - other.pressure).max() <= RESIDUAL * other.max_pressure
-    assert abs(one.approach - other.approach) <= RESIDUAL * abs(from_first_touch(sample, other))
+    assert abs(one.approach - other.approach) <= RESIDUAL * abs(from_first_contact(sample, other))

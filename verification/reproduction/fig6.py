@@ -89,7 +89,7 @@ def textbook(rms: float, mu: float = 4.0) -> gt.RoughSphere:
 
 @cache
 def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
-    """Frictionless contact with all the roughness on the flat, slopes left out ("tips of asperities")."""
+    """Frictionless contact with all the roughness on the flat, slopes neglected ("tips of asperities")."""
     scene = rough(rms, realisation=realisation, friction=NO_FRICTION)
     return rf.solve(scene, grid, oblique=False)
 

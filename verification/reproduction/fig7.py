@@ -17,7 +17,7 @@ FLAT_RMS, BALL_RMS = 0.504e-6, 0.084e-6  # sigma_e = 0.511 um, as in the figure
 
 @dataclass(frozen=True)
 class Section:
-    """Heights (m) on the line through the centre: at first touch, and deformed with and without friction.
+    """Heights (m) on the line through the centre: at first contact, and deformed with and without friction.
 
     ``mean_plane`` is the half-space's deformed mean plane, with friction. ``difference`` is the largest
     change of the flat's deformed surface by friction anywhere on the contact, ``approach`` the ball's (m).
@@ -41,7 +41,7 @@ def section(grid: int) -> Section:
     with_friction = rf.solve(scene, grid)
     without = rf.solve(rough(FLAT_RMS, BALL_RMS, friction=NO_FRICTION), grid)
     lower, upper = scene.heights(with_friction.grid)
-    upper = upper - float((upper - lower).min())  # first touch
+    upper = upper - float((upper - lower).min())  # first contact
     displacement = lower - with_friction.surface_lower
     middle = grid // 2
     contact = with_friction.contact

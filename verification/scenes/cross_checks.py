@@ -106,7 +106,7 @@ def cross_checks() -> tuple[Trial, ...]:
             21,
         ),
         Trial("single-point", "one element in contact", pressed(rms=2e-6, load=1e-4), 17),
-        Trial("strong-tau", "tau's support cycles", pressed(lower=POLYMER, load=30.0, friction=strong), 23),
+        Trial("strong-tau", "alternating edge", pressed(lower=POLYMER, load=30.0, friction=strong), 23),
         Trial(
             "large-tau-periodic",
             "tau as large as the pressure, periodic",

@@ -14,8 +14,9 @@ import numpy as np
 import scipy.fft as sfft
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.grid.window import Window, padded_length
+from refimpl.grid import Array, Shape, Window
+from refimpl.grid.window import padded_length
+from refimpl.model.friction import friction_coefficient_at
 from refimpl.model.problem import Problem
 from refimpl.solvers.production import nested_solver
 from verification.tradeoff.settings import Setting
@@ -62,15 +63,15 @@ def _solved(scene: rf.Scene, setting: Setting) -> tuple[dict[str, float], str, A
     """Numbers, status, pressure, and the sum of n log n over all applications."""
     if setting.method == "qp":
         return _minimised(scene, setting)
-    grids = nullcontext() if setting.nested else mock.patch.object(nested_solver, "levels", _only_the_finest)
+    one_grid = mock.patch.object(nested_solver, "nested_problems", _only_the_finest)
     precision = single_precision() if setting.single else nullcontext()
-    with grids, precision:
+    with nullcontext() if setting.nested else one_grid, precision:
         solution = _solution(scene, setting)
     numbers = {name: float(getattr(solution, name)) for name in QUANTITIES}
     return numbers, solution.status.value, solution.pressure, solution.cost.point_logs
 
 
-def _only_the_finest(problem: Problem, above: int) -> list[Problem]:
+def _only_the_finest(problem: Problem, above: Shape | None) -> list[Problem]:
     return [problem]
 
 
@@ -93,7 +94,7 @@ def _minimised(scene: rf.Scene, setting: Setting) -> tuple[dict[str, float], str
     pressure = energy.pressure(quasi_newton(energy).x)
     area = float(np.count_nonzero(pressure > 0)) * energy.problem.grid.element_area
     numbers = {
-        "friction_coefficient": scene.friction.tau * area / scene.load + scene.friction.beta,
+        "friction_coefficient": friction_coefficient_at(scene.friction, scene.load / area),
         "contact_area": area,
         "max_pressure": float(pressure.max()),
     }

@@ -1,4 +1,4 @@
-"""The ways to solve one scene: method, grid, tolerance, and what is left out."""
+"""The configurations that solve one scene: method, grid, tolerance, and neglected terms."""
 
 from __future__ import annotations
 

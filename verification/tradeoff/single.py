@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
+from refimpl.operators import influence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.transforms import Complex, fourier, threads
-from refimpl.solvers.production import level
 
 
 class SingleInfluence(FFTInfluence):
@@ -48,5 +48,5 @@ class SingleInfluence(FFTInfluence):
 @contextmanager
 def single_precision() -> Iterator[None]:
     """Solve with `SingleInfluence`; certificates, periodic scenes and what links grids stay as they are."""
-    with mock.patch.object(level, "FFTInfluence", SingleInfluence):
+    with mock.patch.object(influence, "FFTInfluence", SingleInfluence):
         yield

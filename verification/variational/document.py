@@ -45,7 +45,7 @@ def document(rounds: int, budget: float, grids: Sequence[int] | None = None) -> 
     }
     head = {
         "scene": scene_to_toml(table2_scene()),
-        "slopes": "left out (cosines 1), so that all methods minimise the same energy",
+        "slopes": "neglected (cosines 1), so that all methods minimise the same energy",
         "conditions": conditions,
         "provenance": provenance() | {"piqp": version("piqp")},
     }

@@ -5,22 +5,26 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from refimpl.accuracy.discretisation_error import EDGE_SHARE, EDGE_SIZE, SUMMIT
-from refimpl.accuracy.grid_features import GridResult
-from refimpl.accuracy.peak import LEVEL, Summit
+from refimpl.accuracy.discretisation_error import EDGE_SIZE, PEAK_BIAS
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import NO_PEAK, Peak
+from refimpl.grid import Grid
+from refimpl.model.forces import EDGE_SHARE
 from refimpl.solution.solution import REPORTED
 
-SIDE, RADIUS, SLIP = 1e-3, 2e-4, 4e4
+SIDE, RADIUS, DMU_DA = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
 
 
-def summit(h: float, height: float = PEAK, roughness: float = 0.0) -> Summit:
-    """A parabola's through a disc's peak, too high by what the model says."""
-    drop = 2 * (h / RADIUS) ** 2 * height
-    return Summit(height + SUMMIT * drop, drop, roughness)
+def disc_peak(h: float) -> Peak:
+    """The parabola through a disc's peak on elements of edge h, too high by the bias of the model."""
+    drop = 2 * (h / RADIUS) ** 2 * PEAK
+    return Peak(PEAK + PEAK_BIAS * drop, drop, 0.0)
 
 
-def made_up(M: int, size: float = EDGE_SIZE, jitter: float = 0.0, unevenness: float = 0.0) -> GridResult:
+def made_up(
+    M: int, size: float = EDGE_SIZE, jitter: float = 0.0, slope_sampling_error: float = 0.0
+) -> GridFeatures:
     """A disc's numbers on a grid: first order in its area and through tau in mu, second order in its peak."""
     h = SIDE / M
     edge = EDGE_SHARE * 8 * RADIUS * h
@@ -30,31 +34,30 @@ def made_up(M: int, size: float = EDGE_SIZE, jitter: float = 0.0, unevenness: fl
     numbers |= {
         "contact_area": area,
         "contact_area_corrected": area - edge,
-        "friction_coefficient": BETA + SLIP * area,
+        "friction_coefficient": BETA + DMU_DA * area,
         "max_pressure": PEAK * (1 - 0.3 * (h / RADIUS) ** 2),
         "normal_force": 70.0,
         "approach": 1e-6,
     }
-    return GridResult(
-        M=M,
-        spacing=h,
+    return GridFeatures(
+        grid=Grid.square(SIDE, M),
         numbers=numbers,
         edge=edge,
-        alike=1.0,
-        peak=summit(h),
-        touch=LEVEL,
-        unevenness=unevenness,
-        slip=SLIP,
+        symmetry_multiplicity=1.0,
+        peak=disc_peak(h),
+        first_contact=NO_PEAK,
+        slope_sampling_error=slope_sampling_error,
+        dmu_dA=DMU_DA,
         parts={name: {"iteration": 0.0} for name in REPORTED},
     )
 
 
-def told(mu: float, M: int, unevenness: float) -> GridResult:
-    """A grid on which slopes made mu what it is."""
-    result = made_up(M, unevenness=unevenness)
-    return replace(result, numbers={**result.numbers, "friction_coefficient": mu}, slip=0.0)
+def sloped(mu: float, M: int, slope_sampling_error: float) -> GridFeatures:
+    """A grid on which slopes alone make mu."""
+    result = made_up(M, slope_sampling_error=slope_sampling_error)
+    return replace(result, numbers={**result.numbers, "friction_coefficient": mu}, dmu_dA=0.0)
 
 
-def peaked(M: int, height: float, drop: float, roughness: float = 0.0) -> GridResult:
-    """A grid with that summit of its pressure."""
-    return replace(made_up(M), peak=Summit(height, drop, roughness))
+def peaked(M: int, height: float, drop: float, non_parabolicity: float = 0.0) -> GridFeatures:
+    """A grid with that peak of its pressure."""
+    return replace(made_up(M), peak=Peak(height, drop, non_parabolicity))

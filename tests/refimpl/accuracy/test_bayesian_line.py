@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import optimize, stats
 
-from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, line
+from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, fit_line
 from refimpl.accuracy.discretisation_error import AREA, EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.grid import Array
 
@@ -16,7 +16,7 @@ from refimpl.grid import Array
 @pytest.mark.parametrize("distance", [0.0, 0.3, 1.0, 1.52, 1.54, 4.0])
 def test_a_bar_is_exceeded_by_5_percent_of_a_normal_distribution(distance: float) -> None:
     """On both sides of 3 deviations, 1.53 spreads, where one side is all that counts."""
-    bar = Estimate(2.0, 0.5).bar(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
+    bar = Estimate(2.0, 0.5).error_bound(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
     shift = distance * stats.norm.ppf(0.975)
     assert stats.norm.sf(bar - shift) + stats.norm.sf(bar + shift) == pytest.approx(0.05, rel=1e-6)
 
@@ -24,8 +24,8 @@ def test_a_bar_is_exceeded_by_5_percent_of_a_normal_distribution(distance: float
 def test_finer_grids_are_foretold_a_nearer_number_and_a_shorter_spread() -> None:
     """By the first and the second of its orders, each in its own way."""
     still = Estimate(1.0, 0.8, orders=(1.0, 2.0))
-    assert still.foretold(1.0, 0.25) == pytest.approx(0.05)
-    assert still.foretold(21.0, 0.25) == pytest.approx(Estimate(1.0, 0.05).bar(6.0))
+    assert still.predicted_bound(1.0, 0.25) == pytest.approx(0.05)
+    assert still.predicted_bound(21.0, 0.25) == pytest.approx(Estimate(1.0, 0.05).error_bound(6.0))
 
 
 @pytest.mark.parametrize("grids", [1, 2, 3])
@@ -35,16 +35,18 @@ def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) 
         draw = np.random.default_rng(seed)
         values, sizes = 1 + draw.normal(0, 0.1, grids), draw.uniform(0.1, 0.3, grids)
         weights, prior = np.ones(grids), Prior(0.05, 2.0)
-        found = line(values, weights, prior, Bias(sizes, 0.7, 0.0))
-        alone = line(values - 0.7 * sizes, weights, prior)
+        found = fit_line(values, weights, prior, Bias(sizes, 0.7, 0.0))
+        alone = fit_line(values - 0.7 * sizes, weights, prior)
         assert found.value == pytest.approx(alone.value, rel=1e-12)
-        assert found.spread == pytest.approx(alone.spread, rel=2e-4)  # as closely as bounds are sought
+        assert found.half_width == pytest.approx(
+            alone.half_width, rel=2e-4
+        )  # as closely as bounds are sought
 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
 def test_bars_of_extreme_spreads(spread: float) -> None:
-    assert Estimate(2.0, spread).bar(3.0) == (math.inf if math.isinf(spread) else 1.0)
-    assert Estimate(2.0, spread).bar(2.0) == pytest.approx(spread)
+    assert Estimate(2.0, spread).error_bound(3.0) == (math.inf if math.isinf(spread) else 1.0)
+    assert Estimate(2.0, spread).error_bound(2.0) == pytest.approx(spread)
 
 
 def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
@@ -62,8 +64,8 @@ def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
 def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
     values, weights, edge = draws(800, grids)
     bias = Bias(edge, EDGE_SIZE, EDGE_SIZE_SPREAD)
-    found = [line(row, weights, AREA, bias) for row in values]
-    share = np.mean([abs(estimate.value) <= estimate.spread for estimate in found])
+    found = [fit_line(row, weights, AREA, bias) for row in values]
+    share = np.mean([abs(estimate.value) <= estimate.half_width for estimate in found])
     assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
 
 
@@ -99,8 +101,11 @@ def test_nine_nodes_do_for_the_factors_integral() -> None:
         scatter = prior.scatter * weights * draw.standard_normal(len(spacing))
         bias = Bias(sizes, EDGE_SIZE, EDGE_SIZE_SPREAD)
         values = 1 + sizes * draw.normal(EDGE_SIZE, EDGE_SIZE_SPREAD) + scatter
-        found, (value, bound) = line(values, weights, prior, bias), integrated(values, weights, prior, bias)
-        off.append((abs(found.value - value) / bound, abs(found.spread / bound - 1)))
+        found, (value, bound) = (
+            fit_line(values, weights, prior, bias),
+            integrated(values, weights, prior, bias),
+        )
+        off.append((abs(found.value - value) / bound, abs(found.half_width / bound - 1)))
     assert np.all(np.quantile(off, 0.9, axis=0) < (5e-5, 0.02))
     assert np.max(off) < 0.15
 
@@ -110,19 +115,21 @@ def test_bounds_know_no_unit(power: int) -> None:
     """Areas of a nanometre's scene in m^2 are far below what a root is sought to, if it has a unit."""
     unit = 2.0**power
     values, weights, edge = np.array([1.2, 1.07, 1.03]), np.array([8.0, 2.8, 1.0]), np.array([0.4, 0.2, 0.1])
-    one = line(values, weights, Prior(0.01, 6.0), Bias(edge, 0.78, 0.07))
-    other = line(unit * values, weights, Prior(unit * 0.01, 6.0), Bias(unit * edge, 0.78, 0.07))
-    assert other == (unit * one.value, unit * one.spread, one.orders)
+    one = fit_line(values, weights, Prior(0.01, 6.0), Bias(edge, 0.78, 0.07))
+    other = fit_line(unit * values, weights, Prior(unit * 0.01, 6.0), Bias(unit * edge, 0.78, 0.07))
+    assert other == (unit * one.value, unit * one.half_width, one.orders)
 
 
 def test_zeros_are_exact() -> None:
-    assert line(np.zeros(3), np.ones(3), Prior(0.1, 2.0)) == Estimate(0.0, 0.0)
+    assert fit_line(np.zeros(3), np.ones(3), Prior(0.1, 2.0)) == Estimate(0.0, 0.0)
 
 
 def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> None:
     calm, wild = np.array([1.0, 1.0, 1.0]), np.array([1.3, 0.9, 1.0])
     weights, prior = np.array([8.0, 2.8, 1.0]), Prior(0.01, 2.0)
-    assert line(wild, weights, prior).spread > 2 * line(calm, weights, prior).spread
-    alone = line(np.array([3.0]), np.ones(1), prior)
+    assert fit_line(wild, weights, prior).half_width > 2 * fit_line(calm, weights, prior).half_width
+    alone = fit_line(np.array([3.0]), np.ones(1), prior)
     assert alone.value == 3.0
-    assert alone.spread == pytest.approx(4.303 * 0.01, rel=1e-3)  # Student's t with two degrees of freedom
+    assert alone.half_width == pytest.approx(
+        4.303 * 0.01, rel=1e-3
+    )  # Student's t with two degrees of freedom

@@ -12,9 +12,15 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import estimates
-from refimpl.accuracy.first_contact import TOUCH, first_touch, missed, missed_share, touched
-from refimpl.accuracy.grid_features import GridResult
-from refimpl.accuracy.peak import LEVEL, Summit
+from refimpl.accuracy.first_contact import (
+    PEAK_ERROR,
+    at_first_contact,
+    first_contact_bounds,
+    first_contact_error,
+    first_contact_share,
+)
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import NO_PEAK, Peak
 from refimpl.solution.solution import REPORTED
 
 STEEL, RADIUS, SIDE, APPROACH = rf.Material(E=200e9, nu=0.3), 0.01, 1e-3, 3e-6
@@ -35,7 +41,7 @@ PLACES = [(direction, share) for direction in (0.1, 0.6, 1.2) for share in (0.1,
 @cache
 def pressed(
     M: int, direction: float = 0.0, share: float = 0.0, approach: float | None = APPROACH
-) -> GridResult:
+) -> GridFeatures:
     """A ball below a flat of the same steel, beside the grid's middle by a share of an element of 32 x 32."""
     scene = rf.Scene(
         upper=rf.Body(STEEL, rf.Flat()),
@@ -46,7 +52,7 @@ def pressed(
         sliding_direction=direction,
         sliding_offset=share * SIDE / 32,
     )
-    return GridResult.of(rf.solve(scene, M, approach=approach, oblique=False, tolerance=1e-8))
+    return rf.solve(scene, M, approach=approach, oblique=False, tolerance=1e-8).features
 
 
 def test_bars_at_a_prescribed_approach_hold_against_hertz() -> None:
@@ -58,7 +64,7 @@ def test_bars_at_a_prescribed_approach_hold_against_hertz() -> None:
             for name, estimate in estimates(results).items():
                 if name in HERTZ:
                     found = results[-1].numbers[name]
-                    shares[name].append(abs(found - HERTZ[name]) / estimate.bar(found))
+                    shares[name].append(abs(found - HERTZ[name]) / estimate.error_bound(found))
     for name, found in shares.items():
         assert np.mean(np.array(found) <= 1) >= 0.92, name
         assert np.median(found) > 0.2, name  # no longer than need be
@@ -67,24 +73,26 @@ def test_bars_at_a_prescribed_approach_hold_against_hertz() -> None:
 def test_what_the_touch_takes_is_foretold_by_powers_of_the_approach() -> None:
     """Half an element beside along both axes, the highest elements lie h^2/4R below the summit."""
     raw = pressed(64, 0.0, 0.0)
-    assert raw.touch.height == pytest.approx((SIDE / 64) ** 2 / (4 * RADIUS), rel=1e-6)
-    found = touched(raw)
+    assert raw.first_contact.height == pytest.approx((SIDE / 64) ** 2 / (4 * RADIUS), rel=1e-6)
+    found = at_first_contact(raw)
     for name in ("normal_force", "friction_force"):
         before, after = (abs(result.numbers[name] / HERTZ[name] - 1) for result in (raw, found))
         assert after < before
     assert found.numbers["normal_force"] == pytest.approx(FORCE, rel=1e-3)
     assert raw.numbers["normal_force"] > FORCE * 1.003
-    assert found.slip * found.numbers["normal_force"] == pytest.approx(FRICTION.tau)
-    rest = found.numbers["friction_coefficient"] - found.slip * found.numbers["contact_area"]
+    assert found.dmu_dA * found.numbers["normal_force"] == pytest.approx(FRICTION.tau)
+    rest = found.numbers["friction_coefficient"] - found.dmu_dA * found.numbers["contact_area"]
     assert rest == pytest.approx(FRICTION.beta, rel=1e-6)
 
 
 def test_under_a_load_only_the_approach_hangs_on_the_touch() -> None:
     loaded = pressed(64, 0.0, 0.0, None)
-    assert touched(loaded) is loaded
-    deeper = replace(loaded, touch=replace(loaded.touch, height=2 * loaded.touch.height))
+    assert at_first_contact(loaded) is loaded
+    deeper = replace(
+        loaded, first_contact=replace(loaded.first_contact, height=2 * loaded.first_contact.height)
+    )
     one, other = (estimates([result]) for result in (loaded, deeper))
-    assert other["approach"].value - one["approach"].value == pytest.approx(loaded.touch.height)
+    assert other["approach"].value - one["approach"].value == pytest.approx(loaded.first_contact.height)
     assert all(one[name] == other[name] for name in one if name != "approach")
     assert abs(one["approach"].value - APPROACH) < abs(loaded.numbers["approach"] - APPROACH)
 
@@ -95,27 +103,27 @@ def test_a_prescribed_number_has_no_discretisation() -> None:
 
 
 def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
-    lone = replace(pressed(64), touch=Summit(0.0, 1e-9, 1.0))
-    assert math.isinf(first_touch(lone))
-    assert all(math.isinf(bound) for bound in missed(lone).values())
-    assert all(math.isinf(estimate.spread) for estimate in estimates([lone]).values())
+    lone = replace(pressed(64), first_contact=Peak(0.0, 1e-9, 1.0))
+    assert math.isinf(first_contact_error(lone))
+    assert all(math.isinf(bound) for bound in first_contact_bounds(lone).values())
+    assert all(math.isinf(estimate.half_width) for estimate in estimates([lone]).values())
 
 
 def test_a_force_that_numbers_hold_no_longer_further_up_leaves_everything_open() -> None:
     """Two standard deviations are half of the approach: of the force 0.54 is left."""
     for force, open_ends in ((1.8, True), (1.9, False)):
         least = {**pressed(64).numbers, "normal_force": force * sys.float_info.min}
-        touch = Summit(0.0, 0.25 * least["approach"] / TOUCH, 0.0)
-        bounds = missed(replace(pressed(64), numbers=least, touch=touch))
+        touch = Peak(0.0, 0.25 * least["approach"] / PEAK_ERROR, 0.0)
+        bounds = first_contact_bounds(replace(pressed(64), numbers=least, first_contact=touch))
         assert math.isinf(bounds["contact_area"]) is open_ends
 
 
 def test_shear_that_bears_the_whole_force_leaves_everything_open() -> None:
     """On slopes the normal force may vanish, or pull."""
     for force in (0.0, -1.0):
-        pulled = replace(pressed(64), numbers={**pressed(64).numbers, "normal_force": force}, slip=0.0)
-        assert touched(pulled) is pulled
-        assert all(math.isinf(bound) for bound in missed(pulled).values())
+        pulled = replace(pressed(64), numbers={**pressed(64).numbers, "normal_force": force}, dmu_dA=0.0)
+        assert at_first_contact(pulled) is pulled
+        assert all(math.isinf(bound) for bound in first_contact_bounds(pulled).values())
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
@@ -129,14 +137,14 @@ def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
     found = replace(
         pressed(64),
         numbers=numbers,
-        slip=0.1,
-        peak=Summit(2 * unit, 1.0, 0.0),
-        touch=Summit(1e-6 / 3, 5e-6, 0.0),
+        dmu_dA=0.1,
+        peak=Peak(2 * unit, 1.0, 0.0),
+        first_contact=Peak(1e-6 / 3, 5e-6, 0.0),
     )
     s = 0.75
     force, area = unit * s**1.5, 3.0 * s
     friction = 0.1 * unit * area + (0.5 - 0.3) * unit * s**1.5
-    got = touched(found)
+    got = at_first_contact(found)
     assert got.numbers == pytest.approx(
         {
             "approach": 1e-6,
@@ -150,18 +158,18 @@ def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
         }
     )
     assert got.peak.height == pytest.approx(2 * unit * s**0.5)
-    assert got.slip == pytest.approx(0.1 * unit / force)
+    assert got.dmu_dA == pytest.approx(0.1 * unit / force)
     less = 1 / 1.2  # 2 x 0.02 x 5e-6 of 1e-6
-    assert missed(found)["contact_area"] == pytest.approx(3.0 * (1 - less))
-    assert missed(found)["normal_force"] == pytest.approx(unit * (1 - less**1.5))
+    assert first_contact_bounds(found)["contact_area"] == pytest.approx(3.0 * (1 - less))
+    assert first_contact_bounds(found)["normal_force"] == pytest.approx(unit * (1 - less**1.5))
 
 
 def test_what_is_missed_grows_with_the_drop_and_is_nothing_without() -> None:
-    level, steep = (replace(pressed(64), touch=touch) for touch in (LEVEL, Summit(0.0, 1e-7, 0.0)))
-    assert missed_share(level) == 0.0
-    assert not any(missed(level).values())
-    bounds = missed(steep)
-    twice = 2 * missed_share(steep)
+    level, steep = (replace(pressed(64), first_contact=touch) for touch in (NO_PEAK, Peak(0.0, 1e-7, 0.0)))
+    assert first_contact_share(level) == 0.0
+    assert not any(first_contact_bounds(level).values())
+    bounds = first_contact_bounds(steep)
+    twice = 2 * first_contact_share(steep)
     assert bounds["normal_force"] == pytest.approx(1.5 * twice * steep.numbers["normal_force"], rel=0.01)
     assert bounds["contact_area"] == pytest.approx(twice * steep.numbers["contact_area"], rel=0.01)
     assert bounds["approach"] == 0.0

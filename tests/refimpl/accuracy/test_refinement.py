@@ -1,4 +1,4 @@
-"""Which grids a climb asks for, on results made up to have a known limit, and how it ends."""
+"""Which grids a refinement solves, on results made up to have a known limit, and how it ends."""
 
 from __future__ import annotations
 
@@ -11,25 +11,32 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import estimates
-from refimpl.accuracy.grid_features import GridResult
-from refimpl.accuracy.peak import Summit
-from refimpl.accuracy.refinement import LADDER, OPENING, ambiguous, climb, next_grid, relative_bar
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import Peak
+from refimpl.accuracy.refinement import (
+    FIRST_GRIDS,
+    GRID_SIZES,
+    active_set_dominates,
+    next_grid,
+    refine_until,
+    relative_bound,
+)
 from refimpl.solution.solution import REPORTED
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, PEAK, made_up
 
 
-def test_the_climb_jumps_to_the_grid_that_does() -> None:
+def test_the_refinement_goes_straight_to_the_grid_that_suffices() -> None:
     asked: list[int] = []
 
-    def result_at(M: int) -> GridResult:
+    def result_at(M: int) -> GridFeatures:
         asked.append(M)
         return made_up(M)
 
-    found = climb(result_at, 0.01, "contact_area")
+    found = refine_until(result_at, 0.01, "contact_area")
     assert found.refusal == ""
-    assert tuple(asked[:2]) == OPENING
+    assert tuple(asked[:2]) == FIRST_GRIDS
     assert len(asked) == 3
-    assert relative_bar(found.results, "contact_area") <= 0.01
+    assert relative_bound(found.results, "contact_area") <= 0.01
     true_error = found.results[-1].numbers["contact_area"] / AREA_LIMIT - 1
     assert true_error <= 0.01
     coarser = made_up(asked[-1] * 2 // 3).numbers["contact_area"] / AREA_LIMIT - 1
@@ -38,97 +45,97 @@ def test_the_climb_jumps_to_the_grid_that_does() -> None:
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 3e-4, 1e-4])
-def test_a_peaks_bar_is_foretold_to_fall_as_the_square(accuracy: float) -> None:
-    opened = [made_up(M) for M in OPENING]
-    M = next_grid(opened, accuracy, "max_pressure", LADDER)
-    bar, coarser = (relative_bar([*opened, made_up(grid)], "max_pressure") for grid in (M, M * 3 // 4))
+def test_a_peaks_bar_is_predicted_to_fall_as_the_square(accuracy: float) -> None:
+    opened = [made_up(M) for M in FIRST_GRIDS]
+    M = next_grid(opened, accuracy, "max_pressure", GRID_SIZES)
+    bar, coarser = (relative_bound([*opened, made_up(grid)], "max_pressure") for grid in (M, M * 3 // 4))
     assert bar <= accuracy < coarser
     assert estimates(opened)["max_pressure"].orders == (2.0, 2.0)
 
 
-def test_what_a_grid_itself_leaves_open_is_foretold_to_fall_as_the_spacing() -> None:
-    """Tau's support, say: 8 % of the peak on 64 elements a side are 2 % on 256, and its own bar is little."""
-    open_to = {"max_pressure": {"tau support": 0.08 * PEAK}}
-    opened = [replace(made_up(M), parts=open_to) for M in OPENING]
-    assert next_grid(opened, 0.0235, "max_pressure", LADDER) == 256
-    assert next_grid(opened, 0.0205, "max_pressure", LADDER) == 320
+def test_what_a_grid_itself_leaves_open_is_predicted_to_fall_as_the_spacing() -> None:
+    """Active set of tau: 8 % of the peak on 64 elements a side are 2 % on 256, and its own bar is short."""
+    open_to = {"max_pressure": {"active set": 0.08 * PEAK}}
+    opened = [replace(made_up(M), parts=open_to) for M in FIRST_GRIDS]
+    assert next_grid(opened, 0.0235, "max_pressure", GRID_SIZES) == 256
+    assert next_grid(opened, 0.0205, "max_pressure", GRID_SIZES) == 320
 
 
 @pytest.mark.parametrize(("falls", "expected"), [(4.0, 480), (2.0, 480), (2**0.5, 896), (1.0, 2048)])
-def test_it_is_foretold_to_fall_as_on_the_last_two_grids_but_no_faster(falls: float, expected: int) -> None:
-    """From 3 % of the peak on 256 elements a side to 1.63 %; if it did not, as far as may be foretold."""
+def test_it_is_predicted_to_fall_as_on_the_last_two_grids_but_no_faster(falls: float, expected: int) -> None:
+    """From 3 % of the peak on 256 elements a side to 1.63 %; if it did not, as far as may be predicted."""
 
-    def climbed(coarse: float) -> list[GridResult]:
-        parts = [{"max_pressure": {"tau support": part * PEAK}} for part in (0.0, 0.0, coarse, 0.03)]
-        several = zip((*OPENING, 128, 256), parts, strict=True)
+    def refined(coarse: float) -> list[GridFeatures]:
+        parts = [{"max_pressure": {"active set": part * PEAK}} for part in (0.0, 0.0, coarse, 0.03)]
+        several = zip((*FIRST_GRIDS, 128, 256), parts, strict=True)
         return [replace(made_up(M), parts=own) for M, own in several]
 
-    ladder = [32 * k for k in range(9, 65)]
-    assert next_grid(climbed(0.03 * falls), 0.0163 / 0.95, "max_pressure", ladder) == expected
-    assert next_grid(climbed(0.0), 0.0163 / 0.95, "max_pressure", ladder) == 480
-    assert next_grid(climbed(0.01), 0.0305 / 0.95, "max_pressure", ladder) == ladder[0]  # nor is it to grow
+    sizes = [32 * k for k in range(9, 65)]
+    assert next_grid(refined(0.03 * falls), 0.0163 / 0.95, "max_pressure", sizes) == expected
+    assert next_grid(refined(0.0), 0.0163 / 0.95, "max_pressure", sizes) == 480
+    assert next_grid(refined(0.01), 0.0305 / 0.95, "max_pressure", sizes) == sizes[0]  # nor is it to grow
 
 
 def test_what_stays_open_is_measured_by_the_finest_grids_number() -> None:
     """3 % of it, on the last two grids: out of reach of 2 %, however large the number was on the first."""
-    grids = [replace(made_up(M), parts={"approach": {"tau support": 3e-8}}) for M in (32, 64, 128)]
+    grids = [replace(made_up(M), parts={"approach": {"active set": 3e-8}}) for M in (32, 64, 128)]
     numbers = {**grids[0].numbers, "approach": 1e-3}
     grids[0] = replace(grids[0], numbers=numbers)
-    assert [ambiguous(grids, accuracy, "approach") for accuracy in (0.02, 0.04)] == [True, False]
+    assert [active_set_dominates(grids, accuracy, "approach") for accuracy in (0.02, 0.04)] == [True, False]
 
 
 def test_a_zero_that_is_exact_has_no_bar() -> None:
-    opened = [made_up(M) for M in OPENING]
-    assert relative_bar(opened, "binormal_force") == 0.0
+    opened = [made_up(M) for M in FIRST_GRIDS]
+    assert relative_bound(opened, "binormal_force") == 0.0
     slanted = replace(opened[-1], parts={"binormal_force": {"iteration": 1e-9}})
-    assert relative_bar([opened[0], slanted], "binormal_force") == math.inf
+    assert relative_bound([opened[0], slanted], "binormal_force") == math.inf
 
 
-@pytest.mark.parametrize("roughness", [0.9, 1.0])
-def test_a_bar_longer_than_the_number_foretells_twice_as_fine_a_grid(roughness: float) -> None:
-    unknown = [replace(made_up(M), peak=Summit(PEAK, PEAK, roughness)) for M in OPENING]
-    assert next_grid(unknown, 0.01, "max_pressure", LADDER) == 2 * OPENING[-1]
-    assert next_grid(unknown, 0.01, "contact_area", LADDER) > 2 * OPENING[-1]
+@pytest.mark.parametrize("non_parabolicity", [0.9, 1.0])
+def test_a_bar_longer_than_the_number_predicts_twice_as_fine_a_grid(non_parabolicity: float) -> None:
+    unknown = [replace(made_up(M), peak=Peak(PEAK, PEAK, non_parabolicity)) for M in FIRST_GRIDS]
+    assert next_grid(unknown, 0.01, "max_pressure", GRID_SIZES) == 2 * FIRST_GRIDS[-1]
+    assert next_grid(unknown, 0.01, "contact_area", GRID_SIZES) > 2 * FIRST_GRIDS[-1]
 
 
-def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_is_told() -> None:
-    def result_at(M: int) -> GridResult:
+def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_has_a_reason() -> None:
+    def result_at(M: int) -> GridFeatures:
         if M > 100:
             raise rf.InputError("grid", M, "one that fits")
         return made_up(M)
 
-    found = climb(result_at, 0.001, "contact_area")
-    assert found.results[-1].M == 96
+    found = refine_until(result_at, 0.001, "contact_area")
+    assert found.results[-1].grid.shape[0] == 96
     assert "one that fits" in found.refusal
-    ended = climb(made_up, 0.001, "contact_area", ladder=(80, 96))
-    assert ended.results[-1].M == 96
+    ended = refine_until(made_up, 0.001, "contact_area", grid_sizes=(80, 96))
+    assert ended.results[-1].grid.shape[0] == 96
     assert "96" in ended.refusal
 
 
 @pytest.mark.parametrize(("power", "grids"), [(0.0, 3), (0.1, 3), (-1.0, 4), (-0.5, 5)])
-def test_what_taus_support_leaves_open_ends_the_climb_unless_finer_grids_leave_less(
+def test_what_the_active_set_of_tau_leaves_open_ends_the_refinement_unless_finer_grids_leave_less(
     power: float, grids: int
 ) -> None:
     """A tenth of the peak on 64 elements a side, against the hundredth asked for."""
     asked: list[int] = []
 
-    def result_at(M: int) -> GridResult:
+    def result_at(M: int) -> GridFeatures:
         asked.append(M)
-        own = {"max_pressure": {"tau support": 0.1 * PEAK * (M / 64) ** power}}
+        own = {"max_pressure": {"active set": 0.1 * PEAK * (M / 64) ** power}}
         return replace(made_up(M), parts=own)
 
-    found = climb(result_at, 0.01, "max_pressure", ladder=range(64, 2**16, 64))
+    found = refine_until(result_at, 0.01, "max_pressure", grid_sizes=range(64, 2**16, 64))
     assert len(asked) == grids
-    assert ("tau's support" in found.refusal) is (power >= 0)
-    assert (relative_bar(found.results, "max_pressure") <= 0.01) is (power < 0)
+    assert ("tau's active set" in found.refusal) is (power >= 0)
+    assert (relative_bound(found.results, "max_pressure") <= 0.01) is (power < 0)
 
 
-def test_nothing_in_contact_ends_the_climb() -> None:
+def test_nothing_in_contact_ends_the_refinement() -> None:
     apart = replace(made_up(64), numbers=dict.fromkeys(REPORTED, 0.0), edge=0.0)
-    assert len(climb(lambda M: apart, 0.01, "contact_area").results) == len(OPENING)
+    assert len(refine_until(lambda M: apart, 0.01, "contact_area").results) == len(FIRST_GRIDS)
 
 
-def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_remark(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
     noise = np.random.default_rng(0).normal(scale=60e-9, size=(128, 128))
     steel = rf.Material(E=200e9, nu=0.3)
     scene = rf.Scene(
@@ -138,8 +145,8 @@ def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_remark(monkeypatch: 
         load=0.05,
         side=50e-6,
     )
-    refine = rf.solve.__globals__["refine"]  # the one in use, whatever has imported its module again
-    monkeypatch.setitem(refine.__globals__, "climb", partial(climb, ladder=(64,)))
+    # the module of the function in use, whatever has imported it again
+    monkeypatch.setitem(rf.solve.__globals__, "refine_until", partial(refine_until, grid_sizes=(64,)))
     found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
     assert found.status is rf.Status.ITERATION_LIMIT
     assert "max_pressure is not bounded, let alone to 0.05" in " ".join(found.warnings)

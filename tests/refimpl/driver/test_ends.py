@@ -6,23 +6,18 @@ import sys
 import threading
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.solvers import dense, paper
+from refimpl.model.problem import Problem
+from refimpl.operators.fft import Counter
+from refimpl.solvers.production.nested_solver import solve_fft
 
 RIGID = rf.Material(E=1e100, nu=0.3)
-
-
-def squeezed(M: int, valley: float = 0.25) -> rf.Scene:
-    """Heights of a quarter of the side under a pressure of the modulus: far beyond any elastic body."""
-    z = np.random.default_rng(1).normal(size=(M, M))
-    z *= valley / np.ptp(z)
-    lower, upper = rf.Body(rf.Material(4e3, 0.5), rf.Flat()), rf.Body(rf.Material(1.0, 0.0), z)
-    return rf.Scene(upper, lower, rf.Friction(0.1, 0.4), load=1.0, side=1.0, sliding_direction=0.3)
 
 
 def test_contact_where_the_coarser_grid_had_none() -> None:
@@ -64,34 +59,6 @@ def test_beta_beyond_all_sense_ends_with_a_status() -> None:
     assert not rf.solve(scene, grid=11, approach=0.75, oblique=False).converged
 
 
-def test_limits_of_nested_loops_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(paper, "_BUDGET", 500)
-    monkeypatch.setattr(dense, "_SOLVES", 100)
-    scene = squeezed(16)
-    by_paper, by_matrix = (rf.solve(scene, grid=16, method=method) for method in ("paper", "dense"))
-    assert by_paper.status is by_matrix.status is rf.Status.ITERATION_LIMIT
-    taken = by_paper.cost.iterations
-    assert 500 <= taken["periodic"] + taken["correction"] + taken["passes"] < 500 + 3
-    assert 100 <= by_matrix.cost.iterations["linear solves"] < 120
-
-
-def test_a_scheme_that_settles_late_has_settled(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An approach on the way that did not is not the last one."""
-    iterated, told = paper._Scheme._iterate, []
-
-    def left_open(self: Any, *args: Any, **options: Any) -> Any:
-        contact = iterated(self, *args, **options)
-        if not told:
-            self.settled = False
-        told.append(contact)
-        return contact
-
-    monkeypatch.setattr(paper._Scheme, "_iterate", left_open)
-    found = rf.solve(rf.read_scene("hertz"), grid=16, method="paper")
-    assert found.cost.iterations["approaches"] > 1
-    assert found.status is rf.Status.CONVERGED
-
-
 @pytest.mark.parametrize(("seed", "M"), [(13, 16), (170, 16), (170, 24), (458, 16)])
 def test_what_the_loop_accepts_the_certificate_does(seed: int, M: int) -> None:
     """Shear and cosines are held for a pressure that is then scaled to the load, by 1e-8 or so."""
@@ -112,31 +79,25 @@ def test_what_the_loop_accepts_the_certificate_does(seed: int, M: int) -> None:
     assert rf.solve(scene, M, oblique=True).status is rf.Status.CONVERGED
 
 
-def test_a_term_put_back_costs_what_it_cost(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The solve that showed that it matters is part of the price."""
-    scene = rf.read_scene("table1-rough")
+def test_a_restored_term_costs_what_its_solve_cost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The solve that showed that the term matters is part of the price."""
     spent: list[float] = []
 
-    def counted(*args: Any) -> rf.Solution:
-        found = planned(*args)
-        spent.append(found.cost.point_logs)
+    def counted(problem: Problem, tolerance: float, counter: Counter, *others: Any) -> Any:
+        found = solve_fft(problem, tolerance, counter, *others)
+        spent.append(counter.point_logs)
         return found
 
     module = sys.modules["refimpl.driver.solve"]  # the package's attribute of that name is the function
-    planned = module._solve_planned
-    monkeypatch.setattr(module, "_solve_planned", counted)
-    changes = iter([{"obliqueness": _Large()}, *[{}] * 20])
-    monkeypatch.setattr(module, "effects_left_out", lambda *args: next(changes))
-    found = rf.solve(scene, accuracy=0.2)
+    monkeypatch.setattr(module, "solve_fft", counted)
+    changes = iter([{"oblique": SimpleNamespace(larger=1.0)}, *[{}] * 20])
+    monkeypatch.setattr(module, "effects_in", lambda *args: next(changes))
+    found = rf.solve(rf.read_scene("table1-rough"), accuracy=0.2)
     assert found.cost.point_logs == pytest.approx(sum(spent), rel=1e-12)
-    assert len(spent) == 3  # two grids to open with, the first of them twice
+    assert len(spent) == 3  # the first two grids, the first of them twice
 
 
-class _Large:
-    larger = 1.0
-
-
-def test_threads_do_not_mix_what_surfaces_remark() -> None:
+def test_threads_do_not_mix_the_notes_of_surfaces() -> None:
     """Python's filters of warnings belong to the process: solving leaves them alone."""
     draw, soft = np.random.default_rng(0), rf.Material(1e9, 0.3)
     scenes = [
@@ -170,7 +131,7 @@ def test_threads_do_not_mix_what_surfaces_remark() -> None:
         assert sum("finer than the array" in line for line in lines) == k % 2
 
 
-def test_a_scenes_heights_warn_who_asks_for_them() -> None:
+def test_heights_of_a_scene_come_with_warnings() -> None:
     scene = replace(rf.read_scene("table1-smooth"), lower=rf.Body(rf.Material(1e9, 0.3), np.zeros((8, 8))))
     with pytest.warns(rf.SurfaceWarning, match="finer"):
-        scene.heights(rf.Grid(scene.side, 16))
+        scene.heights(scene.grid(16))

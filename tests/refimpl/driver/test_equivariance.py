@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array
 from refimpl.solution.solution import REPORTED
 from verification.coverage.scenes import random_scene
 
@@ -47,8 +47,7 @@ IMAGES = {
 def scene_of(seed: int, image: Image | None = None) -> rf.Scene:
     """The random scene of a seed on its grid's heights, or its image."""
     scene = random_scene(seed).scene
-    grid = Grid(scene.side, M)
-    low, up = (b.surface.sample(grid, periodic=scene.periodic) for b in (scene.lower, scene.upper))
+    low, up = (body.surface.sample(scene.grid(M)) for body in (scene.lower, scene.upper))
     lower, upper, angle = scene.lower.material, scene.upper.material, scene.sliding_direction
     if image is not None:
         low, up = image.heights(low, up)

@@ -1,16 +1,16 @@
-"""Spots of contact: counted one by one, across corners, and across the border of what repeats."""
+"""Contact patches: connected across corners, and across the border of a periodic grid."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from refimpl.grid.contact_patches import spot_sizes
-from refimpl.model.friction import Mask
+from refimpl.grid import Mask
+from refimpl.grid.contact_patches import patch_sizes
 
 
 def walked(contact: Mask, periodic: bool) -> list[int]:
-    """Sizes by walking from element to element."""
+    """Sizes of patches, found element by element."""
     left, sizes = {(int(i), int(j)) for i, j in np.argwhere(contact)}, []
     while left:
         front, size = [left.pop()], 0
@@ -31,16 +31,16 @@ def walked(contact: Mask, periodic: bool) -> list[int]:
 
 @pytest.mark.parametrize("periodic", [False, True])
 @pytest.mark.parametrize("share", [0.1, 0.25, 0.4])
-def test_spots_are_those_that_a_walk_finds(share: float, periodic: bool) -> None:
+def test_patches_are_those_that_a_walk_finds(share: float, periodic: bool) -> None:
     rng = np.random.default_rng(3)
     for _ in range(30):
-        contact = rng.random((9, 9)) < share
-        assert sorted(spot_sizes(contact, periodic=periodic).tolist()) == walked(contact, periodic)
+        contact = rng.random((9, 12)) < share
+        assert sorted(patch_sizes(contact, periodic=periodic).tolist()) == walked(contact, periodic)
 
 
-def test_where_contact_repeats_spots_have_no_beginning() -> None:
+def test_a_shift_changes_no_patch_of_a_periodic_contact() -> None:
     contact = np.random.default_rng(4).random((16, 16)) < 0.2
-    found = sorted(spot_sizes(contact, periodic=True))
+    found = sorted(patch_sizes(contact, periodic=True))
     for shift in ((3, 0), (0, 11), (7, 5)):
-        assert sorted(spot_sizes(np.roll(contact, shift, (0, 1)), periodic=True)) == found
-    assert spot_sizes(contact & False, periodic=True).size == 0
+        assert sorted(patch_sizes(np.roll(contact, shift, (0, 1)), periodic=True)) == found
+    assert patch_sizes(contact & False, periodic=True).size == 0

@@ -1,21 +1,147 @@
-"""Sums over a grid's fields."""
+"""The grid of a rectangle: centres, edges, gradients, faces of a contact, and what lies on the border."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import pytest
 
-from refimpl.grid import inner
+from refimpl.errors import InputError
+from refimpl.grid import Grid, Window
+
+FREE, PERIODIC = Grid((7, 4), (1.4, 2.0)), Grid((7, 4), (1.4, 2.0), periodic=True)
 
 
-def test_short_products_are_blas_and_long_ones_go_row_by_row() -> None:
-    """To the last bit: what BLAS does with a long one is up to its threads.
+def test_sizes_of_a_rectangle() -> None:
+    assert FREE.spacings == pytest.approx((0.2, 0.5), rel=1e-15)
+    assert FREE.element_area == pytest.approx(0.1, rel=1e-15)
+    assert FREE.element_size == pytest.approx(math.sqrt(0.1), rel=1e-15)
+    assert FREE.size == pytest.approx(math.sqrt(2.8), rel=1e-15)
+    assert FREE.nominal_area == pytest.approx(2.8, rel=1e-15)
+    assert FREE.elements == 28
+    assert FREE.zeros.shape == FREE.window.shape == (7, 4)
+    assert str(FREE) == "7 x 4"
+    np.testing.assert_allclose(FREE.x, [0.1, 0.3, 0.5, 0.7, 0.9, 1.1, 1.3], rtol=1e-15)
+    np.testing.assert_allclose(FREE.y, [0.25, 0.75, 1.25, 1.75], rtol=1e-15)
 
-    Of one product alone both ways may round alike: which do is up to the processor.
-    """
-    draw = np.random.default_rng(2)
-    for n, one in ((100, True), (150, False)):
-        fields = draw.standard_normal((20, 2, n, n))
-        whole = [float(np.vdot(a, b)) for a, b in fields]
-        by_row = [float(np.vecdot(a, b).sum()) for a, b in fields]
-        assert whole != by_row
-        assert [inner(a, b) for a, b in fields] == (whole if one else by_row)
+
+def test_a_square_and_a_refined_grid_keep_the_domain() -> None:
+    square = Grid.square(0.3, 6, periodic=True)
+    assert square == Grid((6, 6), (0.3, 0.3), periodic=True)
+    finer = PERIODIC.refined((21, 8))
+    assert (finer.lengths, finer.periodic, finer.shape) == (PERIODIC.lengths, True, (21, 8))
+
+
+def test_numbers_are_stored_as_python_has_them() -> None:
+    grid = Grid((np.int64(3), np.int32(2)), (np.float32(0.5), 1))
+    assert grid == Grid((3, 2), (0.5, 1.0))
+    assert [type(n) for n in (*grid.shape, *grid.lengths)] == [int, int, float, float]
+
+
+@pytest.mark.parametrize("shape", [(0, 3), (3, -1), (3, 2.0), (True, 3), ("3", 3)])
+def test_counts_must_be_whole_and_positive(shape: tuple[int, int]) -> None:
+    with pytest.raises(InputError, match=r"^grid = "):
+        Grid(shape, (1.0, 1.0))
+
+
+@pytest.mark.parametrize("lengths", [(0.0, 1.0), (1.0, -1.0), (1.0, math.inf), (math.nan, 1.0)])
+def test_lengths_must_be_positive(lengths: tuple[float, float]) -> None:
+    with pytest.raises(InputError, match=r"^side = "):
+        Grid((3, 3), lengths)
+
+
+# Lengths and counts whose quotients differ by rounding: 0.3 / 3 is not 0.1.
+@pytest.mark.parametrize(
+    ("shape", "lengths"), [((3, 2), (0.3, 0.2)), ((7, 49), (0.1, 0.7)), ((5, 5), (0.1, 0.1))]
+)
+def test_elements_that_are_square_to_rounding_have_the_aspect_one(
+    shape: tuple[int, int], lengths: tuple[float, float]
+) -> None:
+    assert Grid(shape, lengths).aspect == 1.0
+
+
+def test_the_aspect_is_dy_over_dx() -> None:
+    assert FREE.aspect == pytest.approx(2.5, rel=1e-15)
+    assert Grid((10, 10), (1.0, 1.0 + 1e-12)).aspect != 1.0
+
+
+@pytest.mark.parametrize("grid", [FREE, PERIODIC, Grid((60, 5), (1.0, 3.0)), Grid((7, 1), (2.0, 0.1))])
+def test_the_gradient_of_a_plane(grid: Grid) -> None:
+    """Exact on a free grid; a periodic one sees the jump at its border, and only there."""
+    along_x, along_y = grid.gradient(0.3 * grid.x[:, None] - 0.2 * grid.y[None, :])
+    inside = np.s_[1:-1, 1:-1] if grid.periodic else np.s_[:, :]
+    np.testing.assert_allclose(along_x[inside], 0.3, rtol=1e-12)
+    # one element has no neighbour: no slope along that axis
+    np.testing.assert_allclose(along_y[inside], -0.2 if grid.shape[1] > 1 else 0.0, rtol=1e-12)
+
+
+def test_the_gradient_of_a_wave_is_that_of_central_differences() -> None:
+    """Their symbol is ``sin(q d) / d``, with the edge d of either axis."""
+    for axis, (n, length) in enumerate(zip(PERIODIC.shape, PERIODIC.lengths, strict=True)):
+        q, d = 2 * np.pi / length, PERIODIC.spacings[axis]
+        s = (np.arange(n) + 0.5) * d
+        wave, slope = np.sin(q * s), np.sin(q * d) / d * np.cos(q * s)
+        along = (1, -1) if axis else (-1, 1)
+        found = PERIODIC.gradient(wave.reshape(along) * np.ones(PERIODIC.shape))
+        np.testing.assert_allclose(found[axis], slope.reshape(along) * np.ones(PERIODIC.shape), atol=1e-14)
+        np.testing.assert_allclose(found[1 - axis], 0, atol=1e-15)
+
+
+def test_the_gradient_on_a_window_of_a_free_grid() -> None:
+    z = np.random.default_rng(2).normal(size=FREE.shape)
+    window = Window(1, 6, 0, 3)
+    whole, part = FREE.gradient(z), FREE.gradient(z[window.slices])
+    for axis, inside in ((0, np.s_[1:-1, :]), (1, np.s_[:, :-1])):
+        np.testing.assert_array_equal(part[axis][inside], whole[axis][window.slices][inside])
+
+
+def marked(*elements: tuple[int, int]) -> np.ndarray:
+    found = np.zeros(FREE.shape, dtype=bool)
+    for element in elements:
+        found[element] = True
+    return found
+
+
+@pytest.mark.parametrize(
+    ("contact", "free", "periodic"),
+    [
+        (marked(), 0, 0),
+        (marked((3, 1)), 4, 4),
+        (marked((3, 1), (3, 2)), 6, 6),
+        (marked((3, 1), (4, 2)), 8, 8),  # corners share no face
+        (marked((0, 1)), 3, 4),
+        (marked((0, 0)), 2, 4),
+        (marked((0, 1), (6, 1)), 6, 6),  # opposite elements touch where the grid repeats
+        (marked(*((i, 0) for i in range(7))), 7, 14),  # a full column
+        (marked(*((0, j) for j in range(4))), 4, 8),  # a full row
+        (np.ones((7, 4), dtype=bool), 0, 0),
+    ],
+)
+def test_faces_by_hand(contact: np.ndarray, free: int, periodic: int) -> None:
+    assert (FREE.faces(contact), PERIODIC.faces(contact)) == (free, periodic)
+
+
+@pytest.mark.parametrize("grid", [FREE, PERIODIC])
+def test_faces_go_with_turns_and_moves(grid: Grid) -> None:
+    contact = np.random.default_rng(6).random((7, 4)) < 0.4
+    turned = Grid((4, 7), (2.0, 1.4), grid.periodic)
+    assert turned.faces(contact.T) == grid.faces(contact) == grid.faces(contact[::-1, ::-1])
+    if grid.periodic:
+        assert grid.faces(np.roll(contact, (3, 1), (0, 1))) == grid.faces(contact)
+
+
+def test_elements_on_the_border() -> None:
+    everything = np.ones((7, 4), dtype=bool)
+    assert FREE.on_border(everything) == 28 - 5 * 2
+    assert FREE.on_border(marked((0, 0), (3, 1), (6, 2), (3, 3))) == 3
+    assert PERIODIC.on_border(everything) == FREE.on_border(marked()) == 0
+    assert Grid((7, 1), (7.0, 1.0)).on_border(np.ones((7, 1), dtype=bool)) == 7
+
+
+def test_windows_around_a_contact() -> None:
+    contact = marked((2, 1), (4, 2))
+    assert FREE.window_around(contact, 0) == Window(2, 5, 1, 3)
+    assert FREE.window_around(contact, 2) == Window(0, 7, 0, 4)
+    assert FREE.window_around(marked(), 2) == FREE.window
+    assert PERIODIC.window_around(contact, 0) == PERIODIC.window == Window(0, 7, 0, 4)

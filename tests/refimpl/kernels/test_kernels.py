@@ -190,12 +190,26 @@ def test_the_first_offset_that_is_refused_is_named():
     assert refused.value.value == np.inf
 
 
-@pytest.mark.parametrize("known", [0, 3, 47, 64, 107, 108])
-def test_what_a_table_knows_is_not_worked_out_again(known: int) -> None:
-    """Whole slabs, that is: one that ends beyond begins where it always does."""
-    every = list(tables._slabs(108, 108, 0))
-    assert [start for start, _ in every[1:]] == [stop for _, stop in every[:-1]]
-    assert list(tables._slabs(108, 108, known)) == [slab for slab in every if slab[1] > known]
+@pytest.mark.parametrize("known", [3, 47, 64, 107, 108])
+def test_known_values_are_not_computed_again(known: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By whole slabs: a slab that ends beyond the known part starts where it starts in any table."""
+    slabs: list[tuple[int, int]] = []
+    across = tables.across
+
+    def recorded(
+        inner: object, outer: np.ndarray, other: np.ndarray, edge: float, *rest: object
+    ) -> np.ndarray:
+        slabs.append((round(outer.min() / edge), round(outer.max() / edge)))
+        return across(inner, outer, other, edge, *rest)
+
+    monkeypatch.setattr(tables, "across", recorded)
+    first = normal_table(known, known, 1.0, 1.5)
+    slabs.clear()
+    whole = normal_table(108, 108, 1.0, 1.5)
+    every = slabs.copy()
+    slabs.clear()
+    assert np.array_equal(normal_table(108, 108, 1.0, 1.5, known=first), whole)
+    assert slabs == [slab for slab in every if slab[1] >= known]
 
 
 @pytest.mark.parametrize("table", [normal_table, tangential_table])

@@ -10,12 +10,13 @@ import pytest
 
 import refimpl as rf
 from refimpl.model import certificate as module
-from refimpl.model.certificate import Certificate, State, certify
+from refimpl.model.certificate import Certificate, State, certify, relative_gap
 from refimpl.model.forces import Forces, resultants
-from refimpl.model.problem import Problem, Terms, pose
+from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
+from refimpl.scene.discretise import discretise
 
 M = 10
 SCENE = rf.Scene(
@@ -26,12 +27,12 @@ SCENE = rf.Scene(
     side=1e-3,
     sliding_direction=0.7,
 )
-TERMS = Terms(coupled=True, oblique=True, slope_correction=False)
+GRID = rf.Grid.square(SCENE.side, M)
 SOLVED = rf.solve(SCENE, M, method="dense", tolerance=1e-12)
 
 
 def problem(approach: float | None = None) -> Problem:
-    return pose(SCENE, rf.Grid(SCENE.side, M), TERMS, approach)
+    return discretise(SCENE, GRID, approach=approach)
 
 
 def judged(
@@ -40,15 +41,14 @@ def judged(
     slopes: Slopes = SOLVED.slopes,
     approach: float | None = None,
 ) -> State:
-    posed = problem(approach)
-    return certify(posed, DenseInfluence(posed.grid, posed.direction), pressure, traction, slopes)
+    operator = DenseInfluence(GRID, SCENE.sliding_direction)
+    return certify(problem(approach), operator, pressure, traction, slopes)
 
 
 def energy_density(pressure: np.ndarray) -> float:
     """Elastic energy over an element's area (J/m^2)."""
-    posed = problem()
-    displaced = DenseInfluence(posed.grid, posed.direction).normal(pressure)
-    return float(0.5 * posed.pair.normal_compliance * np.sum(pressure * displaced))
+    displaced = DenseInfluence(GRID, SCENE.sliding_direction).normal(pressure)
+    return float(0.5 * SCENE.materials.normal_compliance * np.sum(pressure * displaced))
 
 
 def lawful(pressure: np.ndarray) -> np.ndarray:
@@ -58,10 +58,10 @@ def lawful(pressure: np.ndarray) -> np.ndarray:
 def test_the_solved_state_is_certified() -> None:
     assert SOLVED.status is rf.Status.CONVERGED
     certificate = judged().certificate
-    assert certificate.worst < 1e-13
-    assert certificate.unlawful == 0
-    assert certificate.meets(1e-12)
-    assert judged(approach=SOLVED.approach).certificate.worst < 1e-13
+    assert certificate.largest < 1e-13
+    assert certificate.law_violations == 0
+    assert certificate.satisfies(1e-12)
+    assert judged(approach=SOLVED.approach).certificate.largest < 1e-13
 
 
 @pytest.mark.parametrize("least", [0.1, 1e-300])
@@ -69,30 +69,43 @@ def test_any_pressure_is_contact(least: float) -> None:
     """Contact is f > 0, however small in pascals: friction there is lawful."""
     pressure = SOLVED.pressure.copy()
     pressure.flat[0] = least
-    assert judged(pressure, lawful(pressure)).certificate.unlawful == 0
+    assert judged(pressure, lawful(pressure)).certificate.law_violations == 0
 
 
 def test_the_numbers_are_spec_1s() -> None:
-    """Gap over energy, penetration, balance: written out once more."""
+    """Gap over energy, penetration, load error: written out once more."""
     pressure = 1.01 * SOLVED.pressure
     state = judged(pressure, lawful(pressure))
     dA = (SCENE.side / M) ** 2
     K = np.cos(np.arctan(state.slopes.tan_x)) * np.cos(np.arctan(state.slopes.tan_y))
     v = (state.displacement_lower + state.displacement_upper) / K + problem().gap
     a = (1 - 0.4**2) / (np.pi * 50e9) + (1 - 0.1**2) / (np.pi * 2e9)
-    af = a * DenseInfluence(rf.Grid(SCENE.side, M), 0.7).normal(pressure)
+    af = a * DenseInfluence(GRID, 0.7).normal(pressure)
     energy = (pressure * af).sum() / 2 * dA
     assert state.certificate.gap == pytest.approx((pressure * (v - v.min())).sum() * dA / energy, rel=1e-9)
     mean = (pressure * v).sum() / pressure.sum()
     assert state.approach == pytest.approx(mean, rel=1e-13)
     assert state.certificate.penetration == pytest.approx((mean - v.min()) / mean, rel=1e-9)
-    assert state.certificate.balance == pytest.approx(abs(state.forces.normal / SCENE.load - 1), rel=1e-9)
-    assert state.certificate.balance == pytest.approx(0.01, rel=0.01)
+    assert state.certificate.load_error == pytest.approx(abs(state.forces.normal / SCENE.load - 1), rel=1e-9)
+    assert state.certificate.load_error == pytest.approx(0.01, rel=0.01)
+
+
+@pytest.mark.parametrize("approach", [None, SOLVED.approach])
+def test_the_reported_numbers_follow_from_the_state(approach: float | None) -> None:
+    state, dA = judged(approach=approach), (SCENE.side / M) ** 2
+    expected = resultants(SOLVED.pressure, SOLVED.traction, state.slopes, dA)
+    assert state.forces == pytest.approx(expected, rel=1e-13)
+    load = SCENE.load if approach is None else state.forces.normal
+    assert state.friction_coefficient == state.forces.friction / load
+    assert state.max_pressure == SOLVED.pressure.max()
+    assert np.array_equal(state.contact, SOLVED.pressure > 0)
+    assert state.contact_area == pytest.approx(np.count_nonzero(state.contact) * dA, rel=1e-15)
+    assert 0 < state.contact_area_corrected < state.contact_area
 
 
 def test_a_pressure_at_the_wrong_place_is_seen() -> None:
     pressure = SOLVED.pressure.copy()
-    i, j = np.unravel_index(np.argmin(np.where(SOLVED.contact, np.inf, SOLVED.separation)), (M, M))
+    i, j = np.unravel_index(np.argmin(np.where(SOLVED.contact, np.inf, SOLVED.clearance)), (M, M))
     pressure[i, j] = 1e-3 * SOLVED.max_pressure
     assert judged(pressure, lawful(pressure)).certificate.gap > 1e-6
 
@@ -110,15 +123,15 @@ def test_a_negative_pressure_is_seen() -> None:
 
 
 def test_a_wrong_load_or_approach_is_seen() -> None:
-    assert judged((1 + 1e-6) * SOLVED.pressure).certificate.balance == pytest.approx(1e-6, rel=0.1)
+    assert judged((1 + 1e-6) * SOLVED.pressure).certificate.load_error == pytest.approx(1e-6, rel=0.1)
     missed = judged(approach=1.001 * SOLVED.approach).certificate
     work = 1e-3 * SOLVED.approach * SOLVED.pressure.sum()
-    assert missed.balance == pytest.approx(work / energy_density(SOLVED.pressure), rel=1e-9)
+    assert missed.load_error == pytest.approx(work / energy_density(SOLVED.pressure), rel=1e-9)
     assert missed.penetration == pytest.approx(1e-3, rel=0.01)
 
 
 def test_faint_pressures_are_judged_like_others_until_displacements_vanish() -> None:
-    """At the least approach there is nothing is known of the mean separation, and that is no balance."""
+    """At the least approach nothing is known of the mean separation: the load error is infinite."""
     smooth = rf.read_scene("table1-smooth")
     pressed = [
         rf.solve(smooth, 16, approach=a, oblique=False, coupled=False, method="dense") for a in (1e-9, 1e-300)
@@ -128,7 +141,7 @@ def test_faint_pressures_are_judged_like_others_until_displacements_vanish() -> 
     for grid in (3, 16):  # the mean separation of a single element is that least number, or of many none
         lost = rf.solve(smooth, grid, approach=5e-324, oblique=False, coupled=False)
         assert lost.max_pressure > 0
-        assert lost.certificate.balance == np.inf
+        assert lost.certificate.load_error == np.inf
 
 
 def test_slopes_of_another_state_are_seen() -> None:
@@ -138,16 +151,24 @@ def test_slopes_of_another_state_are_seen() -> None:
 
 def test_unlawful_friction_in_contact_is_counted() -> None:
     traction = np.where(SOLVED.pressure == SOLVED.max_pressure, 0.0, SOLVED.traction)
-    assert judged(traction=traction).certificate.unlawful == 1
+    assert judged(traction=traction).certificate.law_violations == 1
 
 
-@pytest.mark.parametrize("field", ["gap", "penetration", "negative_pressure", "balance", "slope"])
+def test_a_gap_is_relative_to_the_energy() -> None:
+    """Zero in an exact state without energy; infinite beside an energy that is not positive."""
+    assert relative_gap(0.0, 0.0) == 0
+    assert relative_gap(1.0, 2.0) == 0.5
+    assert relative_gap(-1.0, 2.0) == -0.5
+    assert relative_gap(1.0, 0.0) == relative_gap(1.0, -1.0) == np.inf
+
+
+@pytest.mark.parametrize("field", ["gap", "penetration", "negative_pressure", "load_error", "slope"])
 def test_each_residual_counts_and_nan_never_passes(field: str) -> None:
     clean = Certificate(0.0, 0.0, 0.0, 0.0, 0.0, 0)
-    assert clean.meets(0.0)
-    assert not replace(clean, **{field: 1e-3}).meets(1e-4)
-    assert replace(clean, **{field: np.nan}).worst == np.inf
-    assert not replace(clean, **{field: np.nan}).meets(1.0)
+    assert clean.satisfies(0.0)
+    assert not replace(clean, **{field: 1e-3}).satisfies(1e-4)
+    assert replace(clean, **{field: np.nan}).largest == np.inf
+    assert not replace(clean, **{field: np.nan}).satisfies(1.0)
 
 
 def test_the_clearance_is_zero_in_contact_and_positive_outside() -> None:
@@ -157,12 +178,12 @@ def test_the_clearance_is_zero_in_contact_and_positive_outside() -> None:
 
 
 @pytest.mark.parametrize("factor", [0.0, -1.0])
-def test_at_an_approach_only_contact_can_be_off_balance(factor: float) -> None:
+def test_at_an_approach_only_contact_has_a_load_error(factor: float) -> None:
     """Without a positive resultant there is no mean separation; other residuals judge such a state."""
     pressure = factor * SOLVED.pressure
     pressure.flat[0] = -0.1 * factor * SOLVED.max_pressure
     certificate = judged(pressure, 0 * pressure, approach=SOLVED.approach).certificate
-    assert certificate.balance == 0
+    assert certificate.load_error == 0
     assert certificate.penetration > 0.1
 
 
@@ -191,20 +212,20 @@ def test_sums_look_no_further_than_tractions_reach(
         if sheared:
             traction[sheared] = -size
         found = judged(pressure, traction).certificate
-        assert found.unlawful == (pressed is not None) + (sheared is not None)
+        assert found.law_violations == (pressed is not None) + (sheared is not None)
         assert found.negative_pressure == 0
     assert seen == [shape, shape]
 
 
 @pytest.mark.parametrize("slope_correction", [False, True])
 def test_displacements_are_of_the_tractions_that_enter_and_not_applied_twice(slope_correction: bool) -> None:
-    posed = replace(problem(), terms=replace(TERMS, slope_correction=slope_correction))
+    given = problem().with_terms(Terms(slope_correction=slope_correction))
     counter = Counter()
-    operator = FFTInfluence(posed.grid, posed.direction, counter=counter)
+    operator = FFTInfluence(GRID, SCENE.sliding_direction, counter=counter)
     steep = Slopes(SOLVED.slopes.tan_x + 0.1, SOLVED.slopes.tan_y)
-    state = certify(posed, operator, SOLVED.pressure, SOLVED.traction, steep)
-    dense = DenseInfluence(posed.grid, posed.direction)
-    expected = posed.displacements(dense, SOLVED.pressure, SOLVED.traction, steep)
+    state = certify(given, operator, SOLVED.pressure, SOLVED.traction, steep)
+    dense = DenseInfluence(GRID, SCENE.sliding_direction)
+    expected = given.displacements(dense, SOLVED.pressure, SOLVED.traction, steep)
     for found, exact in zip((state.displacement_lower, state.displacement_upper), expected, strict=True):
         np.testing.assert_allclose(found, exact, rtol=0, atol=1e-13 * np.abs(exact).max())
     assert counter.tally["normal"] == (2 if slope_correction else 1)
@@ -220,7 +241,7 @@ def test_an_element_that_pulls_is_no_contact() -> None:
     bent = state.slopes.tan_x.copy()
     bent[i, j] += 1.0
     certificate = judged(pressure, traction, Slopes(bent, state.slopes.tan_y)).certificate
-    assert certificate.unlawful == 0
+    assert certificate.law_violations == 0
     assert certificate.slope < 1e-12
 
 
@@ -230,14 +251,14 @@ def test_the_approach_is_the_mean_separation_of_any_pressure_and_the_lowest_of_n
     pressure = scale * SOLVED.pressure
     pressure.flat[0] = 1e-3 * np.abs(pressure).max()
     state = judged(pressure, 0 * pressure)
-    v = state.separation
+    v = state.v
     expected = (pressure * v).sum() / pressure.sum() if scale > 0 else v.min()
     assert state.approach == pytest.approx(expected, rel=1e-12, abs=1e-30)
     assert v.max() > expected
     at = judged(pressure, 0 * pressure, approach=1e-7)
     work = abs(expected - 1e-7) * pressure.sum() if scale > 0 else 0.0
-    balance = work / energy_density(pressure)
-    assert at.certificate.balance == pytest.approx(balance, rel=1e-9)
+    load_error = work / energy_density(pressure)
+    assert at.certificate.load_error == pytest.approx(load_error, rel=1e-9)
 
 
 def test_at_first_touch_penetration_is_in_metres() -> None:
@@ -245,13 +266,13 @@ def test_at_first_touch_penetration_is_in_metres() -> None:
     zero, traction = np.zeros((M, M)), np.zeros((M, M))
     traction[5, 5] = 1e8
     state = judged(zero, traction, approach=0.0)
-    assert state.separation.min() < 0
-    assert state.certificate.penetration == -state.separation.min()
+    assert state.v.min() < 0
+    assert state.certificate.penetration == -state.v.min()
 
 
 def test_surfaces_apart_leave_no_residual() -> None:
     zero = np.zeros((M, M))
-    undeformed = Slopes.of_surface(problem().mean_surface, SCENE.side / M, SCENE.sliding_direction)
+    undeformed = Slopes.of_surface(problem().mean_surface, GRID, SCENE.sliding_direction)
     state = judged(zero, zero, undeformed, -1e-7)
     assert set(vars(state.certificate).values()) == {0}
     assert state.approach == -1e-7
@@ -260,20 +281,20 @@ def test_surfaces_apart_leave_no_residual() -> None:
 def test_no_pressure_carries_no_load() -> None:
     zero = np.zeros((M, M))
     certificate = judged(zero, zero).certificate
-    assert certificate.balance == 1
-    assert not certificate.meets(0.5)
+    assert certificate.load_error == 1
+    assert not certificate.satisfies(0.5)
 
 
 def test_traction_without_contact_is_unlawful() -> None:
     outside = np.argwhere(~SOLVED.contact)[0]
     traction = SOLVED.traction.copy()
     traction[tuple(outside)] = 1.0
-    operator = DenseInfluence(SOLVED.grid, SCENE.sliding_direction)
+    operator = DenseInfluence(GRID, SCENE.sliding_direction)
     lawful, unlawful = (
         certify(problem(), operator, SOLVED.pressure, r, SOLVED.slopes) for r in (SOLVED.traction, traction)
     )
-    assert lawful.certificate.unlawful == 0
-    assert unlawful.certificate.unlawful == 1
+    assert lawful.certificate.law_violations == 0
+    assert unlawful.certificate.law_violations == 1
 
 
 def test_neither_a_state_nor_its_certificate_can_be_changed() -> None:

@@ -8,12 +8,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from refimpl.grid import Grid
 from refimpl.model.forces import (
+    contact_area,
     facet_resultants,
+    friction_coefficient,
     perimeter_corrected_area,
     plasticity_index,
     resultants,
-    smooth_friction_coefficient,
 )
 from refimpl.model.slopes import Slopes
 
@@ -83,40 +85,47 @@ def test_printed_and_exact_differ_at_second_order():
     np.testing.assert_allclose(difference(1e-3) / difference(5e-4), [4, 4, 4], rtol=0.02)
 
 
-def test_perimeter_of_hand_counted_sets():
-    factor = (math.pi - 1 + math.log(2)) / 24
-    one = np.zeros((4, 4), dtype=bool)
-    one[1, 1] = True
-    assert perimeter_corrected_area(contact=one, spacing=0.5) == pytest.approx(
-        0.25 * (1 - 4 * factor), rel=1e-15
-    )
-    one[1, 2] = True
-    assert perimeter_corrected_area(one, 0.5) == pytest.approx(0.25 * (2 - 6 * factor), rel=1e-15)
-    for periodic in (False, True):  # all of a square: its border is straight, and known
-        assert perimeter_corrected_area(np.ones((4, 4), dtype=bool), 0.5, periodic=periodic) == 4
-    edge = np.zeros((4, 4), dtype=bool)
-    edge[:, 0] = True
-    for turned in range(4):
-        border = np.rot90(edge, turned)
-        assert perimeter_corrected_area(border, 0.5, periodic=True) == pytest.approx(1 - 8 * factor * 0.25)
-    assert perimeter_corrected_area(np.zeros((4, 4), dtype=bool), 0.5) == 0
+FACE = (math.pi - 1 + math.log(2)) / 24
+"""Area over that of an element that each face of the contact's edge counts too much."""
 
 
-def test_what_the_correction_takes_off_a_disc():
-    """Whatever its position on the grid, a disc of elements has edges of 8 r in all; 1 % is the grid's."""
-    radius, M = 0.37, 400
-    spacing = 1 / M
+@pytest.mark.parametrize("periodic", [False, True])
+def test_areas_of_hand_counted_sets(periodic: bool) -> None:
+    grid = Grid((4, 3), (2.0, 1.2), periodic)  # dA = 0.2
+    contact = np.zeros((4, 3), dtype=bool)
+    assert contact_area(contact, grid) == perimeter_corrected_area(contact, grid) == 0
+    contact[1, 1] = True
+    assert contact_area(contact, grid) == pytest.approx(0.2, rel=1e-15)
+    assert perimeter_corrected_area(contact, grid) == pytest.approx(0.2 * (1 - 4 * FACE), rel=1e-15)
+    contact[2, 1] = True
+    assert perimeter_corrected_area(contact, grid) == pytest.approx(0.2 * (2 - 6 * FACE), rel=1e-15)
+    everything = np.ones((4, 3), dtype=bool)  # its border is straight, and known
+    assert perimeter_corrected_area(everything, grid) == contact_area(everything, grid)
+    column = np.arange(3) == np.zeros((4, 1))
+    faces = 8 if periodic else 4
+    assert perimeter_corrected_area(column, grid) == pytest.approx(0.2 * (4 - faces * FACE), rel=1e-15)
+
+
+@pytest.mark.parametrize(("M", "N"), [(400, 400), (300, 450)])
+def test_what_the_correction_subtracts_of_a_disc(M: int, N: int) -> None:
+    """Whatever its position, a disc of radius r has 4 r / dy faces along x and 4 r / dx along y; 1 % is the
+    grid's."""
+    radius, grid = 0.37, Grid((M, N), (1.0, 1.0))
+    dx, dy = grid.spacings
     shifts = (np.arange(8) + 0.5) / 8 - 0.5
     excess = []
-    for dx in shifts:
-        for dy in shifts:
-            x = (np.arange(M) + 0.5) * spacing - 0.5
-            inside = np.hypot(x[:, None] - dx * spacing, x[None, :] - dy * spacing) < radius
-            raw = inside.sum() * spacing**2
-            excess.append((raw - perimeter_corrected_area(inside, spacing)) / (8 * radius * spacing))
-    assert np.mean(excess) == pytest.approx((math.pi - 1 + math.log(2)) / 24, rel=0.01)
+    for s in shifts:
+        for t in shifts:
+            inside = np.hypot(grid.x[:, None] - 0.5 - s * dx, grid.y[None, :] - 0.5 - t * dy) < radius
+            taken = contact_area(inside, grid) - perimeter_corrected_area(inside, grid)
+            excess.append(taken / (4 * radius * (dx + dy)))
+    assert np.mean(excess) == pytest.approx(FACE, rel=0.01)
 
 
-def test_smooth_estimates():
-    assert smooth_friction_coefficient(15e6, 0.08, 1e8) == pytest.approx(0.23)
+def test_the_friction_coefficient_is_the_force_over_the_load() -> None:
+    assert friction_coefficient(7.0, 70.0) == pytest.approx(0.1, rel=1e-15)
+    assert math.isnan(friction_coefficient(0.0, 0.0))
+
+
+def test_the_plasticity_index_is_eq_12() -> None:
     assert plasticity_index(1e11, 1e9, 1e-6, 1e-4) == pytest.approx(2.2)

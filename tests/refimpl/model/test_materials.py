@@ -40,6 +40,20 @@ def test_a_pair_adds_normal_and_subtracts_shear() -> None:
     assert pair.normal_compliance * math.pi * pair.reduced_modulus == pytest.approx(1, rel=1e-15)
 
 
+def test_shares_and_ratios_of_a_pair() -> None:
+    """The softer body takes the larger share; shear r tilts each surface by its own ``pi c r``."""
+    lower, upper = Material(E=2e9, nu=0.1), Material(E=5e9, nu=0.4)
+    pair = Pair(lower=lower, upper=upper)
+    a = lower.normal_compliance + upper.normal_compliance
+    assert pair.upper_share == pytest.approx(upper.normal_compliance / a, rel=1e-15)
+    assert pair.coupling_ratio == pytest.approx(
+        (lower.shear_compliance - upper.shear_compliance) / a, rel=1e-15
+    )
+    assert pair.shear_ratio == pytest.approx((lower.shear_compliance + upper.shear_compliance) / a, rel=1e-15)
+    tilts = math.pi * lower.shear_compliance * 1e6, math.pi * upper.shear_compliance * 1e6
+    assert pair.tilts(1e6) == pytest.approx(tilts, rel=1e-15)
+
+
 @pytest.mark.parametrize("nu", [-0.999, 0.0, 0.5])
 def test_the_whole_range_of_nu_is_allowed(nu: float) -> None:
     assert Material(E=1e9, nu=nu).normal_compliance > 0

@@ -1,13 +1,10 @@
-"""Threads and kept memory: which transforms get them, and how little that changes."""
+"""Threads: which transforms get them, and how little that changes."""
 
 from __future__ import annotations
 
 import os
-import platform
-import resource
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -68,48 +65,6 @@ def test_threads_change_no_bit_of_scipy_and_the_last_ones_of_ducc0(scene: str) -
     pytest.importorskip("ducc0")
     one, two = (solved(scene, "Ducc", threads) for threads in (1, 2))
     assert np.abs(one - two).max() < 1e-12 * one.max()
-
-
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="only glibc is taught so")
-def test_kept_memory_is_not_touched_anew() -> None:
-    threads.keep_memory(1024**2)
-    np.ones(1 << 20).sum()
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-    for _ in range(20):
-        np.ones(1 << 20).sum()  # 8 MB: 2048 pages, were they new each time
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 20 * 2048 / 2
-
-
-_PEAK = """
-from pathlib import Path
-import numpy as np
-from refimpl.operators.threads import keep_memory
-def peak():
-    lines = Path("/proc/self/status").read_text().splitlines()
-    return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
-Path("/proc/self/clear_refs").write_text("5")  # the peak is what there is now
-before = peak()
-for _ in range(3):
-    keep_memory(128**2)
-used = [np.ones(40_000) for _ in range(4)]
-print(peak() - before)
-"""
-
-
-def gives_huge_pages_unasked() -> bool:
-    said = Path("/sys/kernel/mm/transparent_hugepage/enabled")
-    return said.is_file() and "[always]" in said.read_text(encoding="ascii")
-
-
-@pytest.mark.skipif(not Path("/proc/self/clear_refs").is_file(), reason="only Linux tells its peak so")
-@pytest.mark.skipif(gives_huge_pages_unasked(), reason="whatever asks for them, all get huge pages here")
-def test_kept_memory_is_not_asked_for_in_huge_pages() -> None:
-    """As NumPy does from 4 MB on: what a small grid touched was 2 MB more than what it used."""
-    said = [
-        subprocess.run([sys.executable, "-c", _PEAK], capture_output=True, text=True, check=True).stdout
-        for _ in range(4)  # whether a block holds a whole huge page depends on its address
-    ]
-    assert max(map(int, said)) < 1250 + 600  # kB: four arrays of 320,000 bytes, and little else
 
 
 _INNER = """

@@ -1,19 +1,21 @@
-"""The contact to expect: the fewest of the lowest elements that carry the load, told by a glance."""
+"""The contact to expect, against a plain description by all heights: a full sort and NumPy's gradients."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.model.problem import Problem, pose
+from refimpl.grid import Array, Grid, Window
+from refimpl.grid.contact_patches import patch_sizes
+from refimpl.model.problem import Problem
 from refimpl.planning import term_effects
-from refimpl.planning.expected_contact import Outlook, _first, _mirrored, _rising, _touched, expected
+from refimpl.planning.expected_contact import ExpectedContact, expected_contact
 from refimpl.planning.term_effects import Scales
-from refimpl.scene.discretise import EVERYTHING
+from refimpl.scene.discretise import discretise
 from verification.coverage.scenes import random_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::refimpl.surfaces.SurfaceWarning")
@@ -21,48 +23,184 @@ pytestmark = pytest.mark.filterwarnings("ignore::refimpl.surfaces.SurfaceWarning
 STEEL = rf.Material(200e9, 0.3)
 BALL = rf.Scene(
     upper=rf.Body(STEEL, rf.Sphere(0.1)),
-    lower=rf.Body(STEEL, rf.GaussianRoughness(3e-7, 1e-4, seed=3)),
+    lower=rf.Body(rf.Material(70e9, 0.33), rf.GaussianRoughness(3e-7, 1e-4, seed=3)),
     friction=rf.Friction(),
     load=20.0,
     side=1e-3,
+    sliding_direction=0.4,
 )
-STIFFNESS = 3.0  # of an element, N
+GRIDS = [
+    BALL.grid(3),
+    BALL.grid(31),
+    BALL.grid(64),
+    Grid((48, 20), (1e-3, 3e-4)),
+    Grid((9, 64), (2e-4, 1e-3)),
+    Grid((40, 24), (1e-3, 5e-4), periodic=True),
+]
+QUARTER_TURN = math.pi / 2
 
 
-def posed(M: int, gap: np.ndarray | None = None) -> Problem:
-    problem = pose(BALL, rf.Grid(BALL.side, M), EVERYTHING, None)
-    return problem if gap is None else replace(problem, gap=gap)
+def posed(grid: Grid, gap: Array | None = None, **changes: object) -> Problem:
+    problem = discretise(BALL, grid)
+    return replace(problem, **({} if gap is None else {"gap": gap}), **changes)  # type: ignore[arg-type]
 
 
-def carried_in_order(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
-    """All elements from the lowest on, and what the first 1, 2, ... of them carry, with numpy's gradient."""
+def gradient(problem: Problem, heights: Array) -> tuple[Array, Array]:
+    """Derivatives along and across the sliding direction, by NumPy."""
+    if problem.grid.periodic:
+        wrapped = np.gradient(np.pad(heights, 1, mode="wrap"), *problem.grid.spacings)
+        x, y = (tangent[1:-1, 1:-1] for tangent in wrapped)
+    else:
+        x, y = np.gradient(heights, *problem.grid.spacings)
+    cos, sin = math.cos(problem.direction), math.sin(problem.direction)
+    return cos * x + sin * y, cos * y - sin * x
+
+
+def carried_in_order(problem: Problem) -> tuple[Array, Array]:
+    """All elements from the lowest on, and what the first 1, 2, ... of them carry (N)."""
+    along, across = gradient(problem, problem.gap)
     order = np.argsort(problem.gap.ravel(), kind="stable")
-    along, across = np.gradient(problem.gap, problem.grid.spacing)
     squares = np.cumsum((along**2 + across**2).ravel()[order])
-    return order, STIFFNESS * np.sqrt(squares * np.arange(1, order.size + 1))
+    stiffness = 4 * math.sqrt(2) / (3 * math.pi) * problem.pair.reduced_modulus * problem.grid.element_area
+    return order, stiffness * np.sqrt(squares * np.arange(1, order.size + 1))
 
 
-@pytest.mark.parametrize("share", [1e-6, 1e-3, 0.1, 0.5, 0.999, 1.5])
-@pytest.mark.parametrize("M", [3, 31, 64])
-def test_the_fewest_elements_that_carry_the_load(M: int, share: float) -> None:
-    for gap in (None, np.random.default_rng(1).uniform(1e-6, 2e-6, (M, M))):
-        problem = posed(M, gap)
-        order, carried = carried_in_order(problem)
-        load = share * carried[-1]
-        count = min(int(np.searchsorted(carried, load)) + 1, order.size)
-        found = _touched(problem, STIFFNESS, load)
-        assert np.count_nonzero(found) == count
-        assert found.ravel()[order[:count]].all()
+def is_image(z: Array, image: Array) -> bool:
+    return bool(np.abs(z - image).max() <= 1e-9 * np.ptp(z))
 
 
-def estimates(problem: Problem, outlook: Outlook) -> np.ndarray:
-    """How much three terms would change, by that outlook."""
-    scales = Scales(outlook, problem.pair, problem.friction)
-    terms = (term_effects.shear_coupling, term_effects.obliqueness, term_effects.shear_tilt)
+def by_all_heights(problem: Problem) -> ExpectedContact:
+    """The module's text, word by word."""
+    gap, grid = problem.gap, problem.grid
+    order, carried = carried_in_order(problem)
+    if problem.load is not None:
+        count = min(int(np.searchsorted(carried, problem.load)) + 1, order.size)
+        mean_pressure = problem.load / (count * grid.element_area)
+    else:
+        count = max(1, np.count_nonzero(gap < (problem.approach or 0.0)) // 2)
+        mean_pressure = carried[count - 1] / (count * grid.element_area)
+    contact = np.zeros(gap.shape, dtype=bool)
+    contact.ravel()[order[:count]] = True
+    approach = problem.approach or 2 * gap[contact].max()
+    stiff = [body.E / (1 - body.nu**2) for body in (problem.pair.lower, problem.pair.upper)]
+    upper_share = stiff[0] / sum(stiff)
+    bodies = [gradient(problem, problem.mean_surface + sign * gap / 2) for sign in (-1, 1)]
+    common = [upper_share * lower + (1 - upper_share) * upper for lower, upper in zip(*bodies, strict=True)]
+    along = [tangent[contact] for tangent, _ in bodies]
+    sizes = patch_sizes(contact, periodic=grid.periodic).astype(float)
+    border = contact.copy()
+    border[1:-1, 1:-1] = False
+    near, surfaces = gap < 2 * approach, (gap, problem.mean_surface)
+    turns = problem.direction / QUARTER_TURN
+    flip = 1 if round(turns) % 2 == 0 else 0
+    return ExpectedContact(
+        elements=count,
+        patches=sizes.sum() ** 2 / (sizes**2).sum(),
+        mean_pressure=mean_pressure,
+        pressure=9 / 8 * mean_pressure,
+        approach=approach,
+        slope_squared=sum(np.mean(tangent[contact] ** 2) for tangent in common),
+        least_slope=min(math.sqrt(np.mean(tangent**2)) for tangent in along),
+        least_mean_slope=min(abs(np.mean(tangent)) for tangent in along),
+        border=0.0 if grid.periodic else np.count_nonzero(border) / count,
+        symmetric=all(is_image(z, z[::-1, ::-1]) for z in surfaces),
+        mirrored=abs(turns - round(turns)) < 1e-9 and all(is_image(z, np.flip(z, flip)) for z in surfaces),
+        window=Window.around(near, margin=1).shape if near.any() else (0, 0),
+    )
+
+
+def assert_described(problem: Problem) -> ExpectedContact:
+    """The expectation is that of all heights, to rounding."""
+    found, expected = expected_contact(problem), by_all_heights(problem)
+    assert asdict(found) == {name: pytest.approx(value, rel=1e-9) for name, value in asdict(expected).items()}
+    return found
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-3, 0.1, 0.24, 0.26, 0.5, 0.999, 1.5])
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_the_fewest_of_the_lowest_elements_that_carry_the_load_touch(grid: Grid, share: float) -> None:
+    """Whether a quarter of the elements is enough for the load or not."""
+    for gap in (None, np.random.default_rng(1).uniform(1e-6, 2e-6, grid.shape)):
+        problem = posed(grid, gap)
+        problem = replace(problem, load=share * float(carried_in_order(problem)[1][-1]))
+        found = assert_described(problem)
+        assert (found.elements == grid.elements) == (share > 1 or found.elements == grid.elements)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_of_equally_low_elements_the_first_in_the_grids_order_touch(seed: int) -> None:
+    """Slopes of a rough mean surface tell which elements are in contact."""
+    random = np.random.default_rng(seed)
+    shape = (int(random.integers(3, 8)), int(random.integers(3, 8)))
+    gap = random.integers(0, 4, shape) * 1e-6
+    problem = posed(Grid(shape, (1e-3, 1e-3)), gap, mean_surface=random.normal(0, 1e-6, shape))
+    load = random.uniform(0.05, 1.0) * carried_in_order(problem)[1][-1]
+    assert_described(replace(problem, load=float(load)))
+
+
+def test_without_any_slope_all_elements_share_the_load() -> None:
+    level = posed(BALL.grid(3), np.zeros((3, 3)))
+    assert expected_contact(level).elements == 9
+    assert expected_contact(level).mean_pressure == pytest.approx(BALL.load / BALL.side**2)
+
+
+@pytest.mark.parametrize("approach", [2e-7, 4e-7, 1e-5])
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_at_an_approach_half_of_the_elements_that_interfere_touch(grid: Grid, approach: float) -> None:
+    problem = posed(grid, load=None, approach=approach)
+    found = assert_described(problem)
+    assert found.elements == max(1, np.count_nonzero(problem.gap < approach) // 2)
+
+
+@pytest.mark.parametrize("approach", [0.0, -1e-6])
+def test_an_approach_that_hardly_loads_anything_has_a_least_pressure(approach: float) -> None:
+    problem = posed(BALL.grid(8), np.zeros((8, 8)), load=None, approach=approach)
+    found = expected_contact(problem)
+    assert found.elements == 1
+    assert found.mean_pressure == pytest.approx(1e-12 * problem.pair.reduced_modulus)
+
+
+@pytest.mark.parametrize(("direction", "axis"), [(0.0, 1), (QUARTER_TURN, 0), (math.pi, 1), (0.3, None)])
+@pytest.mark.parametrize("shape", [(8, 8), (8, 5), (5, 8)])
+def test_mirror_images_across_the_sliding_line(
+    direction: float, axis: int | None, shape: tuple[int, int]
+) -> None:
+    """Both surfaces must be, and a sliding line that is no grid axis has no images."""
+    rough = np.random.default_rng(3).uniform(1e-6, 2e-6, shape)
+    for mirrored in (0, 1):
+        gap = rough + np.flip(rough, mirrored)
+        problem = posed(Grid(shape, (1e-3, 1e-3)), gap, mean_surface=gap, direction=direction)
+        assert expected_contact(problem).mirrored is (mirrored == axis)
+        assert not expected_contact(replace(problem, mean_surface=rough)).mirrored
+        assert not expected_contact(problem).symmetric
+
+
+@pytest.mark.parametrize("shape", [(512, 512), (512, 96), (80, 512)])
+def test_symmetry_is_decided_by_all_heights(shape: tuple[int, int]) -> None:
+    """One element off, between those of the coarse heights."""
+    x, y = (np.linspace(-1, 1, n) for n in shape)
+    bowl = 1e-6 * (x[:, None] ** 2 + y[None, :] ** 2)
+    level = np.zeros_like(bowl)
+    whole = posed(Grid(shape, (1e-3, 1e-3)), bowl, mean_surface=level, direction=0.0)
+    assert expected_contact(whole).symmetric
+    assert expected_contact(whole).mirrored
+    bowl, level = bowl.copy(), level.copy()
+    bowl[8, 16] += 1e-9
+    odd = expected_contact(replace(whole, gap=bowl))
+    assert (odd.symmetric, odd.mirrored) == (False, False)
+    level[8, 16] += 1e-9
+    odd = expected_contact(replace(whole, mean_surface=level))
+    assert (odd.symmetric, odd.mirrored) == (False, False)
+
+
+def estimates(problem: Problem, contact: ExpectedContact) -> Array:
+    """How much three terms would change, by that contact."""
+    scales = Scales(contact, problem.pair, problem.friction)
+    terms = (term_effects.coupled, term_effects.oblique, term_effects.tilted)
     return np.array([term(scales).larger for term in terms])
 
 
-def test_a_glance_tells_what_all_heights_do(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_64_x_64_heights_give_the_estimates_of_all_heights() -> None:
     """On 48 random scenes of 160 x 160 elements: estimates change by a few per cent, counts are the grid's.
 
     Estimates are to bound effects that they exceed 2.2 times in the median (`planning/estimates-tight`).
@@ -70,81 +208,36 @@ def test_a_glance_tells_what_all_heights_do(monkeypatch: pytest.MonkeyPatch) -> 
     ratios, contact, windows = [], [], []
     for seed in range(3000, 3048):
         scene = random_scene(seed).scene
-        problem = pose(scene, rf.Grid(scene.side, 160), EVERYTHING, None)
-        told = expected(problem)
-        with monkeypatch.context() as patched:
-            patched.setattr("refimpl.planning.expected_contact._GLANCE", 160)
-            whole = expected(problem)
-        assert (told.symmetric, told.mirrored) == (whole.symmetric, whole.mirrored)
+        problem = discretise(scene, scene.grid(160))
+        coarse, whole = expected_contact(problem), by_all_heights(problem)
+        assert (coarse.symmetric, coarse.mirrored) == (whole.symmetric, whole.mirrored)
         some = estimates(problem, whole) > 0
-        ratios += list(estimates(problem, told)[some] / estimates(problem, whole)[some])
-        contact.append(told.elements / whole.elements)
-        windows.append(np.subtract(told.window, whole.window) / 160)
+        ratios += list(estimates(problem, coarse)[some] / estimates(problem, whole)[some])
+        contact.append(coarse.elements / whole.elements)
+        windows.append(np.subtract(coarse.window, whole.window) / 160)
     assert len(ratios) > 100
     # found: 0.82 to 1.09, nine in ten 0.88 to 1.01, the middle one 0.997
     low, few, middle, most, high = np.quantile(ratios, [0, 0.05, 0.5, 0.95, 1])
     assert 1 / 1.5 < low < high < 1.5
     assert 0.8 < few < most < 1.25
     assert middle == pytest.approx(1, abs=0.03)
-    # found: 0.99 to 1.24, the middle one 1.006; windows differ by an element of the glance on either side,
-    # 1/32, and by what is smoothed away, 0.075 in all
+    # found: 0.99 to 1.24, the middle one 1.006; windows differ by a coarse element on either side, 1/32, and
+    # by what is smoothed away, 0.075 in all
     assert np.median(contact) == pytest.approx(1, abs=0.05)
     assert 0.75 < min(contact) < max(contact) < 4 / 3
     assert np.abs(windows).max() < 0.1
 
 
-def test_what_a_glance_takes_for_symmetric_is_asked_of_all_heights() -> None:
-    """One element off, between those that the glance sees."""
-    x = np.linspace(-1, 1, 512)
-    bowl = 1e-6 * (x[:, None] ** 2 + x[None, :] ** 2)
-    level = np.zeros_like(bowl)
-    whole = replace(posed(512), gap=bowl, mean_surface=level)
-    assert expected(whole).symmetric
-    assert expected(whole).mirrored
-    bowl, level = bowl.copy(), level.copy()
-    bowl[8, 16] += 1e-9
-    odd = expected(replace(whole, gap=bowl))
-    assert (odd.symmetric, odd.mirrored) == (False, False)
-    level[8, 16] += 1e-9
-    odd = expected(replace(whole, mean_surface=level))
-    assert (odd.symmetric, odd.mirrored) == (False, False)
-
-
-def test_of_equal_elements_the_first_count() -> None:
-    gap = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, 2.0], [1.0, 1.0, 1.0]])
-    for count in (4, 9):
-        assert _first(_rising(gap, count), 4, gap).tolist() == [
-            [True, True, True],
-            [False, True, False],
-            [False, False, False],
-        ]
-    level = _touched(posed(3, np.zeros((3, 3))), STIFFNESS, 1.0)
-    assert level.all()  # without any slope nothing carries
-
-
-@pytest.mark.parametrize("count", [0, 1, 7, 24, 25])
-def test_the_lowest_come_as_if_all_were_sorted(count: int) -> None:
-    gap = np.random.default_rng(2).integers(0, 6, (5, 5)).astype(float)
-    order = _rising(gap, count)
-    assert order.size >= count
-    assert order.tolist() == sorted(range(25), key=lambda at: gap.ravel()[at])[: order.size]
-
-
-def test_at_an_approach_half_of_what_interferes_touches() -> None:
-    problem = replace(posed(64), load=None, approach=4e-7)
-    outlook = expected(problem)
-    count = np.count_nonzero(problem.gap < 4e-7) // 2
-    assert outlook.elements == count > 10
-    _, carried = carried_in_order(problem)
-    scale = 4 * math.sqrt(2) / (3 * math.pi) * problem.pair.reduced_modulus / STIFFNESS
-    assert outlook.mean_pressure == pytest.approx(scale * carried[count - 1] / count, rel=1e-12)
-
-
-@pytest.mark.parametrize(("direction", "axis"), [(0.0, 1), (math.pi / 2, 0), (math.pi, 1)])
-def test_mirror_images_across_the_sliding_line(direction: float, axis: int) -> None:
-    rough = np.random.default_rng(3).normal(size=(8, 8))
-    for mirrored in (0, 1):
-        surface = rough + np.flip(rough, mirrored)
-        assert _mirrored(direction, [surface, surface]) is (mirrored == axis)
-    assert not _mirrored(direction, [surface, rough])
-    assert not _mirrored(0.3, [surface, surface])
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("shape", [(128, 64), (64, 192), (160, 80)])
+def test_a_rectangle_of_more_elements_is_described_as_by_all_its_heights(
+    shape: tuple[int, int], periodic: bool
+) -> None:
+    """Coarse heights may lie on oblong elements; counts and windows are the grid's."""
+    grid = Grid(shape, (shape[0] * 1e-5, shape[1] * 1e-5), periodic)
+    problem = discretise(BALL, grid)
+    coarse, whole = expected_contact(problem), by_all_heights(problem)
+    assert estimates(problem, coarse) == pytest.approx(estimates(problem, whole), rel=0.25)
+    assert coarse.elements == pytest.approx(whole.elements, rel=0.15)
+    assert coarse.mean_pressure == pytest.approx(whole.mean_pressure, rel=0.15)
+    assert np.abs(np.subtract(coarse.window, whole.window) / shape).max() < 0.1

@@ -1,4 +1,4 @@
-"""A scene's heights are sampled once where its terms are decided on the grid that is solved."""
+"""From scenes to problems: heights sampled once a grid, and one place for the datum of the approach."""
 
 from __future__ import annotations
 
@@ -9,87 +9,178 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.model.problem import Terms, pose
-from refimpl.scene.discretise import EVERYTHING, Posing
+from refimpl.accuracy.peak import NO_PEAK
+from refimpl.grid import Array, Grid
+from refimpl.model.certificate import certify
+from refimpl.model.problem import Terms
+from refimpl.operators.dense import DenseInfluence
+from refimpl.scene.discretise import Discretiser, discretise
 from refimpl.surfaces import SurfaceWarning
 
 SCENE = rf.read_scene("table1-smooth")
-FLAT = Terms(coupled=False, oblique=False, slope_correction=False)
+FLAT = Terms(coupled=False, oblique=False, tilted=False)
+ROUGH = replace(SCENE, lower=rf.Body(SCENE.lower.material, rf.GaussianRoughness(1e-6, 4e-4, seed=2)))
+PLANES = rf.read_scene("rough-planes")
+RECTANGLE = Grid((12, 20), (1.2e-3, 2.5e-3))
 
 
 @dataclass(frozen=True)
-class Counted(rf.Surface):
-    """A bowl that counts how often it is sampled, and remarks on it each time."""
+class Counted(rf.Sphere):
+    """A ball that counts how often it is sampled, and warns each time."""
 
+    radius: float = 0.14
     sampled: list[int] = field(default_factory=list)
     kind: ClassVar[str] = "counted"
 
-    def _sample(self, grid: rf.Grid, offset: tuple[float, float], periodic: bool) -> Array:
-        self.sampled.append(grid.M)
-        x = grid.centres - 0.5 * grid.side
-        return np.asarray((x[:, None] ** 2 + x[None, :] ** 2) / 0.28)
+    def sample(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
+        self.sampled.append(grid.shape[0])
+        return super().sample(grid, offset)
 
-    def cautions(self, grid: rf.Grid) -> tuple[str, ...]:
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
         return ("counted by hand",)
 
 
 def counted() -> tuple[rf.Scene, list[int]]:
-    bowl = Counted()
-    return replace(SCENE, upper=rf.Body(SCENE.upper.material, bowl)), bowl.sampled
+    ball = Counted()
+    return replace(SCENE, upper=rf.Body(SCENE.upper.material, ball)), ball.sampled
 
 
-def test_a_solve_on_a_grid_samples_once_and_says_once_what_surfaces_remark() -> None:
+def test_a_solve_on_a_grid_samples_once_and_says_once_what_surfaces_note() -> None:
     scene, sampled = counted()
     found = rf.solve(scene, grid=32)
     assert sampled == [32]
     assert [str(line) for line in found.warnings].count("counted by hand") == 1
 
 
-def test_a_climb_samples_each_grid_once_and_the_one_that_decides() -> None:
+def test_a_refinement_samples_each_grid_once_and_the_one_that_decides() -> None:
     scene, sampled = counted()
     rf.solve(scene, accuracy=0.03)
     assert sampled[0] == 256
     assert len(set(sampled)) == len(sampled)
 
 
-def test_what_is_taken_is_what_would_be_posed_and_is_not_kept() -> None:
-    grid = rf.Grid(SCENE.side, 24)
-    posing, posed = Posing(SCENE, None), pose(SCENE, grid, FLAT, None)
-    whole = posing.whole(grid)
-    assert whole.terms == EVERYTHING
-    for taken in (posing.take(grid, FLAT), posing.take(grid, FLAT)):
-        assert taken.terms == FLAT
-        assert np.array_equal(taken.gap, posed.gap)
-        assert np.array_equal(taken.mean_surface, posed.mean_surface)
-    assert posing.take(grid, FLAT).gap is not whole.gap
+@pytest.mark.parametrize("grid", [SCENE.grid(24), RECTANGLE, replace(RECTANGLE, periodic=True)], ids=str)
+def test_a_discretisers_problem_is_that_of_discretise_and_is_not_kept(grid: Grid) -> None:
+    discretiser, expected = Discretiser(SCENE, None), discretise(SCENE, grid, FLAT)
+    whole = discretiser.with_all_terms(grid)
+    assert whole.terms == Terms()
+    for problem in (discretiser.problem(grid, FLAT), discretiser.problem(grid, FLAT)):
+        assert (problem.grid, problem.terms, problem.datum) == (grid, FLAT, expected.datum)
+        assert problem.elasticity == expected.elasticity
+        assert np.array_equal(problem.gap, expected.gap)
+        assert np.array_equal(problem.mean_surface, expected.mean_surface)
+    assert discretiser.problem(grid, FLAT).gap is not whole.gap
 
 
-def test_another_grid_or_an_approach_is_posed_as_such() -> None:
-    posing = Posing(SCENE, 1e-6)
-    posing.whole(rf.Grid(SCENE.side, 24))
-    taken = posing.take(rf.Grid(SCENE.side, 16), FLAT)
-    assert taken.gap.shape == (16, 16)
-    assert (taken.load, taken.approach) == (None, 1e-6)
+def test_on_another_grid_or_at_an_approach_heights_are_sampled_again() -> None:
+    discretiser = Discretiser(SCENE, 1e-6)
+    discretiser.with_all_terms(SCENE.grid(24))
+    problem = discretiser.problem(SCENE.grid(16), FLAT)
+    assert problem.gap.shape == (16, 16)
+    assert (problem.load, problem.approach) == (None, 1e-6)
 
 
-def test_remarks_are_kept_once_each_and_not_shown(recwarn: pytest.WarningsRecorder) -> None:
+def test_notes_are_kept_once_each_and_not_shown(recwarn: pytest.WarningsRecorder) -> None:
     scene, _ = counted()
     twice = replace(scene, lower=rf.Body(scene.lower.material, Counted()))
-    posing = Posing(twice, None)
-    posing.whole(rf.Grid(scene.side, 8))
-    assert posing.remarks == ("counted by hand",)
+    discretiser = Discretiser(twice, None)
+    discretiser.with_all_terms(scene.grid(8))
+    assert discretiser.notes == ("counted by hand",)
     assert not [warning for warning in recwarn if warning.category is SurfaceWarning]
 
 
 def test_heights_of_a_scene_are_its_own() -> None:
-    """Posing works in the memory of the sampled heights, never in a user's array."""
+    """Problems are built in the memory of the sampled heights, never in a user's array."""
     heights = np.random.default_rng(2).uniform(0, 1e-6, (16, 16))
     kept = heights.copy()
     scene = replace(SCENE, lower=rf.Body(SCENE.lower.material, heights))
-    first, second = (pose(scene, rf.Grid(SCENE.side, 16), FLAT, None) for _ in range(2))
+    first, second = (discretise(scene, scene.grid(16), FLAT) for _ in range(2))
     assert np.array_equal(heights, kept)
     assert np.array_equal(first.gap, second.gap)
     lower, upper = first.heights
     assert np.allclose(upper - lower, first.gap, rtol=0, atol=1e-18)
     assert np.array_equal(first.mean_surface, second.mean_surface)
+
+
+@pytest.mark.parametrize("grid", [ROUGH.grid(16), RECTANGLE], ids=str)
+def test_gap_and_mean_surface_are_those_of_the_heights_at_first_contact(grid: Grid) -> None:
+    lower, upper = ROUGH.sampled(grid)
+    problem, raised = discretise(ROUGH, grid), (lower - upper).max()
+    assert problem.gap.min() == 0.0
+    np.testing.assert_allclose(problem.gap, upper + raised - lower, rtol=0, atol=1e-20)
+    np.testing.assert_allclose(problem.mean_surface, (lower + upper + raised) / 2, rtol=0, atol=1e-20)
+
+
+def test_without_slope_terms_shear_moves_both_bodies_by_what_they_are() -> None:
+    """Nothing feels the common surface then: a tilt that is left out costs no accuracy, a coupling would."""
+    grid = SCENE.grid(8)
+    for coupled in (False, True):
+        small = discretise(SCENE, grid, Terms(coupled=coupled, oblique=False, tilted=not coupled))
+        assert (small.elasticity.coupled, small.elasticity.tilted) == (coupled, coupled)
+    tilted = discretise(SCENE, grid, Terms(coupled=False))
+    assert (tilted.elasticity.coupled, tilted.elasticity.tilted) == (False, True)
+
+
+# --- approach and datum ---
+
+
+@pytest.mark.parametrize("grid", [SCENE.grid(16), RECTANGLE], ids=str)
+def test_approaches_count_from_first_contact_where_a_scene_is_free(grid: Grid) -> None:
+    for approach in (-1e-6, 0.0, 2e-6):
+        problem = discretise(ROUGH, grid, approach=approach)
+        assert (problem.load, problem.approach, problem.datum) == (None, approach, 0.0)
+        assert problem.counts_from_first_contact
+    assert (discretise(ROUGH, grid).load, discretise(ROUGH, grid).approach) == (ROUGH.load, None)
+
+
+@pytest.mark.parametrize("grid", [PLANES.grid(16), replace(RECTANGLE, periodic=True)], ids=str)
+def test_approaches_count_from_mean_planes_where_a_scene_is_periodic(grid: Grid) -> None:
+    """First contact lies the mean gap above: the datum, which a problem adds and a solution subtracts."""
+    problem = discretise(PLANES, grid, approach=-1e-9)
+    assert problem.datum == problem.gap.mean() > 1e-9
+    assert problem.approach == problem.datum - 1e-9
+    assert not problem.counts_from_first_contact
+    assert discretise(PLANES, grid).datum == problem.datum
+
+
+@pytest.mark.parametrize("method", ["fft", "dense"])
+def test_a_periodic_solution_reports_its_approach_from_mean_planes(method: str) -> None:
+    under_load = rf.solve(PLANES, 16, method=method, tolerance=1e-11)
+    problem = under_load.problem
+    assert under_load.approach < 0 < under_load.approach + problem.datum
+    touching, v = under_load.contact, under_load.clearance + under_load.approach + problem.datum
+    assert np.abs(v[touching] / (under_load.approach + problem.datum) - 1).max() < 1e-9
+    at_approach = rf.solve(PLANES, 16, method=method, approach=under_load.approach, tolerance=1e-11)
+    assert at_approach.approach == under_load.approach
+    assert at_approach.normal_force == pytest.approx(PLANES.load, rel=1e-7)
+    # that far apart, mean planes are separated by more than the mean gap: no contact
+    apart = rf.solve(PLANES, 16, method=method, approach=-1.001 * problem.datum)
+    assert apart.status is rf.Status.NO_CONTACT
+
+
+def test_error_bars_of_a_periodic_approach_do_not_hang_on_first_contact() -> None:
+    """The residual scales with the approach from first contact; the one from mean planes may be zero."""
+    found = rf.solve(PLANES, 16)
+    assert found.features.first_contact == NO_PEAK
+    assert found.features.numbers["approach"] == found.approach
+    expected = found.certificate.largest * (found.approach + found.problem.datum)
+    assert found.uncertainty["approach"]["iteration"] == pytest.approx(expected)
+
+
+def test_a_certified_state_counts_from_first_contact() -> None:
+    """The datum is subtracted once, where a solution is built."""
+    found = rf.solve(PLANES, 8, method="dense")
+    state = certify(
+        found.problem,
+        DenseInfluence(found.grid, found.sliding_direction),
+        found.pressure,
+        found.traction,
+        found.slopes,
+    )
+    assert state.approach - found.problem.datum == pytest.approx(found.approach, rel=1e-12)
+
+
+@pytest.mark.parametrize("approach", [0.0, 1e-9])
+def test_beyond_mean_planes_a_periodic_approach_is_refused(approach: float) -> None:
+    with pytest.raises(rf.InputError, match="approach"):
+        rf.solve(PLANES, 8, approach=approach)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.driver.options import Request
+from refimpl.driver.options import Options
 
 SCENE = rf.read_scene("table1-rough")
 WIDTHS = (np.float32, np.float16, np.longdouble, np.int64, np.uint64, Fraction)
@@ -22,9 +22,9 @@ def test_parameters_are_stored_as_doubles(width: Any) -> None:
     material = rf.Material(E=width(2), nu=width(0), hardness=width(3))
     friction = rf.Friction(tau=width(5), beta=width(1))
     scene = replace(SCENE, load=width(70), side=width(1), sliding_direction=width(1), sliding_offset=width(0))
-    request = Request(scene=scene, grid=16, approach=width(1))
+    options = Options(scene=scene, grid=16, approach=width(1))
     numbers = (
-        *(material.E, material.nu, material.hardness, friction.tau, friction.beta, request.approach),
+        *(material.E, material.nu, material.hardness, friction.tau, friction.beta, options.approach),
         *(scene.load, scene.side, scene.sliding_direction, scene.sliding_offset),
     )
     assert {type(number) for number in numbers} == {float}
@@ -33,7 +33,7 @@ def test_parameters_are_stored_as_doubles(width: Any) -> None:
 
 def test_what_is_not_given_stays_so() -> None:
     assert rf.Material(E=1.0, nu=0.3).hardness is None
-    assert Request(scene=SCENE, grid=16).approach is None
+    assert Options(scene=SCENE, grid=16).approach is None
 
 
 def test_single_precision_in_is_double_precision_throughout() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.model.friction import is_frictionless
 
 STEEL = rf.Material(200e9, 0.3)
 ROUGH = rf.GaussianRoughness(rms=1e-6, correlation_length=400e-6, seed=7)
@@ -19,7 +20,7 @@ SCENE = rf.Scene(
     load=70.0,
     side=1e-3,
 )
-GRID = rf.Grid(SCENE.side, 16)
+GRID = rf.Grid.square(SCENE.side, 16)
 
 
 def test_heights_are_about_their_mid_height() -> None:
@@ -38,7 +39,7 @@ def test_x_is_the_first_axis() -> None:
 @pytest.mark.parametrize("angle", [0.0, math.pi / 2, 0.7])
 def test_sliding_samples_the_lower_surface_ahead_and_leaves_the_upper(angle: float) -> None:
     """The frame rides with the upper body; after one element along x the old row 1 is row 0."""
-    h = GRID.spacing
+    h = GRID.spacings[0]
     slid = replace(SCENE, sliding_direction=angle, sliding_offset=h)
     lower, upper = slid.heights(GRID)
     np.testing.assert_array_equal(upper, SCENE.heights(GRID)[1])
@@ -71,6 +72,16 @@ def test_a_body_does_not_follow_its_array() -> None:
 
 
 def test_friction_defaults_to_none() -> None:
-    assert rf.Friction().is_zero
-    assert not rf.Friction(beta=1e-9).is_zero
-    assert not rf.Friction(tau=1.0).is_zero
+    assert is_frictionless(rf.Friction())
+    assert not is_frictionless(rf.Friction(beta=1e-9))
+    assert not is_frictionless(rf.Friction(tau=1.0))
+
+
+def test_a_scenes_grid_has_its_side_and_its_kind() -> None:
+    for periodic in (False, True):
+        scene = replace(SCENE, periodic=periodic)
+        assert scene.lengths == (1e-3, 1e-3)
+        assert scene.grid(16) == rf.Grid.square(1e-3, 16, periodic=periodic)
+    for count in (0, -1, 8.0, "8", True):
+        with pytest.raises(rf.InputError, match="grid"):
+            SCENE.grid(count)  # type: ignore[arg-type]  # the point of the test

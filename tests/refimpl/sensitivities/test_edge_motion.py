@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
+from refimpl.grid import Array, Mask
 from refimpl.sensitivities.edge_motion import EdgeMotion
-from refimpl.sensitivities.fixed_contact import FixedSet
+from refimpl.sensitivities.fixed_contact import FixedContact
 
 
-def fixed_set(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedSet:
-    """A fixed set with another contact in it."""
+def fixed_contact(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedContact:
+    """A fixed contact with another set and other pressures."""
     s = rf.solve(replace(rf.read_scene("table1-rough"), periodic=periodic), 16)
-    fixed = copy(FixedSet(s.problem, s.pressure, s.contact, s.slopes))
+    fixed = copy(FixedContact(s.problem, s.pressure, s.contact, s.slopes))
     fixed.contact, fixed.pressure = contact, np.where(contact, pressure, 0.0)
     return fixed
 
@@ -35,7 +34,7 @@ def test_the_edge_of_a_disc_moves_as_its_pressure_says() -> None:
     inside, pressure = hertz_disc()
     contact = inside < 1
     slope = np.divide(1, pressure, where=contact, out=np.zeros_like(pressure)) / 15.2
-    edge = EdgeMotion(fixed_set(contact, pressure), (2 * np.pi * 15.2, 3.0), slope * inside)
+    edge = EdgeMotion(fixed_contact(contact, pressure), (2 * np.pi * 15.2, 3.0), slope * inside)
     along = slope * ((np.indices(inside.shape)[0] - 20) / 15.2) ** 2
     growth, scatter = edge.derivative(along)
     assert growth == pytest.approx(np.pi * 15.2, rel=0.03)
@@ -51,7 +50,9 @@ def test_an_edge_moves_alike_however_the_square_is_turned() -> None:
     moved = np.where(contact, np.random.default_rng(3).random(contact.shape), 0.0)
     loaded = contact / np.maximum(pressure, 0.1)
     found = [
-        EdgeMotion(fixed_set(turn(contact), turn(pressure)), (5.0, 0.1), turn(loaded)).derivative(turn(moved))
+        EdgeMotion(fixed_contact(turn(contact), turn(pressure)), (5.0, 0.1), turn(loaded)).derivative(
+            turn(moved)
+        )
         for turn in (np.array, np.flipud, np.fliplr, np.transpose)
     ]
     for turned in found[1:]:
@@ -65,7 +66,7 @@ def test_an_edge_moves_alike_wherever_a_periodic_square_begins() -> None:
     found = []
     for shift in (0, 9, 20):
         contact, level, change = (np.roll(a, (shift, -shift), (0, 1)) for a in (inside < 1, pressure, moved))
-        fixed = fixed_set(contact, level, periodic=True)
+        fixed = fixed_contact(contact, level, periodic=True)
         found.append(EdgeMotion(fixed, (5.0, 0.1), contact / np.maximum(level, 0.1)).derivative(change))
     assert found[1] == pytest.approx(found[0], rel=1e-9)
     assert found[2] == pytest.approx(found[0], rel=1e-9)
@@ -73,7 +74,7 @@ def test_an_edge_moves_alike_wherever_a_periodic_square_begins() -> None:
 
 def test_a_load_that_moves_no_edge_foretells_none() -> None:
     inside, pressure = hertz_disc()
-    edge = EdgeMotion(fixed_set(inside < 1, pressure), (5.0, 0.1), np.zeros_like(pressure))
+    edge = EdgeMotion(fixed_contact(inside < 1, pressure), (5.0, 0.1), np.zeros_like(pressure))
     assert edge.derivative(inside) == (0.0, 0.0)
 
 
@@ -85,7 +86,7 @@ def test_scatter_is_what_other_neighbourhoods_find(monkeypatch: pytest.MonkeyPat
     found = []
     for widths in ((5, 9), (5, 5), (9, 9)):
         monkeypatch.setitem(EdgeMotion.derivative.__globals__, "_WIDTHS", widths)
-        edge = EdgeMotion(fixed_set(contact, pressure), (5.0, 0.0), contact / np.maximum(pressure, 0.1))
+        edge = EdgeMotion(fixed_contact(contact, pressure), (5.0, 0.0), contact / np.maximum(pressure, 0.1))
         found.append(edge.derivative(moved))
     (near, scatter), (five, none), (nine, _) = found
     assert near == five != nine
@@ -103,5 +104,5 @@ def test_the_edge_is_where_a_neighbour_is_open(periodic: bool) -> None:
         if not periodic
         else [".x.x.", "..x..", *["....."] * 2, "..x.."]
     )
-    edge = EdgeMotion(fixed_set(contact, np.ones((5, 5)), periodic=periodic), (1.0, 0.0), np.ones((5, 5)))
+    edge = EdgeMotion(fixed_contact(contact, np.ones((5, 5)), periodic=periodic), (1.0, 0.0), np.ones((5, 5)))
     assert ["".join(".x"[mark] for mark in row) for row in edge.elements.astype(int)] == expected

@@ -8,6 +8,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
+from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
@@ -35,11 +36,12 @@ def scene(seed: int, *, periodic: bool = False, tau: float = 0.5e6, beta: float 
 
 def frozen_solution(problem: Problem, held: Array, slopes: Slopes) -> tuple[Array, float, Array]:
     """Pressure and approach with ``held`` and slopes fixed, by pivoting on dense matrices; and ``a``."""
-    influence = DenseInfluence(problem.grid, problem.direction, periodic=problem.periodic)
-    C, beta = problem.pair.shear_compliance * problem.terms.coupled, problem.friction.beta
+    influence = DenseInfluence(problem.grid, problem.direction)
+    C, beta = problem.pair.shear_compliance * problem.terms.coupled, problem.friction.slope
     a = problem.pair.normal_compliance * influence.normal_matrix
     K = slopes.obliqueness.ravel()
-    lift = problem.pair.normal_compliance * problem.grid.side / K.size if problem.periodic else 0.0
+    size = math.sqrt(math.prod(problem.grid.lengths))
+    lift = problem.pair.normal_compliance * size / K.size if problem.grid.periodic else 0.0
     G = a + beta * C * influence.shear_matrix + lift * np.outer(K, K)
     g = C * influence.shear_matrix @ held.ravel() + K * problem.gap.ravel()
     active = problem.gap.ravel() < np.median(problem.gap)
@@ -61,9 +63,15 @@ def frozen_solution(problem: Problem, held: Array, slopes: Slopes) -> tuple[Arra
     return found.pressure, approach - lift * float(K @ found.pressure), a
 
 
+def widened(grid: Grid) -> Grid:
+    """The grid of nearly twice the lengths whose middle element sees every offset of ``grid`` once."""
+    shape = 2 * grid.shape[0] - 1, 2 * grid.shape[1] - 1
+    return Grid(shape, (grid.spacings[0] * shape[0], grid.spacings[1] * shape[1]))
+
+
 def assert_true(bounds: Bounds, problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> float:
     """Every bound holds against the frozen solution; true over bound in the energy."""
-    beta = problem.friction.beta
+    beta = problem.friction.slope
     held = traction - beta * pressure
     exact, approach, a = frozen_solution(problem, held, slopes)
     e, dA = pressure.ravel() - exact, problem.grid.element_area
@@ -95,18 +103,25 @@ def assert_true(bounds: Bounds, problem: Problem, pressure: Array, traction: Arr
 
 
 def posed(
-    gap: Array, *, load: float | None = None, approach: float | None = None, beta: float = 0.0, **kind: bool
+    gap: Array,
+    *,
+    lengths: tuple[float, float] = (1.7, 1.7),
+    periodic: bool = False,
+    coupled: bool = True,
+    load: float | None = None,
+    approach: float | None = None,
+    beta: float = 0.0,
 ) -> Problem:
     """A problem of lengths, moduli and forces of about one, so that no term is lost beside another."""
+    rows, columns = gap.shape
     return Problem(
-        grid=Grid(1.7, len(gap)),
+        grid=Grid((rows, columns), lengths, periodic),
         gap=gap,
         mean_surface=np.zeros_like(gap),
-        pair=Pair(lower=rf.Material(0.8, 0.1), upper=rf.Material(1.9, 0.3)),
+        elasticity=Elasticity(Pair(lower=rf.Material(0.8, 0.1), upper=rf.Material(1.9, 0.3))),
         friction=rf.Friction(0.0, beta),
         direction=0.7,
-        periodic=kind.get("periodic", False),
-        terms=Terms(coupled=kind.get("coupled", True), oblique=True, slope_correction=False),
+        terms=Terms(),
         load=load,
         approach=approach,
-    )
+    ).with_terms(Terms(coupled=coupled))

@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array, Mask
 from refimpl.model.forces import Forces, resultants
-from refimpl.model.friction import Mask
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.bounds import UNPROVEN, _Frozen, _shear_row, proven_bounds
 from refimpl.solution.energy_norm import EnergyNorm
-from tests.refimpl.solution.frozen import assert_true, frozen_solution, posed
+from tests.refimpl.solution.frozen import assert_true, frozen_solution, posed, widened
 
 
 class Derived:
@@ -25,10 +24,10 @@ class Derived:
 
     def __init__(self, problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> None:
         self.problem, self.pressure, self.traction, self.slopes = problem, pressure, traction, slopes
-        influence = DenseInfluence(problem.grid, problem.direction, periodic=problem.periodic)
+        influence = DenseInfluence(problem.grid, problem.direction)
         norm = EnergyNorm(problem, slopes.obliqueness)
         self.floor, self.lift, self.diagonal = norm.floor, norm.lift, norm.diagonal
-        self.beta, self.C = problem.friction.beta, problem.pair.shear_compliance * problem.terms.coupled
+        self.beta, self.C = problem.friction.slope, problem.pair.shear_compliance * problem.terms.coupled
         self.shear, self.K = influence.shear_matrix, slopes.obliqueness.ravel()
         self.plain = problem.pair.normal_compliance * influence.normal_matrix
         self.matrix = self.plain + self.lift * np.outer(self.K, self.K)
@@ -156,17 +155,19 @@ def test_a_load_that_shear_carries_alone_fixes_no_contact() -> None:
     assert bounds.unproven == "the load does not fix the contact: " + UNPROVEN
 
 
-@pytest.mark.parametrize("n", [1, 2, 5])
-def test_no_row_of_the_shear_is_longer_than_its_corners(n: int) -> None:
-    """Four corners meet every offset once, those along an axis twice: told by a wide square's centre."""
-    problem, flat = posed(np.zeros((n, n)), load=1.0, beta=0.1), Slopes.flat((n, n))
-    zero = np.zeros((n, n))
-    found = _shear_row(_Frozen(problem, EnergyNorm(problem, np.ones((n, n))), zero, zero, flat))
-    wide = DenseInfluence(Grid(problem.grid.spacing * (2 * n - 1), 2 * n - 1), problem.direction)
-    offsets = wide.shear_matrix[2 * n * (n - 1)].reshape(2 * n - 1, 2 * n - 1) ** 2
-    met = offsets.sum() + offsets[n - 1].sum() + offsets[:, n - 1].sum()
-    assert found == pytest.approx(math.sqrt(met), rel=1e-10)
-    rows = DenseInfluence(problem.grid, problem.direction).shear_matrix
+@pytest.mark.parametrize("shape", [(1, 1), (2, 2), (5, 5), (4, 6), (5, 2)])
+def test_no_row_of_the_shear_is_longer_than_its_corners(shape: tuple[int, int]) -> None:
+    """Four corners meet every offset once, those along an axis twice: seen from a wide rectangle's centre."""
+    (n, m), zero = shape, np.zeros(shape)
+    problem, flat = posed(zero, load=1.0, beta=0.1), Slopes.flat(shape)
+    found = _shear_row(_Frozen(problem, EnergyNorm(problem, np.ones(shape)), zero, zero, flat))
+    wide = widened(problem.grid)
+    row = DenseInfluence(wide, problem.direction).shear_matrix[wide.elements // 2]
+    offsets = row.reshape(wide.shape) ** 2
+    met = offsets.sum() + offsets[n - 1].sum() + offsets[:, m - 1].sum()
+    strength = 0.1 * problem.pair.shear_compliance
+    assert found == pytest.approx(abs(strength) * math.sqrt(met), rel=1e-10)
+    rows = strength * DenseInfluence(problem.grid, problem.direction).shear_matrix
     assert np.linalg.norm(rows, axis=1).max() <= found
 
 
@@ -228,13 +229,13 @@ def test_every_bound_is_what_its_derivation_gives(kind: str) -> None:
     random = np.random.default_rng(5)
     beta = 0.0 if kind == "frictionless" else 0.1
     for size in np.geomspace(1e-3, 1, 4 if kind in ("uncoupled", "frictionless") else 20):
-        n = int(random.integers(3, 6))
-        slopes = Slopes(*random.uniform(-0.3, 0.3, (2, n, n)))
-        gap, held = 0.4 * random.random((n, n)), 0.1 * random.standard_normal((n, n))
+        n, m = (int(count) for count in random.integers(3, 6, 2))
+        slopes = Slopes(*random.uniform(-0.3, 0.3, (2, n, m)))
+        gap, held = 0.4 * random.random((n, m)), 0.1 * random.standard_normal((n, m))
         given = {"approach": 0.25} if kind == "approach" else {"load": 0.9}
-        problem = posed(gap, beta=beta, **given, **KINDS[kind])
-        exact = frozen_solution(problem, held, slopes)[0].reshape(n, n)
-        pressure = exact + size * random.standard_normal((n, n)) * (random.random((n, n)) < 0.5)
+        problem = posed(gap, beta=beta, lengths=(1.7, random.uniform(0.8, 2.4)), **given, **KINDS[kind])
+        exact = frozen_solution(problem, held, slopes)[0].reshape(n, m)
+        pressure = exact + size * random.standard_normal((n, m)) * (random.random((n, m)) < 0.5)
         assert_derived(problem, pressure, held + beta * pressure, slopes)
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array
 from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
-from tests.refimpl.solution.frozen import M, posed, scene
+from tests.refimpl.solution.frozen import M, posed, scene, widened
 
 
 def test_smallest_symbol_is_enclosed_from_below() -> None:
@@ -49,21 +49,27 @@ def test_the_claim_behind_the_smallest_symbol() -> None:
 
 
 @pytest.mark.parametrize("periodic", [False, True])
-def test_least_eigenvalue_and_dual_norm(periodic: bool) -> None:
-    problem = rf.solve(scene(1, periodic=periodic), M, tolerance=0.5).problem
-    K = np.random.default_rng(2).uniform(0.99, 1.0, (M, M))
+@pytest.mark.parametrize(
+    ("shape", "lengths"),
+    [((10, 10), (1.0, 1.0)), ((12, 8), (1.5, 1.0)), ((9, 12), (1.0, 0.4)), ((8, 11), (0.3, 2.0))],
+)
+def test_least_eigenvalue_and_dual_norm(
+    shape: tuple[int, int], lengths: tuple[float, float], periodic: bool
+) -> None:
+    problem = posed(np.zeros(shape), lengths=lengths, load=1.0, periodic=periodic)
+    K = np.random.default_rng(2).uniform(0.99, 1.0, shape)
     norm = EnergyNorm(problem, K)
-    influence = DenseInfluence(problem.grid, 0.0, periodic=periodic)
+    influence = DenseInfluence(problem.grid, 0.0)
     a = problem.pair.normal_compliance * influence.normal_matrix + norm.lift * np.outer(K, K)
     least = float(np.linalg.eigvalsh(a)[0])
     assert 0.9 * least <= norm.floor <= least
     assert norm.diagonal == pytest.approx(a.diagonal().max(), rel=1e-3)
-    right, where = np.random.default_rng(3).standard_normal((2, M, M))
+    right, where = np.random.default_rng(3).standard_normal((2, *shape))
     inside = where > 0
     index = np.flatnonzero(inside)
     exact = math.sqrt(right[inside] @ np.linalg.solve(a[np.ix_(index, index)], right[inside]))
     assert exact <= norm.dual_norm(right, inside) <= 1.02 * exact
-    assert norm.dual_norm(np.zeros((M, M)), inside) == 0.0
+    assert norm.dual_norm(np.zeros(shape), inside) == 0.0
     e = right * inside
     exact = math.sqrt(e.ravel() @ a @ e.ravel())
     assert exact <= norm.norm(e) <= (1 + 1e-9) * exact
@@ -71,13 +77,14 @@ def test_least_eigenvalue_and_dual_norm(periodic: bool) -> None:
 
 @pytest.mark.parametrize("n", [2, 4])
 @pytest.mark.parametrize("uneven", [0.0, 0.5])
-def test_floor_of_a_periodic_square_parts_the_mean_from_the_waves(n: int, uneven: float) -> None:
+@pytest.mark.parametrize("m", [2, 4])
+def test_floor_of_a_periodic_rectangle_parts_the_mean_from_the_waves(n: int, m: int, uneven: float) -> None:
     """Waves have the plain matrix's stiffness less what the lift takes, the mean half of the lift's."""
-    K = 0.3 + uneven * np.random.default_rng(n).random((n, n)) ** 2
-    problem = posed(np.zeros((n, n)), load=1.0, periodic=True)
+    K = 0.3 + uneven * np.random.default_rng(n).random((n, m)) ** 2
+    problem = posed(np.zeros((n, m)), lengths=(1.7, 0.6 * m), load=1.0, periodic=True)
     norm = EnergyNorm(problem, K)
-    mean = np.full(n * n, 1 / n)
-    plain = problem.pair.normal_compliance * DenseInfluence(problem.grid, 0.0, periodic=True).normal_matrix
+    mean = np.full(n * m, 1 / math.sqrt(n * m))
+    plain = problem.pair.normal_compliance * DenseInfluence(problem.grid, 0.0).normal_matrix
     along, across = float(mean @ K.ravel()) ** 2, float(np.sum((K.ravel() - (mean @ K.ravel()) * mean) ** 2))
     waves = float(np.linalg.eigvalsh(plain)[1]) - norm.lift * across
     assert norm.floor == pytest.approx(min(waves, 0.5 * norm.lift * along))
@@ -85,17 +92,23 @@ def test_floor_of_a_periodic_square_parts_the_mean_from_the_waves(n: int, uneven
 
 
 @pytest.mark.parametrize("periodic", [False, True])
-def test_rounding_is_of_the_sum_of_all_coefficients(periodic: bool) -> None:
-    """The centre of a square of nearly twice the side meets each offset once: no row is worse."""
-    n = 4
-    problem, K = posed(np.zeros((n, n)), load=1.0, periodic=periodic), np.full((n, n), 0.7)
-    norm, grid = EnergyNorm(problem, K), problem.grid
-    wide = DenseInfluence(Grid(grid.spacing * (2 * n - 1), 2 * n - 1), 0.0)
-    row = problem.pair.normal_compliance * wide.normal_matrix[wide.normal_matrix.shape[0] // 2]
-    one, other = np.random.default_rng(7).standard_normal((2, n, n))
+@pytest.mark.parametrize("shape", [(4, 4), (6, 3)])
+def test_rounding_is_of_the_sum_of_all_coefficients(shape: tuple[int, int], periodic: bool) -> None:
+    """The centre of a rectangle of nearly twice the lengths meets each offset once: no row is worse.
+
+    Rounding allows for twice the lengths; 1/rho over a rectangle has a closed form (Johnson 1985, 3.25).
+    """
+    n, m = shape
+    problem, K = posed(np.zeros(shape), load=1.0, periodic=periodic, lengths=(1.7, 1.2)), np.full(shape, 0.7)
+    norm, wide = EnergyNorm(problem, K), widened(problem.grid)
+    row = problem.pair.normal_compliance * DenseInfluence(wide, 0.0).normal_matrix[wide.elements // 2]
+    one, other = np.random.default_rng(7).standard_normal((2, *shape))
     size = float(np.linalg.norm(one) + np.linalg.norm(other))
-    worst = float(row.sum()) * n / (n - 0.5) + norm.lift * 0.49 * n**2
-    assert norm.rounding(one, other) == pytest.approx(_ROUNDING * worst * size, abs=0)
+    a, b = problem.grid.lengths
+    reach = problem.pair.normal_compliance * 4 * (a * math.asinh(b / a) + b * math.asinh(a / b))
+    assert 1 < reach / row.sum() < (2 * n / (2 * n - 1)) * (2 * m / (2 * m - 1))
+    worst = reach + norm.lift * 0.49 * n * m
+    assert norm.rounding(one, other) == pytest.approx(_ROUNDING * worst * size, rel=1e-12, abs=0)
 
 
 def test_dual_norm_of_a_unit_impulse() -> None:

@@ -17,7 +17,7 @@ from appendix_a.fem3d.leading_order import first_order
 from appendix_a.fem3d.patch import normal_coefficient
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.wavy import Waviness
-from refimpl.solution.influence_error_3d import _table, element_error
+from refimpl.solution.influence_error_3d import element_error, read_table
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RIGID = rf.Material(E=1e22, nu=0.3)
@@ -130,12 +130,9 @@ def test_pairs() -> None:
 
 
 @pytest.mark.parametrize("points", [TABLE["points"], TABLE["points"][::-1]], ids=["filed", "reversed"])
-def test_only_projected_ridges_of_the_standard_length_count(
-    points: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_projected_ridges_of_the_standard_length_count(points: list[dict[str, Any]]) -> None:
     """Wherever egg-boxes, facets and longer waves stand in the file."""
-    monkeypatch.setattr(json, "loads", lambda _: TABLE | {"points": points})
-    slopes, ratios, errors = _table.__wrapped__()
+    slopes, ratios, errors = read_table(json.dumps(TABLE | {"points": points}))
     assert slopes.tolist() == [2.5, 6.5, 10.0, 15.0, 20.0, 30.0]
     assert ratios.tolist() == [0.0, 0.3, 0.45]
     expected = [[[row(d, nu, at) for d in slopes] for at in (0.0, 0.25, 0.5)] for nu in ratios]
@@ -143,10 +140,9 @@ def test_only_projected_ridges_of_the_standard_length_count(
 
 
 @pytest.mark.parametrize("version", [0, 2])
-def test_a_table_of_another_version_is_refused(version: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(json, "loads", lambda _: TABLE | {"version": version})
+def test_a_table_of_another_version_is_refused(version: int) -> None:
     with pytest.raises(rf.InputError, match=rf"coefficient_error_3d\.json = {version}: expected version 1"):
-        _table.__wrapped__()
+        read_table(json.dumps(TABLE | {"version": version}))
 
 
 @pytest.mark.parametrize("slope", [-0.1, -1e-9, 0.5237, 0.53, math.nan])

@@ -16,7 +16,15 @@ from refimpl.model.forces import plasticity_index
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.influence_error import SlopeError
-from refimpl.solution.limits import Caution, Limit, cautions, plain_warning, softer_hardness
+from refimpl.solution.limits import (
+    Evidence,
+    Limit,
+    ModelWarning,
+    model_warnings,
+    plain_warning,
+    softer_hardness,
+)
+from tests.refimpl.states import state_of
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
 HARD_STEEL = rf.Material(200e9, 0.30, hardness=7e9)
@@ -42,8 +50,14 @@ STEEP = replace(  # the harder body's roughness is what both surfaces follow
 )
 
 
-def named(s: rf.Solution) -> dict[Limit, Caution]:
-    return {w.limit: w for w in s.warnings if isinstance(w, Caution)}
+def named(s: rf.Solution) -> dict[Limit, ModelWarning]:
+    return {w.limit: w for w in s.warnings if isinstance(w, ModelWarning)}
+
+
+def evidence(s: rf.Solution, scene: rf.Scene, **changes: object) -> Evidence:
+    """What the limits of a solution are compared with, but for some changes."""
+    own = Evidence(scene, s.problem, s.plan, state_of(s), s.excluded, s.slope_error, s.neglected)
+    return replace(own, **changes)  # type: ignore[arg-type]  # fields of an Evidence
 
 
 def test_a_smooth_ball_leaves_no_limit() -> None:
@@ -79,26 +93,29 @@ def test_slopes_against_appendix_a() -> None:
     assert not {Limit.RMS_SLOPE, Limit.MAX_SLOPE} & set(named(rf.solve(rough(0.3e-6), 64)))
 
 
-def test_slopes_are_judged_where_the_user_forced_them_out() -> None:
-    forced = named(rf.solve(STEEP, 64, oblique=False))
-    assert Limit.MAX_SLOPE in forced
+def test_slopes_are_judged_where_the_user_excluded_them() -> None:
+    excluded = named(rf.solve(STEEP, 64, oblique=False))
+    assert Limit.MAX_SLOPE in excluded
 
 
 def test_slopes_beyond_the_table() -> None:
     s = rf.solve(SMOOTH, 16)
-    steeper = replace(s, slope_error=SlopeError(rms_slope=0.01, max_slope=0.7, at_rms=0.001, at_max=None))
-    warned = {c.limit: c for c in cautions(steeper, SMOOTH)}
+    steeper = SlopeError(rms_slope=0.01, max_slope=0.7, at_rms=0.001, at_max=None)
+    warned = {w.limit: w for w in model_warnings(evidence(s, SMOOTH, slope_error=steeper))}
     assert Limit.RMS_SLOPE not in warned
     assert warned[Limit.MAX_SLOPE].number == math.inf
     assert "beyond" in warned[Limit.MAX_SLOPE]
 
 
-def test_a_ball_of_the_wrong_sign_is_a_bowl() -> None:
+def test_a_ball_of_the_wrong_sign_is_concave() -> None:
     """A radius is positive for a ball above and negative for one below: else contact is at the border."""
     ball, flat = SMOOTH.upper, rf.Body(SMOOTH.lower.material, rf.Flat())
     for scene, which in (
-        (replace(SMOOTH, upper=flat, lower=rf.Body(ball.material, rf.Sphere(0.14))), "lower body is a bowl"),
-        (replace(SMOOTH, upper=rf.Body(ball.material, rf.Sphere(-0.14)), lower=flat), "upper body is a bowl"),
+        (replace(SMOOTH, upper=flat, lower=rf.Body(ball.material, rf.Sphere(0.14))), "lower body is concave"),
+        (
+            replace(SMOOTH, upper=rf.Body(ball.material, rf.Sphere(-0.14)), lower=flat),
+            "upper body is concave",
+        ),
     ):
         assert which in str(named(rf.solve(scene, 32))[Limit.BORDER])
     below = rf.solve(replace(SMOOTH, upper=flat, lower=rf.Body(ball.material, rf.Sphere(-0.14))), 32)
@@ -142,7 +159,7 @@ def test_elements_per_contact_radius() -> None:
     assert Limit.RADIUS not in named(rf.solve(SMOOTH, 32))
 
 
-def test_ambiguous_support_of_tau() -> None:
+def test_an_alternating_contact_edge_under_tau() -> None:
     scene = replace(
         rough(0.504e-6, rf.Material(2.5e9, 0.38)),
         upper=rf.Body(STEEL, BALL),
@@ -151,26 +168,28 @@ def test_ambiguous_support_of_tau() -> None:
     )
     s = rf.solve(scene, 23, tolerance=1e-11)
     assert s.status is rf.Status.CYCLED
-    assert named(s)[Limit.TAU_SUPPORT].number == np.count_nonzero(s.withheld & s.contact) > 0
-    assert Limit.TAU_SUPPORT not in named(rf.solve(SMOOTH, 23))
+    assert named(s)[Limit.ACTIVE_SET].number == np.count_nonzero(s.excluded & s.contact) > 0
+    assert Limit.ACTIVE_SET not in named(rf.solve(SMOOTH, 23))
 
 
-def test_a_term_left_out_that_matters() -> None:
+def test_a_neglected_term_that_matters() -> None:
     s = rf.solve(SMOOTH, 32)
-    assert Limit.LEFT_OUT not in named(s)
-    mattered = replace(s, left_out={"shear coupling": Effect(0.0, 1e-3), "obliqueness": Effect(1e-9, 0.0)})
-    found = [c for c in cautions(mattered, SMOOTH) if c.limit is Limit.LEFT_OUT]
-    assert [(c.number, c.allowed) for c in found] == [(1e-3, 1e-8)]
-    assert "shear coupling" in found[0]
+    assert Limit.NEGLECTED not in named(s)
+    effects = {"coupled": Effect(0.0, 1e-3), "oblique": Effect(1e-9, 0.0)}
+    warned = model_warnings(evidence(s, SMOOTH, neglected=effects))
+    found = [w for w in warned if w.limit is Limit.NEGLECTED]
+    assert [(w.number, w.allowed) for w in found] == [(1e-3, 1e-8)]
+    assert "normal-tangential coupling neglected" in found[0]
+    assert "coupled = true" in found[0]
 
 
 def test_a_term_within_what_the_plan_allows_is_no_warning() -> None:
     """Without friction that is more than the accuracy asked for: a share of what the grid leaves open."""
     s = rf.solve(replace(SMOOTH, friction=rf.Friction()), 64)
-    assert s.plan.demand < s.left_out["obliqueness"].larger <= s.plan.budget
-    assert Limit.LEFT_OUT not in named(s)
-    mattered = replace(s, left_out={"obliqueness": Effect(0.0, 2 * s.plan.budget)})
-    (found,) = (c for c in cautions(mattered, SMOOTH) if c.limit is Limit.LEFT_OUT)
+    assert s.plan.demand < s.neglected["oblique"].larger <= s.plan.budget
+    assert Limit.NEGLECTED not in named(s)
+    mattered = evidence(s, SMOOTH, neglected={"oblique": Effect(0.0, 2 * s.plan.budget)})
+    (found,) = (w for w in model_warnings(mattered) if w.limit is Limit.NEGLECTED)
     assert found.allowed == s.plan.budget
 
 
@@ -188,32 +207,32 @@ def test_warnings_are_texts_with_numbers() -> None:
         first.number,
         first.allowed,
     )
-    told = {w["name"]: w for w in s.summary()["warnings"]}
-    assert told["peak pressure"]["limit"] == 800e6
-    assert json.dumps(told)
+    by_name = {w["name"]: w for w in s.summary()["warnings"]}
+    assert by_name["peak pressure"]["limit"] == 800e6
+    assert json.dumps(by_name)
     assert plain_warning("resampled") == {
-        "name": "remark",
+        "name": "note",
         "number": None,
         "limit": None,
         "text": "resampled",
     }
 
 
-def test_remarks_are_read_like_cautions() -> None:
-    """A surface's remark and a caution stand on one list."""
+def test_notes_are_read_like_warnings() -> None:
+    """A surface's note and a model's warning stand on one list."""
     heights = 2e-7 * np.random.default_rng(1).normal(size=(16, 16))
     s = rf.solve(replace(SMOOTH, lower=rf.Body(rf.Material(118e9, 0.3, hardness=1e8), heights)), 32)
-    assert {"remark", "peak pressure"} <= {str(w.limit) for w in s.warnings}
-    remark = next(w for w in s.warnings if w.limit == "remark")
-    assert "finer than the array" in remark
-    assert (remark.number, remark.allowed) == (None, None)
-    again = pickle.loads(pickle.dumps(remark))
-    assert (again, again.limit) == (remark, "remark")
-    assert plain_warning(remark) == {"name": "remark", "number": None, "limit": None, "text": str(remark)}
+    assert {"note", "peak pressure"} <= {str(w.limit) for w in s.warnings}
+    note = next(w for w in s.warnings if w.limit == "note")
+    assert "finer than the array" in note
+    assert (note.number, note.allowed) == (None, None)
+    again = pickle.loads(pickle.dumps(note))
+    assert (again, again.limit) == (note, "note")
+    assert plain_warning(note) == {"name": "note", "number": None, "limit": None, "text": str(note)}
 
 
 @pytest.mark.parametrize("corrected", [False, True])
-def test_dense_matrices_fit_into_what_is_foreseen(corrected: bool) -> None:
+def test_dense_matrices_fit_into_the_estimated_memory(corrected: bool) -> None:
     """At the peak of a solve, of all that is allocated; and by no more than a quarter too much."""
     scene = rf.read_scene("table1-rough")
     rf.solve(scene, 8, method="dense", slope_correction=corrected)
@@ -221,16 +240,16 @@ def test_dense_matrices_fit_into_what_is_foreseen(corrected: bool) -> None:
     rf.solve(scene, 32, method="dense", slope_correction=corrected)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    foreseen = plan.memory_of("dense", 32, corrected=corrected)
-    assert 0.75 * foreseen < peak < foreseen
+    estimate = plan.memory_of("dense", scene.grid(32), corrected=corrected)
+    assert 0.75 * estimate < peak < estimate
 
 
-def test_refinement_out_of_memory_is_a_remark(monkeypatch: pytest.MonkeyPatch) -> None:
-    room = plan.memory_of("fft", 64)
+def test_refinement_out_of_memory_is_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
+    room = plan.memory_of("fft", SMOOTH.grid(64))
     monkeypatch.setattr(plan, "free_memory", lambda: room)
     s = rf.solve(SMOOTH, accuracy=1e-5)
     assert s.status is rf.Status.ITERATION_LIMIT
-    assert [(str(w.limit), w.number) for w in s.warnings] == [("remark", None)]
+    assert [(str(w.limit), w.number) for w in s.warnings] == [("note", None)]
     assert "friction_coefficient is known to" in s.warnings[0]
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.model.friction import Mask
-from refimpl.model.problem import Problem, Terms, pose
+from refimpl.grid import Array, Mask
+from refimpl.model.problem import Problem, Terms
 from refimpl.operators.dense import DenseInfluence
+from refimpl.scene.discretise import discretise
 from refimpl.solvers import dense, pivoting
 from refimpl.solvers.pivoting import restricted_solve
 
@@ -42,75 +42,50 @@ def test_slopes_settle_even_where_pressure_does_not_follow_them_at_once(approach
     assert solution.status is rf.Status.CONVERGED
 
 
-def test_slopes_that_do_not_settle_are_no_convergence(monkeypatch: pytest.MonkeyPatch) -> None:
+GRID = rf.Grid.square(SIDE, M)
+EVERYWHERE = np.ones((M, M), dtype=bool)
+
+
+def sliding_spike(terms: Terms | None = None) -> Problem:
+    return discretise(spike(rf.Friction(tau=0.0, beta=0.1)), GRID, terms)
+
+
+def solver_of(problem: Problem) -> dense._DenseSolver:
+    return dense._DenseSolver(problem, DenseInfluence(problem.grid, problem.direction))
+
+
+def test_slopes_that_do_not_converge_are_no_convergence(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The loops say so themselves, whatever the certificate makes of the state that they leave."""
     monkeypatch.setattr(dense, "_SLOPE_ITERATIONS", 1)
+    result, _ = dense.solve_dense(sliding_spike())
+    assert result.status is rf.Status.ITERATION_LIMIT
     solution = rf.solve(spike(rf.Friction(tau=0.0, beta=0.1)), M, method="dense", oblique=True)
     assert solution.status is rf.Status.ITERATION_LIMIT
 
 
-def sliding_spike() -> tuple[Problem, DenseInfluence]:
-    scene, grid = spike(rf.Friction(tau=0.0, beta=0.1)), rf.Grid(SIDE, M)
-    terms = Terms(coupled=True, oblique=True, slope_correction=False)
-    return pose(scene, grid, terms, None), DenseInfluence(grid, scene.sliding_direction)
-
-
-def test_the_loops_themselves_say_that_slopes_did_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever the certificate makes of the state that they left."""
-    monkeypatch.setattr(dense, "_SLOPE_ITERATIONS", 1)
-    outcome, _ = dense.solve_dense(*sliding_spike())
-    assert outcome.status is rf.Status.ITERATION_LIMIT
-
-
-def test_slopes_that_settled_before_may_not_settle_now(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each support of tau is judged for itself."""
-    solver = dense._DenseSolver(*sliding_spike())
-    support = np.ones((M, M), dtype=bool)
-    solver.settle_slopes(support)
-    assert solver.slopes_settled
+def test_slopes_that_converged_before_may_not_converge_now(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each active set of tau is judged for itself."""
+    solver = solver_of(sliding_spike())
+    assert solver.solve(1e-13, EVERYWHERE)
+    assert solver.converged
     monkeypatch.setattr(dense, "_SLOPE_ITERATIONS", 1)
     solver.problem = replace(solver.problem, load=0.2)
-    solver.settle_slopes(support)
-    assert not solver.slopes_settled
-
-
-A, B = np.eye(M, dtype=bool), np.ones((M, M), dtype=bool)
-
-
-@pytest.mark.parametrize(("last", "status"), [(A, rf.Status.CONVERGED), (B, rf.Status.CYCLED)])
-def test_a_cycle_of_tau_is_named_where_withheld_elements_touch(
-    last: Mask, status: rf.Status, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Contact goes from A to B and back, which withholds all but A from tau."""
-    problem, operator = sliding_spike()
-    contacts = iter((A, B, A, last))
-
-    def settle_slopes(solver: dense._DenseSolver, support: Mask) -> Array:
-        solver.pressure, solver.slopes_settled = np.where(next(contacts), 0.5, 0.0), True
-        return np.where(support, 0.5, 0.0)
-
-    monkeypatch.setattr(dense._DenseSolver, "settle_slopes", settle_slopes)
-    sliding = replace(problem, friction=rf.Friction(tau=0.5, beta=0.1))
-    outcome, _ = dense.solve_dense(sliding, operator)
-    assert outcome.status is status
-    assert np.array_equal(outcome.withheld, ~A)
-    assert len(outcome.visited) == 2
-    assert outcome.iterations["tau supports"] == 4
+    assert not solver.solve(1e-13, EVERYWHERE)
+    assert not solver.converged
 
 
 def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    problem, operator = sliding_spike()
-    solver = dense._DenseSolver(problem, operator)
+    solver = solver_of(sliding_spike())
 
-    def jittered(support: Mask) -> None:
+    def jittered(held_traction: Array) -> None:
         k = solver.picard  # relative changes: 1, then 3e-12, 5e-12, 7e-12, ...
         solver.pressure = 1e6 * (1 + (-1) ** k * k * 1e-12) * np.eye(M)
 
     monkeypatch.setattr(solver, "_solve_frozen", jittered)
-    assert not solver.slopes_settled
-    solver.settle_slopes(np.ones((M, M), dtype=bool))
-    assert solver.slopes_settled
+    assert not solver.converged
+    assert solver.solve(1e-13, EVERYWHERE)
     assert solver.picard == 3
 
 
@@ -120,20 +95,35 @@ def test_changes_at_the_rounding_floor_that_grow_again_end_the_slopes(
 def test_slopes_end_at_a_change_of_1e_13_of_the_peak(
     changes: tuple[float, ...], passes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The loop's bound; above it they go on, even where a change exceeds the one before."""
-    problem, operator = sliding_spike()
-    solver = dense._DenseSolver(problem, operator)
+    """Larger changes go on, even where a change exceeds the one before."""
+    solver = solver_of(sliding_spike())
     solver.pressure = 1e6 * np.eye(M)
     monkeypatch.setattr(Problem, "slopes", lambda *displacements: solver.slopes)  # which stay
     steps = iter((*changes, 0.0, 0.0))
 
-    def changed(support: Mask) -> None:
+    def changed(held_traction: Array) -> None:
         solver.pressure = (1 + next(steps)) * solver.pressure
 
     monkeypatch.setattr(solver, "_solve_frozen", changed)
-    solver.settle_slopes(np.ones((M, M), dtype=bool))
+    assert solver.solve(dense._SLOPE_TOLERANCE, EVERYWHERE)
     assert solver.picard == passes
-    assert solver.slopes_settled
+
+
+def test_a_spent_budget_ends_every_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limits of nested loops do not multiply. The mean pressure is the modulus here."""
+    z = np.random.default_rng(1).normal(size=(16, 16))
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(1.0, 0.0), z * 0.25 / np.ptp(z)),
+        lower=rf.Body(rf.Material(4e3, 0.5), rf.Flat()),
+        friction=rf.Friction(0.1, 0.4),
+        load=1.0,
+        side=1.0,
+        sliding_direction=0.3,
+    )
+    monkeypatch.setattr(dense, "_SOLVES", 100)
+    result, _ = dense.solve_dense(discretise(scene, scene.grid(16)))
+    assert result.status is rf.Status.ITERATION_LIMIT
+    assert 100 <= result.iterations["linear solves"] < 120
 
 
 @pytest.mark.parametrize("approach", [None, 3e-6])
@@ -155,26 +145,23 @@ def test_facet_tractions_are_solved_for(approach: float | None) -> None:
 
 
 def test_one_pass_without_slopes() -> None:
-    scene, grid = spike(rf.Friction(tau=0.0, beta=0.1)), rf.Grid(SIDE, M)
-    problem = pose(scene, grid, Terms(coupled=True, oblique=False, slope_correction=False), None)
-    outcome, _ = dense.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
-    assert outcome.iterations["slopes"] == 1
+    result, _ = dense.solve_dense(sliding_spike(Terms(oblique=False)))
+    assert result.iterations["slopes"] == 1
 
 
 @pytest.mark.parametrize("approach", [None, 3e-6])
 def test_pivoting_starts_from_the_contact_that_was_found_last(approach: float | None) -> None:
     """Repeated, a pass takes one solve at an approach, and with Newton's own two at a load."""
     heights = np.random.default_rng(4).uniform(0, 4e-5, (5, 5))
-    scene = replace(spike(rf.Friction(tau=0.0, beta=0.2)), lower=rf.Body(rf.Material(1e9, 0.2), heights))
-    grid = rf.Grid(SIDE, 5)
-    terms = Terms(coupled=True, oblique=True, slope_correction=False)
-    problem = pose(replace(scene, load=3.0), grid, terms, approach)
-    solver = dense._DenseSolver(problem, DenseInfluence(grid, scene.sliding_direction))
-    support = np.ones((5, 5), dtype=bool)
-    solver.settle_slopes(support)
+    scene = replace(
+        spike(rf.Friction(tau=0.0, beta=0.2)), lower=rf.Body(rf.Material(1e9, 0.2), heights), load=3.0
+    )
+    solver = solver_of(discretise(scene, rf.Grid.square(SIDE, 5), approach=approach))
+    active = np.ones((5, 5), dtype=bool)
+    solver.solve(1e-13, active)
     solves, passes = solver.solves, solver.picard
     assert solves > passes * (1 if approach is not None else 2)
-    solver.settle_slopes(support)
+    solver.solve(1e-13, active)
     assert solver.picard > passes
     assert solver.solves - solves == (solver.picard - passes) * (1 if approach is not None else 2)
 
@@ -188,11 +175,8 @@ def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 
     for module in (dense, pivoting):
         monkeypatch.setattr(module, "restricted_solve", counted)
-    scene = spike(rf.Friction(tau=0.0, beta=0.1))
-    grid = rf.Grid(SIDE, M)
-    problem = pose(scene, grid, Terms(coupled=True, oblique=True, slope_correction=False), None)
-    outcome, _ = dense.solve_dense(problem, DenseInfluence(grid, scene.sliding_direction))
-    assert outcome.iterations["linear solves"] == len(calls) > 2
+    result, _ = dense.solve_dense(sliding_spike())
+    assert result.iterations["linear solves"] == len(calls) > 2
 
 
 @pytest.mark.parametrize("beyond", [(0.5, 9.0), (1.0, 5.0)])
@@ -200,8 +184,8 @@ def test_newton_steps_that_are_not_within_the_bracket_halve_it(
     beyond: tuple[float, float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its ends are not. Proposals are played; ``g = h = 0`` and ``K = 1``, so ``q`` is minus the approach."""
-    problem, operator = sliding_spike()
-    solver = dense._DenseSolver(problem, operator)
+    problem = sliding_spike()
+    solver = solver_of(problem)
     assert problem.load is not None
     target = problem.load / problem.grid.element_area
     proposals, tried = iter((1.0, 5.0, *beyond)), list[float]()

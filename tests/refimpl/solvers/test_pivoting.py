@@ -9,7 +9,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from refimpl.model.friction import Mask
+from refimpl.grid import Mask
 from refimpl.solvers import pivoting
 from refimpl.solvers.pivoting import complementarity, restricted_solve
 

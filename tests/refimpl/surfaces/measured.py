@@ -47,8 +47,8 @@ def points() -> tuple[np.ndarray, np.ndarray]:
 
 def elements(grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
     """Where the central window's element centres are (m), from the same corner."""
-    x = (NX * DX - grid.side) / 2 + grid.centres + offset[0]
-    y = (NY * DY - grid.side) / 2 + grid.centres + offset[1]
+    x = (NX * DX - grid.lengths[0]) / 2 + grid.x + offset[0]
+    y = (NY * DY - grid.lengths[1]) / 2 + grid.y + offset[1]
     return x[:, None], y[None, :]
 
 

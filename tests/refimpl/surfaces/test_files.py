@@ -54,7 +54,7 @@ def test_x3p_keeps_its_oblong_pixels_and_its_axes(tmp_path: Path) -> None:
     surface = MeasuredSurface(write_x3p(tmp_path / "a.x3p", ROUGH))
     np.testing.assert_array_equal(surface.reading.heights, ROUGH)
     np.testing.assert_allclose(surface.reading.pixel, (DX, DY), rtol=1e-15)
-    assert "x3p" in surface.describe(Grid(SIDE, 16))[0]
+    assert "x3p" in surface.describe(Grid.square(SIDE, 16))[0]
 
 
 def test_text_with_an_instruments_header_is_scaled_by_it(tmp_path: Path) -> None:
@@ -88,15 +88,17 @@ def test_the_missing_optional_package_is_named(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
     with pytest.raises(InputError, match=r"rough-friction\[instrument\]"):
         MeasuredSurface(write_x3p(tmp_path / "a.x3p", ROUGH)).reading  # noqa: B018  # likewise
-    write_npy(tmp_path / "a.npy", ROUGH).heights(Grid(SIDE, 16))  # and is not missed where it is not needed
+    write_npy(tmp_path / "a.npy", ROUGH).heights(
+        Grid.square(SIDE, 16)
+    )  # and is not missed where it is not needed
 
 
 def test_files_are_read_once_and_late(tmp_path: Path) -> None:
     surface = MeasuredSurface(tmp_path / "late.npy", unit="m", pixel_size=(DX, DY))
     write_npy(tmp_path / "late.npy", ROUGH)
-    first = surface.heights(Grid(SIDE, 16))
+    first = surface.heights(Grid.square(SIDE, 16))
     (tmp_path / "late.npy").unlink()
-    np.testing.assert_array_equal(surface.heights(Grid(SIDE, 16)), first)
+    np.testing.assert_array_equal(surface.heights(Grid.square(SIDE, 16)), first)
 
 
 class Trap:
@@ -151,7 +153,7 @@ def test_broken_and_hostile_files_get_one_clear_line(tmp_path: Path) -> None:
     for name, path in {**files, "absent.x3p": tmp_path / "absent.x3p"}.items():
         given = {"unit": "m", "pixel_size": DX} if path.suffix in (".npy", ".csv") else {}
         with pytest.raises(InputError) as refusal:
-            MeasuredSurface(path, **given).heights(Grid(SIDE, 16))  # type: ignore[arg-type]  # mixed dict
+            MeasuredSurface(path, **given).heights(Grid.square(SIDE, 16))  # type: ignore[arg-type]  # mixed dict
         assert "\n" not in str(refusal.value), name
         assert len(str(refusal.value)) < 500, name
     assert not (tmp_path / "sprung").exists()

@@ -6,6 +6,7 @@ import itertools
 import math
 import time
 import warnings
+from dataclasses import replace
 
 import mpmath as mp
 import numpy as np
@@ -21,7 +22,7 @@ from refimpl.surfaces.statistics import kurtosis, skewness
 from refimpl.surfaces.white_noise import white_noise
 
 SIDE, LENGTH = 1.61e-3, 104e-6
-GRID = Grid(SIDE, 64)
+GRID = Grid.square(SIDE, 64)
 
 
 def unit(seed: int = 1, length: float = LENGTH, normalise: bool = False) -> GaussianRoughness:
@@ -30,12 +31,12 @@ def unit(seed: int = 1, length: float = LENGTH, normalise: bool = False) -> Gaus
 
 def test_heights_are_the_plain_double_sum() -> None:
     """The documented sum, point by point in 30 digits over a wider square of nodes, from the same noise."""
-    grid, offset = Grid(3.0, 3), (-40.7, 1.3)
+    grid, offset = Grid.square(3.0, 3), (-40.7, 1.3)
     z = quietly(GaussianRoughness(2.0, 1.7, seed=9), grid, offset)
     with mp.workdps(30):
         length, h = mp.mpf("1.7"), mp.mpf("1.7") / 6
         for i, j in itertools.product(range(3), range(3)):
-            x, y = mp.mpf(grid.centres[i]) + offset[0], mp.mpf(grid.centres[j]) + offset[1]
+            x, y = mp.mpf(grid.x[i]) + offset[0], mp.mpf(grid.y[j]) + offset[1]
             m0, n0 = int(mp.nint(x / h)), int(mp.nint(y / h))
             w = white_noise(9, range(m0 - 22, m0 + 23), range(n0 - 22, n0 + 23))
             kx = [mp.exp(mp.mpf("-4.6") * ((x - m * h) / length) ** 2) for m in range(m0 - 22, m0 + 23)]
@@ -92,38 +93,47 @@ def test_equation_9_falls_to_a_tenth_at_its_length_and_bends_by_the_rms_slope() 
 
 
 def test_nested_grids_see_one_surface() -> None:
+    """Grids of other shapes and lengths sample the same plane from the same corner."""
     coarse = unit().heights(GRID)
-    fine = unit().heights(Grid(SIDE, 3 * 64))
+    fine = unit().heights(Grid.square(SIDE, 3 * 64))
     np.testing.assert_allclose(fine[1::3, 1::3], coarse, rtol=0, atol=1e-12)
-    half = unit().heights(Grid(SIDE / 2, 32))  # another side: the same plane, the same corner
+    half = unit().heights(Grid.square(SIDE / 2, 32))
     np.testing.assert_allclose(half, coarse[:32, :32], rtol=0, atol=1e-12)
+    strip = unit().heights(Grid((64, 16), (SIDE, SIDE / 4)))
+    np.testing.assert_allclose(strip, coarse[:, :16], rtol=0, atol=1e-12)
+    oblong = unit().heights(Grid((5 * 16, 3 * 48), (SIDE / 4, 3 * SIDE / 4)))
+    np.testing.assert_allclose(oblong[2::5, 1::3], coarse[:16, :48], rtol=0, atol=1e-12)
 
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(-60, 60), st.integers(-60, 60), st.booleans())
 def test_offsets_slide_one_rigid_surface(i: int, j: int, normalise: bool) -> None:
-    far = Grid(SIDE, 64)
+    far = Grid.square(SIDE, 64)
     surface = unit(normalise=normalise)
-    here, there = surface.heights(far), surface.heights(far, (i * far.spacing, j * far.spacing))
+    dx, dy = far.spacings
+    here, there = surface.heights(far), surface.heights(far, (i * dx, j * dy))
     # the points both windows hold
     a = here[max(i, 0) : 64 + min(i, 0), max(j, 0) : 64 + min(j, 0)]
     b = there[max(-i, 0) : 64 + min(-i, 0), max(-j, 0) : 64 + min(-j, 0)]
     np.testing.assert_allclose(b, a, rtol=0, atol=1e-12)
 
 
-def test_periodic_field_repeats_and_slides() -> None:
-    z = unit().heights(GRID, periodic=True)
-    again = unit().heights(GRID, (3 * SIDE, -SIDE), periodic=True)
+@pytest.mark.parametrize("across", [1.0, 0.6])
+def test_periodic_field_repeats_with_each_length_and_slides(across: float) -> None:
+    grid = Grid((64, 40), (SIDE, across * SIDE), periodic=True)
+    (lx, ly), (dx, dy) = grid.lengths, grid.spacings
+    z = quietly(unit(), grid)
+    again = quietly(unit(), grid, (3 * lx, -ly))
     np.testing.assert_allclose(again, z, rtol=0, atol=1e-12)
-    slid = unit().heights(GRID, (5 * GRID.spacing, -70 * GRID.spacing), periodic=True)
+    slid = quietly(unit(), grid, (5 * dx, -70 * dy))
     np.testing.assert_allclose(slid, np.roll(z, (-5, 70), (0, 1)), rtol=0, atol=1e-12)
-    assert np.abs(z - unit().heights(GRID)).max() > 0.1
+    assert np.abs(z - quietly(unit(), replace(grid, periodic=False))).max() > 0.1
 
 
 def test_rms_and_length_only_scale() -> None:
     z = unit(7).heights(GRID)
     np.testing.assert_array_equal(GaussianRoughness(4.0, LENGTH, 7).heights(GRID), 4.0 * z)
-    np.testing.assert_allclose(unit(7, 2 * LENGTH).heights(Grid(2 * SIDE, 64)), z, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(unit(7, 2 * LENGTH).heights(Grid.square(2 * SIDE, 64)), z, rtol=0, atol=1e-13)
 
 
 def test_deterministic_and_pinned() -> None:
@@ -187,7 +197,7 @@ def test_noise_is_standard_normal_and_white() -> None:
 
 def test_heights_are_gaussian() -> None:
     # points 3 l apart are independent (Eq. 9: 1e-9): 84^2 samples a seed, skewness and kurtosis as above
-    z = np.concatenate([quietly(unit(s, 1.0), Grid(252.0, 84)).ravel() for s in (1, 2, 3)])
+    z = np.concatenate([quietly(unit(s, 1.0), Grid.square(252.0, 84)).ravel() for s in (1, 2, 3)])
     assert abs(skewness(z)) < 4 * math.sqrt(6 / z.size)
     assert abs(kurtosis(z) - 3) < 4 * math.sqrt(24 / z.size)
     assert abs(z.var() - 1) < 4 * math.sqrt(2 / z.size)
@@ -195,7 +205,7 @@ def test_heights_are_gaussian() -> None:
 
 @pytest.mark.parametrize("other", [2, 0, 2**32 + 1, 2**62])
 def test_seeds_are_independent(other: int) -> None:
-    grid = Grid(60.0, 240)
+    grid = Grid.square(60.0, 240)
     a, b = unit(1, 1.0).heights(grid), unit(other, 1.0).heights(grid)
     # the mean product of independent fields has the variance int R^2 / area = pi / 4.6 / 60^2
     assert abs(np.mean(a * b)) < 4 * math.sqrt(math.pi / 4.6) / 60
@@ -203,23 +213,33 @@ def test_seeds_are_independent(other: int) -> None:
 
 def test_normalised_realisation_has_its_rms_on_every_grid() -> None:
     for seed in range(5):
-        fine = GaussianRoughness(0.5e-6, LENGTH, seed, normalise=True).heights(Grid(SIDE, 512))
+        fine = GaussianRoughness(0.5e-6, LENGTH, seed, normalise=True).heights(Grid.square(SIDE, 512))
         # the midpoint sum misses the integral by O((h / l)^2) = 1e-3 of the border's share
         assert abs(np.std(fine) / 0.5e-6 - 1) < 1e-5
-        ensemble = GaussianRoughness(0.5e-6, LENGTH, seed).heights(Grid(SIDE, 512))
+        ensemble = GaussianRoughness(0.5e-6, LENGTH, seed).heights(Grid.square(SIDE, 512))
         np.testing.assert_allclose(fine * (np.std(ensemble) / np.std(fine)), ensemble, rtol=1e-12, atol=0)
+    strip = GaussianRoughness(0.5e-6, LENGTH, 0, normalise=True).heights(Grid((512, 128), (SIDE, SIDE / 4)))
+    assert abs(np.std(strip) / 0.5e-6 - 1) < 1e-4  # the border's share is larger
+    assert strip[0, 0] != pytest.approx(
+        GaussianRoughness(0.5e-6, LENGTH, 0, normalise=True).heights(GRID)[0, 0]
+    )
 
 
-def test_quadrature_of_the_normalisation_has_converged() -> None:
-    """Against 40 Gauss points on each of panels a third as long as those it uses."""
-    surface, side = unit(4), 2.7 * LENGTH
+@pytest.mark.parametrize("periodic", [False, True])
+def test_quadrature_of_the_normalisation_has_converged(periodic: bool) -> None:
+    """Reference: 40 Gauss points on each of panels at most a third as long as those of the code."""
+    grid, surface = Grid((8, 5), (2.7 * LENGTH, 1.4 * LENGTH), periodic), unit(4)
     node, weight = np.polynomial.legendre.leggauss(40)
     panels = 18
-    x = ((np.arange(panels)[:, None] + (node + 1) / 2) * side / panels).ravel()
+    along = ((np.arange(panels)[:, None] + (node + 1) / 2) / panels).ravel()
     w = np.tile(weight / 2 / panels, panels)
-    z = surface._field(x, x, None)
+    (rows, smooth_x), (columns, smooth_y) = (
+        surface.smoothing(along * length, length if periodic else None) for length in grid.lengths
+    )
+    z = (smooth_y @ (smooth_x @ white_noise(4, rows, columns)).T).T
     exact = math.sqrt(w @ z**2 @ w - (w @ z @ w) ** 2)
-    assert abs(surface._realised_rms(side, None) / exact - 1) < 1e-12
+    scaled = quietly(unit(4, normalise=True), grid)
+    np.testing.assert_allclose(scaled * exact, quietly(surface, grid), rtol=0, atol=1e-12)
 
 
 def test_what_cannot_be_had_is_refused() -> None:
@@ -228,7 +248,7 @@ def test_what_cannot_be_had_is_refused() -> None:
     with pytest.raises(InputError, match="correlation_length"):
         unit(length=1e-300).heights(GRID)
     with pytest.raises(InputError, match="period"):
-        unit(length=1.1 * SIDE).heights(GRID, periodic=True)
+        unit(length=1.1 * SIDE).heights(replace(GRID, periodic=True))
     with pytest.raises(InputError, match="normalise"):
         unit(length=1.1 * SIDE, normalise=True).heights(GRID)
     with pytest.raises(InputError, match="offset"):
@@ -245,7 +265,7 @@ def test_the_shortest_length_is_as_many_nodes_as_may_be(length: float, said: str
         unit(length=length * (1 - 1e-9)).smoothing(x)
     assert refusal.value.field == "correlation_length"
     assert refusal.value.value == length * (1 - 1e-9)
-    assert refusal.value.allowed == f"at least {said} m on this square (8192 noise nodes an axis)"
+    assert refusal.value.allowed == f"at least {said} m on this domain (8192 noise nodes an axis)"
 
 
 def test_a_million_lattice_spacings_from_the_origin_digits_are_lost() -> None:
@@ -259,40 +279,46 @@ def test_a_million_lattice_spacings_from_the_origin_digits_are_lost() -> None:
         assert refusal.value.value == 500_000.1
 
 
-def test_the_longest_periodic_length_is_the_period_and_the_shortest_normalised_side_the_length() -> None:
-    grid = Grid(1.0, 8)
-    assert np.isfinite(unit(length=1.0).heights(grid, periodic=True)).all()
+@pytest.mark.parametrize(
+    ("shape", "lengths"), [((8, 8), (1.0, 1.0)), ((24, 8), (3.0, 1.0)), ((8, 24), (1.0, 3.0))]
+)
+def test_the_longest_periodic_length_is_the_period_and_the_shortest_normalised_side_the_length(
+    shape: tuple[int, int], lengths: tuple[float, float]
+) -> None:
+    """Of a rectangle the shorter length counts, along either axis."""
+    free, periodic = (Grid(shape, lengths, repeats) for repeats in (False, True))
+    assert np.isfinite(unit(length=1.0).heights(periodic)).all()
     with pytest.raises(InputError) as refusal:
-        unit(length=1.0 + 1e-9).heights(grid, periodic=True)
+        unit(length=1.0 + 1e-9).heights(periodic)
     assert refusal.value.allowed == "at most the period, 1 m"
-    assert np.isfinite(unit(length=1.0, normalise=True).heights(grid)).all()
+    assert np.isfinite(unit(length=1.0, normalise=True).heights(free)).all()
     with pytest.raises(InputError) as refusal:
-        unit(length=1.25, normalise=True).heights(grid)
+        unit(length=1.25, normalise=True).heights(free)
     assert refusal.value.value is True
     assert refusal.value.allowed == "false, or a side of at least one correlation length, 1.25 m"
 
 
 def test_long_lengths_are_smooth_not_special() -> None:
-    z = unit(length=1e4).heights(Grid(1.0, 8))
+    z = unit(length=1e4).heights(Grid.square(1.0, 8))
     assert np.ptp(z) < 1e-2  # slopes of 2e-4 over a side of 1
-    assert np.all(np.isfinite(unit(length=1e300).heights(Grid(1.0, 4))))
+    assert np.all(np.isfinite(unit(length=1e300).heights(Grid.square(1.0, 4))))
 
 
 def test_unresolved_roughness_warns() -> None:
     with pytest.warns(SurfaceWarning, match="not resolved"):
-        unit().heights(Grid(SIDE, 48))
-    assert unit().cautions(Grid(SIDE, 64)) == ()
-    assert unit(length=1.0).cautions(Grid(4.0, 16)) == ()  # just a quarter
-    (said,) = unit(length=2.0).cautions(Grid(1.25, 2))
+        unit().heights(Grid.square(SIDE, 48))
+    assert unit().cautions(Grid.square(SIDE, 64)) == ()
+    assert unit(length=1.0).cautions(Grid.square(4.0, 16)) == ()  # just a quarter
+    (said,) = unit(length=2.0).cautions(Grid.square(1.25, 2))
     assert "the element, 0.625 m, exceeds a quarter of the roughness's correlation length, 2 m" in said
 
 
 def test_what_it_is_is_said() -> None:
     said = "Gaussian roughness of seed 1: rms 1 m in the ensemble, correlation length 0.000104 m"
     assert unit().describe(GRID) == (said,)
-    said = "Gaussian roughness of seed 1: rms 1 m over the square of 8 m, correlation length 1 m"
-    coarse = unit(length=1.0, normalise=True).describe(Grid(8.0, 16))
-    assert coarse == (said, *unit(length=1.0).cautions(Grid(8.0, 16)))
+    said = "Gaussian roughness of seed 1: rms 1 m over the domain of 8 x 8 m, correlation length 1 m"
+    coarse = unit(length=1.0, normalise=True).describe(Grid.square(8.0, 16))
+    assert coarse == (said, *unit(length=1.0).cautions(Grid.square(8.0, 16)))
     assert len(coarse) == 2
 
 
@@ -304,8 +330,8 @@ def test_the_greatest_and_the_least_seed() -> None:
 
 
 def test_cost_is_small() -> None:
-    unit(1, SIDE / 15).heights(Grid(SIDE, 512))
+    unit(1, SIDE / 15).heights(Grid.square(SIDE, 512))
     start = time.process_time()
     for seed in range(5):
-        unit(seed, SIDE / 15).heights(Grid(SIDE, 512))
+        unit(seed, SIDE / 15).heights(Grid.square(SIDE, 512))
     assert (time.process_time() - start) / 5 < 0.1  # CPU seconds; measured 0.01

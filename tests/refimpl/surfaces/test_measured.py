@@ -14,7 +14,7 @@ from scipy.interpolate import RectBivariateSpline
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import MeasuredSurface, SurfaceWarning
-from refimpl.surfaces.crop import Window
+from refimpl.surfaces.crop import Crop
 from refimpl.surfaces.detrending import DEGREES, fit
 from refimpl.surfaces.missing_points import fill
 from tests.refimpl.surfaces.measured import (
@@ -35,17 +35,25 @@ from tests.refimpl.surfaces.measured import (
 # --- window and resampling ---
 
 
+RECTANGLES = [
+    Grid.square(SIDE, 7),
+    Grid.square(SIDE, 24),
+    Grid((12, 20), (8e-6, 4e-6)),  # longer along x
+    Grid((9, 30), (3e-6, 8e-6)),
+]
+
+
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (4e-7, -3.3e-6), (-5e-7, 3.75e-6)])
-@pytest.mark.parametrize("M", [7, 24])
+@pytest.mark.parametrize("grid", RECTANGLES, ids=str)
 def test_the_window_is_central_moves_and_is_exact_for_cubics(
-    tmp_path: Path, offset: tuple[float, float], M: int
+    tmp_path: Path, offset: tuple[float, float], grid: Grid
 ) -> None:
     def shape(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         return np.asarray(
             (x / 1e-5) ** 3 * 1e-7 + 2e-8 * (x / 1e-5) * (y / 1e-5) ** 2 - 3e-8 * (y / 1e-5) ** 3
         )
 
-    surface, grid = write_npy(tmp_path / "a.npy", shape(*points())), Grid(SIDE, M)
+    surface = write_npy(tmp_path / "a.npy", shape(*points()))
     expected = shape(*elements(grid, offset))
     np.testing.assert_allclose(
         quietly(surface, grid, offset), expected, rtol=0, atol=1e-13 * np.ptp(expected)
@@ -53,11 +61,12 @@ def test_the_window_is_central_moves_and_is_exact_for_cubics(
 
 
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (4e-7, -3.3e-6)])
+@pytest.mark.parametrize("grid", RECTANGLES[1:3], ids=str)
 def test_heights_are_those_of_one_spline_through_all_points(
-    tmp_path: Path, offset: tuple[float, float]
+    tmp_path: Path, offset: tuple[float, float], grid: Grid
 ) -> None:
     """FITPACK's interpolating bicubic (not-a-knot as well) of the whole file, not of a window."""
-    surface, grid = write_npy(tmp_path / "a.npy", ROUGH), Grid(SIDE, 24)
+    surface = write_npy(tmp_path / "a.npy", ROUGH)
     (x, y), (at_x, at_y) = points(), elements(grid, offset)
     whole = RectBivariateSpline(x.ravel(), y.ravel(), ROUGH)(at_x.ravel(), at_y.ravel())
     np.testing.assert_allclose(quietly(surface, grid, offset), whole, rtol=0, atol=1e-12 * np.ptp(whole))
@@ -65,7 +74,7 @@ def test_heights_are_those_of_one_spline_through_all_points(
 
 def test_the_whole_measured_width_can_be_used(tmp_path: Path) -> None:
     x, y = points()
-    surface, grid = write_npy(tmp_path / "a.npy", x**2 - x * y), Grid(NX * DX, 2 * NX)
+    surface, grid = write_npy(tmp_path / "a.npy", x**2 - x * y), Grid.square(NX * DX, 2 * NX)
     for offset in (
         (0.0, 0.0),
         (0.0, 3.25e-6),
@@ -78,36 +87,52 @@ def test_the_whole_measured_width_can_be_used(tmp_path: Path) -> None:
 def test_a_surface_that_is_too_small_is_refused_with_both_sizes(tmp_path: Path) -> None:
     surface = write_npy(tmp_path / "a.npy", ROUGH)
     with pytest.raises(InputError, match=r"side = 9.1e-06: expected at most the measured 9e-06 x 1.55e-05 m"):
-        surface.heights(Grid(9.1e-6, 16))
+        surface.heights(Grid.square(9.1e-6, 16))
     least = r"side = 8\.99e-07: expected at least 4 pixels of a\.npy, each 1\.5e-07 x 3\.1e-07 m"
     with pytest.raises(InputError, match=least):
-        quietly(surface, Grid(8.99e-7, 16))  # 2.9 DY about a border between pixels: two points
-    assert quietly(surface, Grid(9.31e-7, 16)).shape == (16, 16)  # just more than three pixels: four points
+        quietly(surface, Grid.square(8.99e-7, 16))  # 2.9 DY about a border between pixels: two points
+    assert quietly(surface, Grid.square(9.31e-7, 16)).shape == (
+        16,
+        16,
+    )  # just more than three pixels: four points
     with pytest.raises(InputError, match=r"offset.*at most 5e-07 x 3.75e-06 m"):
-        surface.heights(Grid(SIDE, 16), (5.1e-7, 0.0))
+        surface.heights(Grid.square(SIDE, 16), (5.1e-7, 0.0))
+    for lengths, offending in (((9.1e-6, 1.5e-5), "9.1e-06"), ((8e-6, 1.56e-5), "1.56e-05")):
+        with pytest.raises(
+            InputError, match=f"side = {offending}: expected at most the measured 9e-06 x 1.55e-05 m"
+        ):
+            surface.heights(Grid((16, 16), lengths))
+    for lengths, offending in (((4.4e-7, 8e-6), "4.4e-07"), ((8e-6, 9.2e-7), "9.2e-07")):
+        with pytest.raises(InputError, match=f"side = {offending}: expected at least 4 pixels"):
+            surface.heights(Grid((16, 16), lengths))
+    with pytest.raises(InputError, match=r"offset.*at most 5e-07 x 7.75e-06 m"):
+        surface.heights(Grid((16, 2), (SIDE, 1e-12)), (0.0, 8e-6))
     with pytest.raises(InputError, match=r"periodic = True: expected false: a\.npy does not repeat"):
-        surface.heights(Grid(SIDE, 16), periodic=True)
+        surface.heights(Grid.square(SIDE, 16, periodic=True))
 
 
 def test_finer_than_measured_warns(tmp_path: Path) -> None:
     surface = write_npy(tmp_path / "a.npy", ROUGH)
     with pytest.warns(SurfaceWarning, match="finer than the measured pixel"):
-        surface.heights(Grid(SIDE, 26))
+        surface.heights(Grid.square(SIDE, 26))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        surface.heights(Grid(SIDE, 25))  # 3.2e-7 m
+        surface.heights(Grid.square(SIDE, 25))  # 3.2e-7 m
         for M in range(4, 30):
-            surface.heights(Grid(M * DY, M))  # the pixel itself, up to rounding
+            surface.heights(Grid.square(M * DY, M))  # the pixel itself, up to rounding
 
 
 def test_points_on_the_windows_edge_lie_in_it(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", np.zeros((9, 9)))
     surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0)
     for side, count in ((9.0, 9), (8.0, 9), (7.9, 7), (6.0, 7)):  # an edge runs half a side from the middle
-        window = Window(surface.reading, side)
+        window = Crop(surface.reading, (side, side))
         assert [s.stop - s.start for s in window.points] == [count, count]
+    window = Crop(surface.reading, (7.9, 6.0), (-0.4, 1.0))
+    assert window.points == (slice(0, 8), slice(2, 9))
+    assert window.size == 56
     with pytest.raises(FrozenInstanceError):
-        window.side = 9.0  # type: ignore[misc]  # the point of the test
+        window.lengths = (9.0, 9.0)  # type: ignore[misc]  # the point of the test
 
 
 def test_all_but_the_path_goes_by_name() -> None:
@@ -129,7 +154,7 @@ def test_gaps_are_filled_and_counted(tmp_path: Path) -> None:
     x, y = points()
     harmonic = 1e-8 * ((x / DX) ** 2 * (DX / DY) ** 2 - (y / DY) ** 2) / 100 + x / 50
     surface = write_npy(tmp_path / "a.npy", holed(harmonic))
-    grid = Grid(SIDE, 24)
+    grid = Grid.square(SIDE, 24)
     with pytest.warns(SurfaceWarning, match="21 of 1404 points in the window are missing"):
         z = surface.heights(grid)
     assert np.all(np.isfinite(z))
@@ -160,7 +185,7 @@ def test_too_many_gaps_are_refused(tmp_path: Path) -> None:
     z = ROUGH.copy()
     z[10:14, 15:40] = np.nan
     surface = write_npy(tmp_path / "a.npy", z)
-    grid = Grid(SIDE, 16)
+    grid = Grid.square(SIDE, 16)
     with pytest.raises(InputError, match=r"92 of 1404 .*at most a fraction of 0.05"):
         surface.heights(grid)
     generous = MeasuredSurface(surface.path, unit="m", pixel_size=(DX, DY), max_missing=0.1)
@@ -181,10 +206,10 @@ def test_the_fraction_that_may_be_missing_is_allowed_and_no_more(tmp_path: Path)
     def surface(max_missing: float) -> MeasuredSurface:
         return MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, max_missing=max_missing)
 
-    np.testing.assert_allclose(quietly(surface(1 / 16), Grid(8.0, 8)), 0.0, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(quietly(surface(1 / 16), Grid.square(8.0, 8)), 0.0, rtol=0, atol=1e-15)
     for fraction, allowed in ((0.0, "0"), (0.0624, "0.0624")):
         with pytest.raises(InputError) as refusal:
-            surface(fraction).heights(Grid(8.0, 8))
+            surface(fraction).heights(Grid.square(8.0, 8))
         assert refusal.value.value == "4 of 64 points of the window in a.npy"
         assert refusal.value.allowed == f"at most a fraction of {allowed}"
     for refused in (-0.001, 1.0):
@@ -214,18 +239,19 @@ def test_levelling_takes_off_its_form_and_nothing_else(tmp_path: Path, level: st
     plain, tilted = (MeasuredSurface(tmp_path / f, **kwargs) for f in ("a.npy", "b.npy"))  # type: ignore[arg-type]
     for offset in ((0.0, 0.0), (3e-7, -2e-6)):  # one form for all offsets: a rigid surface
         np.testing.assert_allclose(
-            quietly(tilted, Grid(SIDE, 20), offset),
-            quietly(plain, Grid(SIDE, 20), offset),
+            quietly(tilted, Grid.square(SIDE, 20), offset),
+            quietly(plain, Grid.square(SIDE, 20), offset),
             rtol=0,
             atol=1e-20,
         )
 
 
-def test_level_is_fitted_in_the_window_only(tmp_path: Path) -> None:
+@pytest.mark.parametrize("grid", [Grid.square(7.2e-6, 16), Grid((16, 9), (9e-6, 7.2e-6))], ids=str)
+def test_level_is_fitted_in_the_window_only(tmp_path: Path, grid: Grid) -> None:
     z = np.full((NX, NY), 5e-6)
-    z[:, 13:37] = (np.arange(NX) * 1e-9)[:, None]  # all that a window of 7.2 um holds
+    z[:, 13:37] = (np.arange(NX) * 1e-9)[:, None]  # all that a window of 7.2 um along y holds
     surface = MeasuredSurface(write_npy(tmp_path / "a.npy", z).path, unit="m", pixel_size=(DX, DY))
-    level = surface.describe(Grid(7.2e-6, 16))[2]
+    level = surface.describe(grid)[2]
     assert "'plane'" in level
     slope_x, slope_y = (
         float(word.strip("()")) for word in level.split("slopes ")[1].split(")")[0].split(" x ")
@@ -253,7 +279,7 @@ def test_each_level_takes_off_its_terms_of_a_paraboloid(tmp_path: Path) -> None:
     assert set(left) == set(DEGREES)
     for level, expected in left.items():
         surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, level=level)
-        np.testing.assert_allclose(surface.heights(Grid(5.0, 5)), expected, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(surface.heights(Grid.square(5.0, 5)), expected, rtol=0, atol=1e-13)
 
 
 def test_a_forms_slopes_are_those_at_its_middle() -> None:
@@ -286,7 +312,7 @@ def test_the_central_window_of_a_long_strip_is_levelled_by_itself(tmp_path: Path
     np.save(tmp_path / "a.npy", strip)
     surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, level="mean")
     expected = (np.arange(8) - 3.5) ** 2 - 5.25
-    found = np.moveaxis(surface.heights(Grid(8.0, 8)), along, -1)
+    found = np.moveaxis(surface.heights(Grid.square(8.0, 8)), along, -1)
     np.testing.assert_allclose(found, np.tile(expected, (8, 1)), rtol=0, atol=1e-12)
 
 

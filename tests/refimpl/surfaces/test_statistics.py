@@ -71,7 +71,7 @@ def test_correlation_length_of_a_step_by_hand() -> None:
 
 def test_gaussian_roughness_has_its_parameters() -> None:
     side, length = 60.0, 1.0
-    z = GaussianRoughness(1.0, length, seed=2).heights(Grid(side, 480))
+    z = GaussianRoughness(1.0, length, seed=2).heights(Grid.square(side, 480))
     h, area = side / 480, side**2
     # four standard errors: relative variances 2 pi / 4.6 / area of z^2, 1.5 pi / 4.6 / area of slope^2
     assert abs(stats.rms_height(z) - 1) < 2 * math.sqrt(2 * math.pi / 4.6 / area)

@@ -28,12 +28,12 @@ from refimpl.surfaces import (
 )
 from refimpl.surfaces.bicubic import resample, resample_periodic
 
-GRID = Grid(side=2e-3, M=16)
+GRID = Grid.square(2e-3, 16)
 EPS = np.finfo(float).eps
 
 
 def centres(grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
-    return np.meshgrid(grid.centres + offset[0], grid.centres + offset[1], indexing="ij")
+    return np.meshgrid(grid.x + offset[0], grid.y + offset[1], indexing="ij")
 
 
 def test_sphere_is_the_paraboloid_about_the_centre_and_moves_with_the_offset() -> None:
@@ -45,18 +45,27 @@ def test_sphere_is_the_paraboloid_about_the_centre_and_moves_with_the_offset() -
     )
     np.testing.assert_array_equal(Sphere(-0.14).heights(GRID), -Sphere(0.14).heights(GRID))
     assert [Sphere(radius).radius for radius in (LEAST, -LEAST)] == [LEAST, -LEAST]
+    x, y = np.meshgrid([-1.5, -0.5, 0.5, 1.5], [-2.0, 0.0, 2.0], indexing="ij")  # about a rectangle's centre
+    np.testing.assert_array_equal(Sphere(0.5).heights(Grid((4, 3), (4.0, 6.0))), x**2 + y**2)
 
 
-@given(st.floats(1e-6, 1e3), st.integers(1, 40))
-def test_sphere_is_symmetric_to_the_last_bit(side: float, M: int) -> None:
-    z = Sphere(0.1).heights(Grid(side, M))
+@given(st.floats(1e-6, 1e3), st.floats(0.1, 10.0), st.integers(1, 40), st.integers(1, 40), st.booleans())
+def test_sphere_is_symmetric_about_the_middle_to_the_last_bit(
+    side: float, ratio: float, M: int, N: int, periodic: bool
+) -> None:
+    z = Sphere(0.1).heights(Grid((M, N), (side, ratio * side), periodic))
     np.testing.assert_array_equal(z, z[::-1])
-    np.testing.assert_array_equal(z, z.T)
+    np.testing.assert_array_equal(z, z[:, ::-1])
+    square = Sphere(0.1).heights(Grid.square(side, M, periodic=periodic))
+    np.testing.assert_array_equal(square, square.T)
 
 
-def test_periodic_sphere_repeats() -> None:
-    z = Sphere(0.14).heights(GRID, periodic=True)
-    shifted = Sphere(0.14).heights(GRID, (5 * GRID.spacing, -3 * GRID.spacing), periodic=True)
+@pytest.mark.parametrize("across", [1.0, 0.625])
+def test_periodic_sphere_repeats_with_each_length(across: float) -> None:
+    grid = Grid((16, 10), (2e-3, across * 2e-3), periodic=True)
+    dx, dy = grid.spacings
+    z = Sphere(0.14).heights(grid)
+    shifted = Sphere(0.14).heights(grid, (5 * dx, -3 * dy))
     np.testing.assert_allclose(shifted, np.roll(z, (-5, 3), axis=(0, 1)), rtol=0, atol=8 * EPS * z.max())
 
 
@@ -87,7 +96,7 @@ def test_resampling_reproduces_bicubics_up_to_the_border(shape: tuple[int, int])
         return np.asarray((1 + 2 * x - 3 * x**2 + x**3) * (2 - y + y**2 + 4 * y**3))
 
     x, y = ((np.arange(n) + 0.5) / n for n in shape)
-    grid = Grid(side=1.0, M=16)
+    grid = Grid((16, 12), (1.0, 1.0))
     z = resampled_quietly(bicubic(x[:, None], y[None, :]), grid)
     # not-a-knot splines contain all cubics; extrapolation by half a cell amplifies rounding by < 4 an axis
     np.testing.assert_allclose(z, bicubic(*centres(grid)), rtol=0, atol=200 * EPS * 12)
@@ -103,7 +112,7 @@ def test_resampling_converges_with_the_fourth_order() -> None:
     def wave(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         return np.asarray(np.sin(5 * x) * np.cos(4 * y))
 
-    grid = Grid(side=1.0, M=50)
+    grid = Grid.square(1.0, 50)
     errors = []
     for n in (16, 32, 64, 128):
         at = (np.arange(n) + 0.5) / n
@@ -145,10 +154,23 @@ def test_periodic_resampling_wraps_and_keeps_the_data() -> None:
     np.testing.assert_allclose(
         resample_periodic(data, x + 6, y - 22), resample_periodic(data, x, y), rtol=0, atol=1e-12
     )
-    shift = ArraySurface(np.tile(data, (2, 1))[:11]).heights(Grid(11.0, 11), (3.0, -4.0), periodic=True)
-    np.testing.assert_allclose(
-        shift, np.roll(np.tile(data, (2, 1))[:11], (-3, 4), (0, 1)), rtol=0, atol=1e-13
-    )
+    shift = ArraySurface(data).heights(Grid((6, 11), (18.0, 22.0), periodic=True), (9.0, -8.0))
+    np.testing.assert_allclose(shift, np.roll(data, (-3, 4), (0, 1)), rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("surface", "pitch"),
+    [
+        (ArraySurface(np.zeros((20, 12))), 0.1),
+        (ArraySurface(np.zeros((8, 80))), 0.0375),
+        (Sphere(1.0), None),
+        (Flat(), None),
+        (GaussianRoughness(1e-6, 1e-4, 1), None),
+    ],
+    ids=str,
+)
+def test_an_arrays_pitch_is_the_finer_of_both_axes(surface: Surface, pitch: float | None) -> None:
+    assert surface.pitch((2.0, 3.0)) == (None if pitch is None else pytest.approx(pitch))
 
 
 def test_finer_than_the_data_warns_and_coarser_does_not() -> None:
@@ -157,17 +179,25 @@ def test_finer_than_the_data_warns_and_coarser_does_not() -> None:
         ArraySurface(array).heights(GRID)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        ArraySurface(array).heights(Grid(1.0, 12))
-        ArraySurface(array[:12]).heights(Grid(1.0, 12))
+        ArraySurface(array).heights(Grid.square(1.0, 12))
+        ArraySurface(array[:12]).heights(Grid.square(1.0, 12))
+        ArraySurface(array).heights(Grid((20, 12), (1.0, 1.0)))
+        ArraySurface(array).heights(Grid((5, 3), (1.0, 2.0)))
+    with pytest.warns(SurfaceWarning, match="5 x 13 is finer than the array of 20 x 12"):
+        ArraySurface(array).heights(Grid((5, 13), (1.0, 2.0)))
     assert "resampled bicubically to 16 x 16" in ArraySurface(array).describe(GRID)[0]
+    assert "as it is" in ArraySurface(array).describe(Grid((20, 12), (1.0, 1.0)))[0]
     assert "as it is" in ArraySurface(np.zeros((16, 16))).describe(GRID)[0]
 
 
-def test_arrays_end_with_the_square() -> None:
+def test_arrays_end_with_the_domain() -> None:
     array = np.zeros((16, 16))
-    ArraySurface(array).heights(GRID, (GRID.spacing / 2, 0.0))
-    with pytest.raises(InputError, match="offset"):
-        ArraySurface(array).heights(GRID, (0.0, 0.51 * GRID.spacing))
+    for grid in (GRID, Grid((8, 16), (2e-3, 1e-3))):
+        dx, dy = grid.spacings
+        ArraySurface(array).heights(grid, (dx / 2, -dy / 2))
+        for offset in ((0.51 * dx, 0.0), (0.0, 0.51 * dy)):
+            with pytest.raises(InputError, match="offset"):
+                ArraySurface(array).heights(grid, offset)
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import refimpl
+from refimpl.planning.terms import LABELS
 from verification.cli import main
 
 Capture = pytest.CaptureFixture[str]
@@ -25,7 +26,7 @@ def test_the_table_fits_100_columns(
     assert main(["solve", scene, *size, "--explain"]) == 0
     text = capsys.readouterr().out
     assert max(map(len, text.splitlines())) <= 100
-    for name in ("shear coupling", "obliqueness", "shear tilt", "slope correction", "tau support"):
+    for name in LABELS.values():
         assert name in text
     assert "nothing is solved" in text
 
@@ -33,7 +34,7 @@ def test_the_table_fits_100_columns(
 def test_it_says_what_a_frictionless_smooth_scene_does_without(capsys: Capture) -> None:
     assert main(["solve", "hertz", "--grid", "64", "--explain"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    for name in ("shear coupling", "obliqueness", "shear tilt", "slope correction", "tau support"):
+    for name in LABELS.values():
         row = next(line for line in lines if line.strip().startswith(name))
         assert " out " in row
     assert any("no friction" in line for line in lines)
@@ -57,9 +58,9 @@ def test_json_holds_the_estimates(tmp_path: Path, capsys: Capture) -> None:
     terms = {term["name"]: term for term in plan["terms"]}
     assert plan["budget"] == 0.5 * plan["demand"] == 0.025
     assert plan["grid"] is None
-    assert terms["shear coupling"]["effect"]["area"] > 0
-    assert plan["resolution"]["asked"] > 4
-    assert not terms["shear tilt"]["included"]
+    assert terms["coupled"]["effect"]["area"] > 0
+    assert plan["resolution"]["required"] > 4
+    assert not terms["tilted"]["included"]
 
 
 def test_bad_input_is_refused_as_in_a_solve(capsys: Capture) -> None:

@@ -15,9 +15,10 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.certificate import certify
-from refimpl.model.problem import Terms, pose
+from refimpl.model.problem import Terms
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
+from refimpl.scene.discretise import discretise
 from verification.contestants import own, referee
 from verification.contestants.broken import BROKEN, Wrong, asked, periodic
 from verification.contestants.check import COMPLIANCE, MODULUS, Entrant, Fault
@@ -286,13 +287,13 @@ def test_what_the_suite_counts_at_an_approach_is_at_most_three_times_our_certifi
     posed = replace(problem(), load=None, approach=0.08)
     exact = referee.eliminated(posed)
     draw, ratios = np.random.default_rng(5), []
-    flat, grid = Terms(coupled=True, oblique=False, slope_correction=False), rf.Grid(posed.side, posed.M)
-    judged = pose(own.scene(posed), grid, flat, posed.approach)
+    scene = own.scene(posed)
+    judged = discretise(scene, scene.grid(posed.M), Terms(oblique=False), posed.approach)
     for _ in range(200):
         off = exact * draw.normal(size=exact.shape) + draw.uniform(-0.5, 0.5) * exact
         pressure = np.maximum(exact + 10 ** draw.uniform(-6, 0) * off, 0.0)
         slopes = Slopes.flat(exact.shape)
-        state = certify(judged, DenseInfluence(grid, 0.0), pressure, 0 * pressure, slopes)
+        state = certify(judged, DenseInfluence(judged.grid, 0.0), pressure, 0 * pressure, slopes)
         ours = max(state.certificate.gap, state.certificate.load_error)
         ratios.append(referee.residual(posed, pressure).gap / ours)
     assert max(ratios) <= own.WORK * (1 + 1e-6)

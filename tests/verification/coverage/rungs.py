@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.accuracy.discretisation_error import EDGE_SHARE
-from refimpl.accuracy.grid_features import GridResult
-from refimpl.accuracy.peak import LEVEL, Summit
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import NO_PEAK, Peak
+from refimpl.grid import Grid
 from refimpl.solution.solution import REPORTED
 from verification.coverage.scenes import SIDE
 from verification.coverage.store import Rung
@@ -22,16 +23,15 @@ def rung(M: int, *, size: float = 0.85, wrong: float = 0.0, seed: int = 3) -> Ru
     area = (limit + size * edge) * (1 + (wrong if M in GRIDS[:-1] else 0.0))
     numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
     numbers["friction_coefficient"] = 0.1 + 1e5 * area
-    result = GridResult(
-        M=M,
-        spacing=h,
+    result = GridFeatures(
+        grid=Grid.square(SIDE, M),
         numbers=numbers,
         edge=edge,
-        alike=1.0,
-        peak=Summit(1.0, 1e-3, 0.0),
-        touch=LEVEL,
-        unevenness=0.0,
-        slip=1e5,
+        symmetry_multiplicity=1.0,
+        peak=Peak(1.0, 1e-3, 0.0),
+        first_contact=NO_PEAK,
+        slope_sampling_error=0.0,
+        dmu_dA=1e5,
         parts={name: {"iteration": 0.0} for name in REPORTED},
     )
     carried = 0.75 * M**2 if GRIDS[0] < M else None

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-import refimpl as rf
-from refimpl.accuracy.refinement import OPENING
+from refimpl.accuracy.refinement import FIRST_GRIDS
+from refimpl.model.friction import is_frictionless
 from reports.drawing import svg
 from reports.studies import exhibit
 from tests.verification.coverage.rungs import GRIDS, rung
@@ -29,7 +29,7 @@ def test_scenes_repeat_and_know_no_grid() -> None:
     for seed, kind in enumerate(CLASSES):
         drawn, again = random_scene(seed), random_scene(seed)
         assert drawn.kind == kind
-        coarse, fine = (np.array(d.scene.heights(rf.Grid(SIDE, M))) for d, M in ((drawn, 32), (again, 96)))
+        coarse, fine = (np.array(d.scene.heights(d.scene.grid(M))) for d, M in ((drawn, 32), (again, 96)))
         # every third centre of the fine grid is one of the coarse; mid-heights differ by what is not sampled
         shift = fine[:, 1::3, 1::3] - coarse
         assert np.ptp(shift, axis=(1, 2)).max() <= 1e-12 * SIDE, kind
@@ -46,9 +46,9 @@ def test_the_store_resumes_after_a_kill(tmp_path: Path) -> None:
     climb(store, [0], [32, 48])
     whole = store.read_text()
     store.write_text(whole[:-100])  # killed while the last line was written
-    assert [found.result.M for found in rungs(store)] == [32]
+    assert [found.M for found in rungs(store)] == [32]
     climb(store, [0], [32, 48])
-    assert [found.result.M for found in ladders(store)[0]] == [32, 48]
+    assert [found.M for found in ladders(store)[0]] == [32, 48]
     found = solves(ladders(store).values())
     assert found["not_converged"] == 0
     assert found["worst_apart"] <= 1e-6
@@ -82,12 +82,12 @@ def test_scenes_are_judged_at_an_approach_too(tmp_path: Path, monkeypatch: pytes
     """On grids small enough for a test; the store beside the study's lets it go on where it was."""
     monkeypatch.setattr(document, "BARS", (64, 96))
     monkeypatch.setattr(beside, "GRIDS", (64, 96))
-    monkeypatch.setattr(document, "grids_of", lambda _: (*OPENING, 96, 192))
+    monkeypatch.setattr(document, "grids_of", lambda _: (*FIRST_GRIDS, 96, 192))
     store = tmp_path / "study.jsonl"
-    climb(store, [0, 80], [*OPENING, 96])
+    climb(store, [0, 80], [*FIRST_GRIDS, 96])
     found = document.approaches(ladders(store), store)
     assert set(found) == set(beside.AT_APPROACH)
-    sticky = [not random_scene(seed).scene.friction.is_zero for seed in (0, 80)]
+    sticky = [not is_frictionless(random_scene(seed).scene.friction) for seed in (0, 80)]
     assert found["friction_coefficient"]["96"]["scenes"] == sum(sticky[:1])
     force = found["normal_force"]
     assert [force[M]["scenes"] for M in ("64", "96")] == [1, 1]
@@ -103,10 +103,10 @@ def test_the_document_solves_what_is_wanting_and_judges_it(
 ) -> None:
     monkeypatch.setattr(document, "BARS", (64,))
     monkeypatch.setattr(beside, "GRIDS", (64,))
-    monkeypatch.setattr(document, "grids_of", lambda _: (*OPENING, 128, 256))
-    frictionless = next(seed for seed in range(99) if random_scene(seed).scene.friction.is_zero)
+    monkeypatch.setattr(document, "grids_of", lambda _: (*FIRST_GRIDS, 128, 256))
+    frictionless = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
     store, seeds = tmp_path / "study.jsonl", [0, frictionless]
-    climb(store, [5], [*OPENING])  # of another study
+    climb(store, [5], [*FIRST_GRIDS])  # of another study
     found: dict[str, Any] = document.document([0.05], seeds, store)
     assert found["solves"]["count"] == 8
     (judged,) = found["accuracies"]
@@ -119,8 +119,7 @@ def test_the_document_solves_what_is_wanting_and_judges_it(
         assert judged["beside"][number]["scenes"] == 2
         assert judged["beside"][number]["bars"]["seed"] == seeds
     kept = {
-        seed: [r for r in rungs if r.result.M in (*OPENING, 128, 256)]
-        for seed, rungs in ladders(store).items()
+        seed: [r for r in rungs if r.M in (*FIRST_GRIDS, 128, 256)] for seed, rungs in ladders(store).items()
     }
     bars = beside.where_climbs_end(kept, verdicts({seed: kept[seed] for seed in seeds}, 0.05))
     for number in beside.BESIDE:

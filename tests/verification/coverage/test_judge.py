@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from refimpl.accuracy.peak import LEVEL, Summit
+from refimpl.accuracy.peak import NO_PEAK, Peak
+from refimpl.model.friction import is_frictionless
 from tests.verification.coverage.rungs import GRIDS, rung
 from verification.coverage import beside
 from verification.coverage.judge import (
@@ -77,7 +78,7 @@ def test_references_by_hand() -> None:
     mu, bound = reference_of(both, "friction_coefficient")
     assert mu == pytest.approx(0.1 + 1e5 * (area - EDGE_SIZE * edge), rel=1e-14)
     assert bound == pytest.approx(1e5 * EDGE_SIZE_BOUND * edge, rel=1e-9)  # without tau's share mu is 0.1
-    higher = replace(finest, result=replace(finest.result, peak=Summit(1.25, 1e-3, 0.0)))
+    higher = replace(finest, result=replace(finest.result, peak=Peak(1.25, 1e-3, 0.0)))
     assert reference_of([before, higher], "max_pressure") == (1.25, 0.25)
     rubbing = {**finest.result.numbers, "friction_coefficient": 0.3 + 1e5 * area}
     moved_on = [before, replace(finest, result=replace(finest.result, numbers=rubbing))]
@@ -133,7 +134,7 @@ def test_a_summary_by_hand() -> None:
 
 
 def test_frictionless_scenes_have_no_friction_to_judge() -> None:
-    seed = next(seed for seed in range(99) if random_scene(seed).scene.friction.is_zero)
+    seed = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
     found = verdicts({seed: [rung(M, seed=seed) for M in GRIDS]}, 0.02)
     assert [verdict.number for verdict in found] == list(NUMBERS[1:])
 
@@ -164,7 +165,7 @@ def test_numbers_beside_are_judged_where_the_climb_for_mu_ends() -> None:
 
 
 def test_numbers_beside_go_by_the_area_where_nothing_rubs() -> None:
-    seed = next(seed for seed in range(99) if random_scene(seed).scene.friction.is_zero)
+    seed = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
     ladders_of = {s: [rung(M, seed=s) for M in GRIDS] for s in (3, seed)}
     # beside tau's share mu has 0.1, so that it is known better than the area
     found = verdicts(ladders_of, 0.005)
@@ -178,8 +179,8 @@ def test_numbers_beside_go_by_the_area_where_nothing_rubs() -> None:
 
 def test_approaches_are_judged_from_where_surfaces_touch() -> None:
     ladder = [rung(M) for M in GRIDS]
-    summit = replace(LEVEL, height=0.25)
-    ladder[-1] = replace(ladder[-1], result=replace(ladder[-1].result, touch=summit))
+    peak = replace(NO_PEAK, height=0.25)
+    ladder[-1] = replace(ladder[-1], result=replace(ladder[-1].result, first_contact=peak))
     approach, binormal = beside.where_climbs_end({3: ladder}, verdicts({3: ladder}, 0.02))
     assert approach.error == pytest.approx(0.25)
     assert binormal.error == 0.0

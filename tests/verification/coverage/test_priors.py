@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from refimpl.accuracy import discretisation_error
-from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, line
+from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, fit_line
 from refimpl.accuracy.discretisation_error import (
     AREA,
     BINORMAL,
@@ -18,12 +18,12 @@ from refimpl.accuracy.discretisation_error import (
     EDGE_SIZE_SPREAD,
     OTHER,
     PEAK,
-    SINGLES,
-    SUMMIT,
-    SUMMIT_SPREAD,
+    PEAK_BIAS,
+    PEAK_BIAS_SPREAD,
+    SINGLE_EXCESS,
 )
-from refimpl.accuracy.first_contact import TOUCH
-from refimpl.accuracy.refinement import OPENING
+from refimpl.accuracy.first_contact import PEAK_ERROR
+from refimpl.accuracy.refinement import FIRST_GRIDS
 from reports.result_files import read_result
 from tests.documents import ROOT
 from verification.coverage import priors
@@ -66,8 +66,9 @@ def test_nine_nodes_leave_bars_that_many_more_hardly_move(monkeypatch: pytest.Mo
 
     def bars() -> np.ndarray:
         scenes = drawn(300, grids=3)
-        found = [line(s.values, s.weights, prior, Bias(s.edge, mean, spread)) for s in scenes]
-        return np.array([estimate.bar(s.values[-1]) for estimate, s in zip(found, scenes, strict=True)])
+        found = [fit_line(s.values, s.weights, prior, Bias(s.edge, mean, spread)) for s in scenes]
+        ends = [s.values[-1] for s in scenes]
+        return np.array([estimate.error_bound(end) for estimate, end in zip(found, ends, strict=True)])
 
     nine, (nodes, weights) = bars(), np.polynomial.hermite_e.hermegauss(41)
     many = mean + spread * nodes, weights / weights.sum()
@@ -109,12 +110,12 @@ def test_the_model_fitted_is_the_one_that_bars_are_made_of(
     def spied(values: np.ndarray, weights: np.ndarray, prior: Prior, bias: Bias | None = None) -> Estimate:
         edge = np.zeros_like(values) if bias is None else bias.sizes
         lines.append((values, weights * prior.scatter, edge))
-        return line(values, weights, prior, bias)
+        return fit_line(values, weights, prior, bias)
 
     store = tmp_path / "store.jsonl"
-    climb(store, [seed], [*OPENING, 96])
+    climb(store, [seed], [*FIRST_GRIDS, 96])
     results = [rung.result for rung in ladders(store)[seed]]
-    monkeypatch.setattr(discretisation_error, "line", spied)
+    monkeypatch.setattr(discretisation_error, "fit_line", spied)
     discretisation_error.estimates(results)
     area, mu, force, peak, across, approach = lines
     load = results[-1].numbers["normal_force"]
@@ -123,11 +124,11 @@ def test_the_model_fitted_is_the_one_that_bars_are_made_of(
         size[-1] / scatter for (_, size, _), scatter in ((area, AREA.scatter), (peak, PEAK.scatter))
     )
     for (values, size, edge), fitted_to, unit, scatter in (
-        (area, priors.areas(results, SINGLES), area_unit, AREA.scatter),
+        (area, priors.areas(results, SINGLE_EXCESS), area_unit, AREA.scatter),
         (mu, priors.rests(results, BULK.scatter, 1.0), 1.0, 1.0),
         (across, priors.binormals(results, BINORMAL.scatter, 1.0), load, 1.0),
         (peak, priors.peaks(results), peak_unit, PEAK.scatter),
-        (approach, priors.approaches(results, OTHER.scatter, TOUCH), 1.0, 1.0),
+        (approach, priors.approaches(results, OTHER.scatter, PEAK_ERROR), 1.0, 1.0),
     ):
         np.testing.assert_allclose(unit * fitted_to.values, values, rtol=1e-9)
         np.testing.assert_allclose(unit * fitted_to.edge, edge, rtol=1e-9)
@@ -137,7 +138,7 @@ def test_the_model_fitted_is_the_one_that_bars_are_made_of(
 
 def test_a_store_is_fitted_and_written(tmp_path: Path) -> None:
     store, written = tmp_path / "store.jsonl", tmp_path / "priors.json"
-    climb(store, range(4), [*OPENING, 96])
+    climb(store, range(4), [*FIRST_GRIDS, 96])
     priors.main(["--store", str(store), "--json", str(written)])
     found = read_result(written)
     assert found["scenes"] == len(ladders(store)) == 4
@@ -156,18 +157,19 @@ def test_the_priors_in_use_are_those_of_the_committed_study() -> None:
     """
     found = read_result(ROOT / "reports" / "results" / "priors.json")
     area, rest = found["area"], found["friction_without_tau"]
-    assert list(area["adopted"].values()) == [EDGE_SIZE, EDGE_SIZE_SPREAD, AREA.scatter, AREA.weight, SINGLES]
+    adopted = [EDGE_SIZE, EDGE_SIZE_SPREAD, AREA.scatter, AREA.weight, SINGLE_EXCESS]
+    assert list(area["adopted"].values()) == adopted
     assert list(rest["adopted"].values()) == [BULK.scatter, 1.0, BULK.weight]
     assert area["likeliest"]["edge_size"] == pytest.approx(EDGE_SIZE, abs=0.01)
     assert area["likeliest"]["edge_size_spread"] == pytest.approx(EDGE_SIZE_SPREAD, abs=0.01)
     assert area["likeliest"]["scatter"] == pytest.approx(AREA.scatter, rel=0.1)
     assert all(rest["likeliest"][name] < rest["adopted"][name] for name in ("bulk", "unevenness"))
     peak, approach = found["peak"], found["approach"]
-    assert list(peak["adopted"].values()) == [SUMMIT, SUMMIT_SPREAD, *PEAK]
-    assert peak["likeliest"]["summit"] == pytest.approx(SUMMIT, abs=0.003)
-    assert 0.5 * SUMMIT_SPREAD < peak["likeliest"]["summit_spread"] < SUMMIT_SPREAD
+    assert list(peak["adopted"].values()) == [PEAK_BIAS, PEAK_BIAS_SPREAD, *PEAK]
+    assert peak["likeliest"]["summit"] == pytest.approx(PEAK_BIAS, abs=0.003)
+    assert 0.5 * PEAK_BIAS_SPREAD < peak["likeliest"]["summit_spread"] < PEAK_BIAS_SPREAD
     assert 0.5 * PEAK.scatter < peak["likeliest"]["scatter"] < PEAK.scatter
-    assert list(approach["adopted"].values()) == [OTHER.scatter, TOUCH, OTHER.weight]
+    assert list(approach["adopted"].values()) == [OTHER.scatter, PEAK_ERROR, OTHER.weight]
     assert all(approach["likeliest"][name] < approach["adopted"][name] for name in ("other", "touch"))
     binormal = found["binormal"]
     assert list(binormal["adopted"].values()) == [BINORMAL.scatter, 1.0, BINORMAL.weight]

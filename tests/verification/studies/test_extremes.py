@@ -142,7 +142,7 @@ def test_a_flipped_coupling_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_symmetric_parts_by_hand() -> None:
     """Two by two elements without slope: the eigenvalues of the normal matrix, whatever c and beta are."""
-    a, b, c = DenseInfluence(rf.Grid(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
+    a, b, c = DenseInfluence(rf.Grid.square(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
     expected = sorted([a + 2 * b + c, a - c, a - c, a - 2 * b + c])
     for beta in (0.0, 0.4, 1e3):
         found = positive_definite.symmetric_part(2, beta, 0.3)
@@ -162,16 +162,16 @@ def test_no_contact_is_right_up_to_first_touch(over: float, error: float) -> Non
 
 @pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_support_is_where_tau_acts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Elements of the contact that tau was withheld from have none in the exact state either."""
+    """Elements of the contact that are excluded from tau have none in the exact state either."""
     solution = rf.solve(BALL, 4)
-    withheld = np.zeros((4, 4), dtype=bool)
-    withheld[np.unravel_index(solution.pressure.argmax(), (4, 4))] = True
+    excluded = np.zeros((4, 4), dtype=bool)
+    excluded[np.unravel_index(solution.pressure.argmax(), (4, 4))] = True
     seen: list[np.ndarray] = []
     solve = Oracle.solve
     monkeypatch.setattr(Oracle, "solve", lambda self, f, chi: (seen.append(chi), solve(self, f, chi))[1])
-    beta_alone = np.where(withheld, BALL.friction.beta * solution.pressure, solution.traction)
+    beta_alone = np.where(excluded, BALL.friction.beta * solution.pressure, solution.traction)
     judge.exact_error(BALL, replace(solution, traction=beta_alone))
-    assert np.array_equal(seen[0], solution.contact & ~withheld)
+    assert np.array_equal(seen[0], solution.contact & ~excluded)
     dry = replace(BALL, friction=rf.Friction(beta=0.3))
     judge.exact_error(dry, rf.solve(dry, 4))
     assert np.array_equal(seen[1], rf.solve(dry, 4).contact)
@@ -196,7 +196,7 @@ def test_states_are_counted_for_both_orders_of_bodies(monkeypatch: pytest.Monkey
 
 def test_conditions_by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four elements: eigenvalues a + 2b + c, a - c twice, a - 2b + c of self, beside, across the corner."""
-    a, b, c = DenseInfluence(rf.Grid(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
+    a, b, c = DenseInfluence(rf.Grid.square(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
     solve = np.linalg.solve
     monkeypatch.setattr(np.linalg, "solve", lambda *system: solve(*system) * (1 + 1e-10))
     found = conditioning.measure(2)

@@ -121,11 +121,11 @@ def test_tangential_displacement_of_hertz_pressure() -> None:
     found = rf.solve(scene, 96)
     moved = displacements(scene, found)
     smooth, copper = hertz(), SMOOTH.lower.material
-    x = found.grid.centres - SIDE / 2
+    x = found.grid.x - SIDE / 2
     middle = len(x) // 2
     line = moved.lower[0][:, middle]
     r = np.hypot(x, x[middle])
-    inside = (r < 0.9 * smooth.contact_radius) & (np.abs(x) > found.grid.spacing)
+    inside = (r < 0.9 * smooth.contact_radius) & (np.abs(x) > found.grid.spacings[0])
     factor = (1 - 2 * copper.nu) * (1 + copper.nu) / (3 * copper.E)
     u_r = -factor * smooth.contact_radius**2 / r * smooth.peak_pressure
     u_r = u_r * (1 - np.maximum(0, 1 - (r / smooth.contact_radius) ** 2) ** 1.5)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.grid import Array, Mask
 from refimpl.solvers.paper import _Scheme
 from reports.result_files import read_result
 from verification.cases.paper import iterations, scheme
@@ -19,7 +20,7 @@ from verification.framework.registry import find
 from verification.scenes.cross_checks import Trial, pressed
 from verification.variational import __main__ as command
 from verification.variational import timing
-from verification.variational.energy import Array, Energy, Mask, certified, frictionless, table2_scene
+from verification.variational.energy import Energy, certified, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, interior_point
 from verification.variational.timing import (
     PAPER_GRIDS,

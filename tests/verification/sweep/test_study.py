@@ -206,7 +206,7 @@ def test_only_what_differs_in_its_limits_is_sampled(monkeypatch: pytest.MonkeyPa
     heights = rf.Scene.sampled
 
     def counted(scene: rf.Scene, grid: rf.Grid) -> object:
-        sampled.append((scene.sliding_offset, grid.M))
+        sampled.append((scene.sliding_offset, grid.shape[0]))
         return heights(scene, grid)
 
     monkeypatch.setattr(rf.Scene, "sampled", counted)

@@ -25,7 +25,7 @@ MESHES, GRIDS = (3, 4, 5), (64, 128, 256)
 
 
 def scene_of(slope: float) -> tuple[WavyPair, float, float]:
-    """Two-dimensional namesake, mean planes' distance at first touch, and load per square wavelength."""
+    """Two-dimensional namesake, mean planes' distance at first contact, and load per square wavelength."""
     pair = WavyPair(slope, SHIFT, COPPER, STEEL, beta=BETA)
     distance = pair.gap_amplitude + 2.0 * pair.amplitude
     return pair, distance, SHARE * pair.full_contact_pressure

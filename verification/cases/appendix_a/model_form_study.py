@@ -60,7 +60,7 @@ class Modelled:
 def modelled(
     pair: WavyPair, load: float, M: int, *, correction: bool, approach: float | None = None
 ) -> Modelled:
-    """`refimpl.solve` on the pair; `approach` from first touch replaces the load.
+    """`refimpl.solve` on the pair; `approach` from first contact replaces the load.
 
     Whole elements leave the length uncertain by one of them, which tau carries into the friction. Both are
     taken with the ends found between elements (`contact_fem.ends`), which is the limit of fine grids.
@@ -94,7 +94,7 @@ def by_model(pair: WavyPair, share: float, *, correction: bool) -> Numbers:
 
 
 def load_at(pair: WavyPair, share: float, approach: float, *, correction: bool) -> Estimate:
-    """The model's N at a prescribed approach (from first touch)."""
+    """The model's N at a prescribed approach (from first contact)."""
     load = share * pair.full_contact_pressure
     grids = GRIDS[share]
     found = (modelled(pair, load, M, correction=correction, approach=approach).normal for M in grids)

@@ -172,7 +172,7 @@ def skew_coupling() -> Measured:
 
 @case(
     "balance/flat-tips",
-    title="Friction of contact at flat tips",
+    title="Friction of contact without slopes",
     claim="with every cosine 1 and every sine 0 a solved contact's F / N is Eq. (10)'s tau / f_m + beta",
     source="paper Eq. (10): Eqs (1)-(3) at theta = 0, an identity",
     metric="relative",
@@ -184,12 +184,12 @@ def skew_coupling() -> Measured:
 def flat_tips() -> Measured:
     scene = rf.read_scene("table1-smooth")
     solution = rf.solve(scene, 64, oblique=False)
-    # of the elements that carry tau: a settled cycle withholds it from some, and Eq. (1) from none
+    # of the elements that carry tau: an alternating contact edge excludes some, and Eq. (1) none
     area = np.count_nonzero(solution.contact & ~solution.excluded) * solution.grid.element_area
     return Measured(
         value=friction_coefficient_at(scene.friction, solution.normal_force / area),
         reference=solution.friction_force / solution.normal_force,
-        note=f"{solution.status.value}, {int(solution.excluded.sum())} elements withheld from tau",
+        note=f"{solution.status.value}, {int(solution.excluded.sum())} elements excluded from tau",
     )
 
 

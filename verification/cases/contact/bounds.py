@@ -39,7 +39,7 @@ def loose(name: str, tolerance: float) -> rf.Solution:
 
 
 def bounds_of(golden: Golden, problem: Problem, pressure: Array) -> Bounds:
-    """Bounds of a pressure with the proof's slopes and support of tau."""
+    """Bounds of a pressure with the proof's slopes and active set of tau."""
     traction = problem.friction.traction(pressure, golden.contact)
     return proven_bounds(problem, pressure, traction, held(golden))
 
@@ -151,7 +151,7 @@ def numbers() -> Measured:
     compared = 0
     for golden, _, found in rough_states():
         if golden.scene.oblique or not same_support(golden, found):
-            continue  # its own slopes, or its own support of tau: another frozen problem than the proven one
+            continue  # its own slopes, or active set of tau: another frozen problem than the proven one
         compared += 1
         bounds = bounds_of(golden, found.problem, found.pressure)
         miss = {"pressure": float(np.abs(found.pressure - golden.pressure).max())}

@@ -60,7 +60,7 @@ def peak_errors() -> list[float]:
 
 
 def approach_errors() -> list[float]:
-    """Relative error of the approach from first touch of the elements, on each grid."""
+    """Relative error of the approach from first contact of the elements, on each grid."""
     return [abs(solved(M).approach / EXACT.approach - 1) for M in GRIDS]
 
 
@@ -139,7 +139,7 @@ def peak_order() -> Measured:
     metric="relative",
     tolerance=2e-5,
     tolerance_reason="an integral of the pressure, so (h/a)^2 / 10 = 2e-5; measured 6e-6. From the elements' "
-    "first touch, h^2/(4 R) higher, it is 5e-5 short",
+    "first contact, h^2/(4 R) higher, it is 5e-5 short",
     tags=("hertz",),
 )
 def approach() -> Measured:

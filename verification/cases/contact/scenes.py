@@ -66,6 +66,6 @@ def press(
     return solution
 
 
-def first_touch_approach(solution: rf.Solution, gap: Array) -> float:
-    """A periodic solution's approach counted from first touch (m); the solver counts from the mean planes."""
+def first_contact_approach(solution: rf.Solution, gap: Array) -> float:
+    """A periodic solution's approach from first contact (m); the solver counts from the mean planes."""
     return solution.approach + float(np.mean(gap) - np.min(gap))

@@ -8,7 +8,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.model.friction import is_frictionless
-from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, first_touch_approach, press
+from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, first_contact_approach, press
 from verification.exact import fourier, jgh, westergaard
 from verification.exact.westergaard import Wave
 from verification.framework.case import Measured
@@ -41,7 +41,7 @@ def press_ridge(share: float, M: int) -> tuple[Wave, rf.Solution, Array]:
 
 def touch(solution: rf.Solution, gap: Array) -> float:
     """Approach from the crest itself (m), which lies between element centres."""
-    return first_touch_approach(solution, gap) + float(gap.min())
+    return first_contact_approach(solution, gap) + float(gap.min())
 
 
 @case(
@@ -225,4 +225,4 @@ def _full_contact_error(friction: rf.Friction, coupling: float, direction: float
         periodic=True,
     )
     pressure = np.max(np.abs(solution.pressure - exact.pressure)) / exact.pressure.max()
-    return float(max(pressure, abs(first_touch_approach(solution, gap) / exact.approach - 1)))
+    return float(max(pressure, abs(first_contact_approach(solution, gap) / exact.approach - 1)))

@@ -1,4 +1,4 @@
-"""Nothing that was left out costs anything: operations counted, kernels watched, peak memory traced."""
+"""Neglected terms cost nothing: operations counted, kernels watched, peak memory traced."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ def scenes() -> dict[str, tuple[rf.Scene, bool | None]]:
     rough = rf.read_scene("rough-planes")
     return {
         "frictionless, smooth": (hertz, None),
-        "identical materials, flat tips": (twins, False),
-        "nu = 0.5 on both, flat tips": (soft, False),
-        "frictionless, rough, flat tips": (replace(rough, friction=rf.Friction()), False),
+        "identical materials, no slopes": (twins, False),
+        "nu = 0.5 on both, no slopes": (soft, False),
+        "frictionless, rough, no slopes": (replace(rough, friction=rf.Friction()), False),
     }
 
 
@@ -93,8 +93,8 @@ def operations() -> Measured:
 @case(
     "planning/cerruti",
     title="Shear kernels that no scene asked for",
-    claim="no tangential kernel is built or applied without friction, for identical materials with flat tips,"
-    " and at an accuracy that shear's tilt does not reach; one is where shear matters",
+    claim="no tangential kernel is built or applied without friction, for identical materials without slope"
+    " terms, and at an accuracy that shear's tilt does not reach; one is where shear matters",
     source=SOURCE,
     metric="equal",
     tolerance=0.0,
@@ -103,7 +103,7 @@ def operations() -> Measured:
 )
 def cerruti() -> Measured:
     table1 = rf.read_scene("table1-smooth")
-    twins = scenes()["identical materials, flat tips"][0]
+    twins = scenes()["identical materials, no slopes"][0]
     frictionless = replace(rf.read_scene("table1-rough"), friction=rf.Friction())
     without = {
         "frictionless, rough": rf.solve(frictionless, M),
@@ -132,8 +132,8 @@ def shear_operations(solution: rf.Solution) -> int:
     source=SOURCE,
     metric="at_most",
     tolerance=1.0,
-    tolerance_reason="over the bare solve's peak plus 32 bytes an element; 0.97 measured at 64 x 64,"
-    " where each array of the grid's size counts 0.025",
+    tolerance_reason="over the bare solve's peak plus 32 bytes an element; 0.76 measured at 64 x 64,"
+    " where each array of the grid's size counts 0.06",
     tags=("planning",),
 )
 def memory() -> Measured:
@@ -147,8 +147,8 @@ def memory() -> Measured:
 @case(
     "planning/explained",
     title="--explain says so",
-    claim="for a frictionless smooth scene and for identical materials with flat tips the printed plan has"
-    " every term out",
+    claim="for a frictionless smooth scene and for identical materials without slope terms the printed plan"
+    " has every term out",
     source=SOURCE,
     metric="equal",
     tolerance=0.0,
@@ -157,7 +157,7 @@ def memory() -> Measured:
 )
 def explanation() -> Measured:
     missing = []
-    for name in ("frictionless, smooth", "identical materials, flat tips"):
+    for name in ("frictionless, smooth", "identical materials, no slopes"):
         scene, oblique = scenes()[name]
         options = Options(scene=scene, grid=M, requested=RequestedTerms(oblique=oblique))
         text = explained(options, options.plan(), name)

@@ -150,12 +150,12 @@ def own_tolerance_friction() -> Measured:
 
 @case(
     "paper/same-state",
-    title="Status, contact and tau's support of the three solvers",
+    title="Status, contact and tau's active set of the three solvers",
     claim="Tightened, the paper's scheme ends as the dense reference does, on the same elements",
-    source=SOURCE + "; tau's rule: refimpl.model.friction",
+    source=SOURCE + "; tau's rule: refimpl.solvers.tau_active_set",
     metric="equal",
     tolerance=0.0,
-    tolerance_reason="statuses and sets are equal or not; the solution is unique for a given support of tau",
+    tolerance_reason="statuses and sets are equal or not; an active set of tau has one solution",
     tags=("scheme",),
 )
 def same_state() -> Measured:
@@ -185,7 +185,7 @@ def tightened_quick() -> Measured:
 @case(
     "paper/tightened-all",
     title="Paper = fft = dense when tightened, all scenes",
-    claim="The same on every aperiodic scene of the cross-check, settled cycles of tau's support among them",
+    claim="The same on every aperiodic scene of the cross-check, alternating contact edges among them",
     source=SOURCE,
     metric="at_most",
     tolerance=1e-8,

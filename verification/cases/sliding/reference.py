@@ -21,7 +21,7 @@ HERTZ = Sphere(load=1.0, radius=0.05, modulus=MODULUS)
 C0 = COUPLING / (np.pi * MODULUS)
 """Factor of s/rho^2, lower minus upper (1/Pa)."""
 EITHER = (rf.Status.CONVERGED, rf.Status.CYCLED)
-"""With tau > 0 the support of tau may flip at single edge elements; the state is certified all the same."""
+"""With tau > 0 the active set of tau may alternate at single edge elements; the state is certified."""
 
 
 def sliding_wave(share: float, M: int, tau: float = 0.0) -> tuple[SlidingWave, rf.Solution]:

@@ -58,7 +58,7 @@ def approach_difference(trial: Trial) -> float:
 @case(
     "cross-check/contact-sets",
     title="Contact sets of both solvers",
-    claim="dense and fft find the same elements in contact, and the same withheld from tau, on every scene",
+    claim="dense and fft find the same contact, and exclude the same elements from tau, on every scene",
     source=SOURCE,
     metric="equal",
     tolerance=0.0,
@@ -78,7 +78,7 @@ def contact_sets() -> Measured:
         "scene": [trial.name for trial in trials()],
         "grid": [trial.M for trial in trials()],
         "in contact": [int(trial.dense.contact.sum()) for trial in trials()],
-        "withheld": [int(trial.dense.excluded.sum()) for trial in trials()],
+        "excluded": [int(trial.dense.excluded.sum()) for trial in trials()],
     }
     note = f"differing: {', '.join(differing) or 'none'}; cycled: {', '.join(cycled)}"
     return Measured(value=len(differing), reference=0.0, data=data, note=note)

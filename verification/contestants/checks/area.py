@@ -77,7 +77,7 @@ def touching_apart(entrant: Entrant, gap: Array, near: float, apart: float, *, p
 @check(
     "out-of-reach",
     title="A rough bump drawn back: nothing touches",
-    claim="At an approach short of first touch no element has any pressure, and that is an answer",
+    claim="At an approach short of first contact no element has any pressure, and that is an answer",
     source="f (u + gap - approach) = 0",
     metric="at_most",
     tolerance=0.0,

@@ -47,7 +47,7 @@ def approaches(entrant: Entrant, gap: Array, lightly: float, well: float) -> Mea
     """A gap at two approaches, the second at three times the modulus, and at twice the spacing too; and the
     first again.
 
-    Approaches (m) count from first touch or, if they are negative, from the mean planes.
+    Approaches (m) count from first contact or, if they are negative, from the mean planes.
     """
     periodic = well < 0
     return worst(

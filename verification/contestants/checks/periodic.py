@@ -86,7 +86,7 @@ def westergaard_load(entrant: Entrant) -> Measured:
 @check(
     "egg-box-load",
     title="Two-dimensional wave: load at a prescribed approach",
-    claim="Mean planes at 0.61525 Delta from first touch carry a tenth of the full-contact load",
+    claim="Mean planes at 0.61525 Delta from first contact carry a tenth of the full-contact load",
     source="Johnson, Greenwood and Higginson 1985; own 21-grid extrapolation (verification.exact.jgh)",
     metric="relative",
     tolerance=0.0025,

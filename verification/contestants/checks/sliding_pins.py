@@ -1,7 +1,7 @@
 """Beds of pins that slide, free and periodic, under a load and at an approach: pressures chosen beforehand.
 
 Their pressures span two and a half decades, so that tau moves most of what barely carries anything. That no
-other support of tau gives a solution is tested for every bed, over all 4096 supports.
+other active set of tau gives a solution is tested for every bed, over all 4096 supports.
 """
 
 from __future__ import annotations

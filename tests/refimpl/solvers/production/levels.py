@@ -1,19 +1,17 @@
-"""A ball on a flat, posed with and without coupling, and the solver of one of its grids."""
+"""A ball on a flat as a scene, as a problem of one grid, and the solver of that grid."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.grid.window import Window
-from refimpl.model.problem import Problem, Terms, pose
-from refimpl.operators.fft import Counter
+from refimpl.grid import Array, Window
+from refimpl.model.problem import Problem, Terms
+from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import SpectralPreconditioner
-from refimpl.solvers.production.coarse_grids import foundation_pressure
-from refimpl.solvers.production.contact_vectors import Support
-from refimpl.solvers.production.level import LevelSolver, influence
-from refimpl.solvers.production.projected_cg import ProjectedCG
+from refimpl.scene.discretise import discretise
+from refimpl.solvers.production.coarse_grids import winkler_pressure
+from refimpl.solvers.production.level import LevelSolver
 
 BALL = rf.Scene(
     upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(radius=0.05)),
@@ -23,29 +21,38 @@ BALL = rf.Scene(
     side=2e-3,
 )
 
-
-def coupled(sigma: float, tau: float = 0.0) -> rf.Scene:
-    """The ball with such a beta that ``beta c f`` is up to ``sigma`` times ``a f``."""
-    pair = BALL.materials
-    beta = sigma * pair.normal_compliance / abs(pair.shear_compliance)
-    return replace(BALL, friction=rf.Friction(tau, beta))
-
-
-def posed(scene: rf.Scene, M: int, *, oblique: bool = False, approach: float | None = None) -> Problem:
-    terms = Terms(coupled=True, oblique=oblique, slope_correction=False)
-    return pose(scene, rf.Grid(scene.side, M), terms, approach)
+FAINT = replace(
+    BALL,
+    upper=rf.Body(rf.Material(E=18e9, nu=0.37), rf.Sphere(radius=0.165)),
+    lower=rf.Body(rf.Material(E=4.5e9, nu=0.17), rf.Flat()),
+    friction=rf.Friction(tau=8e6, beta=0.5),
+    load=0.1,
+    side=1.6e-3,
+)
+"""Tau moves the contact of so faint a load far about, from one of its states to the next."""
 
 
-def level_solver(problem: Problem, window: Window | None = None) -> LevelSolver:
-    window = window or Window.full(problem.grid.M)
-    start = foundation_pressure(problem)[window.slices]
-    operator = influence(problem, window, Counter())
-    return LevelSolver(
-        problem, operator, SpectralPreconditioner(operator, problem.pair.normal_compliance), start
-    )
+def coupled(strength: float, tau: float = 0.0) -> rf.Scene:
+    """Return the ball with such a beta that ``beta c f`` is up to ``strength`` times ``a f``."""
+    return replace(BALL, friction=rf.Friction(tau, strength / abs(BALL.materials.coupling_ratio)))
 
 
-def press(cg: ProjectedCG, pressure: Array) -> None:
-    """Put CG at another pressure, as if it had come there."""
-    cg._support = Support(pressure > 0)
-    cg._pressing = cg._support.of(pressure)
+def problem_of(
+    scene: rf.Scene, M: int, *, oblique: bool = False, approach: float | None = None, **terms: bool
+) -> Problem:
+    return discretise(scene, scene.grid(M), Terms(oblique=oblique, **terms), approach)
+
+
+def level_solver(
+    problem: Problem,
+    window: Window | None = None,
+    *,
+    pressure: Array | None = None,
+    needs_mixing: bool = False,
+) -> LevelSolver:
+    """Return the solver of a problem's grid on a window, from a pressure or a Winkler foundation's."""
+    window = window or problem.grid.window
+    operator = window_influence(problem.grid, problem.direction, window)
+    precondition = SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
+    start = winkler_pressure(problem)[window.slices] if pressure is None else pressure
+    return LevelSolver(problem, operator, precondition, start, needs_mixing=needs_mixing)

@@ -1,4 +1,4 @@
-"""Nested grids: levels, means of four, planes carried exactly, pressures to start from and their detail."""
+"""Nested grids: shapes, means of four, Winkler pressures, likely contact, sharpened guesses."""
 
 from __future__ import annotations
 
@@ -9,28 +9,26 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Grid, resampled
-from refimpl.grid.window import Window
-from refimpl.model.problem import Problem, Terms, pose
-from refimpl.operators.fft import Counter
-from refimpl.operators.preconditioner import SpectralPreconditioner
+from refimpl.grid import Array, Grid, Shape
+from refimpl.model.problem import Problem, Terms
+from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.coarse_grids import (
     coarsened,
-    foundation_pressure,
-    levels,
+    likely_contact,
+    nested_problems,
     sharpened,
-    touching,
+    winkler_pressure,
 )
-from refimpl.solvers.production.level import LevelSolver, influence
-from tests.refimpl.solvers.production.levels import BALL
-from tests.refimpl.solvers.production.levels import posed as level_posed
+from tests.refimpl.solvers.production.levels import BALL, level_solver, problem_of
 
 SIDE = 2.0**-9
 
 
-def problem(M: int, *, approach: float | None = None, heights: np.ndarray | None = None) -> Problem:
+def problem(
+    shape: Shape, *, approach: float | None = None, heights: np.ndarray | None = None, oblique: bool = False
+) -> Problem:
     """A flat on heights, or on random ones."""
-    lower = np.random.default_rng(M).normal(size=(M, M)) * 1e-6 if heights is None else heights
+    lower = np.random.default_rng(shape[0]).normal(size=shape) * 1e-6 if heights is None else heights
     steel = rf.Material(E=200e9, nu=0.3)
     scene = rf.Scene(
         upper=rf.Body(steel, rf.Flat()),
@@ -39,7 +37,8 @@ def problem(M: int, *, approach: float | None = None, heights: np.ndarray | None
         load=3.0,
         side=SIDE,
     )
-    return pose(scene, Grid(SIDE, M), Terms(oblique=False, coupled=False, slope_correction=False), approach)
+    terms = Terms(coupled=False, oblique=oblique, tilted=False)
+    return discretise(scene, Grid(shape, (SIDE, SIDE)), terms, approach)
 
 
 @pytest.mark.parametrize(
@@ -61,155 +60,167 @@ def problem(M: int, *, approach: float | None = None, heights: np.ndarray | None
         (256, [32, 128, 256]),
     ],
 )
-def test_levels_halve_then_quarter_and_small_grids_halve_once(M: int, expected: list[int]) -> None:
-    nested = levels(problem(M), 0)
-    assert [p.grid.M for p in nested] == expected
-    assert all(p.gap.shape == p.mean_surface.shape == (p.grid.M, p.grid.M) for p in nested)
-    assert all(p.grid.side == SIDE for p in nested)
+def test_grids_halve_then_quarter_and_small_grids_halve_once(M: int, expected: list[int]) -> None:
+    nested = nested_problems(problem((M, M)), None)
+    assert [p.grid.shape for p in nested] == [(n, n) for n in expected]
+    assert all(p.gap.shape == p.mean_surface.shape == p.grid.shape for p in nested)
+    assert all(p.grid.lengths == (SIDE, SIDE) for p in nested)
 
 
 @pytest.mark.parametrize(
-    ("M", "above", "expected"),
-    [(128, 31, [32, 128]), (128, 32, [128]), (192, 64, [96, 192]), (64, 64, [64]), (32, 16, [32])],
+    ("shape", "expected"),
+    [
+        ((256, 128), [(64, 32), (128, 64), (256, 128)]),  # a quarter only where both axes allow it
+        ((100, 128), [(50, 64), (100, 128)]),
+        ((128, 512), [(32, 128), (64, 256), (128, 512)]),
+        ((64, 32), [(32, 16), (64, 32)]),
+        ((300, 31), [(150, 16), (300, 31)]),
+        ((60, 5), [(60, 5)]),
+        ((7, 1), [(7, 1)]),
+    ],
 )
-def test_levels_no_finer_than_a_known_answer_are_passed_over(M: int, above: int, expected: list[int]) -> None:
-    assert [p.grid.M for p in levels(problem(M), above)] == expected
+def test_grids_of_a_rectangle_halve_along_both_axes(shape: Shape, expected: list[Shape]) -> None:
+    """As far as the shorter one allows."""
+    assert [p.grid.shape for p in nested_problems(problem(shape), None)] == expected
+
+
+@pytest.mark.parametrize(
+    ("shape", "above", "expected"),
+    [
+        ((128, 128), (31, 31), [(32, 32), (128, 128)]),
+        ((128, 128), (32, 32), [(128, 128)]),
+        ((192, 192), (64, 64), [(96, 96), (192, 192)]),
+        ((64, 64), (64, 64), [(64, 64)]),
+        ((32, 32), (16, 16), [(32, 32)]),
+        ((256, 128), (64, 32), [(128, 64), (256, 128)]),
+    ],
+)
+def test_grids_no_finer_than_a_known_solution_are_left_out(
+    shape: Shape, above: Shape, expected: list[Shape]
+) -> None:
+    assert [p.grid.shape for p in nested_problems(problem(shape), above)] == expected
 
 
 def test_a_quartered_grid_has_means_of_sixteen() -> None:
-    fine = problem(128)
-    coarse = levels(fine, 0)[0]
+    fine = problem((128, 128))
+    coarse = nested_problems(fine, None)[0]
     assert coarse.gap[3, 5] == pytest.approx(fine.gap[12:16, 20:24].mean(), rel=1e-14)
 
 
 def test_a_coarse_height_is_the_mean_of_four() -> None:
-    fine = problem(6)
-    fine = replace(fine, terms=replace(fine.terms, oblique=True))
-    coarse = coarsened(fine)
-    for i in range(3):
-        for j in range(3):
-            four = (slice(2 * i, 2 * i + 2), slice(2 * j, 2 * j + 2))
-            assert coarse.gap[i, j] == pytest.approx(fine.gap[four].mean(), rel=1e-15)
-            assert coarse.mean_surface[i, j] == pytest.approx(fine.mean_surface[four].mean(), rel=1e-14)
+    fine = problem((6, 8), oblique=True)
+    coarse = coarsened(fine, (3, 4))
+    for i, j in np.ndindex(3, 4):
+        four = (slice(2 * i, 2 * i + 2), slice(2 * j, 2 * j + 2))
+        assert coarse.gap[i, j] == pytest.approx(fine.gap[four].mean(), rel=1e-15)
+        assert coarse.mean_surface[i, j] == pytest.approx(fine.mean_surface[four].mean(), rel=1e-14)
 
 
-def test_a_common_surface_that_no_slope_looks_at_is_not_carried_down() -> None:
-    fine = problem(6)
-    assert not fine.terms.oblique
+def test_without_slopes_the_common_surface_is_not_coarsened() -> None:
+    fine = problem((6, 6))
     assert fine.mean_surface.any()
-    np.testing.assert_array_equal(coarsened(fine).mean_surface, np.zeros((3, 3)))
+    np.testing.assert_array_equal(coarsened(fine, (3, 3)).mean_surface, np.zeros((3, 3)))
 
 
-@pytest.mark.parametrize(("n", "M"), [(4, 8), (4, 6), (4, 7), (5, 16), (2, 3), (7, 4), (9, 9)])
-def test_carrying_is_exact_for_a_plane_inside_and_level_beyond_the_border(n: int, M: int) -> None:
-    centres = np.arange(n) + 0.5
-    carried = resampled(3 * centres[:, None] - 5 * centres[None, :], M)
-    there = np.clip((np.arange(M) + 0.5) * n / M, 0.5, n - 0.5)  # no further than the outermost centres
-    np.testing.assert_allclose(carried, 3 * there[:, None] - 5 * there[None, :], rtol=0, atol=1e-14 * 5 * n)
-    assert carried.flags.c_contiguous
-
-
-def test_the_starting_pressure_carries_the_load_where_surfaces_overlap() -> None:
-    posed = problem(16)
-    pressure = foundation_pressure(posed)
-    assert pressure.sum() * posed.grid.element_area == pytest.approx(3.0, rel=1e-14)
-    overlap = np.maximum(posed.gap[pressure == 0].min() - posed.gap, 0)
+def test_a_winkler_pressure_carries_the_load_where_surfaces_overlap() -> None:
+    given = problem((16, 16))
+    pressure = winkler_pressure(given)
+    assert pressure.sum() * given.grid.element_area == pytest.approx(3.0, rel=1e-14)
+    overlap = np.maximum(given.gap[pressure == 0].min() - given.gap, 0)
     np.testing.assert_allclose(pressure / pressure.max(), overlap / overlap.max(), rtol=1e-14)
 
 
-def borne(posed: Problem, depth: float) -> float:
-    """What springs bear at a depth (N), as stiff as a half-space under a load as wide as they are."""
-    dA = posed.grid.element_area
-    width = math.sqrt(np.count_nonzero(posed.gap <= depth) * dA)
-    return float(np.maximum(depth - posed.gap, 0).sum() * dA / (posed.pair.normal_compliance * width))
+def borne(given: Problem, depth: float) -> float:
+    """Load of a foundation at a depth (N), as stiff as a half-space under a load as wide as its contact."""
+    dA = given.grid.element_area
+    width = math.sqrt(np.count_nonzero(given.gap <= depth) * dA)
+    return float(np.maximum(depth - given.gap, 0).sum() * dA / (given.pair.normal_compliance * width))
 
 
 @pytest.mark.parametrize("load", [0.01, 3.0, 50.0])
-def test_it_is_as_deep_as_springs_must_be_to_bear_the_load(load: float) -> None:
-    posed = replace(problem(32), load=load)
-    depth = posed.gap[foundation_pressure(posed) == 0].min()
-    assert load <= borne(posed, depth)
-    assert all(borne(posed, shallower) < load for shallower in posed.gap[posed.gap < depth])
+def test_it_is_as_deep_as_the_load_requires(load: float) -> None:
+    given = replace(problem((32, 32)), load=load)
+    depth = given.gap[winkler_pressure(given) == 0].min()
+    assert load <= borne(given, depth)
+    assert all(borne(given, shallower) < load for shallower in given.gap[given.gap < depth])
 
 
-def steps_from(pressure: Array, posed: Problem) -> int:
-    operator = influence(posed, Window.full(posed.grid.M), Counter())
-    precondition = SpectralPreconditioner(operator, posed.pair.normal_compliance)
-    solver = LevelSolver(posed, operator, precondition, pressure)
-    assert solver.settle(1e-3)
+def steps_from(pressure: Array, given: Problem) -> int:
+    solver = level_solver(given, pressure=pressure)
+    assert solver.solve(1e-3, given.gap < 0)
     return solver.cg_iterations
 
 
 @pytest.mark.parametrize("load", [0.01, 0.1, 1.0, 10.0])
-def test_it_spares_steps_on_rough_surfaces(load: float) -> None:
+def test_it_saves_steps_on_rough_surfaces(load: float) -> None:
     """Against contact on the lowest 3 elements of 10, for six surfaces together: 4 steps for 51 at the least
     load, 19 for 58, 29 for 51, and 31 for 39 where three tenths are about right (measured)."""
-    springs = tenths = 0
+    foundation = tenths = 0
     for seed in range(6):
         rough = rf.GaussianRoughness(rms=1e-6, correlation_length=3e-4, seed=seed)
         scene = replace(BALL, load=load, friction=rf.Friction(), lower=rf.Body(BALL.lower.material, rough))
-        posed = level_posed(scene, 32)
-        overlap = np.maximum(np.quantile(posed.gap, 0.3) - posed.gap, 0)
-        springs += steps_from(foundation_pressure(posed), posed)
-        tenths += steps_from(overlap * (load / (overlap.sum() * posed.grid.element_area)), posed)
-    assert springs <= (0.9 if load == 10 else 0.65) * tenths
+        given = problem_of(scene, 32)
+        overlap = np.maximum(np.quantile(given.gap, 0.3) - given.gap, 0)
+        foundation += steps_from(winkler_pressure(given), given)
+        tenths += steps_from(overlap * (load / (overlap.sum() * given.grid.element_area)), given)
+    assert foundation <= (0.9 if load == 10 else 0.65) * tenths
 
 
-def test_a_load_that_no_depth_bears_presses_on_all_but_the_deepest() -> None:
-    posed = replace(problem(16), load=1e6)
-    np.testing.assert_array_equal(foundation_pressure(posed) > 0, posed.gap < posed.gap.max())
+def test_a_load_beyond_every_depth_presses_on_all_but_the_deepest() -> None:
+    given = replace(problem((16, 16)), load=1e6)
+    np.testing.assert_array_equal(winkler_pressure(given) > 0, given.gap < given.gap.max())
 
 
-def test_at_an_approach_it_is_a_foundation_of_the_sides_stiffness() -> None:
-    posed = problem(16, approach=1e-6)
-    expected = np.maximum(1e-6 - posed.gap, 0) / (posed.pair.normal_compliance * SIDE)
-    np.testing.assert_allclose(foundation_pressure(posed), expected, rtol=1e-15)
+def test_at_an_approach_it_is_a_foundation_as_stiff_as_the_domain() -> None:
+    given = problem((16, 16), approach=1e-6)
+    expected = np.maximum(1e-6 - given.gap, 0) / (given.pair.normal_compliance * SIDE)
+    np.testing.assert_allclose(winkler_pressure(given), expected, rtol=1e-15)
 
 
 def test_a_load_that_the_lowest_elements_bear_starts_on_them() -> None:
     heights = np.zeros((4, 4))
     heights[1, 2] = heights[3, 0] = 1e-6
-    pressure = foundation_pressure(problem(4, heights=heights))
+    pressure = winkler_pressure(problem((4, 4), heights=heights))
     assert np.flatnonzero(pressure).tolist() == [6, 12]
     assert pressure[1, 2] == pressure[3, 0] == pytest.approx(0.5 * 3.0 / (SIDE / 4) ** 2, rel=1e-14)
 
 
-def test_flats_start_with_the_mean_pressure_everywhere() -> None:
-    pressure = foundation_pressure(problem(4, heights=np.zeros((4, 4))))
+def test_between_flats_it_is_the_mean_pressure_everywhere() -> None:
+    pressure = winkler_pressure(problem((4, 4), heights=np.zeros((4, 4))))
     np.testing.assert_allclose(pressure, 3.0 / SIDE**2, rtol=1e-14)
 
 
-def test_at_an_approach_that_no_element_reaches_nothing_presses() -> None:
-    """As on a coarse grid, whose means lie above first touch."""
-    posed = problem(4, approach=1e-9)
-    assert not foundation_pressure(replace(posed, gap=posed.gap + 2e-9)).any()
+def test_at_an_approach_below_every_gap_nothing_presses() -> None:
+    """As on a coarse grid, whose means lie above first contact."""
+    given = problem((4, 4), approach=1e-9)
+    assert not winkler_pressure(replace(given, gap=given.gap + 2e-9)).any()
 
 
-def test_touching_is_a_damped_jacobi_step() -> None:
+def test_the_likely_contact_is_that_of_a_damped_jacobi_step() -> None:
     """Half of the misfit over ``a`` at the grid's highest frequency, 2 compliance spacing."""
-    posed = problem(4)
-    stiffness = 1 / (2 * posed.pair.normal_compliance * SIDE / 4)
+    given = problem((4, 4))
+    stiffness = 1 / (2 * given.pair.normal_compliance * SIDE / 4)
     approach, pressure = 1e-6, np.full((4, 4), 1e6)
     limit = approach + 1e6 / (0.5 * stiffness)
     v = np.full((4, 4), limit * (1 - 1e-9))
     v[1, 2] = limit * (1 + 1e-9)
     expected = np.ones((4, 4), dtype=bool)
     expected[1, 2] = False
-    found, used = touching(pressure, v, approach, posed)
+    found, used = likely_contact(pressure, v, approach, given)
     np.testing.assert_array_equal(found, expected)
     assert used == approach
-    assert not touching(np.zeros((4, 4)), np.full((4, 4), approach), approach, posed)[0].any()
+    assert not likely_contact(np.zeros((4, 4)), np.full((4, 4), approach), approach, given)[0].any()
 
 
 @pytest.mark.parametrize("shift", [-3e-6, 0.0, 2e-5])
 def test_an_approach_that_is_not_known_keeps_the_load(shift: float) -> None:
     """Wherever heights are counted from: the step's pressures add up to those it started from."""
-    posed = problem(16)
-    stiffness = 0.5 / (2 * posed.pair.normal_compliance * SIDE / 16)
+    given = problem((16, 16))
+    stiffness = 0.5 / (2 * given.pair.normal_compliance * SIDE / 16)
     rng = np.random.default_rng(5)
     pressure = np.maximum(rng.normal(size=(16, 16)), 0) * 1e7
     v = shift + np.where(pressure > 0, 0.0, 2e-6) + rng.normal(size=(16, 16)) * 1e-7
-    contact, approach = touching(pressure, v, None, posed)
+    contact, approach = likely_contact(pressure, v, None, given)
     stepped = np.maximum(pressure + stiffness * (approach - v), 0)
     np.testing.assert_array_equal(contact, stepped > 0)
     assert stepped.sum() == pytest.approx(pressure.sum(), rel=1e-12)
@@ -232,18 +243,3 @@ def test_sharpening_by_hand(loaded: bool) -> None:
     step = 0.7 * (2 * residual + residual.sum() * corner)
     np.testing.assert_allclose(found, np.maximum((pressure + step) * contact, 0), rtol=1e-14)
     assert found[0, 1] == found[1, 1] == 0
-
-
-@pytest.mark.parametrize(("n", "M"), [(12, 6), (12, 5), (5, 12), (2, 1), (12, 4), (8, 3)])
-def test_resampling_is_interpolation_along_either_axis(n: int, M: int) -> None:
-    """Halved grids, by pairs, as all others; `np.interp` is level beyond the outermost centres too."""
-    values = np.random.default_rng(8).normal(size=(n, n))
-    old, new = ((np.arange(k) + 0.5) / k for k in (n, M))
-    across = np.array([np.interp(new, old, row) for row in values])
-    expected = np.array([np.interp(new, old, column) for column in across.T]).T
-    np.testing.assert_allclose(resampled(values, M), expected, rtol=0, atol=1e-14)
-
-
-@pytest.mark.parametrize("M", [1, 2, 3])
-def test_of_a_single_element_there_is_its_own_value_everywhere(M: int) -> None:
-    assert np.array_equal(resampled(np.array([[3.0]]), M), np.full((M, M), 3.0))

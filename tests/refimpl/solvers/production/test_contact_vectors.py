@@ -1,4 +1,4 @@
-"""Fields on a contact set: lists where it is small, windows where it is not, and one answer by either."""
+"""Fields on a contact set: lists where it is small, windows where it is not, and one solution by either."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.solvers.production import contact_vectors
-from refimpl.solvers.production.contact_vectors import Support
+from refimpl.solvers.production.contact_vectors import ContactVectors
 
 RANDOM = np.random.default_rng(8)
 FIELD = RANDOM.normal(size=(5, 8))
@@ -20,40 +20,41 @@ def contact(count: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("count", [0, 1, 14, 15, 40])
-def test_of_a_field_the_elements_alone_are_kept(count: int) -> None:
+def test_of_a_field_only_the_contact_is_kept(count: int) -> None:
     mask = contact(count)
-    on = Support(mask)
+    on = ContactVectors(mask)
     expected = np.where(mask, FIELD, 0.0)
-    assert np.array_equal(on.onto(on.of(FIELD)), expected)
-    assert np.array_equal(on.onto(on.seen(expected)), expected)
-    marked = on.of(FIELD) > 0.3
-    assert np.array_equal(on.where(marked), expected > 0.3)
+    assert np.array_equal(on.scatter(on.gather(FIELD)), expected)
+    assert np.array_equal(on.scatter(on.gather_view(expected)), expected)
+    assert np.array_equal(on.scatter(on.ones()), mask)
+    marked = on.gather(FIELD) > 0.3
+    assert np.array_equal(on.scatter_mask(marked), expected > 0.3)
 
 
 @pytest.mark.parametrize(("count", "shape"), [(14, (1, 14)), (15, (5, 8))])
 def test_lists_up_to_a_share_of_the_window(count: int, shape: tuple[int, int]) -> None:
-    on = Support(contact(count))
-    assert on.of(FIELD).shape == on.seen(FIELD).shape == shape
+    on = ContactVectors(contact(count))
+    assert on.gather(FIELD).shape == on.gather_view(FIELD).shape == shape
 
 
 def test_what_is_kept_is_no_view() -> None:
     for count in (3, 40):
-        kept = Support(contact(count)).of(FIELD)
+        kept = ContactVectors(contact(count)).gather(FIELD)
         kept[:] = 9.0
         assert not np.any(FIELD == 9)
 
 
 def test_windows_of_views_that_are_not_contiguous() -> None:
     mask = contact(6)
-    assert np.array_equal(Support(mask.T).of(FIELD.T)[0], FIELD.T[mask.T])
+    assert np.array_equal(ContactVectors(mask.T).gather(FIELD.T)[0], FIELD.T[mask.T])
 
 
 @pytest.mark.parametrize("name", ["table1-rough", "rough-planes"])
 def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """To rounding: measured 5e-15 of the largest pressure."""
     found = []
-    for few in (0.0, 1.0):
-        monkeypatch.setattr(contact_vectors, "_FEW", few)
+    for share in (0.0, 1.0):
+        monkeypatch.setattr(contact_vectors, "LIST_SHARE", share)
         found.append(rf.solve(rf.read_scene(name), 48, tolerance=1e-10))
     one, other = found
     assert one.converged

@@ -1,4 +1,4 @@
-"""Single steps of projected CG, on springs that do not feel each other: what is cut, left and trusted."""
+"""Single steps of projected CG on elements that do not feel each other: cuts, exchanges, trusted lengths."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def springs(
 ) -> ProjectedCG:
     """A row of elements that do not feel each other, ``a f = f / stiffness``, at the approach 0 or loaded."""
     cg = ProjectedCG(lambda f: f / stiffness, lambda r: r.copy(), np.array([pressure]))
-    cg.freeze(
+    cg.set_problem(
         b=np.array([b]), K=np.ones((1, len(b))), target=target, approach=0.0 if target is None else None
     )
     return cg
@@ -105,20 +105,22 @@ def test_a_direction_forgets_the_past_where_the_quotient_is_negative(last: float
     assert cg._conjugate(step, step).tolist() == step.tolist()
 
 
-def test_an_exact_step_that_cuts_nothing_applies_once() -> None:
-    cg = springs(1.0, [1.0, 0.0], [-3.0, 5.0])
-    cg._trusted = False
+def test_an_exact_step_that_cuts_nothing_applies_once_and_restores_the_trust() -> None:
     applied: list[np.ndarray] = []
-    apply = cg._apply
 
     def recording(f: np.ndarray) -> np.ndarray:
         applied.append(f)
-        return apply(f)
+        return f.copy()
 
-    cg._apply = recording
+    cg = ProjectedCG(recording, np.copy, np.array([[1.0, 0.0]]))
+    cg.set_problem(np.array([[-3.0, 5.0]]), np.ones((1, 2)), target=None, approach=0.0)
+    applied.clear()
+    assert cg._trusted
+    cg._trusted = False
     cg.iterate()
     assert len(applied) == 1
     assert cg.pressure.tolist() == [[3.0, 0.0]]
+    assert cg._trusted
 
 
 def test_a_contact_that_is_not_at_its_approach_is_off_by_that() -> None:
@@ -174,7 +176,7 @@ def test_without_contact_what_penetrates_comes_in() -> None:
     for _ in range(2):
         cg.iterate()
         assert not cg.contact.any()
-    cg.freeze(np.array([[-1.0, 2.0]]), np.ones((1, 2)), target=None, approach=0.0)
+    cg.set_problem(np.array([[-1.0, 2.0]]), np.ones((1, 2)), target=None, approach=0.0)
     cg.iterate()
     assert cg.contact.tolist() == [[True, False]]
     assert cg.pressure.tolist() == [[0.0, 0.0]]
@@ -190,3 +192,14 @@ def test_a_direction_forgets_a_past_of_next_to_no_product() -> None:
     cg._exchanged = True
     step = np.array([[1.0, 2.0]])
     np.testing.assert_array_equal(cg._conjugate(np.array([[1e10, 0.0]]), step), step)
+
+
+def test_a_step_that_overshoots_every_element_leaves_no_tension() -> None:
+    """At an approach nothing keeps the sum: elements that do not reach the other body all leave."""
+    cg = springs(1.0, [1.0, 2.0], [5.0, 4.0])
+    assert max(cg.residuals()) > 0.1
+    cg._trusted = False
+    cg.iterate()
+    assert not cg.pressure.any()
+    assert not cg.contact.any()
+    assert cg.residuals() == (0.0, 0.0)

@@ -1,15 +1,15 @@
-"""Trials that are cut at zero: what they lead to at the load, and how far a step has room."""
+"""Trial points that are cut at zero: the change they leave at the load, and the longest step."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from refimpl.solvers.production.step_length import cut_at_zero, room
+from refimpl.solvers.production.step_length import cut_at_zero, longest_step
 
 
 def cut(pressure: list[float], step: list[float], target: float | None) -> tuple[bool, np.ndarray]:
-    """Whether a cut trial holds anything, and the change that leads to it, with weights of one."""
+    """Whether the cut trial has any pressure, and the change that leads to it, with weights of one."""
     before, change = np.array([pressure]), np.array([step])
     return cut_at_zero(before + change, before, change, np.ones_like(before), target), change
 
@@ -45,5 +45,5 @@ def test_weights_count() -> None:
     assert float((weights * (before + change)).sum()) == pytest.approx(1001.0, rel=1e-15)
 
 
-def test_room_ends_where_the_first_pressure_does() -> None:
-    assert room(np.array([[4.0, 1.0, 6.0]]), np.array([[-2.0, 3.0, -4.0]])) == 1.5
+def test_the_longest_step_ends_where_the_first_pressure_does() -> None:
+    assert longest_step(np.array([[4.0, 1.0, 6.0]]), np.array([[-2.0, 3.0, -4.0]])) == 1.5

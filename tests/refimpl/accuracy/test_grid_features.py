@@ -1,0 +1,166 @@
+"""Features of states on squares and rectangles, free and periodic: by their definitions, turned and moved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.accuracy.discretisation_error import estimates
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import NO_PEAK, deepest, highest
+from refimpl.grid import Array, Grid
+from refimpl.grid.symmetry import symmetry_multiplicity
+from refimpl.model.certificate import State
+from refimpl.model.forces import EDGE_SHARE
+from refimpl.model.problem import Problem
+from refimpl.operators.fft import Counter
+from refimpl.scene.discretise import discretise
+from refimpl.solvers.dense import solve_dense
+from refimpl.solvers.production.nested_solver import solve_fft
+
+STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
+BALL = rf.Scene(
+    upper=rf.Body(STEEL, rf.Sphere(radius=0.02)),
+    lower=rf.Body(POLYMER, rf.GaussianRoughness(rms=1e-6, correlation_length=300e-6, seed=3)),
+    friction=rf.Friction(tau=1e6, beta=0.2),
+    load=5.0,
+    side=1e-3,
+    sliding_direction=0.7,
+)
+GRIDS = [
+    Grid((16, 16), (1e-3, 1e-3)),
+    Grid((20, 12), (1e-3, 6e-4)),
+    Grid((14, 20), (1e-3, 8e-4)),  # oblong elements
+    Grid((18, 12), (1e-3, 5e-4), periodic=True),
+]
+
+
+def solved(grid: Grid, approach: float | None = None) -> tuple[Problem, State]:
+    problem = discretise(BALL, grid, approach=approach)
+    return problem, solve_dense(problem)[1]
+
+
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_features_are_those_of_the_state(grid: Grid) -> None:
+    problem, state = solved(grid)
+    found = GridFeatures.of(problem, state, {"approach": {"iteration": 1.0}}, {"approach": {"x": 2.0}})
+    contact, force, dA = state.pressure > 0, state.forces.normal, math.prod(grid.spacings)
+    n = np.count_nonzero(contact)
+    assert found.grid == grid
+    assert found.numbers["contact_area"] == pytest.approx(n * dA)
+    assert found.numbers["approach"] == state.approach - problem.datum
+    assert found.numbers["max_pressure"] == state.pressure.max()
+    around = np.pad(contact, 1, mode="wrap" if grid.periodic else "edge")
+    faces = [np.count_nonzero(around[1:-1, 1:] != around[1:-1, :-1])]
+    faces.append(np.count_nonzero(around[1:, 1:-1] != around[:-1, 1:-1]))
+    if grid.periodic:  # either end of a row is padded with the other: its face is there twice
+        faces[0] -= np.count_nonzero(contact[:, 0] != contact[:, -1])
+        faces[1] -= np.count_nonzero(contact[0] != contact[-1])
+    assert found.edge == pytest.approx(EDGE_SHARE * sum(faces) * dA)
+    assert found.edge_fraction == pytest.approx(EDGE_SHARE * sum(faces) / n)
+    assert found.symmetry_multiplicity == symmetry_multiplicity(contact, grid)
+    assert found.peak == highest(state.pressure, grid)
+    assert found.first_contact == (NO_PEAK if grid.periodic else deepest(problem.gap))
+    assert found.dmu_dA == pytest.approx(1e6 / force)
+    ratio = abs(problem.pair.shear_compliance) / problem.pair.normal_compliance
+    assert found.shear_to_normal_ratio == pytest.approx(ratio * 1e6 * n * dA / force)
+    depth = float(np.sum(state.pressure * (state.approach - problem.gap)) / np.sum(state.pressure))
+    assert found.depth == pytest.approx(depth)
+    assert found.parts == {"approach": {"iteration": 1.0, "x": 2.0}}
+    assert found.loaded
+    assert found.touching
+
+
+def turned(a: Array) -> Array:
+    return a.T
+
+
+def upside_down(a: Array) -> Array:
+    return a[::-1, ::-1]
+
+
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+@pytest.mark.parametrize(("moved", "direction"), [(turned, math.pi / 2 - 0.7), (upside_down, 0.7 + math.pi)])
+def test_a_turned_problem_has_the_same_features(
+    grid: Grid, moved: Callable[[Array], Array], direction: float
+) -> None:
+    """Transposed heights slide along the mirrored direction; Q then has the other sign."""
+    problem = discretise(BALL, grid)
+    swapped = slice(None, None, -1) if moved is turned else slice(None)
+    image = replace(
+        problem,
+        grid=replace(grid, shape=grid.shape[swapped], lengths=grid.lengths[swapped]),
+        gap=np.ascontiguousarray(moved(problem.gap)),
+        mean_surface=np.ascontiguousarray(moved(problem.mean_surface)),
+        direction=direction,
+    )
+    one, other = (GridFeatures.of(p, solve_dense(p)[1]) for p in (problem, image))
+    assert_same(one, other)
+    sign = -1 if moved is turned else 1
+    assert other.numbers["binormal_force"] == pytest.approx(sign * one.numbers["binormal_force"], rel=1e-7)
+
+
+@pytest.mark.parametrize("shift", [(9, 0), (0, 5), (-3, 7)])
+def test_a_periodic_problem_has_the_same_features_wherever_it_begins(shift: tuple[int, int]) -> None:
+    """Its peak may lie across the border."""
+    problem = discretise(BALL, GRIDS[-1])
+    gap, mean_surface = (np.roll(z, shift, (0, 1)) for z in (problem.gap, problem.mean_surface))
+    rolled = replace(problem, gap=gap, mean_surface=mean_surface)
+    one, other = (GridFeatures.of(p, solve_dense(p)[1]) for p in (problem, rolled))
+    assert_same(one, other)
+    assert other.numbers["binormal_force"] == pytest.approx(one.numbers["binormal_force"], rel=1e-7)
+
+
+def assert_same(one: GridFeatures, other: GridFeatures) -> None:
+    """All but Q, to what the solutions are converged to."""
+    for name in ("edge", "symmetry_multiplicity", "slope_sampling_error", "dmu_dA", "depth"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-7), name
+    for name in ("peak", "first_contact"):
+        assert vars(getattr(other, name)) == pytest.approx(vars(getattr(one, name)), rel=1e-7), name
+    for name in set(one.numbers) - {"binormal_force"}:
+        assert other.numbers[name] == pytest.approx(one.numbers[name], rel=1e-7), name
+
+
+@pytest.mark.parametrize("lengths", [(1.0, 0.6), (0.7, 0.9)])
+def test_error_bars_on_rectangles_hold_against_hertz(lengths: tuple[float, float]) -> None:
+    """A ball on elements that are square or not, alone and after coarser grids."""
+    radius, load, side = 0.14, 70.0, 1.61e-3
+    ball = replace(
+        BALL,
+        upper=rf.Body(STEEL, rf.Sphere(radius)),
+        lower=rf.Body(STEEL, rf.Flat()),
+        friction=rf.Friction(tau=15e6, beta=0.1),
+        load=load,
+    )
+    modulus = ball.materials.reduced_modulus
+    a = (3 * load * radius / (4 * modulus)) ** (1 / 3)
+    area = math.pi * a**2
+    hertz = {
+        "contact_area": area,
+        "max_pressure": 1.5 * load / area,
+        "approach": a**2 / radius,
+        "friction_coefficient": 0.1 + 15e6 * area / load,
+    }
+    shares: dict[str, list[float]] = {name: [] for name in hertz}
+    for across in (0.55, 0.8, 1.0, 1.3):
+        features = []
+        for M in (32, 64, 128):
+            shape = M, round(across * M * lengths[1] / lengths[0])
+            grid = Grid(shape, (side * lengths[0], side * lengths[1]))
+            problem = discretise(ball, grid).with_terms(replace(discretise(ball, grid).terms, oblique=False))
+            state = solve_fft(problem, 1e-8, Counter())[1]
+            features.append(GridFeatures.of(problem, state))
+        for results in (features[:1], features[1:2], features):
+            for name, estimate in estimates(results).items():
+                if name in hertz:
+                    value = results[-1].numbers[name]
+                    shares[name].append(abs(value - hertz[name]) / estimate.error_bound(value))
+    for name, found in shares.items():
+        assert len(found) == 12
+        assert max(found) <= 1, (name, found)
+        assert np.median(found) > 0.2, name  # no longer than need be

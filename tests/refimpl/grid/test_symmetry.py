@@ -1,0 +1,66 @@
+"""Symmetry multiplicity: images of a contact on square and on oblong elements."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from refimpl.grid import Grid
+from refimpl.grid.symmetry import symmetry_multiplicity
+
+SQUARE = {repeats: Grid((24, 24), (1.0, 1.0), repeats) for repeats in (False, True)}
+OBLONG = {repeats: Grid((24, 24), (1.0, 2.0), repeats) for repeats in (False, True)}
+
+
+def disc(n: int = 24, m: int = 24, radius: float = 7.2, stretch: float = 1.0) -> np.ndarray:
+    """Elements within an ellipse about the middle: ``radius`` along x and ``radius stretch`` along y."""
+    i, j = np.arange(n) - (n - 1) / 2, np.arange(m) - (m - 1) / 2
+    return np.hypot(i[:, None], j[None, :] / stretch) < radius
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_disc_has_all_eight_images_on_square_elements_and_four_on_oblong_ones(periodic: bool) -> None:
+    """A mirror image across a diagonal would exchange edges of different lengths."""
+    assert symmetry_multiplicity(disc(), SQUARE[periodic]) == 8
+    assert symmetry_multiplicity(disc(), OBLONG[periodic]) == 4
+
+
+def test_elements_that_are_square_to_rounding_are_square() -> None:
+    """0.3 / 24 and 0.2 / 16 differ in the last bit."""
+    grid = Grid((24, 16), (0.3, 0.2))
+    assert grid.spacings[0] != grid.spacings[1]
+    assert symmetry_multiplicity(disc(24, 16, radius=6.2), grid) == 8
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_an_ellipse_has_four_images(periodic: bool) -> None:
+    contact = disc(radius=9.2, stretch=0.5)
+    assert symmetry_multiplicity(contact, OBLONG[periodic]) == 4
+    assert 4 <= symmetry_multiplicity(contact, SQUARE[periodic]) < 8  # a turned one shares some of the edge
+
+
+@pytest.mark.parametrize("grid", [*SQUARE.values(), *OBLONG.values()])
+def test_an_irregular_contact_has_hardly_any_image_but_itself(grid: Grid) -> None:
+    contact = np.random.default_rng(5).random((24, 24)) < 0.3
+    assert 1 <= symmetry_multiplicity(contact, grid) < 1.5
+
+
+@pytest.mark.parametrize("grid", [*SQUARE.values(), *OBLONG.values()])
+def test_no_contact_counts_once(grid: Grid) -> None:
+    assert symmetry_multiplicity(np.zeros((24, 24), dtype=bool), grid) == 1
+
+
+@pytest.mark.parametrize("grids", [SQUARE, OBLONG])
+def test_the_place_of_a_contact_does_not_count(grids: dict[bool, Grid]) -> None:
+    half = disc() & (np.arange(24) < 12)
+    here = symmetry_multiplicity(half, grids[False])
+    assert here == symmetry_multiplicity(np.roll(half, (2, 5), (0, 1)), grids[False])
+    around = np.roll(half, (11, 15), (0, 1))  # across both borders
+    assert symmetry_multiplicity(around, grids[True]) == symmetry_multiplicity(half, grids[True])
+
+
+def test_a_mirrored_pair_counts_twice() -> None:
+    """Half of a disc has one mirror image of its own."""
+    half = disc() & (np.arange(24) < 12)
+    for grid in (SQUARE[False], OBLONG[False]):
+        assert symmetry_multiplicity(half, grid) == 2

@@ -1,0 +1,13 @@
+"""The certified state of a solution, for tests of what judges states."""
+
+from __future__ import annotations
+
+import refimpl as rf
+from refimpl.model.certificate import State, certify
+from refimpl.operators.influence import window_influence
+
+
+def state_of(solution: rf.Solution) -> State:
+    """The state that certification recomputes from the solution's arrays."""
+    operator = window_influence(solution.grid, solution.sliding_direction)
+    return certify(solution.problem, operator, solution.pressure, solution.traction, solution.slopes)
