@@ -109,13 +109,14 @@ def relative_gap(gap: float, energy: float) -> float:
 
 
 def contact_residuals(
-    gap: float, energy: float, approach: float, lowest: float, rounding: float
+    gap: float, energy: float, approach: float, lowest: float, rounding: float, total: float = 1.0
 ) -> tuple[float, float]:
     """Return the complementarity gap over the elastic energy, and the penetration over the approach.
 
-    Both are 0 where all displacements are rounding (in the unit of gap and energy), as of flat periodic planes.
+    Gap and energy are per ``total``. Both residuals are 0 where all displacements are within ``rounding`` (m),
+    as of flat periodic planes.
     """
-    if energy <= rounding and gap <= rounding:
+    if max(energy, gap) <= rounding * total and approach - lowest <= rounding:
         return 0.0, 0.0
     return relative_gap(gap, energy), max(0.0, approach - lowest) / (abs(approach) or 1.0)
 

@@ -110,8 +110,8 @@ class ProjectedCG:
         if self._approach is not None:
             gap = max(gap, abs(mean - approach) * float(self._pressing.sum()))
         pressing = self._pressing
-        rounding = self._rounding * float(pressing.max(initial=0.0)) * float(pressing.sum())
-        return contact_residuals(gap, energy, approach, lowest, rounding)
+        rounding = self._rounding * float(pressing.max(initial=0.0))
+        return contact_residuals(gap, energy, approach, lowest, rounding, float(pressing.sum()))
 
     def contact_is_certain(self, stiffness: float) -> bool:
         """Return whether the remaining error of the separation can change no element's contact.

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import refimpl as rf
-from verification.sweep.study import read_study
+from verification.sweep.study_file import read_study
 
 
 @pytest.mark.parametrize("digits", [400, 5000])
