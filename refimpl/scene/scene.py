@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import MOST, InputError, keep_doubles, require_number, require_size
+from refimpl.errors import MOST, InputError, keep_doubles, printable, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
@@ -115,7 +115,7 @@ class Scene:
     def cautions(self, grid: Grid) -> tuple[str, ...]:
         """What a user should know of how the heights of this grid were had, each once."""
         parts = (*self.lower.surface.parts, *self.upper.surface.parts)
-        return tuple(dict.fromkeys(line for part in parts for line in part.cautions(grid)))
+        return tuple(dict.fromkeys(printable(line) for part in parts for line in part.cautions(grid)))
 
     def sampled(self, grid: Grid) -> tuple[Array, Array]:
         """The `heights`, without a warning."""

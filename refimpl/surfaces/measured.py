@@ -16,6 +16,7 @@ from refimpl.surfaces.crop import ROUNDING, Crop, by
 from refimpl.surfaces.detrending import DEGREES, Form, fit
 from refimpl.surfaces.readers import UNITS, Reading, read
 from refimpl.surfaces.surface import Surface, finite, positive
+from refimpl.surfaces.untrusted import read_untrusted, refuse_huge
 
 _ALLOWED_PIXEL = "a positive length in m, or two (x, y)"
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
@@ -67,7 +68,10 @@ class MeasuredSurface(Surface):
     @cached_property
     def reading(self) -> Reading:
         """What the file holds, as it is (read once)."""
-        return read(self._file, self.unit, None if self.pixel_size is None else _pixel(self.pixel_size))
+        pixel = None if self.pixel_size is None else _pixel(self.pixel_size)
+        found = read_untrusted(self._file, lambda: read(self._file, self.unit, pixel))
+        refuse_huge(self._file, found.heights)
+        return found
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
         if grid.periodic:

@@ -10,6 +10,7 @@ import logging
 import multiprocessing
 import multiprocessing.connection
 import os
+import signal
 import threading
 import time
 from collections import Counter
@@ -174,10 +175,26 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     context = multiprocessing.get_context("spawn")
     with one_thread():
         executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
+        before = set(multiprocessing.active_children())
+        with _interrupts_blocked():
+            executor.submit(int)  # starts all workers
         try:
             yield executor
+            executor.shutdown()
         finally:
-            executor.shutdown(cancel_futures=True)
+            executor.shutdown(wait=False, cancel_futures=True)
+            for worker in set(multiprocessing.active_children()) - before:
+                worker.kill()  # what runs is done again by the next sweep
+
+
+@contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Processes started in the block take no interrupts: one sent to the whole group is for this process."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _end_with_parent() -> None:

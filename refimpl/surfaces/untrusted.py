@@ -1,0 +1,68 @@
+"""Files from anywhere, read so that nothing but heights or a refusal comes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from refimpl.errors import MOST, InputError
+from refimpl.grid import Array
+
+T = TypeVar("T")
+
+
+def read_untrusted(path: Path, load: Callable[[], T]) -> T:
+    """Return what ``load`` returns; raise `InputError` for whatever else becomes of the file.
+
+    Parsers of other people raise errors of any kind on bytes that are not what they claim to be.
+    """
+    try:
+        _refuse_external_data(path)
+        return load()
+    except InputError:
+        raise
+    except Exception as error:
+        brief = " ".join(f"{type(error).__name__}: {error}".split())[:160]
+        raise InputError("path", str(path), f"a file that can be read ({brief})") from error
+
+
+def refuse_huge(path: Path, heights: Array) -> None:
+    """Raise `InputError` for heights (m) whose squares no double holds."""
+    most = float(np.nanmax(np.abs(heights), initial=0.0))
+    if most > MOST:
+        raise InputError("path", f"heights up to {most:.3g} m in {path.name}", f"heights of at most {MOST:g} m")
+
+
+def _refuse_external_data(path: Path) -> None:
+    """Raise `InputError` for an HDF5 file that takes bytes from other files."""
+    try:
+        import h5py
+    except ImportError:  # nothing can read such a file then
+        return
+    is_hdf5: bool = path.is_file() and h5py.is_hdf5(path)
+    if not is_hdf5:
+        return
+    with h5py.File(path, "r") as file:
+        for name in _external(file, h5py):
+            allowed = f"an HDF5 file that holds all its data ({name[:60]!r} is in another file)"
+            raise InputError("path", str(path), allowed)
+
+
+def _external(file: Any, h5py: Any) -> Iterator[str]:
+    """Names of links and of data in other files."""
+    found: list[str] = []
+
+    def see_link(name: str, link: object) -> None:
+        if isinstance(link, h5py.ExternalLink):
+            found.append(name)
+
+    def see_object(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset) and (item.external or item.is_virtual):
+            found.append(name)
+
+    file.visititems_links(see_link)
+    file.visititems(see_object)
+    return iter(found)
