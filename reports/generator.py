@@ -17,7 +17,6 @@ from reports.results import Case, CaseDataError, ResultFileError, by, worst
 from reports.summary import groups
 from reports.traceability import traced
 
-
 _OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """Exceptions of drawing where data are not of the shape that a figure needs."""
 

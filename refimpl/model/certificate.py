@@ -19,7 +19,6 @@ from refimpl.model.forces import (
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
-
 # rounding of Eq. (7) on n elements, over sqrt(n) eps times the displacement by the peak pressure on the whole
 # domain; measured on flat periodic planes, 2 to 32 elements a side, dense sums: 0.3 to 0.7
 _ROUNDING = 2.0

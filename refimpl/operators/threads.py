@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-
 _NAMES = ("OMP_NUM_THREADS", "DUCC0_NUM_THREADS")
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 START_SECONDS = 60.0
+_NOWHERE = subprocess.DEVNULL
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
@@ -31,7 +32,7 @@ class Cluster:
         options = ("--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(self.folder))
         command = [sys.executable, "-m", "distributed.cli.dask_worker", self.address, *options]
         worker = subprocess.Popen(
-            command, env=self.environment, cwd=self.folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+            command, env=self.environment, cwd=self.folder, stderr=_NOWHERE, stdout=_NOWHERE
         )
         self.workers.append(worker)
         return worker
@@ -56,12 +57,11 @@ def cluster(
 ) -> Iterator[Cluster]:
     """A cluster with so many workers; ``environment`` is added to this process's, without ``drop``."""
     file = folder / "scheduler.json"
+    file.unlink(missing_ok=True)  # of an earlier cluster
     options = ("--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file))
     command = [sys.executable, "-m", "distributed.cli.dask_scheduler", *options]
     every = {name: value for name, value in os.environ.items() if name not in drop} | dict(environment)
-    process = subprocess.Popen(
-        command, env=every, cwd=folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
-    )
+    process = subprocess.Popen(command, env=every, cwd=folder, stderr=_NOWHERE, stdout=_NOWHERE)
     made = Cluster("", process, folder, every)
     try:
         made.address = _address(file, process)

@@ -16,7 +16,6 @@ from pathlib import Path
 
 import reports.result_files
 
-
 _UNUSUAL = re.compile(r"[^\n -~]")
 _SHOWN = 40  # characters of the target's name in that of a temporary file
 
