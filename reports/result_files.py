@@ -195,7 +195,7 @@ class _Expansion:
         self._shared, self._left = shared, _MOST_ENTRIES
 
     def of(self, value: Any, within: tuple[str, ...] = (), copies: int = 1) -> Any:
-        """The value; ``within`` names the shared values that it is a part of, ``copies`` of it stand there."""
+        """The value; ``within`` names the shared values that it is part of, ``copies`` of it stand there."""
         self._left -= copies
         if self._left < 0:
             raise ValueError(f"more than {_MOST_ENTRIES} entries")

@@ -91,7 +91,7 @@ class ResultFileError(ValueError):
 
 
 class CaseDataError(ResultFileError):
-    """The data of a case are not of the shape that its figures show; ``origin`` as `reports.evidence` has it."""
+    """The data of a case are not of the shape that its figures show; ``origin`` as in `reports.evidence`."""
 
     def __init__(self, message: str, origin: Mapping[str, Any] | None) -> None:
         super().__init__(message)

@@ -112,8 +112,8 @@ def contact_residuals(
 ) -> tuple[float, float]:
     """Return the complementarity gap over the elastic energy, and the penetration over the approach.
 
-    Gap and energy are per ``total``. Both residuals are 0 where all displacements are within ``rounding`` (m),
-    as of flat periodic planes.
+    Gap and energy are per ``total``. Both residuals are 0 where all displacements are within ``rounding``
+    (m), as of flat periodic planes.
     """
     if max(energy, gap) <= rounding * total and approach - lowest <= rounding:
         return 0.0, 0.0

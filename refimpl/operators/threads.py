@@ -15,7 +15,7 @@ _NAMES = ("OMP_NUM_THREADS", "DUCC0_NUM_THREADS")
 
 
 def allowed_threads() -> int:
-    """Return OMP_NUM_THREADS, or its first number in a list, or the number of cores that this process may use."""
+    """Return OMP_NUM_THREADS, or its first number in a list, or the number of cores for this process."""
     said = _number(os.environ.get("OMP_NUM_THREADS", "").partition(",")[0])
     if said is not None:
         return said
@@ -24,7 +24,7 @@ def allowed_threads() -> int:
 
 @contextmanager
 def plain_number_of_threads() -> Iterator[None]:
-    """In the block, the environment has whole numbers of threads: of lists and texts, ducc0 makes assertions."""
+    """In the block, the environment has whole numbers of threads; ducc0 asserts that they are."""
     before = {name: os.environ.get(name) for name in _NAMES}
     plain = {name: str(_number(said or "") or allowed_threads()) for name, said in before.items()}
     os.environ.update(plain)

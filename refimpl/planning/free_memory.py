@@ -1,4 +1,4 @@
-"""The memory that an allocation may take now: by the system, by the control group, by the process's limits."""
+"""The memory that an allocation may take now: by the system, the control group and the process's limits."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _USAGE = {"memory.max": "memory.current", "memory.limit_in_bytes": "memory.usage
 
 
 def free_memory() -> int:
-    """Return the bytes: the least of what the kernel estimates, the control group and resource limits leave."""
+    """Return the bytes: the least of what the kernel, the control group and resource limits leave."""
     return max(0, min((_available(), *_left_in_groups(), *_left_of_limits())))
 
 
@@ -27,7 +27,7 @@ def _available() -> int:
 
 
 def _left_in_groups() -> Iterator[int]:
-    """What the limit of each group above this process leaves; file pages that can be dropped count as free."""
+    """What the limit of each group above this process leaves; droppable file pages count as free."""
     for folder in _groups():
         for limit, usage in _USAGE.items():
             with suppress(OSError, ValueError):  # "max" is no limit

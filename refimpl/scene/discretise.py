@@ -23,8 +23,8 @@ def discretise(
     ``approach`` replaces the load if given: it counts from first contact, or from the mean planes when the
     scene is periodic (m). The datum, the difference of both, is defined here.
 
-    Raises `InputError` for an approach that is rounding of the datum: at full contact, where it is 0, any mean
-    pressure will do.
+    Raises `InputError` for an approach that is rounding of the datum: at full contact, where it is 0, any
+    mean pressure will do.
     """
     lower, upper = scene.sampled(grid)
     gap = upper - lower

@@ -33,7 +33,8 @@ def refuse_huge(path: Path, heights: Array) -> None:
     """Raise `InputError` for heights (m) whose squares no double holds."""
     most = float(np.nanmax(np.abs(heights), initial=0.0))
     if most > MOST:
-        raise InputError("path", f"heights up to {most:.3g} m in {path.name}", f"heights of at most {MOST:g} m")
+        found = f"heights up to {most:.3g} m in {path.name}"
+        raise InputError("path", found, f"heights of at most {MOST:g} m")
 
 
 def _refuse_external_data(path: Path) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 START_SECONDS = 60.0
 _NOWHERE = subprocess.DEVNULL
@@ -41,7 +42,8 @@ class Cluster:
         """Return when that many workers have come; raises TimeoutError."""
         import distributed
 
-        with distributed.Client(self.address, timeout=START_SECONDS) as client:
+        connect: Any = distributed.Client  # untyped
+        with connect(self.address, timeout=START_SECONDS) as client:
             client.wait_for_workers(number, timeout=START_SECONDS)
 
     def end(self) -> None:

@@ -211,9 +211,9 @@ def _x3p(heights: Array) -> bytes:
 def _results() -> bytes:
     texts = ("id", "title", "claim", "source", "metric", "tolerance_reason", "status", "unit", "note", "tier")
     measured = ("value", "reference", "reference_uncertainty", "error", "tolerance", "seconds")
-    case: dict[str, object] = dict.fromkeys(texts, "pass") | {"id": "a/b", "metric": "relative"}
+    case = dict.fromkeys(texts, "pass") | {"id": "a/b", "metric": "relative"}
     numbers = dict.fromkeys(measured, 1.0) | {"error": 0.0}
-    provenance: dict[str, object] = dict.fromkeys(("command", "date", "commit"), "x")
+    provenance: dict[str, object] = {**dict.fromkeys(("command", "date", "commit"), "x")}
     provenance |= {"dirty": False, "versions": {"python": "3", "x": None}, "machine": {"cores": 2}}
     counts = {"pass": 1, "fail": 0, "error": 0, "unavailable": 0}
     return json.dumps(

@@ -79,7 +79,7 @@ class Sweep:
 
 
 class WorkersLost(RuntimeError):
-    """Worker processes or the cluster died; what was finished is kept, and the same sweep goes on from there."""
+    """Workers or the cluster died; what was finished is kept, and the same sweep goes on from there."""
 
     def __init__(self, found: str) -> None:
         super().__init__(f"{found}; run the same sweep again to go on")
@@ -213,7 +213,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Executor, int, Callable[[], None]]]:
-    """A running dask.distributed scheduler: its workers as an executor, their number, a check that they live."""
+    """A running dask.distributed scheduler: its workers as an executor, their number, a check of life."""
     try:
         import distributed
 

@@ -218,7 +218,7 @@ def _check_schema(connection: sqlite3.Connection, path: Path) -> None:
 
 @contextmanager
 def _refused(path: Path) -> Iterator[None]:
-    """InputError in the place of what SQLite raises for a file; a run that is there twice is no such fault."""
+    """InputError in the place of what SQLite raises for a file; a run that is there twice is no fault."""
     try:
         yield
     except sqlite3.IntegrityError:

@@ -43,14 +43,12 @@ class Separation(NamedTuple):
 class ProjectedCG:
     """Iterates ``pressure`` towards the contact of the frozen problem.
 
-    ``apply`` is the flexibility ``a`` on the window, ``precondition`` an approximate inverse, ``rounding`` that
-    of displacements over the peak pressure (m/Pa). After
-    construction call `set_problem`, then `iterate`; ``normal_displacement`` is ``a f`` at all times.
+    ``apply`` is the flexibility ``a`` on the window, ``precondition`` an approximate inverse, ``rounding``
+    that of displacements over the peak pressure (m/Pa). After construction call `set_problem`, then
+    `iterate`; ``normal_displacement`` is ``a f`` at all times.
     """
 
-    def __init__(
-        self, apply: Apply, precondition: Apply, pressure: Array, rounding: float = 0.0
-    ) -> None:
+    def __init__(self, apply: Apply, precondition: Apply, pressure: Array, rounding: float = 0.0) -> None:
         self._apply, self._precondition = apply, precondition
         self.normal_displacement = apply(pressure)
         self.contact: Mask = pressure > 0

