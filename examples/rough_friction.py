@@ -13,7 +13,7 @@ scene = rf.read_scene("table1-rough")
 found = rf.solve(scene, accuracy=ACCURACY)
 mu, area = found.friction_coefficient, found.contact_area_corrected
 bars = {name: sum(parts.values()) for name, parts in found.uncertainty.items()}
-print(f"{found.status.value} on {found.grid.M} x {found.grid.M}")
+print(f"{found.status.value} on {found.grid}")
 print(f"mu = {mu:.4f} +- {bars['friction_coefficient']:.4f}")
 print(f"A  = {area * 1e6:.4f} +- {bars['contact_area_corrected'] * 1e6:.4f} mm^2")
 
@@ -28,7 +28,7 @@ end = 0.0
 for k, (name, part) in enumerate(found.uncertainty["friction_coefficient"].items()):
     right.barh(0, part / mu * 100, left=end, height=0.4, color=f"C{k}", label=name)
     end += part / mu * 100
-right.axvline(ACCURACY * 100, color="k", ls="--", lw=1, label="asked for")
+right.axvline(ACCURACY * 100, color="k", ls="--", lw=1, label="requested")
 right.set(xlabel="error bar of mu, in parts (per cent of mu)", yticks=[], ylim=(-0.5, 0.9))
 right.legend(loc="upper left", ncols=2)
 figure.savefig(PICTURE, dpi=100)

@@ -23,11 +23,13 @@ from refimpl.surfaces import (
     ArraySurface,
     Flat,
     GaussianRoughness,
+    Inspection,
     MeasuredSurface,
     Sphere,
     Surface,
     SurfaceSum,
     SurfaceWarning,
+    inspect,
 )
 
 __all__ = [
@@ -38,6 +40,7 @@ __all__ = [
     "GaussianRoughness",
     "Grid",
     "InputError",
+    "Inspection",
     "Material",
     "MeasuredSurface",
     "Scene",
@@ -48,6 +51,7 @@ __all__ = [
     "Surface",
     "SurfaceSum",
     "SurfaceWarning",
+    "inspect",
     "read_scene",
     "scene_to_toml",
     "sensitivity",

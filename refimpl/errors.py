@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-LEAST, MOST = 1e-30, 1e30  # of lengths, moduli and loads in SI: their squares and products stay doubles
+LEAST, MOST = 1e-30, 1e30  # lengths, moduli and loads in SI: their squares and products are doubles
 
 
 class InputError(ValueError):

@@ -16,6 +16,12 @@ EXAMPLES = {
     "hertz": (["32"], "converged: peak 165.79 MPa, -2.9e-03 of Hertz' 166.27"),
     "rough_friction": (["0.2"], "converged on 64 x 64\nmu = 0.1105 +- 0.0102\nA  = 0.1164 +- ... mm^2"),
     "check_my_solver": (["contestant/pins"], "pass contestant/pins ... of 2.0e+00"),
+    "which_way_up": (
+        ["32"],
+        "on the lower body it touches first at x = +0.20, y = +0.21 mm\n"
+        "on the upper body it touches first at x = +0.20, y = -0.21 mm",
+    ),
+    "small_slopes": (["32"], "a / R = 0.05: p_max +0.1 %\n...a / R = 0.33: p_max +6.3 %"),
     "direction_scan": (
         ["32", "2"],
         "2 directions, 2 converged\nmu from 0.1408 to 0.1411, Q/P from -0.0011 to +0.0011",

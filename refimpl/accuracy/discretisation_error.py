@@ -42,6 +42,7 @@ from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
+OBLONG_SPREAD = 0.09  # of s_c, by ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
 SINGLE_EXCESS = 1.5  # further bias of single elements, over that of an edge
 PEAK_BIAS, PEAK_BIAS_SPREAD = (
     0.028,
@@ -228,7 +229,9 @@ def _area(results: Sequence[GridFeatures]) -> Estimate:
     area, edge = np.transpose([(result.numbers["contact_area"], result.edge) for result in results])
     scatter = area_scatter(results)
     prior = AREA._replace(scatter=AREA.scatter * scatter[-1])
-    bias = Bias(edge * (1 + SINGLE_EXCESS * single_element_share(results) ** 2), EDGE_SIZE, EDGE_SIZE_SPREAD)
+    excess = edge * (1 + SINGLE_EXCESS * single_element_share(results) ** 2)
+    spread = math.hypot(EDGE_SIZE_SPREAD, OBLONG_SPREAD * math.log(results[-1].grid.aspect))
+    bias = Bias(excess, EDGE_SIZE, spread)
     return fit_line(area, scatter / scatter[-1], prior, bias)
 
 

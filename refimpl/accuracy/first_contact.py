@@ -1,6 +1,6 @@
 """Numbers at a prescribed approach, as if it counted from where the surfaces themselves first touch.
 
-Approaches count from first contact, of which a grid sees its highest elements only. The peak of the gap
+Approaches count from first contact, which a grid has at its highest elements only. The peak of the gap
 turned over lies higher (`peak`), so at the prescribed approach the bodies indent each other less than on the
 grid. The effect on a number is that of its power of the approach in Hertz contact.
 """

@@ -1,5 +1,4 @@
-"""What error bars need of a state on one grid: numbers, contact edge, peaks, and the grid's own error
-parts."""
+"""Features of a state on one grid for error bars: numbers, contact edge, peaks, the grid's own parts."""
 
 from __future__ import annotations
 
@@ -50,7 +49,7 @@ class GridFeatures:
 
     @property
     def touching(self) -> bool:
-        """Whether anything is in contact."""
+        """True if anything is in contact."""
         return self.numbers["contact_area"] > 0
 
     @property
@@ -61,7 +60,7 @@ class GridFeatures:
 
     @property
     def shear_by_edge(self) -> float:
-        """What tau on that edge changes the depth by, as a share of it."""
+        """Change of the depth by tau on that edge, as a share of it."""
         return self.shear_to_normal_ratio * min(self.edge_fraction, 1.0)
 
     @classmethod

@@ -17,7 +17,7 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult
 
-AREAS = "contact_area", "contact_area_corrected"  # the same elements leave both open
+AREAS = "contact_area", "contact_area_corrected"  # both depend on the same elements
 NUMBERS = (
     "friction_coefficient",
     *AREAS,

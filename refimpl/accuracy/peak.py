@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid, Mask
 
-_RIVAL = 0.5  # of the highest element: lower maxima do not count for how well the peak is resolved
+_RIVAL = 0.5  # share of the highest element: lower maxima do not count for how well the peak is resolved
 _REACH = 2  # elements on either side of a maximum that fourth differences need
 
 

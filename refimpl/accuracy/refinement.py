@@ -27,7 +27,7 @@ QUANTITIES: tuple[Quantity, ...] = (
 FIRST_GRIDS = (32, 64)  # elements along the longer side
 GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
 MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids are poor beyond
-MAX_BLIND_REFINEMENT = 2  # the same where the bar is longer than the number, and predicts nothing
+MAX_BLIND_REFINEMENT = 2  # ratio where the bar is longer than the number, and predicts nothing
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
@@ -65,15 +65,19 @@ def refine_until(
     accuracy: float,
     quantity: str,
     grid_sizes: Iterable[int] = GRID_SIZES,
+    *,
+    slenderness: int = 1,
 ) -> Refinement:
     """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
+
+    On a slender domain all numbers of elements along the longer side are ``slenderness`` times larger.
 
     A grid that ``features_at`` refuses by `InputError` (memory) is replaced by the next coarser one, as long
     as that is finer than the last. The part that tau's active set leaves open need not fall on finer grids:
     where it has not fallen and exceeds the accuracy, the refinement ends.
     """
-    results = [features_at(M) for M in FIRST_GRIDS]
-    remaining, refusal = list(grid_sizes), ""
+    results = [features_at(M * slenderness) for M in FIRST_GRIDS]
+    remaining, refusal = [M * slenderness for M in grid_sizes], ""
     while results[-1].touching and relative_bound(results, quantity) > accuracy:
         if active_set_dominates(results, accuracy, quantity):
             reason = "tau's active set leaves more than that open, and no less on finer grids"

@@ -15,7 +15,7 @@ from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution
 from refimpl.solvers.paper import PAPER_TOLERANCE
 
-# Of mean pressure and tau over the reduced modulus, and of approaches over the side.
+# Limits of mean pressure and tau over the reduced modulus, and of approaches over the side.
 LEAST_STRAIN, MOST_STRAIN = 1e-30, 1e6
 
 
@@ -27,7 +27,7 @@ class Options:
     """
 
     scene: Scene
-    grid: int | None = None
+    grid: int | tuple[int, int] | None = None
     method: Method = "fft"
     accuracy: float | None = None
     quantity: Quantity | None = None
@@ -48,8 +48,9 @@ class Options:
             check_accuracy(self.accuracy)
         require_number("tolerance", self.residual_tolerance, "a number between 0 and 1", above=0, below=1)
         if (self.grid is None) == (self.accuracy is None):
-            allowed = "a number of elements per side, or an accuracy, and not both"
+            allowed = "a number of elements along the longer side, or two, or an accuracy, and not both"
             raise InputError("grid", self.grid, allowed)
+        _ = self.solve_grid  # refuses what is no grid
         if self.start is not None:
             self._check_start(self.start)
         keep_doubles(self, "accuracy", "approach", "tolerance")
@@ -94,7 +95,9 @@ class Options:
     @property
     def solve_grid(self) -> Grid:
         """The grid to solve on; with an accuracy, the one on which the terms are decided."""
-        return self.scene.grid(DECISION_GRID if self.grid is None else self.grid)
+        if self.grid is not None:
+            return self.scene.grid(self.grid)
+        return self.scene.refined(DECISION_GRID * self.scene.slenderness)
 
     @property
     def target_quantity(self) -> Quantity:
@@ -105,7 +108,7 @@ class Options:
 
     @property
     def residual_tolerance(self) -> float:
-        """What every residual of the certificate must meet."""
+        """Tolerance of every residual of the certificate."""
         if self.tolerance is not None:
             return self.tolerance
         if self.method == "paper":

@@ -36,7 +36,7 @@ Progress = Callable[[str], None]
 
 def solve(
     scene: Scene,
-    grid: int | None = None,
+    grid: int | tuple[int, int] | None = None,
     *,
     method: Method = "fft",
     accuracy: float | None = None,
@@ -50,26 +50,30 @@ def solve(
     start: Solution | None = None,
     progress: Progress | None = None,
 ) -> Solution:
-    """Solve a scene on ``grid x grid`` elements, or to a relative ``accuracy``; exactly one of them.
+    """Solve a scene on a grid of elements, or to a relative ``accuracy``; exactly one of them.
 
     Parameters
     ----------
+    grid : elements along the longer side, the other number chosen for elements nearest to square; or both,
+        ``(Mx, My)``
     method : "fft" the production solver, "dense" the plain reference for small grids, "paper" the
         paper's own scheme
-    accuracy : refine until the error bar of ``quantity`` is this share of its value
+    accuracy : refine until the error bar of ``quantity`` is this share of its value, on grids of one element
+        ratio
     quantity : "friction_coefficient" (the default with friction), "contact_area" (without),
         "contact_area_corrected" or "max_pressure"
     approach : prescribe the approach (m) instead of the scene's load
-    oblique : False neglects every slope term (the classical small-slope theory); None lets the scene decide
+    oblique : False neglects every slope term: the classical small-slope theory that other codes solve; None
+        lets the scene decide
     slope_correction : exact facet tractions in Eq. (7): `refimpl.model.forces`
     coupled, tilted : request or exclude what shear does to the gap, and to the slopes of the common surface;
         None lets the scene decide
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, a share of it), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
-    start : a certified solution on a grid of the same side that is not finer, for "fft" to start from: nested
-        grids no finer are skipped, and the solution is the same. Best this scene's own on a coarser grid;
-        after another load the nested grids are faster
+    start : a certified solution on a grid of the same lengths that is not finer, for "fft" to start from:
+        nested grids no finer are skipped, and the solution is the same. Best this scene's own on a coarser
+        grid; after another load the nested grids are faster
     progress : called with a line of text at every step of the work
 
     Raises `InputError` for input that is out of range, before anything large is allocated; and, by "dense"
@@ -119,7 +123,7 @@ class _Refinement:
             guess = _guess(
                 start.problem, state.pressure, state.clearance, state.approach - start.problem.datum
             )
-        plan = self.plan.on(self.scene.grid(M))
+        plan = self.plan.on(self.scene.refined(M))
         solved = _solve_on_grid(plan, self._discretiser, self._tolerance, self._progress, guess)
         self.costs.append(solved.cost)
         self.last = solved
@@ -151,7 +155,7 @@ def _refined(options: Options, plan: Plan, discretiser: Discretiser, progress: P
     scene, quantity = options.scene, options.target_quantity
     assert options.accuracy is not None
     grids = _Refinement(scene, plan, discretiser, options.residual_tolerance, progress)
-    ended = refine_until(grids.features_at, options.accuracy, quantity)
+    ended = refine_until(grids.features_at, options.accuracy, quantity, slenderness=scene.slenderness)
     solved, cost = grids.solved(), total_cost(grids.costs)
     notes = _notes(scene, solved.problem.grid, discretiser.notes)
     if not ended.results[-1].touching:

@@ -164,12 +164,12 @@ class Grid:
 
     @property
     def continuation(self) -> Literal["wrap", "constant"]:
-        """How NumPy and SciPy continue a contact beyond the domain: repeated, or by nothing."""
+        """Mode by which NumPy and SciPy continue a contact beyond the domain: repeated, or by zeros."""
         return "wrap" if self.periodic else "constant"
 
     @property
     def band_limited(self) -> bool:
-        """Whether element values stand for their band-limited interpolant instead of constant pressures."""
+        """True if element values stand for their band-limited interpolant instead of constant pressures."""
         return self.periodic
 
     def __str__(self) -> str:

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from refimpl.kernels.quadrature import Kernel
 
 Array = NDArray[np.float64]
-_FLOOR = 1e-150  # of a length whose square must not underflow; t log(length / t) is nothing below it
+_FLOOR = 1e-150  # length whose square must not underflow; t log(length / t) vanishes below it
 
 
 def over_x(s: Array, y: Array, dy: float) -> Array:

@@ -127,7 +127,7 @@ def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
     """
     start = _NEAR_COUNT
     while start < max(n, m):
-        evaluations = order_for(2.0 * start) * min(start, n, m)  # of a row
+        evaluations = order_for(2.0 * start) * min(start, n, m)  # per row
         height = min(1 + start // 2, max(1, _SLAB // evaluations))
         stop = min(start + height, max(n, m))
         if stop > known:

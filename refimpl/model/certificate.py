@@ -1,4 +1,4 @@
-"""How well a solver's result satisfies the problem, recomputed from its pressure and traction alone."""
+"""Residuals of a solver's result, recomputed from its pressure and traction alone."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Influence(Protocol):
 
     @property
     def displaces_mean(self) -> bool:
-        """Whether a uniform pressure displaces anything; it does not where the scene is periodic."""
+        """True if a uniform pressure displaces anything; in a periodic scene it does not."""
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""
@@ -83,7 +83,7 @@ class Elasticity:
 
     @property
     def shear_displaces(self) -> bool:
-        """Whether shear displaces anything that enters the problem."""
+        """True if shear displaces anything that enters the problem."""
         return self.coupled or self.tilted
 
     @property

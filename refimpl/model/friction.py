@@ -12,7 +12,7 @@ from refimpl.grid import Array, Mask
 
 
 class FrictionLaw(Protocol):
-    """What solvers and judges ask of a law ``r(f)`` on elements in contact.
+    """Interface of a law ``r(f)`` on elements in contact.
 
     ``jump`` is ``r`` at vanishing pressure (Pa); ``slope`` is the part of ``dr/df`` that solvers may take
     into their linear systems. The rest, ``r - slope f``, is the held traction. It is constant on the active
@@ -29,7 +29,7 @@ class FrictionLaw(Protocol):
 
     @property
     def is_linear(self) -> bool:
-        """Whether ``r - slope f`` does not depend on the pressure."""
+        """True if ``r - slope f`` does not depend on the pressure."""
 
     def traction(self, pressure: Array, active: Mask) -> Array:
         """Return r (Pa): the law on the active set, and ``slope f`` outside."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from refimpl.errors import LEAST, keep_doubles, require_number, require_size
+from refimpl.errors import LEAST, InputError, keep_doubles, require_number, require_size
 
 RIGID = 1e100  # Pa; beside any other body's it is as good as infinite, and its square is a double
 
@@ -14,9 +14,11 @@ RIGID = 1e100  # Pa; beside any other body's it is as good as infinite, and its 
 class Material:
     """A linear elastic, isotropic material: Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``.
 
-    ``hardness`` (Pa), if given, is what pressures are warned against; the model stays elastic.
+    ``E = math.inf`` is a rigid body. ``hardness`` (Pa), if given, is what pressures are warned against; the
+    model stays elastic.
 
-    Raises `InputError` unless ``E`` and ``hardness`` are positive and finite and ``-1 < nu <= 0.5``.
+    Raises `InputError` unless ``E`` and ``hardness`` are positive and finite (``E`` may be infinite) and
+    ``-1 < nu <= 0.5``.
 
     >>> round(Material(E=200e9, nu=0.3).plane_strain_modulus / 1e9, 3)
     219.78
@@ -27,12 +29,18 @@ class Material:
     hardness: float | None = None
 
     def __post_init__(self) -> None:
-        allowed = f"a positive, finite Young's modulus in Pa, {LEAST} to {RIGID}"
-        require_number("E", self.E, allowed, at_least=LEAST, at_most=RIGID)
+        allowed = f"a positive Young's modulus in Pa, {LEAST} to {RIGID}, or infinity for a rigid body"
+        if not (isinstance(self.E, float) and math.isinf(self.E) and self.E > 0):
+            require_number("E", self.E, allowed, at_least=LEAST, at_most=RIGID)
         require_number("nu", self.nu, "a Poisson's ratio in (-1, 0.5]", above=-1, at_most=0.5)
         if self.hardness is not None:
             require_size("hardness", self.hardness, "a positive, finite hardness in Pa")
         keep_doubles(self, "E", "nu", "hardness")
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether the modulus is infinite: both compliances are zero."""
+        return math.isinf(self.E)
 
     @property
     def plane_strain_modulus(self) -> float:
@@ -55,7 +63,8 @@ class Pair:
     """The two materials of a friction pair and their combined compliances.
 
     Normal compliances add. Shear compliances subtract, lower minus upper, because the two bodies
-    feel opposite tractions: identical materials do not couple.
+    feel opposite tractions: identical materials do not couple. One of them may be rigid; raises `InputError`
+    for two.
 
     >>> steel = Material(E=200e9, nu=0.3)
     >>> Pair(lower=steel, upper=steel).shear_compliance
@@ -64,6 +73,10 @@ class Pair:
 
     lower: Material
     upper: Material
+
+    def __post_init__(self) -> None:
+        if self.lower.is_rigid and self.upper.is_rigid:
+            raise InputError("upper.material.E", self.upper.E, "a finite modulus beside a rigid lower body")
 
     @property
     def normal_compliance(self) -> float:
@@ -87,7 +100,7 @@ class Pair:
 
     @property
     def shear_ratio(self) -> float:
-        """``(|c_lower| + |c_upper|) / a``: the same of both bodies, without regard to sign."""
+        """``(|c_lower| + |c_upper|) / a``: the ratio with both bodies' magnitudes."""
         return (abs(self.lower.shear_compliance) + abs(self.upper.shear_compliance)) / self.normal_compliance
 
     def tilts(self, shear: float) -> tuple[float, float]:

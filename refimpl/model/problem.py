@@ -31,7 +31,7 @@ class Terms:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What solvers solve, on a grid or on a window of it; all arrays have one shape.
+    """The contact problem on a grid or on a window of it; all arrays have one shape.
 
     grid : shape, lengths and topology
     gap : ``h = z_upper - z_lower`` shifted to ``min h = 0`` (m)
@@ -68,7 +68,7 @@ class Problem:
 
     @property
     def counts_from_first_contact(self) -> bool:
-        """Whether the reported approach does; that of a periodic problem counts from the mean planes."""
+        """True if the reported approach does; that of a periodic problem counts from the mean planes."""
         return not self.grid.periodic
 
     def with_terms(self, terms: Terms) -> Problem:

@@ -30,7 +30,7 @@ class Slopes:
 
     @property
     def is_flat(self) -> bool:
-        """Whether these are the zero slopes of `flat`."""
+        """True if these are the zero slopes of `flat`."""
         return not any(self.tan_x.strides)
 
     @classmethod

@@ -1,4 +1,4 @@
-"""What a solver returns before certification: the fields, how its loops ended, and the states of cycles."""
+"""A solver's result before certification: the fields, the end of its loops, and the states of cycles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from refimpl.model.slopes import Slopes
 
 
 class Status(Enum):
-    """How a solve ended.
+    """End of a solve.
 
     CONVERGED : the certificate meets the tolerance
     STAGNATED : not converged; the residual no longer falls

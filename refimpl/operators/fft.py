@@ -1,7 +1,7 @@
 """Exact aperiodic convolution on a window by zero-padded real FFTs.
 
 Transforms are those of `refimpl.operators.transforms`. Columns that are known to be zero
-are not transformed, and columns of the result that nobody asked for are not transformed back.
+are not transformed, and columns of the result outside the target are not transformed back.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from refimpl.grid import Array, Grid, Window
 from refimpl.grid.window import padded_length
 from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.symmetric import even_hat, odd_hat
-from refimpl.operators.transforms import Complex, factors, fourier, threads
+from refimpl.operators.transforms import Complex, fourier, threads
 
 
 @dataclass
 class Counter:
-    """How often operators were applied, each application with its ``n log2 n`` padded points.
+    """Count of operator applications, each with its ``n log2 n`` padded points.
 
     A kernel's own transform counts as the half of an application that it is, or by symmetry as an eighth for
     each of its parts.
@@ -122,7 +122,7 @@ class FFTInfluence:
             self.counter.add("normal kernel", points // 2)
             return self._transformed(self._signed("normal"))
         self.counter.add("normal kernel", points // 8)
-        return self._kept(even_hat(self._quarter("normal"), threads(points)))
+        return even_hat(self._quarter("normal"), threads(points))
 
     def _quarter(self, kind: str, axis: int = 0) -> Array:
         """A kernel at the offsets from 0 to half of each circle (m): that along an axis if it is tangential.
@@ -132,9 +132,6 @@ class FFTInfluence:
         halves = [n // 2 + 1 for n in self._padded]
         table = unit_table(kind, (halves[axis], halves[1 - axis]), self._aspect(axis))
         return table * self.grid.spacings[axis]
-
-    def _kept(self, hat: Array) -> Array | Complex:
-        return factors(hat)
 
     @cached_property
     def _shear_hat(self) -> Complex:
@@ -205,9 +202,6 @@ class WholeGridInfluence(FFTInfluence):
     Tractions outside the source are taken to be zero: the caller chose the source to hold them all. It is
     made for one product of each kind, and gives up what that took before the result needs room.
     """
-
-    def _kept(self, hat: Array) -> Array:
-        return hat
 
     def _convolve(self, source: Array, hat: Array | Complex) -> Array:
         spectrum = self._forward(source[self.source.slices])

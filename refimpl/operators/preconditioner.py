@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from refimpl.grid import Array, Mask
 from refimpl.operators.influence import WindowInfluence
-from refimpl.operators.transforms import factors, fourier, threads
+from refimpl.operators.transforms import fourier, threads
 
 Apply = Callable[[Array], Array]
 """A linear map of fields on a window."""
@@ -42,7 +42,7 @@ class SpectralPreconditioner:
         if symbol[0, 0] == 0:
             symbol = symbol.copy()
             symbol[0, 0] = 2 * symbol.max() or 1.0
-        self._symbol = factors(1 / symbol)
+        self._symbol = 1 / symbol
 
     def __call__(self, residual: Array) -> Array:
         """The preconditioned residual, same shape; the caller masks argument and result."""

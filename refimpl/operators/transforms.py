@@ -20,8 +20,6 @@ from refimpl.operators.threads import allowed_threads, plain_number_of_threads
 
 Complex = NDArray[np.complex128]
 
-_FEW = 50_000  # numbers of a symbol up to which NumPy multiplies quicker by complex ones
-
 
 class Library(Protocol):
     """What operators need of a library of transforms; ``workers`` are threads.
@@ -171,14 +169,6 @@ def best_installed() -> Library:
 
 
 fourier = best_installed()
-
-
-def factors(symbol: Array) -> Array | Complex:
-    """A real symbol as spectra are multiplied by it time and again: few numbers as complex ones.
-
-    NumPy takes half the time for those, to the same last bit, as long as they stay in cache.
-    """
-    return symbol.astype(np.complex128) if symbol.size <= _FEW else symbol
 
 
 def threads(points: int) -> int:

@@ -1,1 +1,1 @@
-"""What a scene requires, judged before it is solved: the contact to expect, and what each term does to it."""
+"""The terms that a scene requires, before it is solved: the contact to expect, the effect of each term."""

@@ -33,7 +33,7 @@ _STIFFNESS = 4 * math.sqrt(2) / (3 * math.pi)  # mean pressure over E* times the
 _PEAKED = 9 / 8  # pressure-weighted over mean pressure: Hertz's; 0.9 to 1.3 of the expected on random scenes
 _COARSE = 64  # elements per side from which the contact is estimated
 _LEAST = 1e-12  # mean pressure over E*, of a contact at an approach that hardly loads it
-_ROUNDING = 1e-9  # of a surface's range: heights that differ by less are mirror images of each other
+_ROUNDING = 1e-9  # share of a surface's range: heights that differ by less are mirror images of each other
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class ExpectedContact:
     """A contact in twelve numbers; pressures in Pa, lengths in m, slopes as tangents.
 
     ``elements`` in contact, in ``patches`` of equal weight; ``mean_pressure``, and ``pressure`` weighted by
-    itself; ``approach`` from first touch; ``slope_squared`` mean square of the common surface's;
+    itself; ``approach`` from first contact; ``slope_squared`` mean square of the common surface's;
     ``least_slope`` and ``least_mean_slope`` are the smaller of both bodies' rms and mean slopes along the
     sliding direction; ``border`` share of the contact that lies on the domain's border.
     """

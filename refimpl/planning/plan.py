@@ -26,7 +26,7 @@ _DENSE_MATRICES, _DENSE_MATRICES_CORRECTED = 6, 9
 
 @dataclass(frozen=True)
 class Plan:
-    """What is modelled on a grid, what is neglected, and why.
+    """Terms modelled on a grid, terms neglected, and the reasons.
 
     method : the solver
     grid : shape and lengths
@@ -99,7 +99,7 @@ def make_plan(
 ) -> Plan:
     """Decide the terms from the heights of a problem, for its grid or for all grids of a refinement.
 
-    ``demand`` is the relative accuracy asked of mu and A (``for_mu``: of mu above all) that each term's
+    ``demand`` is the relative accuracy required of mu and A (``for_mu``: of mu above all) that each term's
     effect is compared with. Memory is estimated and not checked: on a grid that is only decided on nothing
     is solved (`memory_of`, `Plan.on`).
     """

@@ -78,7 +78,7 @@ class Scales:
 
     @property
     def frictionless(self) -> bool:
-        """Whether no shear acts."""
+        """True if no shear acts."""
         return is_frictionless(self.friction)
 
     @property

@@ -10,8 +10,8 @@ from refimpl.model.problem import Problem
 from refimpl.planning.expected_contact import ExpectedContact
 from refimpl.planning.term_effects import ESTIMATES, NONE, Effect, Scales
 
-_SHARE_OF_DEMAND = 0.5  # of the accuracy, for all neglected terms together
-_SHARE_OF_EDGE_ERROR = 0.01  # of the grid's own error of A, where no friction force is at stake
+_SHARE_OF_DEMAND = 0.5  # share of the accuracy, for all neglected terms together
+_SHARE_OF_EDGE_ERROR = 0.01  # share of the grid's own error of A, without friction
 
 LABELS = {
     "coupled": "normal-tangential coupling",
@@ -25,7 +25,7 @@ LABELS = {
 
 @dataclass(frozen=True)
 class RequestedTerms:
-    """What the user requests of each term: True, False, or None to let planning decide."""
+    """The user's request for each term: True, False, or None to let planning decide."""
 
     coupled: bool | None = None
     oblique: bool | None = None

@@ -58,14 +58,18 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 
 
 def moving(scene: Scene) -> dict[str, float]:
-    """The parameters that derivatives are had for: those that are not zero.
+    """Return the parameters that have derivatives: those that are not zero.
 
-    The correlation length of a periodic surface is left out: another length is another realisation.
+    The correlation length of a periodic surface is not among them: another length is another realisation. Nor
+    are the modulus and Poisson's ratio of a rigid body, which change nothing.
     """
+    rigid = tuple(f"{name}.material" for name in BODIES if getattr(scene, name).material.is_rigid)
     return {
         name: value
         for name, value in parameters(scene).items()
-        if value != 0 and not (scene.periodic and name.endswith("correlation_length"))
+        if value != 0
+        and not name.startswith(rigid)
+        and not (scene.periodic and name.endswith("correlation_length"))
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import tomllib
@@ -24,8 +25,9 @@ _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a sc
 _MAX_PARTS = 32  # of a dotted key; the parser's time grows with their square
 _PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_MAX_PARTS}}}")
-_OPTIONAL_KEYS = ("sliding_direction", "sliding_offset", "periodic")
-_SCENE_KEYS = ("load", "side", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
+_OPTIONAL_KEYS = ("side", "size", "sliding_direction", "sliding_offset", "periodic")
+_RIGID = "rigid"  # E of a rigid body
+_SCENE_KEYS = ("load", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -52,7 +54,7 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
     if not isinstance(name, str | os.PathLike):
         raise InputError("scene", name, "the path of a TOML file, or the name of a shipped scene")
     path = Path(name)
-    if not os.path.isfile(path):  # of any name, however long
+    if not os.path.isfile(path):  # a name may have any length
         if str(path) in shipped_scenes():
             path = Path(str(resources.files("refimpl").joinpath("data", "scenes", f"{path}.toml")))
         else:
@@ -99,7 +101,6 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
         lower=_body(table, "lower", folder),
         friction=Friction(**friction),
         load=_required(table, "load", "a normal load in N"),
-        side=_required(table, "side", "a length in m"),
         **optional,
     )
     _tolerances(table, scene)
@@ -112,7 +113,8 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         raise InputError("scene", scene, "a Scene")
     return {
         "load": scene.load,
-        "side": scene.side,
+        **({} if scene.side is None else {"side": scene.side}),
+        **({} if scene.size is None else {"size": list(scene.size)}),
         "sliding_direction": scene.sliding_direction,
         "sliding_offset": scene.sliding_offset,
         "periodic": scene.periodic,
@@ -147,7 +149,9 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     modulus = _required(material, "E", "Young's modulus in Pa", prefix=f"{name}.material.")
     ratio = _required(material, "nu", "Poisson's ratio", prefix=f"{name}.material.")
     with within(f"{name}.material"):
-        matter = Material(E=modulus, nu=ratio, hardness=material.get("hardness"))
+        matter = Material(
+            E=math.inf if modulus == _RIGID else modulus, nu=ratio, hardness=material.get("hardness")
+        )
     return Body(matter, sum(surfaces[1:], start=surfaces[0]))
 
 
@@ -155,7 +159,11 @@ def _body_to_dict(body: Body) -> dict[str, Any]:
     parts = body.surface.parts if isinstance(body.surface, SurfaceSum) else (body.surface,)
     hardness = {} if body.material.hardness is None else {"hardness": body.material.hardness}
     return {
-        "material": {"E": body.material.E, "nu": body.material.nu, **hardness},
+        "material": {
+            "E": _RIGID if body.material.is_rigid else body.material.E,
+            "nu": body.material.nu,
+            **hardness,
+        },
         "surface": [part.to_dict() for part in parts],
     }
 

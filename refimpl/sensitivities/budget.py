@@ -1,4 +1,4 @@
-"""Where a number's uncertainty comes from, after ASME V&V 20 (2009): numerical, input, sampling, model form.
+"""Sources of a number's uncertainty, after ASME V&V 20 (2009): numerical, input, sampling, model form.
 
 Every entry is a half-width in the number's unit that holds with 95 %.
 

@@ -1,4 +1,4 @@
-"""How a contact's edge moves when its pressures change, told from the pressures alone.
+"""Motion of a contact's edge when its pressures change, from the pressures alone.
 
 Pressure falls off as ``k sqrt(d)`` at a distance d from an edge, so an edge that moves by V changes it by
 ``k V / (2 sqrt d)``, and the relative change of the outermost elements, ``df / f = V / (2 d)``, beyond that

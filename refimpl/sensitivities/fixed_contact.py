@@ -23,8 +23,8 @@ from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import ExtendedPreconditioner, SpectralPreconditioner
 
 _MARGIN = 2  # elements around the contact: its slopes are central differences
-_STEP = 1e-4  # of the quotient, in peaks: the model is nonlinear by slopes^2 only, rounding costs 1e-12
-_TOLERANCE = 1e-6  # of GMRES, relative: a thousandth of what a derivative is asked to be good for
+_STEP = 1e-4  # step of the quotient, in peak pressures: the error is slopes^2, that of rounding 1e-12
+_TOLERANCE = 1e-6  # relative residual of GMRES: a thousandth of the accuracy of a derivative
 _RESTART, _CYCLES = 80, 5
 _FACETS = 4  # times: each leaves a hundredth of what slopes still change by (at 5 degrees; see the tests)
 
@@ -38,7 +38,7 @@ class Response(NamedTuple):
 
 
 class FixedContact:
-    """A solved state's contact set and its support of tau, on the window of the grid that holds them."""
+    """A solved state's contact set and its active set of tau, on the window of the grid that holds them."""
 
     def __init__(self, problem: Problem, pressure: Array, active: Mask, slopes: Slopes) -> None:
         self.window = problem.grid.window_around(pressure > 0, margin=_MARGIN)
@@ -92,7 +92,7 @@ class FixedContact:
     def plain_inverse(self, x: Array) -> Array:
         """Return ``y`` with ``J y`` about ``x``, by the system of flat surfaces without friction.
 
-        That is ``a f - delta = misfit`` under ``sum f dA = load``, with a preconditioner for the inverse of a.
+        It is ``a f - delta = misfit`` under ``sum f dA = load``, with a preconditioner for the inverse of a.
         """
         x = np.ravel(x)
         load = self.problem.load or float(self.pressure.sum()) * self.problem.grid.element_area

@@ -1,4 +1,4 @@
-"""What a solution's numbers change by when the scene's numbers change.
+"""Derivatives of a solution's numbers by the scene's numbers.
 
 Pressures answer smoothly while the contact set stays as it is, so that friction, binormal force and peak
 pressure follow from one linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does not:
@@ -43,8 +43,8 @@ _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient 
 _STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
 _RANGES = {".nu": (math.nextafter(-1, 0), 0.5), ".E": (LEAST, RIGID)}  # that steps may not leave
-_TIED = 1e-6  # of the highest pressure, within which others are as high: symmetric scenes, but for slopes
-_SOLVED = 1e-3  # of a linear solve's right side, at most, may be left: a derivative's digits
+_TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
+_SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,7 @@ def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> d
     below, above = (
         solve(
             with_parameter(scene, name, value * factor),
-            max(solution.grid.shape),
+            solution.grid.shape,
             oblique=terms.oblique,
             slope_correction=terms.slope_correction,
             coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
@@ -241,7 +241,7 @@ def _gathered(
         found = (friction, area, answer.peak, answer.binormal)
         spreads = dmu_dA * loose, loose, answer.torn, 0.0
         for number, derivative, spread in zip(NUMBERS, found, spreads, strict=True):
-            # what changes meets elsewhere, which no fixed set knows: where there are two solves they tell
+            # the fixed set has no contact at new places; where two solves exist, their difference is included
             apart = abs(derivative - solved[name][number]) if name in solved else 0.0
             derivatives[number][name], scatter[number][name] = derivative, math.hypot(spread, apart)
     return Sensitivity(

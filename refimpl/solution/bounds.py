@@ -14,7 +14,7 @@ Split ``w = r + p`` with any ``p >= 0``. Since ``f.w* >= 0``, ``f*.w* = 0`` and 
 
     e.a e <= e.r + f.p + (approach - approach*) K.e <= ||r||' ||e|| + f.p + ...                         (B2)
 
-with ``||e||^2 = e.a e`` and ``||.||'`` its dual norm. Nothing is asked of f: pressure that is negative, or
+with ``||e||^2 = e.a e`` and ``||.||'`` its dual norm. No condition is set on f: pressure that is negative, or
 stands where the gap is open, is set to zero first and its own norm added at the end; penetration (w < 0) is
 part of r.
 
@@ -37,10 +37,10 @@ the very error if both supports agree, plus what of r is left over the root of t
 both sides of (B1) makes ``a + m K K'`` definite; K.e is known as above. At a prescribed approach it is not,
 and no bound is claimed.
 
-Not proven, and not touched by these numbers: that slopes and tau's support are those of the solution of the
-whole problem (see the certificate's ``slope`` and ``law_violations``), and the grid's own error. Rounding of
-the products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of a number, is
-not.
+Not proven, and not contained in these numbers: that slopes and tau's active set are those of the solution
+of the whole problem (see the certificate's ``slope`` and ``law_violations``), and the grid's own error.
+Rounding of the products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of
+a number, is not.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ from refimpl.solution.energy_norm import EnergyNorm
 
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """Bounds on returned value minus solution, at the state's slopes and support of tau; inf: no bound.
+    """Bounds on returned value minus solution, at the state's slopes and active set of tau; inf: no bound.
 
     ``energy`` bounds ``sum (f - f*) a (f - f*) dA`` (J), ``pressure`` each element's pressure and the largest
     (Pa), ``pressure_l2`` the root of ``sum (f - f*)^2 dA`` (Pa m). ``approach`` in m, forces in N. The masks
@@ -81,7 +81,7 @@ class Bounds:
     unproven: str
 
 
-UNPROVEN = "slopes and tau's support are held as returned; the grid's own error is not included"
+UNPROVEN = "slopes and tau's active set are held as returned; the grid's own error is not included"
 NO_BOUND_CORRECTED = "the slope correction's matrix is not a plus a skew one: no bound"
 NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic domain: no bound"
 NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressure: no bound"

@@ -1,4 +1,4 @@
-"""How wrong a flat half-space's influence coefficients are on a slope: the table of Appendix A's answer.
+"""Error of a flat half-space's influence coefficients on a slope, in the plane: Appendix A's table.
 
 The table (``data/coefficient_error.json``, made by ``rough-friction appendix-a map``) holds what
 finite elements found for a strip of half-width ``a`` on a sinusoidal boundary in plane strain. The
@@ -69,6 +69,8 @@ def coefficient_error(
     wavelength = table["wavelength"][-1] if wavelength is None else wavelength
     least = table["wavelength"][0]
     require_number("wavelength", wavelength, f"at least {least:g} half-widths", at_least=least)
+    if all(body.is_rigid for body in (lower, upper or lower)):
+        raise InputError("lower", lower, "an elastic body: a rigid one has no influence coefficients")
     if position is not None:
         require_number("position", position, "a share of the wavelength, 0 to 1", at_least=0, at_most=1)
     positions = np.array(table["position"] if position is None else [position])

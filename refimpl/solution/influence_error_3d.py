@@ -1,4 +1,4 @@
-"""How wrong the solver's own influence coefficients are on a slope: one square element, three dimensions.
+"""Error of the solver's own influence coefficients on a slope: one square element, three dimensions.
 
 ``coefficient_error`` is of strips in plane strain, whose displacements have no datum. Three-dimensional
 displacements decay, so here the self coefficient and those across the slope are judged too. The table

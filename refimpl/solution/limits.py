@@ -1,4 +1,4 @@
-"""Where a solution leaves the range of the model: named warnings, each with its number and its limit."""
+"""Limits of the model: named warnings of a solution, each with its number and its limit."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def plain_warning(text: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """What the limits of a model are compared with.
+    """Everything that the limits of the model are compared with.
 
     scene, problem, plan, state : what was posed, solved and found
     excluded : elements that the rule for tau's active set leaves without adhesive shear
@@ -138,8 +138,8 @@ def softer_hardness(pair: Pair) -> float | None:
 def roughness_slope(scene: Scene, grid: Grid) -> float:
     """Return the root of both bodies' summed mean square slopes along an axis, without spheres and flats."""
     total = 0.0
-    for body in (scene.lower, scene.upper):
-        rough = [part for part in body.surface.parts if not isinstance(part, Sphere | Flat)]
+    for name in ("lower", "upper"):
+        rough = [part for part in scene.parts(name) if not isinstance(part, Sphere | Flat)]
         z = grid.zeros
         for part in rough:
             z += part.sample(grid)
@@ -209,7 +209,7 @@ def _border(evidence: Evidence) -> ModelWarning | None:
     advice = (
         f"the {' and '.join(concave)} body is concave (sign of its radius?)"
         if concave
-        else "enlarge the side"
+        else "enlarge the domain"
     )
     text = f"contact reaches the border of the domain on {touching} elements: {advice}"
     return ModelWarning(Limit.BORDER, touching, 0, text) if touching else None

@@ -141,13 +141,13 @@ class Solution:
 
     @property
     def converged(self) -> bool:
-        """Whether the loops ended well and the certificate holds; an alternating contact edge is certified
+        """True if the loops ended well and the certificate holds; an alternating contact edge is certified
         too."""
         return self.status in (Status.CONVERGED, Status.CYCLED)
 
     @property
     def certified(self) -> bool:
-        """Whether the certificate holds, as it may where a requested accuracy was not reached."""
+        """True if the certificate holds, as it may where a requested accuracy was not reached."""
         return self.certificate.satisfies(self.tolerance)
 
     @cached_property
@@ -161,8 +161,7 @@ class Solution:
         return {
             "status": self.status.value,
             **numbers,
-            "grid": max(self.grid.shape),
-            "side": max(self.grid.lengths),
+            **_dimensions(self.grid),
             "tolerance": self.tolerance,
             "certificate": asdict(self.certificate),
             "uncertainty": {name: dict(parts) for name, parts in self.uncertainty.items()},
@@ -185,6 +184,14 @@ class Solution:
                 "iterations": dict(self.cost.iterations),
             },
         }
+
+
+def _dimensions(grid: Grid) -> dict[str, Any]:
+    """The grid's numbers for JSON: one number for both sides of a square, else two."""
+    square = grid.lengths[0] == grid.lengths[1]
+    lengths = {"side": grid.lengths[0]} if square else {"size": list(grid.lengths)}
+    same = square and grid.shape[0] == grid.shape[1]
+    return {"grid": grid.shape[0] if same else list(grid.shape), **lengths}
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,7 +220,7 @@ class Solved:
 
     @cached_property
     def features(self) -> GridFeatures:
-        """What error bars look at on this grid."""
+        """Features that error bars depend on, on this grid."""
         return GridFeatures.of(self.problem, self.state, self.own_parts)
 
     @property

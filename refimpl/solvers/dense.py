@@ -20,7 +20,7 @@ from refimpl.operators.dense import DenseInfluence
 from refimpl.solvers.pivoting import complementarity, restricted_solve
 from refimpl.solvers.tau_active_set import iterate
 
-_SLOPE_TOLERANCE = 1e-13  # of the peak pressure: 450 eps; or until changes of the slopes no longer shrink
+_SLOPE_TOLERANCE = 1e-13  # share of the peak pressure: 450 eps; or until slope changes no longer shrink
 _ROUNDING_FLOOR = 1e-11  # a smaller change that no longer shrinks is rounding of the linear solves
 _SLOPE_ITERATIONS = 200
 _APPROACH_ITERATIONS = 200
@@ -78,12 +78,12 @@ class _DenseSolver:
 
     @property
     def exhausted(self) -> bool:
-        """Whether the solver has taken more linear solves than states that converge do."""
+        """True if the solver has taken more linear solves than states that converge do."""
         return self.solves >= _SOLVES
 
     @property
     def contact(self) -> Mask:
-        """Where the present pressure is positive."""
+        """Elements with positive pressure."""
         return self.pressure > 0
 
     def cycle_state(self) -> CycleState:

@@ -149,13 +149,13 @@ class _Scheme:
 
     @property
     def exhausted(self) -> bool:
-        """Whether more was done on this grid than any state that settles takes: limits of loops multiply."""
+        """True if more was done on this grid than any state that settles takes: limits of loops multiply."""
         trace = self.trace
         return trace.periodic_steps + trace.correction_steps + trace.passes >= _BUDGET
 
     @property
     def contact(self) -> Mask:
-        """Where the present pressure is positive."""
+        """Elements with positive pressure."""
         return self.pressure > 0
 
     def cycle_state(self) -> CycleState:
@@ -196,7 +196,7 @@ class _Scheme:
     def normal_force(self, approach: float, active: Mask | None) -> float:
         """(1) Iteration one: the contact at an assumed approach; returns N, Eq. (2)."""
         self.trace.approaches += 1
-        self.settled, problem = True, self.problem  # what an approach on the way left open is not this one's
+        self.settled, problem = True, self.problem  # independent of the approaches before
         inside: Mask = problem.gap < approach  # (1a) contact lies within kinematic interference
         if self.pressure.any():
             inside &= self.pressure > 0

@@ -31,7 +31,7 @@ def complementarity(G: Array, q: Array, start: Mask) -> Pivoted:
     """Solve ``f >= 0, G f + q >= 0, f (G f + q) = 0`` from the support ``start``.
 
     ``G`` has shape ``(n, n)``, ``q`` and ``start`` have shape ``(n,)``. Signs are judged against
-    rounding only: ``n eps`` of the largest pressure, and of the largest gap.
+    rounding only: ``n eps`` of the maximum pressure, and of the largest gap.
 
     Raises `ArithmeticError` when ``G`` is no P-matrix and the exchanges do not end.
 

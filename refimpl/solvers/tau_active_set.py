@@ -145,11 +145,12 @@ def iterate(solver: TauSolver, law: FrictionLaw, tolerance: float) -> TauResult:
     """Solve on one active set after the other by the rule; the solver is left at the last state.
 
     A state before the last needs only its contact set, so its solve may end early. Of a cycle's states mu is
-    reported as well: those whose solve had ended early are solved again.
+    reported as well: those whose solve had ended early are solved again. A law without a jump holds on every
+    element, as its shear vanishes with the pressure: one solve is enough.
     """
     rule = TauActiveSet(solver.contact.shape)
     if law.jump == 0:
-        solver.solve(tolerance, rule.current)
+        solver.solve(tolerance, ~rule.current)
         return TauResult(True, rule.excluded, (), 1)
     history: list[CycleState | None] = []
     cycle_states: list[CycleState] = []

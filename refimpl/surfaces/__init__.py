@@ -2,6 +2,7 @@
 
 from refimpl.surfaces.from_table import surface_from_dict
 from refimpl.surfaces.gaussian import GaussianRoughness
+from refimpl.surfaces.inspection import Inspection, inspect
 from refimpl.surfaces.measured import MeasuredSurface
 from refimpl.surfaces.shapes import Flat, Sphere
 from refimpl.surfaces.surface import ArraySurface, Surface, SurfaceSum, SurfaceWarning, as_surface
@@ -10,11 +11,13 @@ __all__ = [
     "ArraySurface",
     "Flat",
     "GaussianRoughness",
+    "Inspection",
     "MeasuredSurface",
     "Sphere",
     "Surface",
     "SurfaceSum",
     "SurfaceWarning",
     "as_surface",
+    "inspect",
     "surface_from_dict",
 ]

@@ -12,6 +12,8 @@ from refimpl.grid import Array, Grid
 from refimpl.surfaces.bicubic import resample, resample_periodic
 
 _ALLOWED = "a 2-D array of finite heights in m over the domain, indexed [i, j] along x, y"
+_SQUARE = 1.01  # ratio of a pixel's edges, up to which pixels without stated edges are taken for square
+_SPANS = 1e-6  # relative, between the array's stated size and the domain: rounding of typed lengths
 
 
 def checked(data: NDArray[Any]) -> Array:
@@ -54,6 +56,21 @@ def sampled(data: Array, grid: Grid, offset: tuple[float, float]) -> Array:
     return resample_periodic(data, x, y) if grid.periodic else resample(data, x, y)
 
 
+def check_domain(
+    shape: tuple[int, int], pixel: tuple[float, float] | None, lengths: tuple[float, float]
+) -> None:
+    """Raise `InputError` unless pixels of the stated edges (m), or else square ones, fill a domain (m)."""
+    edges = tuple(length / n for length, n in zip(lengths, shape, strict=True))
+    if pixel is None:
+        if max(edges) > _SQUARE * min(edges):
+            found = f"array of shape {shape}, whose pixels here are {_metres(edges)} m"
+            raise InputError("heights", found, "square pixels, or ArraySurface(z, pixel=(dx, dy))")
+    elif any(abs(edge / own - 1) > _SPANS for edge, own in zip(edges, pixel, strict=True)):
+        own = tuple(n * edge for n, edge in zip(shape, pixel, strict=True))
+        found = f"array of {_metres(own)} m on a domain of {_metres(lengths)} m"
+        raise InputError("pixel", found, "a domain that the array spans: it is never squeezed")
+
+
 def use_of(shape: tuple[int, ...], grid: Grid) -> str:
     """Return how data of that shape are used on a grid, as a sentence."""
     if shape == grid.shape:
@@ -76,6 +93,10 @@ def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:
     if any(abs(o) > r * (1.0 + 1e-9) for o, r in zip(offset, room, strict=True)):  # 1e-9: rounding of h / 2
         allowed = f"at most {min(room):.6g} m either way: the array ends with the domain"
         raise InputError("offset", offset, allowed)
+
+
+def _metres(lengths: tuple[float, ...]) -> str:
+    return " x ".join(f"{length:.6g}" for length in lengths)
 
 
 def _by(shape: tuple[int, ...]) -> str:

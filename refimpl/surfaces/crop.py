@@ -10,6 +10,7 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.surfaces.bicubic import MEMORY
+from refimpl.surfaces.detrending import Form
 from refimpl.surfaces.missing_points import fill
 from refimpl.surfaces.readers import Reading
 
@@ -18,7 +19,9 @@ ROUNDING = 1e-9  # relative slack of lengths: far above double rounding, far bel
 
 @dataclass(frozen=True)
 class Crop:
-    """The rectangle of ``lengths`` (m) about the middle of the measured area, moved by ``offset`` (m).
+    """The rectangle of ``lengths`` (m) about ``centre``, moved by ``offset`` (m).
+
+    ``centre`` counts from the corner of the measured area; by default it is the area's middle.
 
     Each point counts as one pixel, so n points measure n pixels. Raises InputError where the window leaves
     the measured area, or holds fewer than four points an axis. Positions are in pixels: point ``[i, j]`` sits
@@ -28,23 +31,32 @@ class Crop:
     reading: Reading
     lengths: tuple[float, float]
     offset: tuple[float, float] = (0.0, 0.0)
+    centre: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        area, slack = self.reading.area, ROUNDING * max(self.lengths)
-        room = tuple((measured - length) / 2.0 for measured, length in zip(area, self.lengths, strict=True))
+        name, slack = self.reading.name, ROUNDING * max(self.lengths)
+        most = extent(self.reading, self._middle)
+        room = tuple((whole - length) / 2.0 for whole, length in zip(most, self.lengths, strict=True))
         if min(room) < -slack / 2:
-            allowed = f"at most the measured {by(area)} m of {self.reading.name}"
+            about = "" if self.centre is None else " about the centre"
+            allowed = f"at most the measured {by(most)} m of {name}{about}"
             raise InputError("side", self.lengths[room.index(min(room))], allowed)
-        if any(abs(o) > r + slack for o, r in zip(self.offset, room, strict=True)):
-            raise InputError("offset", self.offset, f"at most {by(room)} m either way in {self.reading.name}")
+        moved = extent(self.reading, self._middle, self.offset)
+        if any(length - whole > 2 * slack for length, whole in zip(self.lengths, moved, strict=True)):
+            fits = f"; a size of {by(moved)} m fits this offset" if min(moved) > 0 else ""
+            raise InputError("offset", self.offset, f"at most {by(room)} m either way in {name}{fits}")
         counts = tuple(s.stop - s.start for s in self.points)
         if min(counts) < 4:
             least = f"at least 4 pixels of {self.reading.name}, each {by(self.reading.pixel)} m"
             raise InputError("side", self.lengths[counts.index(min(counts))], least)
 
+    @property
+    def _middle(self) -> tuple[float, float]:
+        return self.centre or (self.reading.area[0] / 2.0, self.reading.area[1] / 2.0)
+
     def positions(self, along: Array, axis: int) -> Array:
         """Pixel positions of points ``along`` an axis (m from the window's edge)."""
-        corner = (self.reading.area[axis] - self.lengths[axis]) / 2.0 + self.offset[axis]
+        corner = self._middle[axis] - self.lengths[axis] / 2.0 + self.offset[axis]
         return np.asarray((corner + along) / self.reading.pixel[axis] - 0.5)
 
     @property
@@ -56,19 +68,32 @@ class Crop:
 
     @property
     def lost(self) -> int:
-        """How many of these points are missing."""
+        """Number of these points that are missing."""
         return int(np.isnan(self.reading.heights[self.points]).sum())
 
     @property
     def size(self) -> int:
-        """How many points there are."""
+        """Number of points."""
         return self.reading.heights[self.points].size
 
-    def filled(self) -> tuple[Array, tuple[slice, slice]]:
-        """The window's points and what a spline remembers around them, gaps filled; and where these begin."""
-        around = tuple(slice(max(s.start - MEMORY, 0), s.stop + MEMORY) for s in self.points)
-        i, j = around
-        return fill(self.reading.heights[i, j], self.reading.pixel), (i, j)
+    def filled(self, form: Form) -> tuple[Array, tuple[slice, slice]]:
+        """The window's points and what a spline remembers around them, less ``form`` (over pixel positions),
+        gaps filled; and where these begin."""
+        i, j = (slice(max(s.start - MEMORY, 0), s.stop + MEMORY) for s in self.points)
+        heights = self.reading.heights[i, j]
+        x, y = (s.start + np.arange(n, dtype=float) for s, n in zip((i, j), heights.shape, strict=True))
+        return fill(heights - form(x, y), self.reading.pixel), (i, j)
+
+
+def extent(
+    reading: Reading, centre: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)
+) -> tuple[float, float]:
+    """Return the largest rectangle (m) about a point, moved by an offset, that the measured area covers."""
+    x, y = (
+        2.0 * min(at + moved, edge - at - moved)
+        for edge, at, moved in zip(reading.area, centre, offset, strict=True)
+    )
+    return x, y
 
 
 def by(lengths: tuple[float, ...]) -> str:

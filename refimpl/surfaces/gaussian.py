@@ -28,9 +28,9 @@ from refimpl.grid import Array, Grid
 from refimpl.surfaces.surface import Surface, positive
 from refimpl.surfaces.white_noise import white_noise
 
-DECAY = 2.3  # of Eq. (9)
+DECAY = 2.3  # exponent of Eq. (9)
 NODES_PER_LENGTH = 6
-HALF_WIDTH = 17 / NODES_PER_LENGTH  # of the kernel, in correlation lengths
+HALF_WIDTH = 17 / NODES_PER_LENGTH  # half-width of the kernel, in correlation lengths
 MAX_NODES = 8192  # an axis: 512 MiB of noise
 MAX_FAR = 1e6  # lattice spacings from the origin: rounding of x there moves heights by < 1e-9 rms
 _ALLOWED_SEED = "a whole number, 0 <= seed < 2^63"

@@ -1,8 +1,8 @@
-"""Measured surfaces: the central window of a file, gaps filled, form removed, on the element centres."""
+"""Measured surfaces: which way up, a window of the file, gaps filled, form removed, on element centres."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Self
@@ -11,14 +11,16 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.bicubic import resample
-from refimpl.surfaces.crop import ROUNDING, Crop, by
-from refimpl.surfaces.detrending import DEGREES, Form, fit
+from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
+from refimpl.surfaces.crop import ROUNDING, Crop, by, extent
+from refimpl.surfaces.detrending import Form, check_level, fit_form
+from refimpl.surfaces.missing_points import fill
+from refimpl.surfaces.orientation import Oriented, check_orientation, checked_centre, oriented
+from refimpl.surfaces.preparation import check_preparation, prepare
 from refimpl.surfaces.readers import UNITS, Reading, read
-from refimpl.surfaces.surface import Surface, finite, positive
+from refimpl.surfaces.surface import Surface, finite, pixel_edges, require_one_of
 from refimpl.surfaces.untrusted import read_untrusted, refuse_huge
 
-_ALLOWED_PIXEL = "a positive length in m, or two (x, y)"
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
 
@@ -26,26 +28,45 @@ _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 class MeasuredSurface(Surface):
     """Measured heights from a file (which: ``readers.read``), treated in this order:
 
-    1. window: the square of the scene's side about the middle of the measured area, moved by the offset;
-       refused where it leaves that area, in which each point counts as one pixel;
-    2. gaps: ``missing="fill"`` fills by Laplace's equation (``gaps.fill``), but refuses a window with more
-       than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
-    3. level: the least-squares ``"mean"``, ``"plane"`` or ``"paraboloid"`` (all six quadratic terms) of the
-       points in the window at offset 0 is taken off everywhere, so that a shifted surface remains the same
-       rigid body; ``"none"`` takes nothing off;
-    4. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
+    1. outliers and wavelengths (``preparation.prepare``): points further than ``outliers`` spreads from the
+       median of their neighbours become missing; ``low_pass`` and ``high_pass`` (m) filter the whole map;
+    2. orientation: heights point out of the material, x to the right and y up as seen from outside.
+       ``replica=True`` negates them; ``mirror="x"`` or ``"y"`` mirrors (x -> -x, y -> -y); ``rotate_deg``
+       (0, 90, 180, 270) turns them anticlockwise; ``turn_over`` turns the specimen over about the x axis,
+       z(x, y) -> -z(x, -y), by default where it is the upper body;
+    3. window: the scene's domain about ``centre`` (m from the corner of the file's own area, by default its
+       middle), moved by the offset; refused where it leaves that area, in which each point counts as one
+       pixel. A map that ``repeats`` with its own area (m) has no border;
+    4. level: the least-squares ``"mean"``, ``"plane"`` (the default), ``"paraboloid"`` (all six quadratic
+       terms), polynomial of total degree ``level = 3 ... 10``, ``"cylinder"`` or ``"sphere"`` of the measured
+       points in the window at offset 0 is subtracted everywhere, so that a shifted surface remains the same
+       rigid body; ``"none"`` subtracts nothing; of a map that repeats only the mean can be;
+    5. gaps: ``missing="fill"`` fills by Laplace's equation (``missing_points.fill``), but refuses a window
+       with more than the fraction ``max_missing`` of its points missing; ``missing="refuse"`` refuses any;
+    6. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
        the measured area the spline's end piece goes on.
 
-    ``unit`` (of heights: m, mm, um, nm, pm) and ``pixel_size`` (m; a number or (x, y)) are for files that do
-    not state them. Read on first use, then kept. Periodic scenes refuse it: measured heights do not repeat.
+    ``unit`` (of heights: m, mm, um, nm, A, pm) and ``pixel_size`` (m; a number or (x, y)) are for files that
+    do not state them, and override those that do; ``channel`` is a name or a number. Read on first use, then
+    kept. Periodic scenes refuse it unless it ``repeats``, a whole number of times.
     """
 
     path: str | Path
     unit: str | None = field(default=None, kw_only=True)
     pixel_size: float | tuple[float, float] | None = field(default=None, kw_only=True)
-    level: str = field(default="plane", kw_only=True)
+    channel: str | int | None = field(default=None, kw_only=True)
+    outliers: float | None = field(default=None, kw_only=True)
+    low_pass: float | None = field(default=None, kw_only=True)
+    high_pass: float | None = field(default=None, kw_only=True)
+    level: str | int | None = field(default=None, kw_only=True)
     missing: str = field(default="fill", kw_only=True)
     max_missing: float = field(default=0.05, kw_only=True)
+    replica: bool = field(default=False, kw_only=True)
+    mirror: str | None = field(default=None, kw_only=True)
+    rotate_deg: int = field(default=0, kw_only=True)
+    turn_over: bool | None = field(default=None, kw_only=True)
+    centre: tuple[float, float] | None = field(default=None, kw_only=True)
+    repeats: bool = field(default=False, kw_only=True)
     kind: ClassVar[str] = "measured"
 
     def __post_init__(self) -> None:
@@ -53,11 +74,20 @@ class MeasuredSurface(Surface):
             raise InputError("path", self.path, "the path of a file")
         object.__setattr__(self, "path", Path(self.path))
         if self.unit is not None:
-            _require_one_of("unit", self.unit, tuple(UNITS))
+            require_one_of("unit", self.unit, tuple(UNITS))
         if self.pixel_size is not None:
-            object.__setattr__(self, "pixel_size", _pixel(self.pixel_size))
-        _require_one_of("level", self.level, tuple(DEGREES))
-        _require_one_of("missing", self.missing, ("fill", "refuse"))
+            object.__setattr__(self, "pixel_size", pixel_edges("pixel_size", self.pixel_size))
+        for name in ("replica", "repeats"):
+            if not isinstance(getattr(self, name), bool):
+                raise InputError(name, getattr(self, name), "true or false")
+        if self.level is None:
+            object.__setattr__(self, "level", "mean" if self.repeats else "plane")
+        check_level(self.level, self.repeats)
+        check_preparation(self.channel, self.outliers, self.low_pass, self.high_pass)
+        check_orientation(self.mirror, self.rotate_deg, self.turn_over)
+        if self.centre is not None:
+            object.__setattr__(self, "centre", checked_centre(self.centre))
+        require_one_of("missing", self.missing, ("fill", "refuse"))
         if not 0 <= finite("max_missing", self.max_missing, _ALLOWED_FRACTION) < 1:
             raise InputError("max_missing", self.max_missing, _ALLOWED_FRACTION)
 
@@ -65,24 +95,80 @@ class MeasuredSurface(Surface):
     def _file(self) -> Path:
         return Path(self.path)
 
+    @property
+    def label(self) -> str:
+        return self._file.name
+
     @cached_property
     def reading(self) -> Reading:
-        """What the file holds, as it is (read once)."""
-        pixel = None if self.pixel_size is None else _pixel(self.pixel_size)
-        found = read_untrusted(self._file, lambda: read(self._file, self.unit, pixel))
+        """The content of the file, as it is (read once)."""
+        pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
+        found = read_untrusted(self._file, lambda: read(self._file, self.unit, pixel, self.channel))
         refuse_huge(self._file, found.heights)
         return found
 
+    @cached_property
+    def prepared(self) -> Reading:
+        """The map without outliers and with its wavelengths filtered."""
+        return prepare(self.reading, self.outliers, self.low_pass, self.high_pass, self.repeats)
+
+    @cached_property
+    def _oriented(self) -> Oriented:
+        """The file's heights as they lie on the body."""
+        return oriented(
+            self.prepared,
+            replica=self.replica,
+            mirror=self.mirror,
+            rotate_deg=self.rotate_deg,
+            turned_over=self.turn_over is True,
+            centre=self.centre,
+        )
+
+    def on_upper_body(self) -> MeasuredSurface:
+        return self if self.turn_over is not None else self._turned
+
+    @cached_property
+    def _turned(self) -> MeasuredSurface:
+        turned = replace(self, turn_over=True)
+        for name in ("reading", "prepared"):  # cached properties: the file is read and filtered once
+            vars(turned)[name] = getattr(self, name)
+        return turned
+
+    def extent(self, offset: tuple[float, float]) -> tuple[float, float]:
+        reading = self._oriented.reading
+        return reading.area if self.repeats else extent(reading, self._oriented.centre, offset)
+
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        if self.repeats:
+            return self._repeated(grid, offset)
         if grid.periodic:
-            raise InputError("periodic", True, f"false: {self._file.name} does not repeat")
+            raise InputError("periodic", True, f"false: {self._file.name} does not repeat (repeats = true?)")
         window = self._crop(grid.lengths, offset)
-        heights, (i, j) = window.filled()
+        heights, (i, j) = window.filled(self._central(grid.lengths)[1])
         x, y = window.positions(grid.x, 0), window.positions(grid.y, 1)
-        return resample(heights, x - i.start, y - j.start) - self._central(grid.lengths)[1](x, y)
+        return resample(heights, x - i.start, y - j.start)
+
+    def _repeated(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        """Heights of a map that repeats with its own area."""
+        reading, centre = self._oriented.reading, self._oriented.centre
+        times = [length / period for length, period in zip(grid.lengths, reading.area, strict=True)]
+        if grid.periodic and any(abs(n - max(round(n), 1)) > ROUNDING * n for n in times):
+            allowed = f"whole multiples of the {by(reading.area)} m with which {reading.name} repeats"
+            raise InputError("side", max(grid.lengths), allowed)
+        x, y = (
+            (at - length / 2 + moved + middle) / edge - 0.5
+            for at, length, moved, middle, edge in zip(
+                (grid.x, grid.y), grid.lengths, offset, centre, reading.pixel, strict=True
+            )
+        )
+        z, form, _ = self._central(grid.lengths)
+        filled = fill(np.pad(z, MEMORY, mode="wrap"), reading.pixel)[MEMORY:-MEMORY, MEMORY:-MEMORY]
+        return resample_periodic(filled, x, y) - form(x, y)
 
     def _crop(self, lengths: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)) -> Crop:
-        window = Crop(self.reading, lengths, offset)
+        reading, centre = self._oriented.reading, self._oriented.centre
+        whole = Crop(reading, reading.area)
+        window = whole if self.repeats else Crop(reading, lengths, offset, centre if self.centre else None)
         allowed = self.max_missing if self.missing == "fill" else 0.0
         if window.lost > allowed * window.size:
             said = f"{window.lost} of {window.size} points of the window in {self._file.name}"
@@ -90,62 +176,73 @@ class MeasuredSurface(Surface):
         return window
 
     def _central(self, lengths: tuple[float, float]) -> tuple[Array, Form, Array]:
-        """At offset 0: the window's points with gaps filled, their form, and what is left of them."""
+        """At offset 0: the window's points (missing ones NaN), their form, and what is left of them."""
         window = self._crop(lengths)
-        (i, j), (heights, (around_i, around_j)) = window.points, window.filled()
-        z = heights[i.start - around_i.start :, j.start - around_j.start :]
-        z = z[: i.stop - i.start, : j.stop - j.start]
+        (i, j), reading = window.points, window.reading
+        z = reading.heights[i, j]
         x, y = np.arange(i.start, i.stop, dtype=float), np.arange(j.start, j.stop, dtype=float)
-        form = fit(x, y, z, DEGREES[self.level])
+        assert self.level is not None  # set in __post_init__
+        form = fit_form(x, y, z, self.level, reading.pixel)
         return z, form, z - form(x, y)
 
+    def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array, tuple[float, float]]:
+        """Form of the window of those lengths (m) at offset 0, what is left of its points, their spacings."""
+        _, form, rest = self._central(lengths)
+        return form, rest, self._oriented.reading.pixel
+
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        name, reading = self._file.name, self.reading
+        name, reading = self._file.name, self._oriented.reading
         z, form, rest = self._central(grid.lengths)
         tilt = by(tuple(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True)))
+        bent = "" if form.radius is None else f", radius {form.radius:.4g} m"
         return (
             f"{name}: {by(reading.heights.shape)} points on {by(reading.area)} m, read {reading.source}",
-            f"{name}: the central window of {by(grid.lengths)} m is used, {by(z.shape)} points, "
+            f"{name}: the window of {by(grid.lengths)} m about {self._about} is used, {by(z.shape)} points, "
             f"resampled bicubically to {grid} elements",
-            f"{name}: level {self.level!r} fitted in that window (slopes {tilt}) and subtracted; "
-            f"rms height there {z.std():.4g} m before, {rest.std():.4g} m after",
+            f"{name}: level {self.level!r} fitted in that window (slopes {tilt}{bent}) and subtracted; "
+            f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after",
+            *(f"{name}: {note}" for note in self.file_notes),
             *self.cautions(grid),
         )
+
+    @property
+    def file_notes(self) -> tuple[str, ...]:
+        """Channel, orientation and what was changed in reading and preparing the file."""
+        reading = self.prepared
+        others = [name for name in reading.channels if name != reading.channel]
+        several = (f"channel {reading.channel!r} was read; there are also {', '.join(map(repr, others))}",)
+        return (reading.orientation, *(several if others else ()), *reading.notes)
+
+    @property
+    def _about(self) -> str:
+        return "its middle" if self.centre is None else f"({self.centre[0]:g}, {self.centre[1]:g}) m"
 
     def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self.reading.pixel)
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        name, window = self._file.name, Crop(self.reading, grid.lengths)
+        name, window = self._file.name, self._crop(grid.lengths)
         said = []
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"
             )
-        if min(e / p for e, p in zip(grid.spacings, self.reading.pixel, strict=True)) < 1.0 - ROUNDING:
+        pixel = self._oriented.reading.pixel
+        if min(e / p for e, p in zip(grid.spacings, pixel, strict=True)) < 1.0 - ROUNDING:
             said.append(
                 f"{name}: the element, {min(grid.spacings):.4g} m, is finer than the measured pixel, "
-                f"{by(self.reading.pixel)} m: what lies between the points is interpolated"
+                f"{by(pixel)} m: what lies between the points is interpolated"
             )
         return tuple(said)
 
     def to_dict(self) -> dict[str, Any]:
         table = super().to_dict() | {"path": str(self._file.absolute())}
-        return table if self.pixel_size is None else table | {"pixel_size": list(_pixel(self.pixel_size))}
+        unset = [name for name in ("replica", "rotate_deg", "repeats") if not table[name]]
+        table = {key: value for key, value in table.items() if key not in unset}
+        pairs = {name: table[name] for name in ("pixel_size", "centre") if name in table}
+        return table | {name: list(pair) for name, pair in pairs.items()}
 
     @classmethod
     def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
         path = table["path"]
         return cls(**table | {"path": folder / path if isinstance(path, str) and path else path})
-
-
-def _pixel(value: object) -> tuple[float, float]:
-    pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
-    if len(pair) != 2:
-        raise InputError("pixel_size", value, _ALLOWED_PIXEL)
-    return positive("pixel_size", pair[0], _ALLOWED_PIXEL), positive("pixel_size", pair[1], _ALLOWED_PIXEL)
-
-
-def _require_one_of(name: str, value: object, allowed: tuple[str, ...]) -> None:
-    if not isinstance(value, str) or value not in allowed:
-        raise InputError(name, value, "one of " + ", ".join(allowed))

@@ -1,4 +1,4 @@
-"""Heights from files: plain tables of numbers, and instrument files through SurfaceTopography.
+"""Heights from files: plain arrays, text, and instrument files through SurfaceTopography.
 
 Files come from anywhere. Before a byte is interpreted, the file's size, and what a zip archive says it
 unpacks to (Python's zipfile never unpacks more than that), are held against MAX_BYTES. Nothing is unpickled.
@@ -6,92 +6,79 @@ unpacks to (Python's zipfile never unpacks more than that), are held against MAX
 
 from __future__ import annotations
 
-import math
 import os
-import struct
-import tokenize
-import warnings
 import zipfile
-import zlib
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
-from typing import Any, TypeVar
 
 import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.surfaces.instrument_files import (
+    BROKEN,
+    brief,
+    broken,
+    claimed_by_magic,
+    guarded,
+    library_for,
+    read_as,
+    read_instrument,
+    stream,
+)
+from refimpl.surfaces.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Given, Reading, checked
+from refimpl.surfaces.text_tables import TextTable, decoded, is_triples, on_grid, read_table
 
-T = TypeVar("T")
+__all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Given", "Reading", "read"]
 
-MAX_BYTES = 256 * 2**20
-MAX_POINTS = 2**24
-UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}
-PLAIN = (".npy", ".csv")  # by nature; text (.asc, .txt) is a plain table if its unit and pixel size are given
-TEXT = (".asc", ".txt")
-TEXT_FORMATS = ("asc", "xyz")
-
-# What a reader may raise on bytes that are not what they claim to be. SurfaceTopography's own errors are
-# plain Exceptions and join these where it is imported.
-_BROKEN: tuple[type[Exception], ...] = (
-    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
-    RuntimeError, SyntaxError, TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile,
-    zlib.error,
-)  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Reading:
-    """Heights (m), ``[i, j]`` along x, y, missing points NaN; the pixel's edges (m);
-    the file's name; what read it."""
-
-    heights: Array
-    pixel: tuple[float, float]
-    name: str
-    source: str
-
-    @property
-    def area(self) -> tuple[float, float]:
-        """Edges of the measured area (m): each point counts as one pixel."""
-        return self.heights.shape[0] * self.pixel[0], self.heights.shape[1] * self.pixel[1]
+_HEAD = 2**16  # bytes that tell text from binary
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
-def read(path: Path, unit: str | None, pixel_size: tuple[float, float] | None) -> Reading:
-    """Heights of one file.
+def read(
+    path: Path,
+    unit: str | None = None,
+    pixel_size: tuple[float, float] | None = None,
+    channel: str | int | None = None,
+) -> Reading:
+    """Heights of one file, x to the right and y up as seen from outside.
 
-    ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) belong to plain tables: ``.npy``, ``.csv``
-    (commas), ``.asc`` and ``.txt`` (blanks), row i at x_i, column j at y_j, nan where nothing was measured.
-    Other files, and text without both of these, are an instrument's, indexed as SurfaceTopography does; unit
-    and pixel size then serve only files that state none. Raises InputError.
+    ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) serve files that state none and override
+    those that do, with a note. ``.npy`` and text without a header are plain tables: row i at x_i, column j at
+    y_j, nan where nothing was measured. Text with a header is an instrument's image: lines along x, the first
+    at the top. Three columns are points x, y, z in ``unit``. All else is read by SurfaceTopography.
+    Raises InputError.
     """
-    _inspect(path)
-    suffix = path.suffix.lower()
-    if suffix in PLAIN or (suffix in TEXT and unit is not None and pixel_size is not None):
-        if unit is None or pixel_size is None:
-            allowed = f"both, for {path.name}: a table of numbers states neither"
-            raise InputError("unit, pixel_size", (unit, pixel_size), allowed)
-        load = _npy if suffix == ".npy" else _text
-        heights = _heights(path, _guarded(path, load, _BROKEN)) * UNITS[unit]
-        return Reading(heights, pixel_size, path.name, "as a plain table")
-    return _instrument(path, unit, pixel_size)
+    _check_size(path)
+    given = Given(unit, pixel_size, channel)
+    head = guarded(path, _head)
+    if path.suffix.lower() == ".npy":
+        return _plain(path, checked(path, guarded(path, _npy)), given, "as a plain array")
+    is_text = head.startswith(_UTF16) or b"\0" not in head
+    if is_text and not claimed_by_magic(path, head):
+        return guarded(path, lambda file: _text(file, given))
+    return read_instrument(path, given, head)
 
 
-def _inspect(path: Path) -> None:
-    if not os.path.isfile(path):  # of any name, however long
+def _check_size(path: Path) -> None:
+    if not os.path.isfile(path):  # a name may have any length
         raise InputError("path", str(path), "an existing file")
     try:
         size = path.stat().st_size
         if zipfile.is_zipfile(path):
             with zipfile.ZipFile(path) as archive:
                 size = max(size, sum(member.file_size for member in archive.infolist()))
-    except _BROKEN as error:
-        raise InputError("path", str(path), f"a readable file ({_brief(error)})") from error
+    except BROKEN as error:
+        raise InputError("path", str(path), f"a readable file ({brief(error)})") from error
     if not 0 < size <= MAX_BYTES:
         raise InputError(
             "path", str(path), f"at least 1 and at most {MAX_BYTES} bytes, unpacked as well (this: {size})"
         )
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(_HEAD)
 
 
 def _npy(path: Path) -> Array:
@@ -99,118 +86,54 @@ def _npy(path: Path) -> Array:
     return np.lib.format.open_memmap(path, mode="r")
 
 
-def _text(path: Path) -> Array:
-    # with or without a byte order mark; of no rows NumPy warns, `_heights` refuses them
-    with path.open(encoding="utf-8-sig") as lines, warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
-        return np.loadtxt(lines, delimiter="," if path.suffix.lower() == ".csv" else None, ndmin=2)
+def _plain(path: Path, raw: Array, given: Given, source: str, notes: tuple[str, ...] = ()) -> Reading:
+    unit, pixel, _ = given.resolve(path.name, None, None)
+    return Reading(raw * UNITS[unit], pixel, path.name, source, unit, notes=notes)
 
 
-def _instrument(path: Path, unit: str | None, pixel_size: tuple[float, float] | None) -> Reading:
-    library = _library(path)
-    own = library.Exceptions  # with no base in common
-    broken = (*_BROKEN, own.ReadFileError, own.UnknownFileFormat, own.CannotPerformAnalysisError)
-
-    def load(name: str | None) -> Reading:
-        with np.errstate(all="ignore"), library.open_topography(str(path), format=name) as reader:
-            return _from_reader(path, reader, unit, pixel_size)
-
-    *others, last = _formats(library, path)
-    for name in others:
-        try:
-            return load(name)
-        except broken as error:
-            if isinstance(error, InputError):
-                raise
-    return _guarded(path, lambda _: load(last), broken)
-
-
-def _formats(library: ModuleType, path: Path) -> list[str | None]:
-    """The formats that the suffix may mean, or [None], all that the library knows, for an unknown suffix.
-
-    Text readers take a minute to find out that 50 MB hold no numbers; the first MiB tells as much.
-    """
-    head = _guarded(path, _head, _BROKEN)
-    binary = b"\0" in head
-    if not binary and not any(_begins_with_numbers(line) for line in head.splitlines()):
-        raise InputError("path", str(path), "rows of numbers, or the binary file of an instrument")
-    known = [r.format() for r in library.IO.readers if path.suffix.lower()[1:] in r.file_extensions()]
-    possible = [name for name in known if not (binary and name in TEXT_FORMATS)]
-    return sorted(possible, key=lambda name: name in TEXT_FORMATS) or [None]  # the last one's error is shown
-
-
-def _head(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return file.read(2**20)
-
-
-def _begins_with_numbers(line: bytes) -> bool:
-    words = line.replace(b",", b" ").replace(b";", b" ").split(maxsplit=3)[:3]
-    try:
-        return len([float(word) for word in words]) == 3
-    except ValueError:
-        return False
-
-
-def _library(path: Path) -> ModuleType:
-    try:
-        import SurfaceTopography
-        import SurfaceTopography.Exceptions
-    except ImportError as error:
-        allowed = (
-            'a plain .npy or .csv, or the package that reads it (pip install "rough-friction[instrument]")'
-        )
-        raise InputError("path", str(path), allowed) from error
-    module: ModuleType = SurfaceTopography
-    return module
-
-
-def _from_reader(
-    path: Path, reader: Any, unit: str | None, pixel_size: tuple[float, float] | None
-) -> Reading:
-    channel, given = reader.default_channel, (unit, pixel_size)
-    if channel.dim != 2 or not channel.is_uniform or math.prod(channel.nb_grid_pts) > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a regular 2-D grid of at most {MAX_POINTS} points")
-    if channel.unit is not None and channel.physical_sizes is not None:
-        if given != (None, None):
-            raise InputError("unit, pixel_size", given, f"neither: {path.name} states its own")
-        topography = reader.topography().to_unit("m")
-        (lx, ly), (nx, ny) = topography.physical_sizes, topography.nb_grid_pts
-        unit, pixel_size = "m", (float(lx / nx), float(ly / ny))
-    else:
-        if unit is None or pixel_size is None:
-            raise InputError("unit, pixel_size", given, f"both: {path.name} does not state them")
-        sizes = tuple(n * edge for n, edge in zip(channel.nb_grid_pts, pixel_size, strict=True))
-        topography = reader.topography(
-            **({"physical_sizes": sizes} if channel.physical_sizes is None else {})
-        )
-    if not all(0 < edge < np.inf for edge in pixel_size):
-        raise InputError("path", f"pixels of {pixel_size} m in {path.name}", "pixels of positive size")
-    heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
-    source = f"by SurfaceTopography's {reader.format()} reader"
-    return Reading(_heights(path, heights) * UNITS[unit], pixel_size, path.name, source)
-
-
-def _guarded(path: Path, load: Callable[[Path], T], broken: tuple[type[Exception], ...]) -> T:
-    try:
-        return load(path)
-    except InputError:
-        raise
-    except broken as error:
-        raise InputError("path", str(path), f"a file that can be read ({_brief(error)})") from error
-
-
-def _heights(path: Path, raw: Array) -> Array:
-    if raw.ndim != 2 or min(raw.shape) < 4 or raw.size > MAX_POINTS or raw.dtype.kind not in "fiu":
-        what = f"{raw.dtype} of shape {raw.shape} in {path.name}"
+def _text(path: Path, given: Given) -> Reading:
+    table = read_table(path)
+    rows, columns = table.rows.shape
+    if path.suffix.lower() == ".xyz" and columns not in (2, 3):
+        raise InputError("path", str(path), f"points in two or three columns (found {columns})")
+    if columns < 3:
         raise InputError(
-            "path", what, f"a 2-D table of real numbers, at least 4 an axis, at most {MAX_POINTS}"
+            "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
         )
-    heights = np.array(raw, dtype=np.float64)
-    heights[~np.isfinite(heights)] = np.nan
-    return heights
+    if is_triples(table):
+        return _points(path, table, given)
+    if not table.header:
+        return _plain(path, checked(path, table.rows), given, "as a plain table of text", table.notes)
+    try:
+        return _with_header(path, table, given)
+    except InputError as refused:
+        if refused.field == "channel":
+            raise
+    image = checked(path, table.rows).T[:, ::-1]
+    reading = _plain(path, np.ascontiguousarray(image), given, "as text with a header", table.notes)
+    return replace(reading, orientation=IMAGE)
 
 
-def _brief(error: Exception) -> str:
-    lines = str(error).strip().splitlines() or [""]
-    return f"{type(error).__name__}: {lines[0][:160]}"
+def _with_header(path: Path, table: TextTable, given: Given) -> Reading:
+    """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
+    library = library_for(path)
+    text = table.normalised() if table.notes or "," in table.header[-1] else decoded(path).encode()
+
+    def load(file: Path) -> Reading:
+        return read_as(library, file, "asc", given, stream(text), table.notes)
+
+    return guarded(path, load, broken(library))
+
+
+def _points(path: Path, table: TextTable, given: Given) -> Reading:
+    if given.unit is None:
+        allowed = f"one: {path.name} holds points x, y, z and states no unit"
+        raise InputError("unit", None, allowed)
+    heights, pitch = on_grid(path, table.rows * UNITS[given.unit])
+    unit, pixel, notes = given.resolve(path.name, given.unit, pitch)
+    if heights.size > MAX_POINTS:
+        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
+    source, orientation = "as points x, y, z", "coordinates as the file states them"
+    return Reading(
+        checked(path, heights), pixel, path.name, source, unit, orientation, notes=(*table.notes, *notes)
+    )

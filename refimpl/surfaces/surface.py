@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from refimpl.errors import LEAST, InputError, as_double
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.arrays import cautions_of, checked, sampled, use_of
+from refimpl.surfaces.arrays import cautions_of, check_domain, checked, sampled, use_of
 
 
 class SurfaceWarning(UserWarning):
@@ -53,7 +53,7 @@ class Surface(ABC):
         return self._sample(grid, (float(ox), float(oy)))
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        """What was read, cut, levelled, resampled or normalised for this grid, one sentence each."""
+        """Return how heights are read, cut, levelled, resampled or normalised here, one sentence each."""
         return self.cautions(grid)
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
@@ -64,6 +64,19 @@ class Surface(ABC):
         """Return the finest distance between data points on a domain of those lengths (m); None for a
         formula."""
         return None
+
+    def extent(self, offset: tuple[float, float]) -> tuple[float, float] | None:
+        """Return the largest rectangle (m) that the surface's data cover at an offset; None for a formula."""
+        return None
+
+    @property
+    def label(self) -> str:
+        """What messages call the surface."""
+        return self.kind
+
+    def on_upper_body(self) -> Surface:
+        """Return the surface as it lies on the upper body."""
+        return self
 
     @property
     def parts(self) -> tuple[Surface, ...]:
@@ -118,18 +131,28 @@ class SurfaceSum(Surface):
 class ArraySurface(Surface):
     """Heights (m) at the centres of ``shape[0] x shape[1]`` equal cells of the domain.
 
-    Used as they are on a grid of the same shape; otherwise resampled bicubically to the element centres
-    (sampled, not averaged). Within the outermost half cell the spline's end piece goes on. An offset that
-    leaves the domain is refused unless the scene is periodic.
+    Used as they are, positive upwards on either body, on a grid of the same shape; otherwise resampled
+    bicubically to the element centres (sampled, not averaged). Within the outermost half cell the spline's
+    end piece goes on. An offset that leaves the domain is refused unless the scene is periodic. Cells more
+    than 1 % from square are refused unless ``pixel`` states their edges (m): heights are never squeezed.
     """
 
     data: NDArray[np.float64]
+    pixel: tuple[float, float] | None = None
     kind: ClassVar[str] = "array"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "data", checked(self.data))
+        if self.pixel is not None:
+            object.__setattr__(self, "pixel", pixel_edges("pixel", self.pixel))
+
+    def extent(self, offset: tuple[float, float]) -> tuple[float, float] | None:
+        if self.pixel is None:
+            return None
+        return self.data.shape[0] * self.pixel[0], self.data.shape[1] * self.pixel[1]
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        check_domain((self.data.shape[0], self.data.shape[1]), self.pixel, grid.lengths)
         return sampled(self.data, grid, offset)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
@@ -147,7 +170,9 @@ class ArraySurface(Surface):
         raise InputError("surface", f"array of shape {self.data.shape}", allowed)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ArraySurface) and np.array_equal(self.data, other.data)
+        if not isinstance(other, ArraySurface):
+            return False
+        return self.pixel == other.pixel and np.array_equal(self.data, other.data)
 
     def __hash__(self) -> int:
         return hash((self.data.shape, float(self.data.sum())))
@@ -160,6 +185,12 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
     if isinstance(value, np.ndarray):
         return ArraySurface(value)
     raise InputError("surface", value, "a surface, a sum of surfaces or a 2-D array of heights in m")
+
+
+def require_one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:
+    """Raise InputError unless ``value`` is one of these texts."""
+    if not isinstance(value, str) or value not in allowed:
+        raise InputError(field, value, "one of " + ", ".join(allowed))
 
 
 def finite(field: str, value: object, allowed: str) -> float:
@@ -176,3 +207,12 @@ def positive(field: str, value: object, allowed: str) -> float:
     if finite(field, value, allowed) < LEAST:
         raise InputError(field, value, allowed)
     return float(value)  # type: ignore[arg-type]  # `finite` has seen it
+
+
+def pixel_edges(field: str, value: object) -> tuple[float, float]:
+    """Return the edges (m) of a pixel from one length or two; else InputError."""
+    allowed = "a positive length in m, or two (x, y)"
+    pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
+    if len(pair) != 2:
+        raise InputError(field, value, allowed)
+    return positive(field, pair[0], allowed), positive(field, pair[1], allowed)

@@ -30,7 +30,7 @@ def press(problem: ContactProblem, **options: str) -> PeerAnswer:
     """
     hc = imported("aspher")
     assert problem.load is not None  # by its abilities
-    E, side = problem.reduced_modulus, problem.side
+    E, side = problem.reduced_modulus, problem.lengths[0]
     unit = problem.load / (E * side)
     backend = "periodic" if problem.periodic else "fft"
     common = {"domain_size": side / unit, "E_star": 1.0, "backend": backend}

@@ -28,8 +28,9 @@ def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> Pe
     ``mean_stiffness`` is ``stiffness_q0`` under a load; zero falls into the trap.
     """
     package = imported("ContactMechanics")
-    sides = (problem.side, problem.side)
-    topography = imported("SurfaceTopography").Topography(-problem.gap, sides, periodic=problem.periodic)
+    topography = imported("SurfaceTopography").Topography(
+        -problem.gap, problem.lengths, periodic=problem.periodic
+    )
     system = imported("ContactMechanics.Systems").NonSmoothContactSystem(
         _half_space(package, problem, mean_stiffness), topography
     )
@@ -51,7 +52,7 @@ def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> Pe
 
 
 def _half_space(package: ModuleType, problem: ContactProblem, mean_stiffness: float | None) -> Any:
-    shape, sides = problem.gap.shape, (problem.side, problem.side)
+    shape, sides = problem.shape, problem.lengths
     E = problem.reduced_modulus
     if not problem.periodic:
         return package.FreeFFTElasticHalfSpace(shape, E, sides)
@@ -69,7 +70,7 @@ def _tolerances(problem: ContactProblem) -> dict[str, float]:
     return {
         "pentol": 0.5 * closure(problem),
         # per element; a tension left over changes the energy by its square, so the tolerance's root will do
-        "forcetol": math.sqrt(problem.tolerance) * problem.load / problem.M**2,
+        "forcetol": math.sqrt(problem.tolerance) * problem.load / problem.gap.size,
         "thermotol": problem.tolerance,
     }
 
@@ -79,7 +80,7 @@ solve = Peer(
     extra="contactmechanics",
     setup="NonSmoothContactSystem on the periodic or free FFT half-space: minimize_proxy under a load, "
     "dual_minimize_proxy at an approach",
-    abilities=Abilities(),
+    abilities=Abilities(rectangle=True, oblong_elements=True),
     press=press,
 )
 """The contestant."""

@@ -70,13 +70,13 @@ def closure(problem: ContactProblem) -> float:
     """Mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met (m).
 
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
-    P in a square has a smaller one than the square punch, 0.87 P / (E* side); at an approach d it is d / 2
-    for a cone and more for blunter shapes. Periodic contact displaces half the heights' deviation when light,
-    a third when about to become full (peaks of three deviations), and less under still higher loads: twice
-    the energy that flattens the surface, over the load.
+    P in a domain has a smaller one than the square punch that contains it, 0.87 P / (E* max(Lx, Ly)); at an
+    approach d it is d / 2 for a cone and more for blunter shapes. Periodic contact displaces half the
+    heights' deviation when light, a third when about to become full (peaks of three deviations), and less
+    under still higher loads: twice the energy that flattens the surface, over the load.
     """
     if problem.load is not None:
-        depth = 0.87 * problem.load / (problem.reduced_modulus * problem.side)
+        depth = 0.87 * problem.load / (problem.reduced_modulus * max(problem.lengths))
     else:
         assert problem.approach_from_touch is not None
         depth = 0.5 * abs(problem.approach_from_touch)
@@ -89,10 +89,9 @@ def closure(problem: ContactProblem) -> float:
 
 def _flattening(problem: ContactProblem) -> float:
     """Elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its waves."""
-    q = 2 * np.pi * np.fft.fftfreq(problem.M, problem.spacing)
-    pressure = np.fft.ifft2(
-        np.fft.fft2(problem.gap) * np.hypot(q[:, None], q) * (0.5 * problem.reduced_modulus)
-    ).real
+    x, y = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(problem.shape, problem.spacings, strict=True))
+    wave = np.hypot(x[:, None], y)
+    pressure = np.fft.ifft2(np.fft.fft2(problem.gap) * wave * (0.5 * problem.reduced_modulus)).real
     return 0.5 * float(np.vdot(pressure, problem.gap)) * problem.element_area
 
 

@@ -64,7 +64,7 @@ class Watched:
 
 def recomputed(problem: ContactProblem, pressure: Array) -> float:
     """The worst residual by the referee; NaN where it has none to give (too large, or no elastic energy)."""
-    if pressure.shape != problem.gap.shape or (problem.M > referee.LARGEST and not problem.periodic):
+    if pressure.shape != problem.gap.shape or (referee.is_large(problem) and not problem.periodic):
         return float("nan")
     try:
         return referee.residual(problem, pressure).worst

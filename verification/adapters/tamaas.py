@@ -31,8 +31,7 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PeerAnswer:
     tm.set_log_level(tm.LogLevel.error)
     if problem.approach is not None and not problem.periodic:
         raise Unsupported("tamaas does not offer: an approach in free space")
-    side, M = problem.side, problem.M
-    model = tm.ModelFactory.createModel(tm.model_type.basic_2d, [side, side], [M, M])
+    model = tm.ModelFactory.createModel(tm.model_type.basic_2d, list(problem.lengths), list(problem.shape))
     model.E, model.nu = problem.reduced_modulus, 0.0  # the other body is rigid, so E is the reduced modulus
     formulation = tm.PolonskyKeerRey.pressure if problem.approach is None else tm.PolonskyKeerRey.gap
     heights = np.ascontiguousarray(-problem.gap)
@@ -45,7 +44,7 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PeerAnswer:
         tm.ModelFactory.registerNonPeriodic(model, _FREE_SPACE)
         if second_step:
             solver.setIntegralOperator(_FREE_SPACE)
-    target = -problem.approach if problem.approach is not None else (problem.load or 0.0) / side**2
+    target = -problem.approach if problem.approach is not None else (problem.load or 0.0) / problem.area
     error = solver.solve(target)
     pressure = np.array(model.traction)
     if problem.approach is not None:
@@ -58,7 +57,7 @@ solve = Peer(
     distribution="tamaas",
     extra="tamaas",
     setup="PolonskyKeerRey on a basic_2d model; in free space by registerNonPeriodic and setIntegralOperator",
-    abilities=Abilities(),
+    abilities=Abilities(rectangle=True, oblong_elements=True),
     press=press,
 )
 """The contestant."""

@@ -34,13 +34,13 @@ class Judgement:
 
 
 def judged(problem: ContactProblem, pressure: Array) -> Judgement:
-    """The judgement on pressures ``(M, M)`` (Pa) of a problem under a load, in free space.
+    """The judgement on pressures (Pa) of a problem under a load, in free space.
 
     Raises ValueError for other problems.
     """
     if problem.load is None or problem.periodic or problem.coupling is not None:
         raise ValueError("only frictionless problems under a load, in free space")
-    operator = FFTInfluence(Grid.square(problem.side, problem.M), direction=0.0)
+    operator = FFTInfluence(Grid(problem.shape, problem.lengths), direction=0.0)
     u = operator.normal(pressure) / (math.pi * problem.reduced_modulus)
     v, dA = u + problem.gap, problem.element_area
     energy = 0.5 * float(np.vdot(pressure, u)) * dA

@@ -32,7 +32,7 @@ def explained(options: Options, plan: Plan, scene: str) -> str:
 
 
 def document(options: Options, plan: Plan, scene: str) -> dict[str, object]:
-    """Return the plan for JSON, in SI units; grids are elements along the longer side."""
+    """Return the plan for JSON, in SI units; one number of elements is that along the longer side."""
     resolved = _resolution(options, plan)
     return {
         "scene": scene,

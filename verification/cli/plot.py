@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +18,7 @@ BLUE, ORANGE, BLACK = (
     "#000000",
 )  # Okabe and Ito 2008, safe for colour-blind readers
 MEGA, MILLI = 1e6, 1e-3
+SLENDER = 4.0
 
 
 def check_suffix(path: Path | None) -> None:
@@ -71,12 +72,18 @@ def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
 
 
 def _map(axes: Axes, solution: Solution, name: str, colours: str) -> None:
-    """One field in MPa over the square in mm; places without contact are left white."""
+    """One field in MPa over the domain in mm; places without contact are left white.
+
+    Lengths of a slender domain are not drawn to one scale.
+    """
     import numpy as np
 
     field = np.ma.masked_equal(getattr(solution, name) / MEGA, 0.0)
     width, height = (length / MILLI for length in solution.grid.lengths)
-    image = axes.imshow(field.T, origin="lower", extent=(0, width, 0, height), cmap=colours)
+    aspect: Literal["equal", "auto"] = (
+        "equal" if max(width, height) <= SLENDER * min(width, height) else "auto"
+    )
+    image = axes.imshow(field.T, origin="lower", extent=(0, width, 0, height), cmap=colours, aspect=aspect)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", title=name.capitalize())
     axes.figure.colorbar(image, ax=axes, label="MPa")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,7 @@ EPILOG = """examples:
   rough-friction solve scene.toml --grid 512 --json result.json --plot result.png --vtk result.vtu
   rough-friction solve hertz --grid 48 --method dense
   rough-friction solve scene.toml --accuracy 0.01
+  rough-friction solve scene.toml --grid 256x128 --size 2e-3x1e-3
   rough-friction solve scene.toml --budget
   rough-friction solve scene.toml --approach 1.2e-6
   rough-friction solve table1-smooth --accuracy 0.01 --explain
@@ -81,7 +83,12 @@ def add_parser(commands: Parsers) -> None:
     add = parser.add_argument
     add("scene", metavar="SCENE", help="a scene's TOML file, or the name of a shipped scene")
     size = parser.add_mutually_exclusive_group().add_argument
-    size("--grid", metavar="N", type=int, help=f"N x N elements (default {DEFAULT_GRID})")
+    size(
+        "--grid",
+        metavar="N",
+        type=elements,
+        help=f"N elements along the longer side, or both numbers, 128x64 (default {DEFAULT_GRID})",
+    )
     size("--accuracy", metavar="A", type=float, help="refine until the error bar is this share of mu")
     add(
         "--quantity",
@@ -95,6 +102,7 @@ def add_parser(commands: Parsers) -> None:
         default="fft",
         help="production solver (default), plain reference for small grids, or the paper's scheme",
     )
+    add("--size", metavar="LXxLY", type=lengths, help="lengths of the domain (m), in place of the scene's")
     add("--approach", metavar="D", type=float, help="prescribe the approach (m) instead of the load")
     add(
         "--oblique",
@@ -128,6 +136,34 @@ def add_parser(commands: Parsers) -> None:
     parser.set_defaults(run=run)
 
 
+def elements(text: str) -> int | tuple[int, int]:
+    """Argument type of a grid: a number, or two.
+
+    >>> elements("128"), elements("128x64")
+    (128, (128, 64))
+    """
+    try:
+        numbers = [int(number) for number in text.split("x")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (1, 2):
+        raise argparse.ArgumentTypeError(f"expected a number of elements, or two like 128x64, not {text!r}")
+    return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
+
+
+def lengths(text: str) -> tuple[float, float]:
+    """Argument type of a size: two lengths (m).
+
+    >>> lengths("83e-6x204e-6")
+    (8.3e-05, 0.000204)
+    """
+    try:
+        x, y = (float(length) for length in text.split("x"))
+    except ValueError as wrong:
+        raise argparse.ArgumentTypeError(f"expected two lengths in m like 2e-3x1e-3, not {text!r}") from wrong
+    return x, y
+
+
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
@@ -142,6 +178,8 @@ def run(options: argparse.Namespace) -> int:
     plot.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     scene = refimpl.read_scene(options.scene)
+    if options.size is not None:
+        scene = replace(scene, side=None, size=options.size)
     inputs = [Path(options.scene), *files_of(scene)]
     check_outputs(inputs, json=options.json, plot=options.plot, vtk=options.vtk)
     if options.grid is None and options.accuracy is None:

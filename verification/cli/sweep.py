@@ -103,6 +103,8 @@ def run(options: argparse.Namespace) -> int:
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
         posable.check_memory(study)
+    for note in study.notes:
+        print(f"rough-friction sweep: {note}", file=sys.stderr)
     line, where = _Line(), {"workers": options.workers, "scheduler": options.scheduler}
     try:
         if options.target_error is not None:

@@ -22,7 +22,7 @@ def check_suffix(path: Path | None) -> None:
 def write(solution: Solution, path: Path) -> None:
     """Write the lower surface and, as a second sheet, the upper one.
 
-    Points are the element centres at the deformed heights (m), cells the squares between them. Point fields:
+    Points are the element centres at the deformed heights (m), cells lie between them. Point fields:
     `pressure` and `traction` (Pa), `gap` (m) between the deformed surfaces, `height` (m) to warp by, since
     micrometres on a millimetre look flat, `body` (0 lower, 1 upper).
     """

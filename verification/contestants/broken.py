@@ -158,6 +158,17 @@ def corner_left_out(problem: ContactProblem) -> Array:
     return pressure
 
 
+def with_spacings(problem: ContactProblem, dx: float, dy: float) -> ContactProblem:
+    """The same gap on elements of other edges (m)."""
+    return replace(problem, spacing=dx, spacing_y=None if dx == dy else dy)
+
+
+def stretched(problem: ContactProblem) -> ContactProblem:
+    """The same gap and nominal area on a square, as a code with one number for its side may have it."""
+    edge = problem.area**0.5
+    return with_spacings(problem, edge / problem.shape[0], edge / problem.shape[1])
+
+
 def _coarse_coefficients(rows: int, columns: int, dx: float, dy: float, *, known: Array | None) -> Array:
     """A point force at the centre of every element but the loaded one itself; ``known`` is made anew."""
     table = normal_table(rows, columns, dx, dy).copy()
@@ -216,5 +227,8 @@ BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.PADDING_SHORT: lambda: Wrong(padded(lambda M: 2 * M - 2)),
     Fault.PADDING_CAPPED: lambda: Wrong(padded(lambda M: min(2 * M, 256))),
     Fault.SHEAR_PADDING_CAPPED: lambda: Wrong(padded(lambda M: min(2 * M, 128), of_shear_alone=True)),
+    Fault.EDGES_EXCHANGED: lambda: Wrong(asked(lambda p: with_spacings(p, *p.spacings[::-1]))),
+    Fault.SQUARE_ELEMENTS: lambda: Wrong(asked(lambda p: with_spacings(p, *[p.element_area**0.5] * 2))),
+    Fault.STRETCHED: lambda: Wrong(asked(stretched)),
 }
 """A fresh solver with each fault."""

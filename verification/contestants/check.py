@@ -64,6 +64,9 @@ class Fault(StrEnum):
     PADDING_SHORT = "padding short by one element"
     PADDING_CAPPED = "padding capped at 256 points"
     SHEAR_PADDING_CAPPED = "padding of shear capped at 128 points"
+    EDGES_EXCHANGED = "dx and dy exchanged"
+    SQUARE_ELEMENTS = "oblong elements taken for squares of the same area"
+    STRETCHED = "a rectangle stretched to a square"
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,7 @@ class Entrant:
     def press(
         self,
         gap: Array,
-        side: float,
+        side: float | tuple[float, float],
         *,
         load: float | None = None,
         approach: float | None = None,
@@ -101,16 +104,19 @@ class Entrant:
         coupling: Coupling | None = None,
         modulus: float = MODULUS,
     ) -> Pressed:
-        """Pose a gap ``(M, M)`` (m) over a square of ``side`` (m); under a load (N) or at an approach (m).
+        """Pose a gap (m) on a square of ``side`` (m), or a rectangle; under a load (N) or at an approach (m).
 
         An aperiodic approach counts from the gap's own zero, which need not be its least value: an indenter's
         tip may lie between element centres. Raises what `ask` raises.
         """
         if approach is not None and not periodic:
             approach -= float(gap.min())
+        Lx, Ly = side if isinstance(side, tuple) else (side, side)
+        dx, dy = Lx / gap.shape[0], Ly / gap.shape[1]
         problem = ContactProblem(
             gap=gap - gap.min(),
-            spacing=side / len(gap),
+            spacing=dx,
+            spacing_y=None if dx == dy else dy,
             reduced_modulus=modulus,
             load=load,
             approach=approach,

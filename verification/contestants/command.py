@@ -4,8 +4,11 @@ The command is run as ``COMMAND DIRECTORY`` for each problem. In the directory i
 
     problem.json   one key a line: M, spacing (m), reduced_modulus (Pa), control ("load" or "approach"),
                    value (N or m), periodic (0 or 1), tolerance, friction (0 or 1), tau (Pa), beta,
-                   shear_compliance (1/Pa), sliding_direction (rad); the last four are 0 without friction
-    gap.csv        the gap (m): M lines of M numbers, line i for x, column j for y, full precision
+                   shear_compliance (1/Pa), sliding_direction (rad), the last four 0 without friction; shape
+                   (elements along x and y), lengths (of the domain along x and y, m). M and spacing are
+                   the same numbers on a square of square elements, which is all that is posed unless the
+                   abilities rectangle and oblong elements are claimed
+    gap.csv        the gap (m): a line for each element along x, in it a number for each along y
     problem.npz    the same array under the name gap
 
 and writes there, in the same layout, either ``pressure.csv`` or ``answer.npz`` (array ``pressure``), in Pa.
@@ -149,8 +152,11 @@ def write_problem(problem: ContactProblem, directory: Path) -> None:
         "beta": coupling.beta if coupling else 0.0,
         "shear_compliance": coupling.shear_compliance if coupling else 0.0,
         "sliding_direction": coupling.sliding_direction if coupling else 0.0,
+        "shape": problem.shape,
+        "lengths": problem.lengths,
     }
-    (directory / "problem.json").write_text(json.dumps(header, indent=1) + "\n", encoding="utf-8")
+    lines = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in header.items())
+    (directory / "problem.json").write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
     np.savetxt(directory / "gap.csv", problem.gap, fmt="%.17g", delimiter=",")
     np.savez(directory / "problem.npz", gap=problem.gap)
 

@@ -41,7 +41,7 @@ class Own:
         """The pressures; converged when the solution is certified, alternating contact edges included."""
         solution = rf.solve(
             scene(problem),
-            problem.M,
+            problem.shape,
             method=self.method,
             approach=problem.approach,
             oblique=False,
@@ -60,11 +60,11 @@ def scene(problem: ContactProblem) -> rf.Scene:
     coupling = problem.coupling
     lower, upper = materials(problem.reduced_modulus, coupling.shear_compliance if coupling else 0.0)
     return rf.Scene(
-        upper=rf.Body(upper, problem.gap),
+        upper=rf.Body(upper, rf.ArraySurface(problem.gap, pixel=problem.spacings)),
         lower=rf.Body(lower, rf.Flat()),
         friction=rf.Friction(coupling.tau, coupling.beta) if coupling else rf.Friction(),
         load=problem.load if problem.load is not None else 1.0,  # unused under a prescribed approach
-        side=problem.side,
+        size=problem.lengths,
         sliding_direction=coupling.sliding_direction if coupling else 0.0,
         periodic=problem.periodic,
     )
@@ -91,7 +91,7 @@ def materials(reduced_modulus: float, shear_compliance: float) -> tuple[rf.Mater
     return (soft, rigid) if shear_compliance > 0 else (rigid, soft)
 
 
-solve = Own("fft", Abilities(coupling=True))
+solve = Own("fft", Abilities(coupling=True, rectangle=True, oblong_elements=True))
 """The production solver."""
-dense = Own("dense", Abilities(coupling=True, largest=24))
+dense = Own("dense", Abilities(coupling=True, largest=24, rectangle=True, oblong_elements=True))
 """The plain reference."""

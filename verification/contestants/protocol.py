@@ -1,8 +1,8 @@
 """What a contact solver is asked and what it must answer: the whole interface of a contestant.
 
-Heights count upwards, and the gap is ``z_upper - z_lower``. The elements are squares of uniform pressure f
-(Pa); displacements are taken at their centres, in arrays ``[i, j]`` along x, y with centres at ``(i + 1/2)
-spacing``:
+Heights count upwards, and the gap is ``z_upper - z_lower``. The elements are rectangles ``dx`` by ``dy``,
+mostly squares, of uniform pressure f (Pa); displacements are taken at their centres, in arrays ``[i, j]``
+along x, y with centres at ``(i + 1/2) dx, (j + 1/2) dy``:
 
     u(x) = 1/(pi E*) sum f I[1/rho] + c0 sum r I[s/rho^2],      r = tau [f > 0] + beta f
     u + gap >= approach,   f >= 0,   f (u + gap - approach) = 0,
@@ -16,7 +16,7 @@ surfaces normally, with ``c0`` of the lower body minus that of the upper. A rigi
 do not couple: ``c0 = 0``, as without coupling. u is what both bodies give way, so displacements and the
 approach count positive where they come together.
 
-A periodic problem repeats the square in both directions; its fields are the band-limited interpolants of the
+A periodic problem repeats the domain in both directions; its fields are the band-limited interpolants of the
 element values, with the symbols ``2/(E* q)`` for pressure and ``-2 pi i c0 q_s/q^2`` for shear, where q is
 the wave vector's length and ``q_s`` its part along the sliding direction, for waves ``exp(i q x)``. There
 the mean pressure displaces nothing, so ``approach`` counts from the mean planes: the conditions hold with
@@ -32,7 +32,7 @@ approach the first is ``|sum f (v - approach)| + max(0, approach - min v) sum |f
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -80,14 +80,17 @@ class Coupling:
 class ContactProblem:
     """Two surfaces pressed together, frictionless or sliding steadily.
 
-    gap : ``z_upper - z_lower`` undeformed, shape ``(M, M)``, ``min gap = 0`` (m)
-    spacing : edge of one element (m)
+    gap : ``z_upper - z_lower`` undeformed, shape ``(Mx, My)``, ``min gap = 0`` (m); square unless the ability
+        ``rectangle`` is claimed
+    spacing : edge of one element (m), along x where elements are oblong
     reduced_modulus : E* (Pa), ``1/E* = sum (1 - nu^2)/E``
-    load : normal load on the square (N), or None
+    load : normal load on the domain (N), or None
     approach : prescribed approach (m), from first contact or, if periodic, from the mean planes; or None
-    periodic : the square repeats in both directions; otherwise the half-space is free around it
+    periodic : the domain repeats in both directions; otherwise the half-space is free around it
     tolerance : relative residual to reach: complementarity gap over elastic energy, and load balance
     coupling : friction, or None
+    spacing_y : edge of one element along y (m), that along x by default; another one only where the ability
+        ``oblong_elements`` is claimed
 
     Exactly one of load and approach is given. Raises `InputError` naming the field.
     """
@@ -100,15 +103,18 @@ class ContactProblem:
     periodic: bool = False
     tolerance: float = 1e-8
     coupling: Coupling | None = None
+    spacing_y: float | None = None
 
     def __post_init__(self) -> None:
         gap = np.array(self.gap, dtype=np.float64)
-        if gap.ndim != 2 or gap.shape[0] != gap.shape[1] or not gap.size or not np.isfinite(gap).all():
-            raise InputError("gap", gap.shape, "a square array of finite heights in m")
+        if gap.ndim != 2 or not gap.size or not np.isfinite(gap).all():
+            raise InputError("gap", gap.shape, "a 2-D array of finite heights in m")
         if gap.min() != 0:
             raise InputError("gap", float(gap.min()), "a gap whose least value is 0 m (first contact)")
         object.__setattr__(self, "gap", gap)
-        require_number("spacing", self.spacing, "a positive length in m", above=0)
+        for edge in ("spacing", "spacing_y"):
+            if getattr(self, edge) is not None:
+                require_number(edge, getattr(self, edge), "a positive length in m", above=0)
         require_number("reduced_modulus", self.reduced_modulus, "a positive modulus in Pa", above=0)
         require_number("tolerance", self.tolerance, "a number between 0 and 1", above=0, below=1)
         if (self.load is None) == (self.approach is None):
@@ -120,18 +126,33 @@ class ContactProblem:
 
     @property
     def M(self) -> int:
-        """Elements along one side."""
-        return len(self.gap)
+        """Elements along the longer axis: along one side of a square."""
+        return max(self.shape)
 
     @property
-    def side(self) -> float:
-        """Edge of the square (m)."""
-        return self.M * self.spacing
+    def shape(self) -> tuple[int, int]:
+        """Elements along x and y."""
+        return self.gap.shape[0], self.gap.shape[1]
+
+    @property
+    def spacings(self) -> tuple[float, float]:
+        """Edges ``(dx, dy)`` of one element (m)."""
+        return self.spacing, self.spacing if self.spacing_y is None else self.spacing_y
+
+    @property
+    def lengths(self) -> tuple[float, float]:
+        """Lengths of the domain along x and y (m)."""
+        return self.shape[0] * self.spacings[0], self.shape[1] * self.spacings[1]
+
+    @property
+    def area(self) -> float:
+        """Area of the domain (m^2)."""
+        return self.lengths[0] * self.lengths[1]
 
     @property
     def element_area(self) -> float:
         """Area of one element (m^2)."""
-        return self.spacing**2
+        return self.spacings[0] * self.spacings[1]
 
     @property
     def approach_from_touch(self) -> float | None:
@@ -143,17 +164,22 @@ class ContactProblem:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """Pressures ``(M, M)`` (Pa) and whether the solver says that they solve the problem."""
+    """Pressures in the gap's shape (Pa) and whether the solver says that they solve the problem."""
 
     pressure: ArrayLike
     converged: bool | np.bool_
+
+
+FLAGS = ("periodic", "aperiodic", "load", "approach", "coupling", "rectangle", "oblong_elements")
 
 
 @dataclass(frozen=True)
 class Abilities:
     """What a contestant can be asked. It may carry them as an attribute ``abilities``.
 
-    largest : most elements per side that it should be given (None: any)
+    rectangle : arrays that are not square
+    oblong_elements : elements whose edges differ
+    largest : most elements along the longer axis that it should be given (None: any)
     precision : the least relative residual that it claims to reach, at most 1e-6; it is held to the larger of
         this and the problem's tolerance
     """
@@ -165,9 +191,11 @@ class Abilities:
     coupling: bool = False
     largest: int | None = None
     precision: float = 1e-8
+    rectangle: bool = False
+    oblong_elements: bool = False
 
     def __post_init__(self) -> None:
-        for flag in ("periodic", "aperiodic", "load", "approach", "coupling"):
+        for flag in FLAGS:
             if not isinstance(getattr(self, flag), bool):
                 raise InputError(f"abilities.{flag}", getattr(self, flag), "true or false")
         if self.largest is not None and not (type(self.largest) is int and self.largest >= 1):
@@ -184,18 +212,21 @@ class Abilities:
     def named(cls, names: str, *, largest: int | None = None, precision: float = 1e-8) -> Abilities:
         """Only the abilities in a comma-separated list.
 
-        >>> Abilities.named("aperiodic,load").periodic
+        >>> Abilities.named("aperiodic,load,rectangle,oblong elements").periodic
         False
 
         Raises `InputError` for an unknown name, and where no problem at all could be posed.
         """
-        known = [f.name for f in fields(cls) if f.name not in ("largest", "precision")]
-        given = [name.strip() for name in names.split(",") if name.strip()]
+        words = (name.strip().replace("-", " ").split() for name in names.split(","))
+        given = ["_".join(name) for name in words if name]
         domain, control = {"periodic", "aperiodic"} & {*given}, {"load", "approach"} & {*given}
-        if not {*given} <= {*known} or not domain or not control:
-            allowed = "periodic or aperiodic, load or approach (of both pairs at least one), coupling"
+        if not {*given} <= {*FLAGS} or not domain or not control:
+            allowed = (
+                "periodic or aperiodic, load or approach (of both pairs at least one), coupling, rectangle, "
+                "oblong elements"
+            )
             raise InputError("abilities", names, f"a list of {allowed}")
-        return cls(**{name: name in given for name in known}, largest=largest, precision=precision)
+        return cls(**{name: name in given for name in FLAGS}, largest=largest, precision=precision)
 
     def lacking(self, problem: ContactProblem) -> str | None:
         """What the problem asks for beyond these abilities, or None.
@@ -210,8 +241,12 @@ class Abilities:
             return "load" if problem.load is not None else "approach"
         if problem.coupling is not None and not self.coupling:
             return "coupling"
+        if problem.shape[0] != problem.shape[1] and not self.rectangle:
+            return "rectangle"
+        if problem.spacings[0] != problem.spacings[1] and not self.oblong_elements:
+            return "oblong elements"
         if self.largest is not None and self.largest < problem.M:
-            return f"{problem.M} elements per side"
+            return f"{problem.M} elements along one axis"
         return None
 
 
@@ -220,7 +255,7 @@ Contestant = Callable[[ContactProblem], "Answer | Array"]
 
 
 def abilities_of(contestant: Contestant) -> Abilities:
-    """Its ``abilities`` attribute, or the defaults: everything but coupling, at any size.
+    """Its ``abilities`` attribute, or the defaults: squares of any size, without coupling.
 
     Raises `InputError` when the attribute is no `Abilities`.
     """

@@ -36,27 +36,43 @@ class Residual(NamedTuple):
         return max(self)
 
 
+def is_large(problem: ContactProblem) -> bool:
+    """Whether a problem has too many elements for dense matrices."""
+    return problem.gap.size > LARGEST**2
+
+
+def _matrix(problem: ContactProblem, direction: float | None) -> Array:
+    """``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between all elements (m)."""
+    if is_large(problem):
+        raise ValueError(f"{problem.gap.size} elements are too many for dense matrices")
+    return problem.spacing * _unit_matrix(problem.shape, _edges(problem)[1], direction)
+
+
 @lru_cache(maxsize=4)
-def _unit_matrix(M: int, direction: float | None) -> Array:
-    """``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between elements of unit edge; ``(M^2, M^2)``."""
-    if M > LARGEST:
-        raise ValueError(f"{M} elements a side are too many for dense matrices")
-    grid = Grid.square(float(M), M)
+def _unit_matrix(shape: tuple[int, int], aspect: float, direction: float | None) -> Array:
+    """The same for elements of edge 1 along x and ``aspect`` along y."""
+    grid = Grid(shape, (float(shape[0]), shape[1] * aspect))
     return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
 
 
+def _edges(problem: ContactProblem) -> tuple[float, float]:
+    """Edges of an element in units of that along x."""
+    return 1.0, problem.spacings[1] / problem.spacings[0]
+
+
 def by_pressure(problem: ContactProblem, pressure: Array) -> Array:
-    """Normal displacement ``a f`` (m) of both bodies by pressure alone, ``(M, M)``."""
+    """Normal displacement ``a f`` (m) of both bodies by pressure alone."""
     if problem.periodic:
         return _filtered(pressure, symbol_at(*_waves(problem), problem.reduced_modulus))
-    scale = problem.spacing / (np.pi * problem.reduced_modulus)
-    if problem.M > LARGEST:
-        return np.asarray(scale * fftconvolve(normal_offsets(problem.M), pressure, mode="valid"))
-    return scale * np.asarray(_unit_matrix(problem.M, None) @ pressure.ravel()).reshape(pressure.shape)
+    compliance = 1 / (np.pi * problem.reduced_modulus)
+    if is_large(problem):
+        offsets = normal_offsets(problem.shape, _edges(problem))
+        return np.asarray(compliance * problem.spacing * fftconvolve(offsets, pressure, mode="valid"))
+    return compliance * np.asarray(_matrix(problem, None) @ pressure.ravel()).reshape(pressure.shape)
 
 
 def displacement(problem: ContactProblem, pressure: Array) -> Array:
-    """Normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``, ``(M, M)``."""
+    """Normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``."""
     normal, coupling = by_pressure(problem, pressure), problem.coupling
     if coupling is None:
         return normal
@@ -66,16 +82,20 @@ def displacement(problem: ContactProblem, pressure: Array) -> Array:
         E, slip = problem.reduced_modulus, np.pi * c0 * problem.reduced_modulus
         both = symbol_at(*_waves(problem), E, slip, direction)
         return normal + _filtered(shear, both - symbol_at(*_waves(problem), E))
-    if problem.M > LARGEST:
-        moved = np.asarray(fftconvolve(shear_offsets(problem.M, direction), shear, mode="valid"))
+    if is_large(problem):
+        offsets = shear_offsets(problem.shape, direction, _edges(problem))
+        moved = np.asarray(problem.spacing * fftconvolve(offsets, shear, mode="valid"))
     else:
-        moved = np.asarray(_unit_matrix(problem.M, direction) @ shear.ravel()).reshape(shear.shape)
-    return normal + c0 * problem.spacing * moved
+        moved = np.asarray(_matrix(problem, direction) @ shear.ravel()).reshape(shear.shape)
+    return normal + c0 * moved
 
 
 def _waves(problem: ContactProblem) -> tuple[Array, Array]:
-    q: Array = 2 * np.pi * np.fft.fftfreq(problem.M, problem.spacing).astype(np.float64)
-    return q[:, None], q[None, :]
+    x, y = (
+        np.asarray(2 * np.pi * np.fft.fftfreq(n, d), dtype=np.float64)
+        for n, d in zip(problem.shape, problem.spacings, strict=True)
+    )
+    return x[:, None], y[None, :]
 
 
 def _filtered(field: Array, symbol: NDArray[np.complex128]) -> Array:
@@ -92,7 +112,7 @@ def energy(problem: ContactProblem, pressure: Array) -> float:
 
 
 def residual(problem: ContactProblem, pressure: Array) -> Residual:
-    """How far pressures ``(M, M)`` (Pa) are from solving the problem, recomputed from them alone.
+    """How far pressures (Pa) are from solving the problem, recomputed from them alone.
 
     gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
         approach where that is prescribed, with penetration counted on the whole load
@@ -151,20 +171,20 @@ class _Elimination:
     problem: ContactProblem
 
     def __post_init__(self) -> None:
-        problem, M = self.problem, self.problem.M
+        problem, (n, m) = self.problem, self.problem.shape
         if problem.coupling is not None and problem.coupling.tau != 0:
             raise ValueError("elimination is for problems without tau")
-        origin = np.zeros((M, M))
+        origin = np.zeros((n, m))
         origin[0, 0] = 1.0
         if problem.periodic:
-            i, j = (axis.ravel() for axis in np.indices((M, M)))
+            i, j = (axis.ravel() for axis in np.indices((n, m)))
             response = displacement(problem, origin)
-            self.matrix = response[(i[:, None] - i) % M, (j[:, None] - j) % M]
+            self.matrix = response[(i[:, None] - i) % n, (j[:, None] - j) % m]
         else:
             c = problem.coupling
-            self.matrix = _unit_matrix(M, None) * (problem.spacing / (np.pi * problem.reduced_modulus))
+            self.matrix = _matrix(problem, None) / (np.pi * problem.reduced_modulus)
             if c is not None:
-                shear = _unit_matrix(M, c.sliding_direction) * problem.spacing
+                shear = _matrix(problem, c.sliding_direction)
                 self.matrix = self.matrix + c.beta * c.shear_compliance * shear
         self.gap = problem.gap.ravel()
 
@@ -188,7 +208,7 @@ class _Elimination:
 
 
 def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
-    """The solution ``(M, M)`` (Pa) by block principal pivoting, for small problems without tau.
+    """The solution (Pa) by block principal pivoting, for small problems without tau.
 
     Starts from all elements in contact, or all that overlap at a prescribed approach; drops those in tension
     and adds those that penetrate until there are none. Raises RuntimeError where that does not end within

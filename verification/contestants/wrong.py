@@ -138,11 +138,12 @@ def padded(points: Callable[[int], int], *, of_shear_alone: bool = False) -> Sol
     """Convolutions on circles of so many points for ``M`` elements: too few alias the farthest offsets."""
 
     def solver(problem: ContactProblem) -> Array:
-        pressure, enough = right(problem), 2 * problem.M - 1
-        if problem.periodic or points(problem.M) >= enough or (of_shear_alone and problem.coupling is None):
+        pressure = right(problem)
+        enough = all(points(n) >= 2 * n - 1 for n in problem.shape)
+        if problem.periodic or enough or (of_shear_alone and problem.coupling is None):
             return pressure
         for _ in range(FEW_ROUNDS):
-            moved = aliased(problem, pressure, points(problem.M))
+            moved = aliased(problem, pressure, points)
             falsely = sum(moved[1:] if of_shear_alone else moved)
             pressure = right(lifted(problem, np.asarray(falsely)))
         return pressure
@@ -150,17 +151,16 @@ def padded(points: Callable[[int], int], *, of_shear_alone: bool = False) -> Sol
     return solver
 
 
-def aliased(problem: ContactProblem, pressure: Array, points: int) -> list[Array]:
-    """What a circle that is too short adds to the displacement (m): by pressure, then by shear if any."""
-    M, coupling = problem.M, problem.coupling
-    offsets = np.arange(1 - M, M)
-    taken = (offsets + points // 2) % points - points // 2 + M - 1
-    tables = [normal_offsets(M) / (np.pi * problem.reduced_modulus)]
+def aliased(problem: ContactProblem, pressure: Array, points: Callable[[int], int]) -> list[Array]:
+    """What circles that are too short add to the displacement (m): by pressure, then by shear if any."""
+    shape, edges, coupling = problem.shape, problem.spacings, problem.coupling
+    taken = [(np.arange(1 - n, n) + points(n) // 2) % points(n) - points(n) // 2 + n - 1 for n in shape]
+    tables = [normal_offsets(shape, edges) / (np.pi * problem.reduced_modulus)]
     tractions = [pressure]
     if coupling is not None:
-        tables.append(shear_offsets(M, coupling.sliding_direction) * coupling.shear_compliance)
+        tables.append(shear_offsets(shape, coupling.sliding_direction, edges) * coupling.shear_compliance)
         tractions.append(coupling.tau * (pressure > 0) + coupling.beta * pressure)
     return [
-        problem.spacing * fftconvolve(table[np.ix_(taken, taken)] - table, traction, mode="valid")
+        fftconvolve(table[np.ix_(*taken)] - table, traction, mode="valid")
         for table, traction in zip(tables, tractions, strict=True)
     ]

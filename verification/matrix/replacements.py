@@ -89,8 +89,8 @@ def small_dropped(*args: Any) -> Any:
     return found._replace(pressure=np.where(kept, found.pressure, 0.0), active=found.active & kept)
 
 
-def never_corrected(self: Any, u: Array, inside: Any, *, periodic: bool) -> Any:
-    return _iterate(self, u, inside, periodic=True)
+def never_corrected(self: Any, u: Array, inside: Any, *, on_circle: bool) -> Any:
+    return _iterate(self, u, inside, on_circle=True)
 
 
 def one_grid(problem: Problem) -> list[Problem]:

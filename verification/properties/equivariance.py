@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
 from verification.properties.registry import Solver, invariant
-from verification.properties.samples import Sample, heights, samples, with_heights
+from verification.properties.samples import SIDE, Sample, array_body, heights, samples, with_heights
 from verification.properties.states import ENDED_WELL, RESIDUAL, from_first_contact, solved
 
 FORCES = ("normal_force", "friction_force")
@@ -33,31 +35,32 @@ def mirror(solver: Solver, sample: Sample) -> None:
     """x -> -x: the direction becomes pi - phi, and the binormal force changes its sign."""
     scene, base = sample.scene, solved(solver, sample)
     flipped = with_heights(scene, sample.grid, np.flipud, sliding_direction=math.pi - scene.sliding_direction)
-    equal_states(solver(flipped, sample.M), np.flipud(base.pressure), base, sample, -1.0)
+    equal_states(solver(flipped, sample.shape), np.flipud(base.pressure), base, sample, -1.0)
 
 
 @invariant("a scene turned by 90 degrees slides like the original", samples())
 def quarter_turn(solver: Solver, sample: Sample) -> None:
-    """(x, y) -> (-y, x), anticlockwise: i of the new array is M - 1 - j of the old."""
+    """(x, y) -> (-y, x), anticlockwise: i of the new array is M - 1 - j of the old, and both sides change."""
     scene, base = sample.scene, solved(solver, sample)
+    phi, lengths = scene.sliding_direction + math.pi / 2, scene.lengths[::-1]
 
     def turn(z: Array) -> Array:
         return np.ascontiguousarray(z.T[::-1])
 
-    turned = with_heights(scene, sample.grid, turn, sliding_direction=scene.sliding_direction + math.pi / 2)
-    equal_states(solver(turned, sample.M), turn(base.pressure), base, sample, 1.0)
+    turned = with_heights(scene, sample.grid, turn, sliding_direction=phi, size=lengths)
+    equal_states(solver(turned, sample.shape[::-1]), turn(base.pressure), base, sample, 1.0)
 
 
 @invariant("a periodic scene shifted by whole elements slides like the original", samples(periodic=True))
 def periodic_translation(solver: Solver, sample: Sample) -> None:
     """Rolling both surfaces rolls the state."""
-    base, shift = solved(solver, sample), (1, sample.M // 2)
+    base, shift = solved(solver, sample), (1, sample.shape[1] // 2)
 
     def roll(z: Array) -> Array:
         return np.roll(z, shift, axis=(0, 1))
 
     rolled = with_heights(sample.scene, sample.grid, roll)
-    equal_states(solver(rolled, sample.M), roll(base.pressure), base, sample, 1.0)
+    equal_states(solver(rolled, sample.shape), roll(base.pressure), base, sample, 1.0)
 
 
 ROUNDED = Sample(
@@ -79,30 +82,31 @@ ROUNDED = Sample(
     found=(ROUNDED,),
 )
 def translation(solver: Solver, sample: Sample) -> None:
-    """The scene in the middle and in a corner of a larger square, amid a moat too deep to touch.
+    """The scene in the middle and in corners of larger rectangles, amid a moat too deep to touch.
 
     Slopes are off: the moat's walls would change those of the elements beside them.
     """
-    M, scene = sample.M, sample.scene
+    (n, m), scene, (dx, dy) = sample.shape, sample.scene, sample.grid.spacings
     found = []
-    for before in (0, 1, 3):
-        padding = (before, 3 - before)
+    for before, after in (((0, 0), (3, 3)), ((1, 1), (2, 2)), ((3, 0), (0, 1)), ((0, 2), (2, 0))):
+        padding = tuple(zip(before, after, strict=True))
 
-        def widened(z: Array, fill: float, pad: tuple[int, int] = padding) -> Array:
-            return np.pad(z, (pad, pad), constant_values=fill)
+        def widened(z: Array, fill: float, pad: tuple[tuple[int, int], ...] = padding) -> Array:
+            return np.pad(z, pad, constant_values=fill)
 
-        deep = 0.4 * scene.side
+        deep = 0.4 * SIDE
         lower = widened(heights(scene.lower, sample.grid), -deep)
         upper = widened(heights(scene.upper, sample.grid), 0.0)
+        lengths = dx * lower.shape[0], dy * lower.shape[1]
         wide = replace(
             scene,
-            side=scene.side * (M + 3) / M,
-            lower=rf.Body(scene.lower.material, lower),
-            upper=rf.Body(scene.upper.material, upper),
+            size=lengths,
+            lower=array_body(scene.lower.material, lower, lengths),
+            upper=array_body(scene.upper.material, upper, lengths),
         )
-        state = solver(wide, M + 3, oblique=False)
+        state = solver(wide, (lower.shape[0], lower.shape[1]), oblique=False)
         assert state.status in ENDED_WELL
-        found.append(state.pressure[before : before + M, before : before + M])
+        found.append(state.pressure[before[0] : before[0] + n, before[1] : before[1] + m])
     for other in found[1:]:
         # the moat's depth, half the side, costs the heights about five digits
         assert np.abs(other - found[0]).max() <= 1e-8 * found[0].max()
@@ -117,20 +121,52 @@ def swapped_bodies(solver: Solver, sample: Sample) -> None:
     scene, grid, base = sample.scene, sample.grid, solved(solver, sample)
     overturned = replace(
         scene,
-        upper=rf.Body(scene.lower.material, -heights(scene.lower, grid)),
-        lower=rf.Body(scene.upper.material, -heights(scene.upper, grid)),
+        upper=array_body(scene.lower.material, -heights(scene.lower, grid), scene.lengths),
+        lower=array_body(scene.upper.material, -heights(scene.upper, grid), scene.lengths),
         sliding_direction=scene.sliding_direction + math.pi,
     )
-    equal_states(solver(overturned, sample.M), base.pressure, base, sample, 1.0)
+    equal_states(solver(overturned, sample.shape), base.pressure, base, sample, 1.0)
+
+
+@invariant(
+    "two measured maps: the bodies swapped, and the frame turned over with them", samples(periodic=False)
+)
+def swapped_maps(solver: Solver, sample: Sample) -> None:
+    """Half a turn about the x axis: phi -> pi - phi. N, F, mu, A and the pressures stay, Q changes sign.
+
+    A measured map on the upper body is turned over by itself, so both maps only change places.
+    """
+    scene, grid = sample.scene, sample.grid
+    (dx, dy), bodies = grid.spacings, dict[str, rf.Body]()
+    with TemporaryDirectory() as folder:
+        for name in ("upper", "lower"):
+            body, path = getattr(scene, name), Path(folder) / f"{name}.npy"
+            np.save(path, np.kron(heights(body, grid), np.ones((3, 3))))  # a window has four pixels at least
+            surface = rf.MeasuredSurface(path, unit="m", pixel_size=(dx / 3, dy / 3), level="none")
+            bodies[name] = rf.Body(body.material, surface)
+        here = replace(scene, upper=bodies["upper"], lower=bodies["lower"])
+        there = replace(
+            scene,
+            upper=bodies["lower"],
+            lower=bodies["upper"],
+            sliding_direction=math.pi - scene.sliding_direction,
+        )
+        base, swapped = solver(here, sample.shape), solver(there, sample.shape)
+    assert base.status in ENDED_WELL
+    assert abs(swapped.contact_area - base.contact_area) <= RESIDUAL * base.contact_area
+    assert abs(swapped.max_pressure - base.max_pressure) <= RESIDUAL * base.max_pressure
+    assert abs(swapped.friction_coefficient - base.friction_coefficient) <= RESIDUAL
+    equal_states(swapped, base.pressure[:, ::-1], base, sample, -1.0)
 
 
 @invariant("the height's datum does not matter", samples())
 def datum(solver: Solver, sample: Sample) -> None:
     """A body may be lifted, or lowered, by any length, here a power of two of some ten times the gap."""
     base = solved(solver, sample)
-    scene, lift = sample.scene, sample.scene.side / 64
-    lifted = replace(scene, upper=rf.Body(scene.upper.material, heights(scene.upper, sample.grid) + lift))
-    equal_states(solver(lifted, sample.M), base.pressure, base, sample, 1.0)
+    scene, lift = sample.scene, SIDE / 64
+    raised = heights(scene.upper, sample.grid) + lift
+    lifted = replace(scene, upper=array_body(scene.upper.material, raised, scene.lengths))
+    equal_states(solver(lifted, sample.shape), base.pressure, base, sample, 1.0)
 
 
 @invariant("lengths in another unit", samples())
@@ -138,9 +174,13 @@ def length_unit(solver: Solver, sample: Sample) -> None:
     """All lengths times 2^10, the load times 2^20: pressures keep every bit, forces follow the load."""
     scene, base, factor = sample.scene, solved(solver, sample), 2.0**10
     large = with_heights(
-        scene, sample.grid, lambda z: factor * z, side=factor * scene.side, load=factor**2 * scene.load
+        scene,
+        sample.grid,
+        lambda z: factor * z,
+        size=tuple(factor * length for length in scene.lengths),
+        load=factor**2 * scene.load,
     )
-    moved = solver(large, sample.M)
+    moved = solver(large, sample.shape)
     assert np.array_equal(moved.pressure, base.pressure)
     assert moved.approach == factor * base.approach
     assert moved.friction_coefficient == base.friction_coefficient
@@ -156,7 +196,7 @@ def stress_unit(solver: Solver, sample: Sample) -> None:
     )
     friction = rf.Friction(tau=factor * scene.friction.tau, beta=scene.friction.beta)
     soft = replace(scene, friction=friction, load=factor * scene.load, lower=lower, upper=upper)
-    moved = solver(soft, sample.M)
+    moved = solver(soft, sample.shape)
     assert np.array_equal(moved.pressure, factor * base.pressure)
     assert moved.approach == base.approach
     assert moved.friction_coefficient == base.friction_coefficient

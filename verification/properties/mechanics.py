@@ -94,7 +94,7 @@ def monotone_in_load(solver: Solver, sample: Sample) -> None:
 def monotone_in_approach(solver: Solver, sample: Sample) -> None:
     """Load and contact set grow with a prescribed approach."""
     first = solved(solver, sample, oblique=False)
-    deeper = solver(sample.scene, sample.M, approach=1.25 * first.approach, oblique=False)
+    deeper = solver(sample.scene, sample.shape, approach=1.25 * first.approach, oblique=False)
     assert deeper.status in ENDED_WELL
     assert deeper.normal_force > first.normal_force
     assert not np.any(first.contact & ~deeper.contact)
@@ -111,7 +111,7 @@ def weak_friction(solver: Solver, sample: Sample) -> None:
     friction = sample.scene.friction
     weak = replace(sample.scene, friction=rf.Friction(tau=SMALL * friction.tau, beta=SMALL * friction.beta))
     none = replace(sample.scene, friction=rf.Friction())
-    faint, still = (solver(scene, sample.M, oblique=True) for scene in (weak, none))
+    faint, still = (solver(scene, sample.shape, oblique=True) for scene in (weak, none))
     assert faint.status in ENDED_WELL
     assert still.status in ENDED_WELL
     # tau is at most 0.6 of the mean pressure, and c at most half of a: amplified at most by the grid's

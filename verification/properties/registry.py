@@ -16,9 +16,14 @@ class Solver(Protocol):
     """Anything that solves a scene like `refimpl.solve`: by its load, or at a prescribed approach (m)."""
 
     def __call__(
-        self, scene: rf.Scene, grid: int, *, approach: float | None = None, oblique: bool | None = None
+        self,
+        scene: rf.Scene,
+        grid: tuple[int, int],
+        *,
+        approach: float | None = None,
+        oblique: bool | None = None,
     ) -> rf.Solution:
-        """The solution on ``grid x grid`` elements."""
+        """The solution on a grid of ``(Mx, My)`` elements."""
         ...
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from verification.properties.registry import Solver, invariant
-from verification.properties.samples import Sample, samples
+from verification.properties.samples import SIDE, Sample, samples
 from verification.properties.textbook import normal_matrix, shear_matrix
 
 RESIDUAL = 1e-9
@@ -20,7 +20,7 @@ ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
 
 def solved(solver: Solver, sample: Sample, *, oblique: bool | None = None) -> rf.Solution:
     """The sample's solution; fails when the solver does not claim to have solved it."""
-    solution = solver(sample.scene, sample.M, oblique=oblique)
+    solution = solver(sample.scene, sample.shape, oblique=oblique)
     assert solution.status in ENDED_WELL, f"ended {solution.status.value}"
     return solution
 
@@ -47,17 +47,17 @@ def compliances(scene: rf.Scene) -> tuple[float, float]:
 def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array, Array]:
     """Tangents of theta_x and theta_y of the mean of the returned surfaces, by differences written out."""
     z = (solution.surface_lower + solution.surface_upper) / 2
-    M, spacing = sample.M, sample.grid.spacings[0]
-    d = np.zeros((2, M, M))
-    for i in range(M):
-        for j in range(M):
+    (n, m), (dx, dy) = sample.shape, sample.grid.spacings
+    d = np.zeros((2, n, m))
+    for i in range(n):
+        for j in range(m):
             if sample.periodic:
-                d[0, i, j] = (z[(i + 1) % M, j] - z[i - 1, j]) / (2 * spacing)
-                d[1, i, j] = (z[i, (j + 1) % M] - z[i, j - 1]) / (2 * spacing)
+                d[0, i, j] = (z[(i + 1) % n, j] - z[i - 1, j]) / (2 * dx)
+                d[1, i, j] = (z[i, (j + 1) % m] - z[i, j - 1]) / (2 * dy)
             else:
-                i0, i1, j0, j1 = max(i - 1, 0), min(i + 1, M - 1), max(j - 1, 0), min(j + 1, M - 1)
-                d[0, i, j] = (z[i1, j] - z[i0, j]) / ((i1 - i0) * spacing)
-                d[1, i, j] = (z[i, j1] - z[i, j0]) / ((j1 - j0) * spacing)
+                i0, i1, j0, j1 = max(i - 1, 0), min(i + 1, n - 1), max(j - 1, 0), min(j + 1, m - 1)
+                d[0, i, j] = (z[i1, j] - z[i0, j]) / ((i1 - i0) * dx)
+                d[1, i, j] = (z[i, j1] - z[i, j0]) / ((j1 - j0) * dy)
     cos, sin = math.cos(solution.sliding_direction), math.sin(solution.sliding_direction)
     return cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]
 
@@ -117,8 +117,8 @@ def displacements(solver: Solver, sample: Sample) -> None:
     u = a * normal_matrix(sample.grid) @ solution.pressure.ravel()
     u += c * shear_matrix(sample.grid, sample.scene.sliding_direction) @ solution.traction.ravel()
     found = displacement(sample, solution).ravel()
-    # the surfaces also carry the heights' own rounding, which is 1e-16 of the side at most
-    assert np.abs(found - u).max() <= 1e-11 * np.abs(u).max() + 1e-16 * sample.scene.side
+    # the surfaces also carry the heights' own rounding, which is 1e-16 of SIDE at most
+    assert np.abs(found - u).max() <= 1e-11 * np.abs(u).max() + 1e-16 * SIDE
 
 
 @invariant("the contact area is the number of loaded elements; the peak is the largest pressure", samples())
@@ -163,7 +163,7 @@ def load_and_approach(solver: Solver, sample: Sample) -> None:
     by_load = solved(solver, sample)
     if sample.periodic and by_load.contact.mean() > 0.9:
         return
-    back = solver(sample.scene, sample.M, approach=by_load.approach)
+    back = solver(sample.scene, sample.shape, approach=by_load.approach)
     assert back.status in ENDED_WELL
     same_pressure(back, by_load, sample)
     assert abs(back.normal_force - sample.scene.load) <= 1e-7 * sample.scene.load
@@ -172,7 +172,7 @@ def load_and_approach(solver: Solver, sample: Sample) -> None:
 @invariant("dense reference and production solver agree", samples())
 def agrees_with_the_dense_reference(solver: Solver, sample: Sample) -> None:
     """The reference of `refimpl`: principal pivoting on dense matrices."""
-    reference = rf.solve(sample.scene, sample.M, method="dense", tolerance=1e-12)
+    reference = rf.solve(sample.scene, sample.shape, method="dense", tolerance=1e-12)
     solution = solved(solver, sample)
     same_pressure(solution, reference, sample)
     assert np.array_equal(solution.excluded, reference.excluded)

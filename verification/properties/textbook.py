@@ -18,34 +18,37 @@ Corner = Callable[[Array, Array], Array]
 
 
 def normal_matrix(grid: Grid) -> Array:
-    """``I[1/rho]`` between all pairs of elements (m), shape ``(M^2, M^2)``, field by row."""
-    return _corners(*_pairs(grid), grid.element_size, _love)
+    """``I[1/rho]`` between all pairs of elements (m), field by row."""
+    return _corners(*_pairs(grid), grid.spacings, _love)
 
 
-def normal_offsets(M: int) -> Array:
-    """``I[1/rho]`` of an element of unit edge at offsets ``1 - M ... M - 1`` along x and y."""
-    offsets = np.arange(1.0 - M, M)
-    return _corners(offsets[:, None], offsets[None, :], 1.0, _love)
+def normal_offsets(shape: tuple[int, int], edges: tuple[float, float] = (1.0, 1.0)) -> Array:
+    """``I[1/rho]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and y."""
+    return _corners(*_offsets(shape, edges), edges, _love)
 
 
 def shear_matrix(grid: Grid, direction: float) -> Array:
     """``I[s/rho^2]`` between all pairs (m), ``s`` along ``direction`` (rad) from source to field."""
-    return _cerruti(*_pairs(grid), grid.element_size, direction)
+    return _cerruti(*_pairs(grid), grid.spacings, direction)
 
 
-def shear_offsets(M: int, direction: float) -> Array:
-    """``I[s/rho^2]`` of an element of unit edge at offsets ``1 - M ... M - 1`` along x and y."""
-    offsets = np.arange(1.0 - M, M)
-    return _cerruti(offsets[:, None], offsets[None, :], 1.0, direction)
+def shear_offsets(shape: tuple[int, int], direction: float, edges: tuple[float, float] = (1.0, 1.0)) -> Array:
+    """``I[s/rho^2]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and y."""
+    return _cerruti(*_offsets(shape, edges), edges, direction)
+
+
+def _offsets(shape: tuple[int, int], edges: tuple[float, float]) -> tuple[Array, Array]:
+    x, y = (np.arange(1.0 - n, n) * edge for n, edge in zip(shape, edges, strict=True))
+    return x[:, None], y[None, :]
 
 
 def _love(X: Array, Y: Array) -> Array:
     return np.asarray(X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y)))
 
 
-def _cerruti(X: Array, Y: Array, edge: float, direction: float) -> Array:
-    along_x = _corners(X, Y, edge, lambda X, Y: Y / 2 * np.log(X**2 + Y**2) + X * np.arctan(Y / X))
-    along_y = _corners(X, Y, edge, lambda X, Y: X / 2 * np.log(X**2 + Y**2) + Y * np.arctan(X / Y))
+def _cerruti(X: Array, Y: Array, edges: tuple[float, float], direction: float) -> Array:
+    along_x = _corners(X, Y, edges, lambda X, Y: Y / 2 * np.log(X**2 + Y**2) + X * np.arctan(Y / X))
+    along_y = _corners(X, Y, edges, lambda X, Y: X / 2 * np.log(X**2 + Y**2) + Y * np.arctan(X / Y))
     return math.cos(direction) * along_x + math.sin(direction) * along_y
 
 
@@ -55,12 +58,12 @@ def _pairs(grid: Grid) -> tuple[Array, Array]:
     return x[:, None] - x[None, :], y[:, None] - y[None, :]
 
 
-def _corners(X: Array, Y: Array, edge: float, antiderivative: Corner) -> Array:
+def _corners(X: Array, Y: Array, edges: tuple[float, float], antiderivative: Corner) -> Array:
     """Second difference over the corners of an element at an offset."""
-    half = edge / 2
+    a, b = edges[0] / 2, edges[1] / 2
     return (
-        antiderivative(X + half, Y + half)
-        - antiderivative(X - half, Y + half)
-        - antiderivative(X + half, Y - half)
-        + antiderivative(X - half, Y - half)
+        antiderivative(X + a, Y + b)
+        - antiderivative(X - a, Y + b)
+        - antiderivative(X + a, Y - b)
+        + antiderivative(X - a, Y - b)
     )

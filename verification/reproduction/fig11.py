@@ -46,7 +46,7 @@ def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
     scene = rough(FLAT_RMS, BALL_RMS, realisation)
     found = rf.solve(scene, grid)
     lower, _ = scene.heights(found.grid)
-    x = found.grid.x - scene.side / 2
+    x = found.grid.x - scene.lengths[0] / 2
     nominal = np.hypot(x[:, None], x[None, :]) <= hertz().contact_radius
     slope = np.degrees(np.arctan(np.gradient(lower, found.grid.spacings[0], axis=0)))
     return (

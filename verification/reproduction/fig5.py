@@ -30,7 +30,7 @@ class Profiles:
 def profiles(grid: int) -> Profiles:
     """Table 1, smooth, P = 70 N; the upper ball slides along +x."""
     found = rf.solve(SMOOTH, grid)
-    x = found.grid.x - SMOOTH.side / 2
+    x = found.grid.x - SMOOTH.lengths[0] / 2
     middle = grid // 2  # of the two middle lines, the one just above
     total = found.pressure.sum()
     contact = found.contact

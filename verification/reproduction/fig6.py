@@ -96,10 +96,10 @@ def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
 
 def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
     """The averaged pressure, and both theories at the same radii."""
-    centres = SMOOTH.grid(grid).x - SMOOTH.side / 2
+    centres = SMOOTH.grid(grid).x - SMOOTH.lengths[0] / 2
     distance = np.hypot(centres[:, None], centres[None, :])
     ring = (distance / BIN).astype(int)
-    rings = int(SMOOTH.side / 2 / BIN)  # whole annuli only
+    rings = int(SMOOTH.lengths[0] / 2 / BIN)  # whole annuli only
     inside = ring < rings
     count = np.bincount(ring[inside], minlength=rings)
     radius = np.bincount(ring[inside], distance[inside], rings) / count

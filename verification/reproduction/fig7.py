@@ -47,7 +47,7 @@ def section(grid: int) -> Section:
     contact = with_friction.contact
     change = np.abs(with_friction.surface_lower - without.surface_lower)
     return Section(
-        x=with_friction.grid.x - scene.side / 2,
+        x=with_friction.grid.x - scene.lengths[0] / 2,
         before=(lower[:, middle], upper[:, middle]),
         deformed=(with_friction.surface_lower[:, middle], with_friction.surface_upper[:, middle]),
         frictionless=without.surface_lower[:, middle],

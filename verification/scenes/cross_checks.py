@@ -25,7 +25,7 @@ class Trial:
     name: str
     stresses: str
     scene: rf.Scene
-    M: int
+    M: int | tuple[int, int]
     options: Mapping[str, Any] = field(default_factory=dict)
 
     @cached_property
@@ -54,6 +54,7 @@ def pressed(
     friction: rf.Friction = TABLE1,
     load: float = 70.0,
     side: float = 1.61e-3,
+    size: tuple[float, float] | None = None,
     direction: float = 0.0,
     offset: float = 0.0,
     periodic: bool = False,
@@ -66,7 +67,8 @@ def pressed(
         ),
         friction=friction,
         load=load,
-        side=side,
+        side=side if size is None else None,
+        size=size,
         sliding_direction=direction,
         sliding_offset=offset,
         periodic=periodic,

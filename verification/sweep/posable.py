@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from refimpl.driver.options import Options
-from refimpl.grid import Grid
 from refimpl.planning.plan import memory_of
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.scene import Scene
@@ -42,8 +41,14 @@ def check(study: Study) -> None:
 
 def check_memory(study: Study) -> None:
     """Raise InputError where the finest grid does not fit into this machine's free memory."""
-    finest = Grid.square(study.scene["side"], int(max(study.vary["grid"])))
-    memory_of(study.settings.get("method", "fft"), finest)
+    scene = next(_closest(study))
+    memory_of(study.settings.get("method", "fft"), scene.grid(int(max(study.vary["grid"]))))
+
+
+def covered_size(study: Study) -> tuple[float, float]:
+    """Return the largest rectangle (m) that all measured surfaces cover over all offsets of a study."""
+    x, y = zip(*(scene.lengths for scene in _closest(study)), strict=True)
+    return min(x), min(y)
 
 
 def _closest(study: Study) -> Iterator[Scene]:

@@ -31,6 +31,7 @@ class Study:
     Realisations are of Gaussian roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
     `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
+    ``notes`` say what was chosen for it. ``grid`` counts elements along the longer side of a rectangle.
     """
 
     scene: Table
@@ -40,6 +41,7 @@ class Study:
     vary: Mapping[str, tuple[float, ...]]
     settings: Mapping[str, Any]
     files: tuple[Path, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def runs(self) -> Iterator[Run]:
         """All runs, realisations outermost, then the axes in the order of `AXES`."""

@@ -73,6 +73,12 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
         settings=dict(settings),
         files=(scene_file, *map(Path, measured_files(scene))),
     )
+    if "side" not in scene and "size" not in scene:
+        x, y = posable.covered_size(study)
+        note = (
+            f"no size given: {x:.6g} x {y:.6g} m, the largest that all measured surfaces cover at all offsets"
+        )
+        study = replace(study, scene=scene | {"size": [x, y]}, notes=(note,))
     _check(study)
     return study
 

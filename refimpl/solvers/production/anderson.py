@@ -104,5 +104,5 @@ class MixingControl:
 
     @property
     def stagnated(self) -> bool:
-        """Whether too many updates in a row have not halved the best residual."""
+        """True if too many updates in a row have not halved the best residual."""
         return self._stalled >= (PATIENCE if self.mixing else STALLED)

@@ -20,7 +20,7 @@ class InitialGuess(NamedTuple):
     pressure : f (Pa)
     displacement : ``v - h`` of the pair (m)
     approach : m from first contact, or None where heights were sampled anew: grids differ in it
-    needs_mixing : whether updates of the lagged terms had to be mixed; on finer grids they feed back more
+    needs_mixing : whether updates of the lagged terms were mixed; on finer grids they feed back more
     """
 
     pressure: Array

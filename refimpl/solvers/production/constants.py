@@ -5,7 +5,7 @@ Costs are CG steps or transforms, on the scenes named; "none" says that neighbou
 
 # Nested grids (`coarse_grids`, `nested_solver`)
 COARSEST = 32  # elements per side of the coarsest grid
-COARSEST_OF_TWO = 16  # the same where no coarser grid would exist otherwise
+COARSEST_OF_TWO = 16  # elements per side where no coarser grid would exist otherwise
 QUARTERED = 128  # elements per side up to which a grid of half as many costs more steps than it saves
 COARSE_TOLERANCE = (
     1e-3  # residual of a coarse grid: only an initial guess; its grid error is larger. 1e-2: 4 %
@@ -15,11 +15,11 @@ MARGIN = 2  # elements, at least, by which a window exceeds its contact: slopes 
 
 # One grid (`level`)
 REDUCTION = 0.1  # relative residual reduction by CG between updates of the lagged terms
-LEAST_REDUCTION = 1e-3  # the same where the last update changed the residual by less than that
-TOLERANCE_SHARE = 0.99  # of the tolerance: the certificate, recomputed, differs by rounding (1e-15 of 1e-12)
-LAGGED_SHARE = 0.3  # of the tolerance, for CG where terms lag: the rest is for the lagged terms
-PLAIN_SHARE = 0.9  # of the tolerance, for CG where nothing lags: the rest is for rounding
-MIXED_SHARE = 0.1  # of the tolerance, for CG between mixed updates: what CG leaves is noise to the mixing
+LEAST_REDUCTION = 1e-3  # reduction where the last update changed the residual by less than that
+TOLERANCE_SHARE = 0.99  # share of the tolerance: the certificate differs by rounding (1e-15 of 1e-12)
+LAGGED_SHARE = 0.3  # share of the tolerance, for CG where terms lag: the rest is for the lagged terms
+PLAIN_SHARE = 0.9  # share of the tolerance, for CG where nothing lags: the rest is for rounding
+MIXED_SHARE = 0.1  # share of the tolerance, for CG between mixed updates: its residual is noise to the mixing
 CG_LIMIT = 1000  # CG steps of one solve; the extreme scenes that converge take 108 at most
 CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
 UPDATE_LIMIT = 600  # updates of the lagged terms in one solve; the extreme scenes take 59 at most
@@ -31,20 +31,20 @@ TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its 
 VANISHING = 1e-12  # share of a pressure that may be left by a step that makes it vanish
 CERTAINTY = 2.0  # times the largest misfit; 1 is enough for all of tau's states on random scenes (tests)
 LOAD_SLACK = (
-    1e-3  # of the load, taken from rising pressures only; 1e-2 to 1e-4 take as many steps within 0.5 %
+    1e-3  # share of the load, taken from rising pressures only; 1e-2 to 1e-4 take as many steps within 0.5 %
 )
 LIST_SHARE = 0.35  # share of a window up to which lists are quicker: 0.35 at 256 elements a side, 0.45 at 512
 
 # Lagged terms (`lagged_terms`)
 WEAK_COUPLING = 0.3  # beta c / a up to which CG takes the coupling in; it pays to 0.5 and fails at 0.7
-STEEPEST_COSINE = 1e-6  # of slopes that have diverged, under pressures far beyond the moduli
+STEEPEST_COSINE = 1e-6  # cosine of slopes that have diverged, under pressures far beyond the moduli
 LARGEST_DISPLACEMENT = (
     1e30  # domain sizes; larger shear displacements have diverged, squares are still doubles
 )
 
 # Anderson mixing (`anderson`)
 DEPTH = 20  # differences kept: steep slopes on 1024 elements a side take 522 CG steps, 606 with 10
-MIXING_SHARE = 0.5  # of what is left after cancelling; 0.3 takes more steps, 1 stalled on 512 elements a side
+MIXING_SHARE = 0.5  # share of the remaining defect; 0.3 takes more steps, 1 stalled on 512 elements a side
 DISTINCT = 1e-10  # least eigenvalue of the normalised products of differences that is more than rounding
 STRONG_FEEDBACK = 0.3  # change of the residual by an update, over the last residual, that counts as strong
 STRONG_UPDATES = 2  # strong updates in a row that start the mixing; one may be a contact that opens

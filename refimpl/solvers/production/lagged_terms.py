@@ -75,7 +75,7 @@ class LaggedTerms:
     def _shear_lags(self) -> bool:
         """Whether shear displacements depend on the pressure beyond what CG takes in."""
         terms, law = self._problem.terms, self._problem.friction
-        by_pressure = law.slope > 0 and not self._weakly_coupled
+        by_pressure = law.slope != 0 and not self._weakly_coupled
         return terms.slope_correction or (terms.coupled and (by_pressure or not law.is_linear))
 
     @property

@@ -59,9 +59,9 @@ def test_the_answer_is_the_same_for_hardly_more_transforms(scene: rf.Scene, grid
 def test_whatever_a_solve_starts_from(sample: Sample, share: float) -> None:
     """The samples of the invariants, from their own answer and from that to another load."""
     other = replace(sample.scene, load=share * sample.scene.load)
-    start = rf.solve(other, sample.M, tolerance=1e-12)
+    start = rf.solve(other, sample.shape, tolerance=1e-12)
     assume(start.converged)
-    begun, afresh = (rf.solve(sample.scene, sample.M, tolerance=1e-12, start=s) for s in (start, None))
+    begun, afresh = (rf.solve(sample.scene, sample.shape, tolerance=1e-12, start=s) for s in (start, None))
     assert begun.converged
     assert afresh.converged
     same_pressure(begun, afresh, sample)

@@ -20,10 +20,11 @@ from refimpl.scene.discretise import discretise
 SOFT, HARD = rf.Material(2e9, 0.1), rf.Material(50e9, 0.4)
 SIDE = 1e-3
 GRID = Grid((6, 8), (SIDE, SIDE))
+PIXEL = GRID.spacings
 RANDOM = np.random.default_rng(5)
 SCENE = rf.Scene(
-    upper=rf.Body(HARD, RANDOM.uniform(0, 1e-6, GRID.shape)),
-    lower=rf.Body(SOFT, RANDOM.uniform(0, 1e-6, GRID.shape)),
+    upper=rf.Body(HARD, rf.ArraySurface(RANDOM.uniform(0, 1e-6, GRID.shape), PIXEL)),
+    lower=rf.Body(SOFT, rf.ArraySurface(RANDOM.uniform(0, 1e-6, GRID.shape), PIXEL)),
     friction=rf.Friction(tau=3e5, beta=0.2),
     load=1.0,
     side=SIDE,

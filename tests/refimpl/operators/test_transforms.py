@@ -132,13 +132,3 @@ def test_a_second_thread_starts_where_it_pays(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(transforms.fourier, "worthwhile", 1000)
     assert transforms.threads(999) == 1
     assert transforms.threads(1000) == transforms.threads(2000) == 3
-
-
-def test_few_numbers_are_multiplied_as_complex_ones_and_many_as_real_ones() -> None:
-    """The same products: which is quicker is a matter of size alone."""
-    for size, kind in ((50_000, np.complex128), (50_001, np.float64)):
-        symbol = RANDOM.normal(size=(size, 1))
-        found = transforms.factors(symbol)
-        assert found.dtype == kind
-        spectrum = RANDOM.normal(size=(size, 1)) + 1j * RANDOM.normal(size=(size, 1))
-        assert np.array_equal(spectrum * found, spectrum * symbol)

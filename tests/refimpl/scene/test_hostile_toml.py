@@ -46,7 +46,7 @@ def test_paths_with_many_dots_are_no_keys(tmp_path: Path) -> None:
 
 
 @settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.text(st.characters(codec="utf-8", exclude_characters='"\\'), min_size=1, max_size=20))
+@given(key=st.text(st.characters(codec="utf-8", exclude_characters='"\\'), min_size=1, max_size=20))
 def test_no_key_reaches_a_terminal_unescaped(key: str, tmp_path: Path) -> None:
     escaped = "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in key)
     (tmp_path / "s.toml").write_text(f'"x{escaped}" = 1\n{SCENE}', encoding="utf-8")

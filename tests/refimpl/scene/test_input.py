@@ -54,7 +54,7 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "tau NaN": ("friction.tau", lambda: rf.Friction(tau=math.nan)),
     "zero modulus": ("E", lambda: rf.Material(0.0, 0.3)),
     "negative modulus": ("E", lambda: rf.Material(-1e9, 0.3)),
-    "infinite modulus": ("E", lambda: rf.Material(math.inf, 0.3)),
+    "infinite modulus": ("E", lambda: rf.Material(-math.inf, 0.3)),
     "nu above a half": ("nu", lambda: rf.Material(1e9, 0.500001)),
     "nu of minus one": ("nu", lambda: rf.Material(1e9, -1.0)),
     "nu NaN": ("nu", lambda: rf.Material(1e9, math.nan)),

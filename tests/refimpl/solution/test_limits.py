@@ -128,7 +128,7 @@ def test_contact_at_the_border() -> None:
     border = s.contact.copy()
     border[1:-1, 1:-1] = False
     assert warned.number == border.sum() > 0
-    assert "enlarge the side" in str(warned)
+    assert "enlarge the domain" in str(warned)
     assert Limit.BORDER not in named(rf.solve(SMOOTH, 32))
     assert Limit.BORDER not in named(rf.solve(replace(SMOOTH, side=0.6e-3, periodic=True), 32))
     assert named(rf.solve(SMOOTH, 1))[Limit.BORDER].number == 1
@@ -146,7 +146,8 @@ def test_elements_per_correlation_length_told_once() -> None:
 @pytest.mark.parametrize(("M", "points"), [(32, 2.0), (64, None), (65, None)])
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
 def test_points_of_data_between_elements(M: int, points: float | None) -> None:
-    heights = np.zeros((48, 64))
+    side = SMOOTH.lengths[0]
+    heights = rf.ArraySurface(np.zeros((48, 64)), pixel=(side / 48, side / 64))
     warned = named(rf.solve(replace(SMOOTH, lower=rf.Body(STEEL, heights)), M)).get(Limit.DATA)
     assert (warned and warned.number) == points
 

@@ -36,7 +36,7 @@ def test_the_correction_solves_on_the_contact_alone() -> None:
     inside[2:6, 3:6] = True
     expected = np.random.default_rng(5).uniform(0.5, 0.9, (8, 8)) * inside
     one.pressure = np.ones((8, 8))
-    left = one._iterate(one._apply(expected), inside, periodic=False)
+    left = one._iterate(one._apply(expected), inside, on_circle=False)
     assert np.array_equal(left, inside)
     # steps end at 1e-10 of the pressure; 100 of them for what steepest descent still had to go
     assert np.abs(one.pressure - expected).max() <= 1e-8 * expected.max()
@@ -138,10 +138,10 @@ def test_iteration_one_starts_within_the_interference_and_the_contact_so_far(
     begun: list[Mask] = []
     iterate = one._iterate
 
-    def recorded(u: Array, inside: Mask, *, periodic: bool) -> Mask:
-        if periodic:
+    def recorded(u: Array, inside: Mask, *, on_circle: bool) -> Mask:
+        if on_circle:
             begun.append(inside.copy())
-        return iterate(u, inside, periodic=periodic)
+        return iterate(u, inside, on_circle=on_circle)
 
     monkeypatch.setattr(one, "_iterate", recorded)
     one.normal_force(4e-6, None)
@@ -152,8 +152,8 @@ def test_iteration_one_starts_within_the_interference_and_the_contact_so_far(
     assert np.array_equal(begun[1], found)
 
 
-@pytest.mark.parametrize("periodic", [False, True])
-def test_an_element_that_just_touches_is_excluded(periodic: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("on_circle", [False, True])
+def test_an_element_that_just_touches_is_excluded(on_circle: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Contact is pressure above zero; here elements do not feel each other."""
     one = scheme()
     for name in ("_apply", "_apply_periodic", "_invert"):
@@ -161,10 +161,10 @@ def test_an_element_that_just_touches_is_excluded(periodic: bool, monkeypatch: p
     u = np.zeros((8, 8))
     u[2:4, 2:4] = 1.0
     touching = np.ones((8, 8), dtype=bool)
-    assert np.array_equal(one._iterate(u, touching, periodic=periodic), u > 0)
+    assert np.array_equal(one._iterate(u, touching, on_circle=on_circle), u > 0)
     assert np.array_equal(one.pressure, u)
     # the first step is exact; the second finds nothing to do, and is none
-    assert (one.trace.periodic_steps, one.trace.correction_steps) == (periodic, not periodic)
+    assert (one.trace.periodic_steps, one.trace.correction_steps) == (on_circle, not on_circle)
 
 
 def test_passes_are_as_many_as_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -256,8 +256,8 @@ def test_a_scheme_that_settles_late_has_settled(monkeypatch: pytest.MonkeyPatch)
     """An approach that did not settle is not the last one."""
     iterate, contacts = _Scheme._iterate, list[Mask]()
 
-    def left_open(one: _Scheme, u: Array, inside: Mask, *, periodic: bool) -> Mask:
-        contact = iterate(one, u, inside, periodic=periodic)
+    def left_open(one: _Scheme, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
+        contact = iterate(one, u, inside, on_circle=on_circle)
         if not contacts:
             one.settled = False
         contacts.append(contact)
@@ -277,7 +277,7 @@ def test_displacements_are_applied_anew_only_where_elements_left(monkeypatch: py
     monkeypatch.setattr(one, "_apply", lambda p: (applied.append(p), flexibility(p))[1])
     inside = np.zeros((8, 8), dtype=bool)
     inside[2:6, 2:6] = True
-    one._iterate(flexibility(1e6 * inside), inside, periodic=False)
+    one._iterate(flexibility(1e6 * inside), inside, on_circle=False)
     assert len(applied) == 1 + one.trace.correction_steps
 
 

@@ -210,12 +210,12 @@ def followed(solver: Played) -> TauResult:
     return iterate(solver, ADHESIVE, 1e-8)
 
 
-def test_a_law_without_jump_needs_one_solve() -> None:
+def test_a_law_without_a_jump_holds_everywhere_and_needs_one_solve() -> None:
     solver = Played({"..": "x."})
     found = iterate(solver, rf.Friction(beta=0.1), 1e-8)
     assert found.settled
     assert found.solves == 1
-    assert solver.asked == [".. fully"]
+    assert solver.asked == ["xx fully"]
     assert not found.excluded.any()
 
 

@@ -58,18 +58,19 @@ def test_x3p_keeps_its_oblong_pixels_and_its_axes(tmp_path: Path) -> None:
 
 
 def test_text_with_an_instruments_header_is_scaled_by_it(tmp_path: Path) -> None:
-    """Header: rows of constant y, a conversion factor of the heights."""
+    """Header: lines of constant y from the top, a conversion factor of the heights."""
     path = tmp_path / "a.asc"
     header = (
         f"h={NY} w={NX}\npixel size=1.500000e-007 m\ndata unit=rad\nheight conversion factor (-> m)=2.5e-8\n"
     )
-    rows = "\n".join(" ".join(f"{v:.17g}" for v in row) for row in (ROUGH / 2.5e-8).T)
+    rows = "\n".join(" ".join(f"{v:.17g}" for v in row) for row in (ROUGH / 2.5e-8).T[::-1])
     path.write_text(header + rows + "\n")
     reading = MeasuredSurface(path).reading
     np.testing.assert_allclose(reading.heights, ROUGH, rtol=1e-14, atol=0)
     np.testing.assert_allclose(reading.pixel, (1.5e-7, 1.5e-7), rtol=1e-14)
-    with pytest.raises(InputError, match="states its own"):
-        MeasuredSurface(path, unit="um").reading  # noqa: B018  # reading is what raises
+    overridden = MeasuredSurface(path, unit="um").reading
+    np.testing.assert_allclose(overridden.heights, reading.heights * 1e-6, rtol=1e-14, atol=0)
+    assert overridden.notes == ("unit 'um' is used; the file states 'm'",)
 
 
 def test_files_that_state_no_unit_need_one(tmp_path: Path) -> None:
@@ -80,8 +81,8 @@ def test_files_that_state_no_unit_need_one(tmp_path: Path) -> None:
             np.savetxt(path, ROUGH, fmt="%.17g")
         with pytest.raises(InputError, match="unit, pixel_size = \\('um', None\\): expected both"):
             MeasuredSurface(path, unit="um").reading  # noqa: B018  # likewise
-    instrument = MeasuredSurface(tmp_path / "a.dat", unit="um", pixel_size=DX).reading
-    np.testing.assert_allclose(instrument.heights, ROUGH.T * 1e-6, rtol=1e-15, atol=0)
+    plain = MeasuredSurface(tmp_path / "a.dat", unit="um", pixel_size=DX).reading  # whatever its suffix
+    np.testing.assert_allclose(plain.heights, ROUGH * 1e-6, rtol=1e-15, atol=0)
 
 
 def test_the_missing_optional_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

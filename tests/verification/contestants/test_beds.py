@@ -115,7 +115,7 @@ def test_the_convolution_for_large_squares_is_the_dense_product(monkeypatch: pyt
 
 
 def test_tables_of_offsets_are_the_50_digit_integrals() -> None:
-    normal, shear = normal_offsets(160), shear_offsets(160, 0.0)
+    normal, shear = normal_offsets((160, 160)), shear_offsets((160, 160), 0.0)
     for i, j in ((159, 159), (-159, 100), (3, -158), (-1, 1), (0, 0)):
         exact = integrals(i, j)
         assert normal[i + 159, j + 159] == pytest.approx(exact[0], rel=2e-11)

@@ -34,7 +34,8 @@ FINE = np.ones((2, 2))
 @pytest.mark.parametrize(
     ("field", "changed"),
     [
-        ("gap", {"gap": np.zeros((2, 3))}),
+        ("gap", {"gap": np.zeros(6)}),
+        ("spacing_y", {"spacing_y": -1e-6}),
         ("gap", {"gap": np.array([[0.0, np.nan], [0.0, 0.0]])}),
         ("gap", {"gap": GAP + 1e-9}),
         ("spacing", {"spacing": 0.0}),
@@ -124,7 +125,13 @@ def test_abilities_decide_what_is_posed() -> None:
     assert Abilities.named("aperiodic, load") == Abilities(periodic=False, approach=False)
     assert Abilities().lacking(PROBLEM) == "coupling"
     assert Abilities(load=False).lacking(_still()) == "load"
-    assert Abilities(largest=1).lacking(_still()) == "2 elements per side"
+    assert Abilities(largest=1).lacking(_still()) == "2 elements along one axis"
+    assert Abilities.named("aperiodic, load, rectangle, oblong elements").oblong_elements
+    wide = ContactProblem(np.zeros((2, 3)), 1e-6, 1e9, load=1.0)
+    oblong = ContactProblem(np.zeros((2, 2)), 1e-6, 1e9, load=1.0, spacing_y=2e-6)
+    assert (wide.lengths, oblong.lengths) == ((2e-6, 3e-6), (2e-6, 4e-6))
+    assert (Abilities().lacking(wide), Abilities().lacking(oblong)) == ("rectangle", "oblong elements")
+    assert Abilities(rectangle=True, oblong_elements=True).lacking(wide) is None
     with pytest.raises(Unsupported, match="coupling"):
         ask(lambda problem: FINE, PROBLEM)
     for wrong in ("aperiodic", "load", "load,periodic,magic", ""):
@@ -149,7 +156,7 @@ def test_unsupported_is_unavailable_and_an_exception_is_an_error() -> None:
 
 
 HEADER = {"M", "spacing", "reduced_modulus", "control", "value", "periodic", "tolerance", "friction", "tau"}
-HEADER |= {"beta", "shear_compliance", "sliding_direction"}
+HEADER |= {"beta", "shear_compliance", "sliding_direction", "shape", "lengths"}
 
 
 def test_a_problem_is_written_to_the_last_digit(tmp_path: Path) -> None:
@@ -159,6 +166,7 @@ def test_a_problem_is_written_to_the_last_digit(tmp_path: Path) -> None:
     assert all(key in str(command.__doc__) for key in HEADER)
     assert (header["M"], header["control"], header["value"], header["periodic"]) == (2, "load", 1e-4, 0)
     assert (header["friction"], header["tau"], header["sliding_direction"]) == (1, 1e6, 0.3)
+    assert (header["shape"], header["lengths"]) == ([2, 2], [2e-6, 2e-6])
     assert len((tmp_path / "problem.json").read_text().splitlines()) == len(HEADER) + 2  # one key a line
     np.testing.assert_array_equal(np.loadtxt(tmp_path / "gap.csv", delimiter=","), GAP)
     np.testing.assert_array_equal(np.load(tmp_path / "problem.npz")["gap"], GAP)

@@ -86,7 +86,7 @@ def test_the_dense_reference_passes_what_is_small_enough() -> None:
     too_large = {name for name, r in results.items() if r.status != "pass"}
     assert len(results) == 8
     assert too_large == {"hertz-peak", "wide-pins"}
-    assert results["hertz-peak"].note == "the solver does not offer: 32 elements per side"
+    assert results["hertz-peak"].note == "the solver does not offer: 32 elements along one axis"
 
 
 def test_every_fault_is_named_and_described() -> None:

@@ -33,9 +33,9 @@ def _moved(position: int) -> rf.Scene:
         lower=rf.Body(SCENE.upper.material, rf.Sphere(radius=-0.14)),
         friction=SCENE.friction,
         load=SCENE.load,
-        side=SCENE.side,
+        side=SCENE.lengths[0],
         sliding_direction=2 * math.pi * float(direction),
-        sliding_offset=float(share) * SCENE.side / 32,
+        sliding_offset=float(share) * SCENE.lengths[0] / 32,
     )
 
 

@@ -156,14 +156,14 @@ def _declare_fig6(rms: float, panel: str) -> None:
 )
 def contact_map() -> Measured:
     found = fig6.contact(FIG6_RMS[1], 0, MAP)
-    x = found.grid.x - SMOOTH.side / 2
+    x = found.grid.x - SMOOTH.lengths[0] / 2
     r = np.hypot(x[:, None], x[None, :])
     outside = r > hertz().contact_radius
     peak = float(found.pressure[outside].max()) / hertz().peak_pressure
     farthest = float(r[found.contact].max()) / hertz().contact_radius
     data = {
         "pressure map": found.pressure / 1e6,
-        "side (mm)": SMOOTH.side * 1e3,
+        "side (mm)": SMOOTH.lengths[0] * 1e3,
         "Hertz radius (mm)": hertz().contact_radius * 1e3,
     }
     sentence = f"largest pressure outside: {peak:.1f} p0; contact out to {farthest:.2f} a0"

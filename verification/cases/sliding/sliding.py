@@ -31,7 +31,7 @@ def solved(tau: float, beta: float, direction: float = 0.0, oblique: bool | None
 
 def offset() -> Array:
     """Element centres from the middle along one axis (m)."""
-    return (2 * np.arange(M, dtype=np.float64) + 1 - M) * (SCENE.side / M / 2)
+    return (2 * np.arange(M, dtype=np.float64) + 1 - M) * (SCENE.lengths[0] / M / 2)
 
 
 def centroid(pressure: Array, direction: float) -> tuple[float, float]:
@@ -84,7 +84,7 @@ def trailing_edge() -> Measured:
         "change by friction": (solution.pressure - still.pressure)[:, middle] / 1e6,
         "pressure": solution.pressure[::2, ::2] / 1e6,
         "traction": solution.traction[::2, ::2] / 1e6,
-        "side": SCENE.side * 1e3,
+        "side": SCENE.lengths[0] * 1e3,
     }
     return Measured(
         value=centroid(solution.pressure, 0.0)[0],
@@ -177,13 +177,13 @@ def identical_materials() -> Measured:
     tags=("sign", "direction"),
 )
 def offset_of_equal_balls() -> Measured:
-    spacing, copper, size = SCENE.side / 32, SCENE.lower.material, 32
+    spacing, copper, size = SCENE.lengths[0] / 32, SCENE.lower.material, 32
     scene = rf.Scene(
         upper=rf.Body(copper, rf.Sphere(RADIUS)),
         lower=rf.Body(copper, rf.Sphere(-RADIUS)),
         friction=rf.Friction(),
         load=SCENE.load,
-        side=SCENE.side,
+        side=SCENE.lengths[0],
         sliding_direction=math.atan2(3.0, 4.0),
         sliding_offset=10 * spacing,
     )

@@ -43,7 +43,7 @@ def loads() -> Iterator[Extreme]:
     scenes = {"ball": ball(), "ball with tau": with_tau, "plane": plane(False), "periodic plane": plane(True)}
     for series, scene in scenes.items():
         for pressure in PRESSURES:
-            load = pressure * scene.materials.reduced_modulus * scene.side**2
+            load = pressure * scene.materials.reduced_modulus * scene.lengths[0] ** 2
             for method in SOLVERS:
                 yield Extreme(
                     "load", f"{series}, {method}", f"p/E* = {pressure:.0e}", pressure,

@@ -22,8 +22,8 @@ RATIOS = (
 def pair(upper: rf.Material, lower: rf.Material, beta: float = 0.3) -> rf.Scene:
     """The ball on a rough flat, strongly rubbed, at a mean pressure of 1e-4 of the pair's modulus."""
     scene = pressed(upper=upper, lower=lower, rms=0.5e-6, direction=0.7)
-    load = 1e-4 * scene.materials.reduced_modulus * scene.side**2
-    tau = 1e-2 * load / scene.side**2
+    load = 1e-4 * scene.materials.reduced_modulus * scene.lengths[0] ** 2
+    tau = 1e-2 * load / scene.lengths[0] ** 2
     return replace(scene, load=load, friction=replace(TABLE1, tau=tau, beta=beta))
 
 

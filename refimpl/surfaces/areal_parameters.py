@@ -1,0 +1,170 @@
+"""Areal roughness parameters of a measured map: heights, slopes, autocorrelation, spectrum.
+
+``z[i, j]`` (m) is a levelled map, missing points NaN; ``pixel`` its spacings (m). Everything is a mean over
+the points, or the pairs of points, that were measured. Names as in ISO 25178-2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+from scipy.ndimage import map_coordinates
+
+from refimpl.grid import Array
+from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
+
+Pixel = tuple[float, float]
+DIRECTIONS = 180  # of the half-circle, in which the autocorrelation is followed
+
+
+def height_parameters(z: Array) -> dict[str, float]:
+    """Sq, Sa, Sz (m), Ssk, Sku about the mean height."""
+    d = z[np.isfinite(z)] - np.nanmean(z)
+    sq = rms_height(d)
+    third, fourth = (skewness(d), kurtosis(d)) if sq > 0 else (math.nan, math.nan)
+    return {"Sq": sq, "Sa": float(np.abs(d).mean()), "Sz": float(np.ptp(d)), "Ssk": third, "Sku": fourth}
+
+
+def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
+    """Mean squares of dz/dx and dz/dy, by differences of neighbours."""
+    x, y = (_mean_square(np.diff(z, axis=k) / pixel[k]) for k in (0, 1))
+    return x, y
+
+
+def nayak(z: Array, pixel: Pixel) -> float:
+    """Nayak's ``m0 m4 / m2^2`` of profiles along x and y, averaged; second differences for m4."""
+    m2 = sum(mean_square_slopes(z, pixel)) / 2.0
+    m4 = sum(_mean_square(np.diff(z, 2, axis=k) / pixel[k] ** 2) for k in (0, 1)) / 2.0
+    return float(np.nanvar(z)) * m4 / m2**2 if m2 > 0 else math.nan
+
+
+def _mean_square(values: Array) -> float:
+    return float(np.nanmean(values**2))
+
+
+@dataclass(frozen=True)
+class Autocorrelation:
+    """Mean product of the heights of two points over their mean square, by lag.
+
+    ``values[a, b]`` is at lag ``((a - a0) dx, (b - b0) dy)``, (a0, b0) the middle; NaN where no pair is.
+    Lags run to half the map.
+    """
+
+    values: Array
+    pixel: Pixel
+
+    @classmethod
+    def of(cls, z: Array, pixel: Pixel) -> Autocorrelation:
+        """From all pairs of measured points (nothing wraps)."""
+        known = np.isfinite(z)
+        d = np.where(known, z - np.nanmean(z), 0.0)
+        reach = tuple(n // 2 for n in z.shape)
+        shape = tuple(fft.next_fast_len(n + m, real=True) for n, m in zip(z.shape, reach, strict=True))
+        products = fft.irfft2(np.abs(fft.rfft2(d, s=shape)) ** 2, s=shape)
+        pairs = fft.irfft2(np.abs(fft.rfft2(known.astype(float), s=shape)) ** 2, s=shape)
+        order = tuple(np.arange(-m, m + 1) for m in reach)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = np.where(pairs > 0.5, products / pairs, np.nan)[np.ix_(*order)]
+        variance = mean[reach]
+        return cls(mean / variance if variance > 0 else mean * np.nan, pixel)
+
+    @property
+    def lags(self) -> tuple[Array, Array]:
+        """Lags (m) along x and along y."""
+        x, y = ((np.arange(n) - n // 2) * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))
+        return x, y
+
+    def distances(self, level: float) -> Array:
+        """Distance (m) at which the autocorrelation first falls to ``level``, in each of DIRECTIONS.
+
+        Direction k is at k pi / DIRECTIONS to x. NaN where it does not fall so far within the lags.
+        """
+        angle = np.arange(DIRECTIONS) * math.pi / DIRECTIONS
+        reach = min(n // 2 * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))
+        r = np.arange(0.0, reach, min(self.pixel) / 2.0)
+        places = [
+            self.values.shape[k] // 2 + np.outer(turn(angle), r) / self.pixel[k]
+            for k, turn in enumerate((np.cos, np.sin))
+        ]
+        along = map_coordinates(np.nan_to_num(self.values), places, order=1, mode="nearest")
+        below = along <= level
+        first = np.argmax(below, axis=1)
+        k = np.arange(DIRECTIONS)
+        before = np.maximum(first - 1, 0)
+        drop = along[k, before] - along[k, first]
+        share = (along[k, before] - level) / np.where(drop > 0, drop, 1.0)
+        found = r[before] + share * (r[first] - r[before])
+        known = np.isfinite(self.values).any()  # not of a flat map
+        return np.where(below.any(axis=1) & known, found, np.nan)
+
+    def ellipse(self, above: float = 0.4) -> tuple[float, float, float]:
+        """Half-axes (m) at which ``exp(-r^2)`` falls to 1/e, and the angle (rad) of the longer one to x.
+
+        ``-ln`` of the autocorrelation is fitted by a quadratic form at the lags around zero at which the
+        autocorrelation exceeds ``above``, with its square as weights.
+        """
+        from scipy.ndimage import label
+
+        regions, _ = label(np.nan_to_num(self.values) > above)
+        middle = tuple(n // 2 for n in self.values.shape)
+        i, j = np.nonzero(regions == regions[middle])
+        rho = self.values[i, j]
+        x, y = self.lags[0][i], self.lags[1][j]
+        inside = (x != 0) | (y != 0)
+        x, y, rho = x[inside], y[inside], np.minimum(rho[inside], 1.0)
+        if len(rho) < 3:  # white noise: nothing beyond one pixel
+            return self.pixel[0], self.pixel[1], 0.0
+        scale = max(float(np.abs(x).max()), float(np.abs(y).max()))
+        design = np.stack([x**2, 2 * x * y, y**2], axis=1) / scale**2
+        a, b, c = np.linalg.lstsq(design * rho[:, None], -np.log(rho) * rho, rcond=None)[0]
+        strength, axes = np.linalg.eigh(np.array([[a, b], [b, c]]))
+        strength = np.maximum(strength, 1e-12 * max(float(strength[1]), 1e-300))
+        angle = math.atan2(axes[1, 0], axes[0, 0]) % math.pi
+        long, short = (scale / math.sqrt(s) for s in strength)
+        return long, short, angle
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Two-dimensional power spectral density, ``<h^2> = (2 pi)^-2 int C d^2q``, averaged over rings of q.
+
+    q      rad/m, of the elliptic norm ``sqrt(g^2 q_along^2 + q_across^2)``, g = 1: circles
+    C      m^4; ``count``: how many points of the transform each ring averages
+    """
+
+    q: Array
+    C: Array
+    count: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, z: Array, pixel: Pixel, anisotropy: float = 1.0, lay: float = 0.0) -> Spectrum:
+        """Hann's window on both axes; missing points count as the mean height."""
+        windows = [np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in z.shape]
+        window = np.outer(*windows)
+        known = np.isfinite(z)
+        weighted = np.where(known, z - np.nanmean(z), 0.0) * window
+        power = np.abs(fft.fft2(weighted)) ** 2 * (pixel[0] * pixel[1] / float(np.sum(window[known] ** 2)))
+        qx, qy = (2 * np.pi * fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
+        cos, sin = math.cos(lay), math.sin(lay)
+        along = anisotropy * (cos * qx[:, None] + sin * qy[None, :])
+        norm = np.hypot(along, cos * qy[None, :] - sin * qx[:, None])
+        step = 2 * np.pi * max(1.0 / (n * edge) for n, edge in zip(z.shape, pixel, strict=True))
+        last = math.pi / max(pixel)  # beyond, rings are cut by the square of the transform
+        ring = np.minimum(np.rint(norm / step), last / step + 1).astype(np.intp)
+        count = np.bincount(ring.ravel())
+        totals = [np.bincount(ring.ravel(), values.ravel(), len(count)) for values in (power, norm)]
+        use = np.flatnonzero(
+            (count > 0) & (np.arange(len(count)) >= 1) & (np.arange(len(count)) * step <= last)
+        )
+        return cls(totals[1][use] / count[use], totals[0][use] / count[use], count[use])
+
+    def slope(self, longest: float, shortest: float) -> float:
+        """d ln C / d ln q between two wavelengths (m): least squares, each ring by its logarithmic width."""
+        use = (self.q > 2 * np.pi / longest) & (self.q < 2 * np.pi / shortest) & (self.C > 0)
+        if np.count_nonzero(use) < 4:
+            return math.nan
+        return float(np.polyfit(np.log(self.q[use]), np.log(self.C[use]), 1, w=self.q[use] ** -0.5)[0])

@@ -1,0 +1,138 @@
+"""Inspect a measured surface: what its file holds, and the roughness parameters of its levelled map."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from refimpl.grid import Array
+from refimpl.surfaces.areal_parameters import (
+    DIRECTIONS,
+    Autocorrelation,
+    Spectrum,
+    height_parameters,
+    mean_square_slopes,
+    nayak,
+)
+from refimpl.surfaces.measured import MeasuredSurface
+from refimpl.surfaces.roughness_fit import RoughnessFit, fit_roughness
+
+SAL_LEVEL = 0.2  # ISO 25178-2
+
+# parameter, what it is, its unit (m, or none)
+PARAMETERS = {
+    "Sq": ("rms height", "m"),
+    "Sa": ("mean height deviation", "m"),
+    "Sz": ("highest to lowest point", "m"),
+    "Ssk": ("skewness", ""),
+    "Sku": ("kurtosis (Gaussian: 3)", ""),
+    "Sdq": ("rms gradient, of neighbouring points", ""),
+    "Sal": ("shortest distance to an autocorrelation of 0.2", "m"),
+    "Str": ("texture aspect ratio (isotropic: 1)", ""),
+    "l10_across": ("shortest distance to an autocorrelation of 10 %", "m"),
+    "l10_along": ("longest", "m"),
+    "le_across": ("shortest distance to an autocorrelation of 1/e", "m"),
+    "le_along": ("longest", "m"),
+    "lay_deg": ("direction of slowest decay, degrees from x", "deg"),
+    "psd_slope": ("d ln C / d ln q below the 1/e length", ""),
+    "hurst": ("from that slope, -(slope + 2) / 2", ""),
+    "nayak": ("m0 m4 / m2^2 (Gaussian autocorrelation: 3)", ""),
+}
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """A measured surface and its levelled map ``z[i, j]`` (m; missing points NaN), as it lies on its body.
+
+    ``parameters`` are of that map, by the names of PARAMETERS, SI; NaN where the map does not tell: an
+    autocorrelation that does not fall far enough within half the map, a spectrum of too few rings.
+    """
+
+    surface: MeasuredSurface
+    z: Array
+    pixel: tuple[float, float]
+    slopes: tuple[float, float]
+    radius: float | None
+
+    @cached_property
+    def autocorrelation(self) -> Autocorrelation:
+        """Of the levelled map."""
+        return Autocorrelation.of(self.z, self.pixel)
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        """Of the levelled map, averaged over circles."""
+        return Spectrum.of(self.z, self.pixel)
+
+    @cached_property
+    def parameters(self) -> dict[str, float]:
+        """Roughness parameters by the names of PARAMETERS."""
+        found = height_parameters(self.z)
+        found["Sdq"] = math.sqrt(sum(mean_square_slopes(self.z, self.pixel)))
+        fall = self.autocorrelation.distances(SAL_LEVEL)
+        complete = bool(np.isfinite(fall).all())
+        found["Sal"] = float(np.nanmin(fall)) if np.isfinite(fall).any() else math.nan
+        found["Str"] = found["Sal"] / float(fall.max()) if complete else math.nan
+        for name, level in (("l10", 0.1), ("le", math.exp(-1.0))):
+            away = self.autocorrelation.distances(level)
+            found[f"{name}_across"] = float(np.nanmin(away)) if np.isfinite(away).any() else math.nan
+            found[f"{name}_along"] = float(away.max())  # NaN where one direction does not fall so far
+        found["lay_deg"] = float(np.argmax(np.nan_to_num(fall, nan=np.inf))) * 180.0 / DIRECTIONS
+        longest = 2 * math.pi * found["le_across"]
+        slope = self.spectrum.slope(longest, 4.0 * max(self.pixel)) if math.isfinite(longest) else math.nan
+        found |= {"psd_slope": slope, "hurst": -(slope + 2.0) / 2.0, "nayak": nayak(self.z, self.pixel)}
+        return found
+
+    def fit(self, kind: str, draws: int = 16) -> RoughnessFit:
+        """Fit a ``"gaussian"`` or ``"self-affine"`` roughness to the levelled map."""
+        return fit_roughness(self.z, self.pixel, kind, draws)
+
+    def document(self) -> dict[str, Any]:
+        """All of this as plain numbers and texts, SI."""
+        reading = self.surface.reading
+        return {
+            "file": reading.name,
+            "format": reading.source,
+            "channel": reading.channel,
+            "channels": list(reading.channels),
+            "points": list(reading.heights.shape),
+            "pixel": list(reading.pixel),
+            "size": list(reading.area),
+            "unit": reading.unit,
+            "missing": int(np.isnan(reading.heights).sum()),
+            "orientation": reading.orientation,
+            "level": self.surface.level,
+            "slopes": list(self.slopes),
+            "radius": self.radius,
+            "window": {"points": list(self.z.shape), "missing": int(np.isnan(self.z).sum())},
+            "parameters": self.parameters,
+            "notes": list(self.surface.prepared.notes),
+        }
+
+
+def inspect(
+    path: str | Path | MeasuredSurface, *, size: tuple[float, float] | None = None, **keys: Any
+) -> Inspection:
+    """Read a file of heights as a scene would, and return what it holds and its roughness parameters.
+
+    Parameters
+    ----------
+    path : a file, or a MeasuredSurface
+    size : edges (m) of the window about ``centre``; by default all that is measured around it
+    **keys : of `MeasuredSurface`: unit, pixel_size, channel, level, outliers, low_pass, high_pass, ...
+
+    Raises `InputError`.
+    """
+    if isinstance(path, MeasuredSurface):
+        surface = path
+    else:
+        surface = MeasuredSurface(path, **{"max_missing": 1.0 - 1e-9} | keys)
+    lengths = surface.extent((0.0, 0.0)) if size is None else size
+    form, z, pixel = surface.levelled(lengths)
+    slopes = tuple(float(slope / edge) for slope, edge in zip(form.slopes, pixel, strict=True))
+    return Inspection(surface, z, pixel, (slopes[0], slopes[1]), form.radius)

@@ -1,0 +1,146 @@
+"""Preparation of a measured map as a whole, before a window is cut: outliers, Gaussian filters."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import fft
+from scipy.ndimage import percentile_filter
+
+from refimpl.errors import InputError
+from refimpl.grid import Array
+from refimpl.surfaces.detrending import fit
+from refimpl.surfaces.missing_points import fill
+from refimpl.surfaces.reading import Reading
+from refimpl.surfaces.surface import positive
+
+NEIGHBOURHOOD = 5  # points an axis
+PERCENTILE, PERCENTILE_TO_RMS = (
+    80,
+    1.2816,
+)  # of absolute Gaussian distances: five of 25 points may be outliers
+MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
+REACH = (
+    1.5  # cut-off wavelengths that a map is padded by; the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
+)
+
+
+def check_preparation(channel: object, outliers: object, low_pass: object, high_pass: object) -> None:
+    """Raise InputError for keys of a measured surface that are out of range; None is not set."""
+    if not isinstance(channel, str | int | None) or isinstance(channel, bool):
+        raise InputError("channel", channel, "a channel's name or number")
+    if outliers is not None:
+        positive("outliers", outliers, "a number of spreads, say 6")
+    wavelengths = {
+        name: value for name, value in (("low_pass", low_pass), ("high_pass", high_pass)) if value is not None
+    }
+    lengths = [positive(name, value, "a wavelength in m") for name, value in wavelengths.items()]
+    if len(lengths) == 2 and lengths[0] >= lengths[1]:
+        raise InputError("low_pass", low_pass, f"less than high_pass, {lengths[1]:g} m")
+
+
+def prepare(
+    reading: Reading,
+    outliers: float | None = None,
+    low_pass: float | None = None,
+    high_pass: float | None = None,
+    repeats: bool = False,
+) -> Reading:
+    """Return the map with outliers missing and wavelengths filtered, a note for each step.
+
+    outliers   points further off their neighbours than that many spreads become missing. The distance is the
+               median, over the four lines through a point, of that from the mean of its two neighbours; a
+               spread is the rms of such distances, from their median over the map, or from their 80th
+               percentile over the 5 x 5 points around where that is larger (edges, rougher places)
+    low_pass   wavelengths (m) below are damped, ``high_pass``: above; by half at that wavelength (Gaussian
+               filter of ISO 16610-61). At the border the weights are normalised (ISO 16610-28), after the
+               plane of the whole map is set aside; missing points are filled for the filter alone.
+    """
+    if outliers is not None:
+        reading = _without_outliers(reading, outliers, repeats)
+    if low_pass is not None or high_pass is not None:
+        reading = _filtered(reading, low_pass, high_pass, repeats)
+    return reading
+
+
+def _without_outliers(reading: Reading, times: float, repeats: bool) -> Reading:
+    missing = np.isnan(reading.heights)
+    away = _off_neighbours(_filled(reading), repeats)
+    typical = MAD_TO_RMS * float(np.median(away[~missing]))
+    around = percentile_filter(away, PERCENTILE, NEIGHBOURHOOD, mode="wrap" if repeats else "nearest")
+    rounding = 1e-9 * float(np.nanstd(reading.heights))
+    out = ~missing & (away > times * np.maximum(around / PERCENTILE_TO_RMS, max(typical, rounding)))
+    note = (
+        f"{np.count_nonzero(out)} outliers, more than {times:g} spreads off their neighbours (over the map "
+        f"one spread is {typical:.3g} m), are taken as missing"
+    )
+    return replace(reading, heights=np.where(out, np.nan, reading.heights), notes=(*reading.notes, note))
+
+
+def _off_neighbours(z: Array, repeats: bool) -> Array:
+    """Distance of each point from its neighbours: the median, over the four lines through it, of that from
+    the mean of the two neighbours on the line. Lines that leave the map count as straight."""
+    padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")
+    nx, ny = z.shape
+    total, low, high = np.zeros_like(z), np.full_like(z, np.inf), np.full_like(z, -np.inf)
+    for i, j in ((1, 0), (0, 1), (1, 1), (1, -1)):
+        before = padded[1 - i : 1 - i + nx, 1 - j : 1 - j + ny]
+        after = padded[1 + i : 1 + i + nx, 1 + j : 1 + j + ny]
+        off = z - (before + after) / 2.0
+        total += off
+        np.minimum(low, off, out=low)
+        np.maximum(high, off, out=high)
+    return np.abs(total - low - high) / 2.0
+
+
+def _filtered(reading: Reading, low_pass: float | None, high_pass: float | None, repeats: bool) -> Reading:
+    x, y = (np.arange(n, dtype=float) for n in reading.heights.shape)
+    plane = fit(x, y, reading.heights, 0 if repeats else 1)(x, y)
+    z, notes = _filled(replace(reading, heights=reading.heights - plane)), list(reading.notes)
+    for name, wavelength in (("low_pass", low_pass), ("high_pass", high_pass)):
+        if wavelength is None:
+            continue
+        if wavelength < 2 * max(reading.pixel):
+            raise InputError(
+                name, wavelength, f"at least two pixels of {reading.name}, each {reading.pixel} m"
+            )
+        smooth = gaussian_filter(z, reading.pixel, wavelength, repeats)
+        z = smooth if name == "low_pass" else z - smooth
+        notes.append(
+            f"wavelengths {'below' if name == 'low_pass' else 'above'} {wavelength:.4g} m were damped "
+            "(Gaussian filter of ISO 16610, by half at that wavelength)"
+        )
+    z = z if high_pass is not None else z + plane
+    return replace(reading, heights=np.where(np.isnan(reading.heights), np.nan, z), notes=tuple(notes))
+
+
+def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, repeats: bool = False) -> Array:
+    """Mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial frequency f.
+
+    Beyond the border there is nothing: the weights inside are scaled to a sum of one. ``repeats``: periodic.
+    """
+    pads = [
+        0 if repeats else min(round(REACH * wavelength / edge), n)
+        for edge, n in zip(pixel, z.shape, strict=True)
+    ]
+    shape = tuple(
+        n if repeats else fft.next_fast_len(n + pad, real=True) for n, pad in zip(z.shape, pads, strict=True)
+    )
+    fx, fy = fft.fftfreq(shape[0], pixel[0]), fft.rfftfreq(shape[1], pixel[1])
+    transmission = [np.exp2(-((wavelength * f) ** 2)) for f in (fx, fft.fftfreq(shape[1], pixel[1]))]
+    spectrum = fft.rfft2(z, s=shape)
+    spectrum *= transmission[0][:, None]
+    spectrum *= np.exp2(-((wavelength * fy) ** 2))[None, :]
+    mean = fft.irfft2(spectrum, s=shape)[: z.shape[0], : z.shape[1]]
+    weights = [
+        fft.ifft(t * fft.fft(np.ones(n), size)).real[:n]
+        for t, n, size in zip(transmission, z.shape, shape, strict=True)
+    ]
+    return np.asarray(mean / weights[0][:, None] / weights[1][None, :])
+
+
+def _filled(reading: Reading) -> Array:
+    if np.isnan(reading.heights).all():
+        raise InputError("missing", f"all points of {reading.name}", "a measured point at least")
+    return fill(reading.heights, reading.pixel)

@@ -1,0 +1,107 @@
+"""Record that every reader returns, units, and how the scene overrides what a file states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from refimpl.errors import InputError
+from refimpl.grid import Array
+
+MAX_BYTES = 256 * 2**20
+MAX_POINTS = 2**24
+UNITS = {
+    "m": 1.0,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "µm": 1e-6,
+    "μm": 1e-6,
+    "nm": 1e-9,
+    "A": 1e-10,
+    "Å": 1e-10,
+    "pm": 1e-12,
+}
+ASCII = {"µm": "um", "μm": "um", "Å": "A"}
+
+ARRAY = "first index along x, second along y (upwards)"
+IMAGE = "lines along x, the first line at the top"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Heights of one file.
+
+    heights      m, ``[i, j]`` along x, y, positive out of the material, missing points NaN
+    pixel        edges (m)
+    name         the file's name
+    source       what read it
+    unit         of the file's heights
+    orientation  how the file's order became x to the right, y up
+    channel      the one that was read; ``channels``: all there are
+    notes        what was changed, overridden or worked around
+    """
+
+    heights: Array
+    pixel: tuple[float, float]
+    name: str
+    source: str
+    unit: str = "m"
+    orientation: str = ARRAY
+    channel: str = ""
+    channels: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def area(self) -> tuple[float, float]:
+        """Edges of the measured area (m): each point counts as one pixel."""
+        return self.heights.shape[0] * self.pixel[0], self.heights.shape[1] * self.pixel[1]
+
+
+@dataclass(frozen=True)
+class Given:
+    """What the scene states of a file: unit of the heights (a key of UNITS), pixel's edges (m), channel."""
+
+    unit: str | None = None
+    pixel_size: tuple[float, float] | None = None
+    channel: str | int | None = None
+
+    def resolve(
+        self,
+        name: str,
+        unit: str | None,
+        pixel: tuple[float, float] | None,
+        what: str = "does not state them",
+    ) -> tuple[str, tuple[float, float], tuple[str, ...]]:
+        """Unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one lacks."""
+        if (self.unit or unit) is None or (self.pixel_size or pixel) is None:
+            raise InputError("unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}")
+        notes = []
+        if self.unit is not None and unit is not None and UNITS[self.unit] != UNITS[unit]:
+            notes.append(f"unit {self.unit!r} is used; the file states {ASCII.get(unit, unit)!r}")
+        if (
+            self.pixel_size is not None
+            and pixel is not None
+            and not np.allclose(self.pixel_size, pixel, 1e-6, 0)
+        ):
+            sizes = (" x ".join(f"{edge:.6g}" for edge in pair) for pair in (self.pixel_size, pixel))
+            notes.append("a pixel of {} m is used; the file states {} m".format(*sizes))
+        used = self.unit or unit or "m"
+        edges = self.pixel_size or pixel or (1.0, 1.0)
+        if not all(0 < edge < np.inf for edge in edges):
+            raise InputError("path", f"pixels of {edges} m in {name}", "pixels of positive size")
+        return ASCII.get(used, used), edges, tuple(notes)
+
+
+def checked(path: Path, raw: Array) -> Array:
+    """Heights as doubles, missing ones NaN. Raises InputError for what is no map of real numbers."""
+    if raw.ndim != 2 or min(raw.shape) < 4 or raw.size > MAX_POINTS or raw.dtype.kind not in "fiu":
+        what = f"{raw.dtype} of shape {raw.shape} in {path.name}"
+        allowed = f"a 2-D table of real numbers, at least 4 an axis, at most {MAX_POINTS}"
+        if raw.ndim == 1 or (raw.ndim == 2 and min(raw.shape) <= 2):
+            allowed = f"a map: {allowed} (this looks like a line scan)"
+        raise InputError("path", what, allowed)
+    heights = np.array(raw, dtype=np.float64)
+    heights[~np.isfinite(heights)] = np.nan
+    return heights

@@ -1,0 +1,251 @@
+"""Random roughness like a measured map: parameters of a Gaussian or self-affine surface, with uncertainties.
+
+Uncertainties are standard deviations over maps drawn with the fitted parameters, levelled by a plane and
+fitted in the same way (a parametric bootstrap; Efron & Tibshirani 1993, chapter 6).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+from scipy.optimize import minimize
+
+from refimpl.errors import InputError
+from refimpl.grid import Array
+from refimpl.surfaces.areal_parameters import Autocorrelation, Pixel, Spectrum
+from refimpl.surfaces.detrending import fit as fit_polynomial
+from refimpl.surfaces.gaussian import DECAY
+
+KINDS = ("gaussian", "self-affine")
+ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
+BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
+_RING = 30  # points of a ring, whose mean then has a deviation of 20 %
+_LARGEST = 512  # points an axis of drawn maps
+_SET = ("long_cut", "short_cut")
+_SCALES = ("rms", "lx", "ly", "roll_off", "anisotropy")  # the bias of which is a factor
+_UNITS = {
+    "rms": "m",
+    "correlation_length": "m",
+    "roll_off": "m",
+    "long_cut": "m",
+    "short_cut": "m",
+    "lay": "rad",
+}
+
+Values = dict[str, float]
+Lay = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class RoughnessFit:
+    """Parameters of a random surface by the keys of a scene file, SI, and their standard deviations.
+
+    Lengths of a Gaussian surface are ``lx``, ``ly`` here. What has no deviation is set, not fitted.
+    """
+
+    kind: str
+    values: Values
+    deviations: Values
+    notes: tuple[str, ...]
+
+    def table(self, seed: int = 1) -> dict[str, object]:
+        """The surface as a table of a scene file."""
+        values = dict(self.values)
+        table: dict[str, object] = {"kind": "self_affine" if self.kind == "self-affine" else self.kind}
+        if self.kind == "gaussian":
+            lx, ly = values.pop("lx"), values.pop("ly")
+            table["rms"] = values.pop("rms")
+            table["correlation_length"] = lx if lx == ly else [lx, ly]
+        return {**table, **values, "seed": seed}
+
+    def toml(self, seed: int = 1) -> str:
+        """That table as TOML, uncertainties as comments."""
+        lines = [f"# {note}" for note in self.notes]
+        for key, value in self.table(seed).items():
+            names = ("lx", "ly") if key == "correlation_length" else (key,)
+            spreads = [self.deviations[name] for name in names if name in self.deviations]
+            said = f"  # {_UNITS.get(key, '')}".rstrip(" #") if key not in ("kind", "seed") else ""
+            if spreads:
+                said = f"{said or '  #'} +- {', '.join(f'{s:.2g}' for s in dict.fromkeys(spreads))}"
+            lines.append(f"{key} = {_toml(value)}{said}")
+        return "\n".join(lines) + "\n"
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(_toml(v) for v in value)}]"
+    return f'"{value}"' if isinstance(value, str) else f"{value:.6g}"
+
+
+def fit_roughness(z: Array, pixel: Pixel, kind: str, draws: int = 16) -> RoughnessFit:
+    """Fit a kind of KINDS to a levelled map (m; missing points NaN); ``draws`` maps for the deviations."""
+    if kind not in KINDS:
+        raise InputError("fit", kind, " or ".join(KINDS))
+    estimate = _gaussian if kind == "gaussian" else _self_affine
+    if not np.nanvar(z) > 0:
+        raise InputError("fit", "a flat map", "a rough one")
+    values, notes = estimate(z, pixel)
+    density = _gaussian_psd if kind == "gaussian" else _self_affine_psd
+    drawn = _estimates(z.shape, pixel, values, density(values), estimate, draws)
+    means = {name: float(np.mean(found)) for name, found in drawn.items()}
+    unbiased = {name: value**2 / means[name] if name in _SCALES else value for name, value in values.items()}
+    if "hurst" in values:
+        unbiased["hurst"] = float(np.clip(2 * values["hurst"] - means["hurst"], 0.01, 1.0))
+    deviations = {name: float(np.std(found, ddof=1)) for name, found in drawn.items() if name not in _SET}
+    return RoughnessFit(kind, unbiased, deviations, notes)
+
+
+def _gaussian(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
+    """Rms height; lengths of Eq. (9) and lay from the autocorrelation's ellipse around lag zero."""
+    lx, ly, lay = _ellipse(z, pixel)
+    found = {"rms": float(np.nanstd(z)), "lx": lx, "ly": ly}
+    return found | ({"lay": lay} if lx > ly else {}), ()
+
+
+def _ellipse(z: Array, pixel: Pixel) -> Lay:
+    """Longer and shorter length of Eq. (9) and the lay (rad); equal lengths where the ratio is chance."""
+    long, short, lay = Autocorrelation.of(z, pixel).ellipse()
+    mean = math.sqrt(long * short)
+    chance = 1.0 + BY_CHANCE * mean * math.sqrt(DECAY / (z.size * pixel[0] * pixel[1]))
+    if long / short < max(ISOTROPIC, chance):
+        long = short = mean
+    return long * math.sqrt(DECAY), short * math.sqrt(DECAY), lay
+
+
+def _gaussian_psd(values: Values) -> Callable[[Array, Array], Array]:
+    lx, ly, lay = values["lx"], values["ly"], values.get("lay", 0.0)
+
+    def density(qx: Array, qy: Array) -> Array:
+        along, across = _turned(qx, qy, lay)
+        return np.asarray(np.exp(-((along * lx) ** 2 + (across * ly) ** 2) / (4.0 * DECAY)))
+
+    return density
+
+
+def _self_affine(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
+    """Anisotropy and lay from the autocorrelation; Hurst exponent, roll-off by Whittle's likelihood."""
+    long, short, lay = _ellipse(z, pixel)
+    g = long / short
+    spectrum = Spectrum.of(z, pixel, g, lay if g > 1.0 else 0.0)
+    size = max(n * edge for n, edge in zip(z.shape, pixel, strict=True))
+    short_cut, notes = _short_cut(spectrum, pixel)
+    use = spectrum.q < 2 * np.pi / max(1.2 * short_cut, 4.0 * max(pixel))
+    use[:1] = False  # the plane taken off
+    q, C, count = spectrum.q[use], spectrum.C[use], spectrum.count[use]
+    if len(q) < 6:
+        raise InputError("fit", f"a map of {len(q)} rings of its spectrum", "6 at least: a larger map")
+
+    def loss(numbers: Array) -> float:
+        hurst, log_roll = numbers
+        shape = np.maximum(q * math.exp(-log_roll), 1.0) ** (-2.0 - 2.0 * hurst)
+        level = float(np.sum(count * C / shape) / np.sum(count))
+        misfit = float(np.sum(count * np.log(level * shape)) / np.sum(count))
+        return misfit + 100.0 * max(-float(hurst), float(hurst) - 1.0, 0.0)
+
+    starts = [
+        (h, math.log(q0)) for h in (0.2, 0.5, 0.8) for q0 in q[: max(len(q) // 2, 1) : max(len(q) // 16, 1)]
+    ]
+    best = min(starts, key=lambda s: loss(np.array(s)))
+    hurst, log_roll = minimize(
+        loss, np.array(best), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-9}
+    ).x
+    roll_off = 2 * math.pi * math.exp(-log_roll)
+    if roll_off > size / 2.0:
+        roll_off = size
+        notes = (*notes, "no roll-off within the map: roll_off and long_cut are its longer side")
+    else:
+        notes = (*notes, "long_cut is the longer side of the map, which sees no longer waves")
+    if roll_off < 10 * short_cut:
+        notes = (*notes, "less than a decade between roll_off and short_cut: hurst is hardly determined")
+    values = {"hurst": float(np.clip(hurst, 0.01, 1.0)), "rms": float(np.nanstd(z)), "roll_off": roll_off,
+              "long_cut": size, "short_cut": short_cut}  # fmt: skip
+    return values | ({"anisotropy": g, "lay": lay} if g > 1.0 else {}), notes
+
+
+def _short_cut(spectrum: Spectrum, pixel: Pixel) -> tuple[float, tuple[str, ...]]:
+    """Wavelength (m) at which the spectrum breaks off: a fall to a tenth within a fifth of q."""
+    further = np.interp(1.2 * spectrum.q, spectrum.q, spectrum.C)
+    sure = (spectrum.count >= _RING) & (1.2 * spectrum.q <= spectrum.q[-1])
+    falls = np.flatnonzero((further < 0.1 * spectrum.C) & sure)
+    if len(falls):
+        return 2 * math.pi / (1.1 * float(spectrum.q[falls[0]])), ()
+    return 2.0 * max(pixel), (
+        "short_cut is two pixels, the shortest wave that was measured: slopes depend on it",
+    )
+
+
+def _self_affine_psd(values: Values) -> Callable[[Array, Array], Array]:
+    g, lay = values.get("anisotropy", 1.0), values.get("lay", 0.0)
+    q_long, q_roll, q_short = (2 * math.pi / values[key] for key in ("long_cut", "roll_off", "short_cut"))
+
+    def density(qx: Array, qy: Array) -> Array:
+        along, across = _turned(qx, qy, lay)
+        q = np.hypot(g * along, across)
+        power = np.maximum(q / q_roll, 1.0) ** (-2.0 - 2.0 * values["hurst"])
+        return np.where((q >= 0.999 * q_long) & (q <= q_short), power, 0.0)
+
+    return density
+
+
+def _turned(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
+    cos, sin = math.cos(lay), math.sin(lay)
+    return cos * qx + sin * qy, cos * qy - sin * qx
+
+
+def _estimates(
+    shape: tuple[int, ...],
+    pixel: Pixel,
+    values: Values,
+    density: Callable[[Array, Array], Array],
+    estimate: Callable[[Array, Pixel], tuple[Values, tuple[str, ...]]],
+    draws: int,
+) -> dict[str, Array]:
+    """Estimates from drawn maps, by name.
+
+    Maps of more than 512 points an axis are drawn with every second, third ... point; where waves would be
+    lost by that, a part of the map is drawn, and the scatter goes down with the root of the area.
+    """
+    thin = max(1, math.ceil(max(shape) / _LARGEST))
+    finest = values.get("ly", values.get("roll_off", 0.0)) / max(pixel)
+    part = thin > 1 and finest < 12 * thin
+    drawn_shape = tuple(min(n, _LARGEST) if part else max(n // thin, 4) for n in shape)
+    edges = pixel if part else (pixel[0] * thin, pixel[1] * thin)
+    scale = math.sqrt(math.prod(drawn_shape) / math.prod(shape)) if part else 1.0
+    rng = np.random.default_rng(0)
+    x, y = (np.arange(n, dtype=float) for n in drawn_shape)
+    found = []
+    for _ in range(draws):
+        drawn = _drawn(drawn_shape, edges, density, values["rms"], rng)
+        found.append(estimate(drawn - fit_polynomial(x, y, drawn, 1)(x, y), edges)[0])
+    return {
+        name: value
+        + scale * (np.array([_near(draw.get(name, value), value, name) for draw in found]) - value)
+        for name, value in values.items()
+    }
+
+
+def _near(drawn: float, value: float, name: str) -> float:
+    """Angles of a lay repeat with pi: the one nearest to ``value``."""
+    return value + (drawn - value + math.pi / 2) % math.pi - math.pi / 2 if name == "lay" else drawn
+
+
+def _drawn(
+    shape: tuple[int, ...],
+    pixel: Pixel,
+    density: Callable[[Array, Array], Array],
+    rms: float,
+    rng: np.random.Generator,
+) -> Array:
+    """A Gaussian map of that spectrum's shape and ensemble rms: part of one of twice its period."""
+    double = tuple(fft.next_fast_len(2 * n, real=True) for n in shape)
+    qx = 2 * np.pi * fft.fftfreq(double[0], pixel[0])[:, None]
+    qy = 2 * np.pi * fft.rfftfreq(double[1], pixel[1])[None, :]
+    full = density(qx, 2 * np.pi * fft.fftfreq(double[1], pixel[1])[None, :])
+    noise = fft.rfft2(rng.normal(size=double))
+    variance = float(full.sum()) / math.prod(double)
+    z = fft.irfft2(noise * np.sqrt(density(qx, qy) / variance), s=double)
+    return np.asarray(rms * z[: shape[0], : shape[1]])

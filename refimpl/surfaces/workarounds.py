@@ -1,0 +1,84 @@
+"""Files that SurfaceTopography refuses or reads wrongly, rewritten in memory so that it reads them right.
+
+As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+
+from refimpl.errors import InputError
+from refimpl.surfaces.reading import MAX_BYTES
+
+Source = str | io.BytesIO
+
+X3P_REVISION = "ISO5436 - 2000"  # the one text that the library takes
+NMS_UNIT = 1e-6  # its spacing is in nm (surfalize reads it so); the library takes it for mm
+_SUR_HEADER, _SUR_COMMENT = 512, "<hh"
+_SUR_LENGTHS_AT = 314  # bytes: lengths of comment and private zone
+
+
+def rewritten(path: Path, name: str | None) -> tuple[Source, tuple[str, ...]]:
+    """Return what to hand to the library for a file of format ``name``, and a note of what was changed."""
+    if name == "x3p":
+        return _x3p(path)
+    if name == "sur":
+        return _sur(path.read_bytes(), path)
+    return str(path), ()
+
+
+def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
+    """ISO 25178-72 asks for main.xml at the top and any revision; some writers pack a folder."""
+    with zipfile.ZipFile(path) as archive:
+        mains = [m for m in archive.namelist() if m.rpartition("/")[2].lower() == "main.xml"]
+        if not mains:
+            return str(path), ()
+        main = min(mains, key=len)
+        folder = main[: -len("main.xml")]
+        text = archive.read(main)
+        revision = re.search(rb"<Revision>\s*([^<]*?)\s*</Revision>", text)
+        found = revision.group(1).decode("latin-1") if revision else ""
+        backslash = re.search(rb"<\w*Link>[^<]*\\[^<]*<", text)
+        if not folder and found == X3P_REVISION and not backslash and main == "main.xml":
+            return str(path), ()
+        if revision:
+            text = text.replace(revision.group(0), f"<Revision>{X3P_REVISION}</Revision>".encode())
+        text = re.sub(rb"<\w*Link>[^<]*", lambda m: m.group(0).replace(b"\\", b"/"), text)
+        copy = io.BytesIO()
+        with zipfile.ZipFile(copy, "w") as target:
+            target.writestr("main.xml", text)
+            for member in archive.namelist():
+                if member != main and member.startswith(folder) and not member.endswith("/"):
+                    target.writestr(member[len(folder) :], archive.read(member))
+    copy.seek(0)
+    changed = [f"revision {found!r}"] if found != X3P_REVISION else []
+    changed += [f"folder {folder!r} in the archive"] if folder else []
+    return copy, (f"X3P with {', '.join(changed)}",) if changed else ()
+
+
+def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
+    """Units in UTF-8 become Latin-1. Compressed: a directory of streams (count; raw and packed length of
+    each), then the zlib streams."""
+    raw = raw[:_SUR_HEADER].replace("µm\0".encode(), "µm\0\0".encode("latin-1")) + raw[_SUR_HEADER:]
+    if not raw.startswith(b"DSCOMPRESSED"):
+        return io.BytesIO(raw), ()
+    comment, private = struct.unpack_from(_SUR_COMMENT, raw, _SUR_LENGTHS_AT)
+    at = _SUR_HEADER + comment + private
+    (count,) = struct.unpack_from("<I", raw, at)
+    if count > 1024:
+        raise InputError("path", str(path), f"a compressed SUR file of at most 1024 streams (this: {count})")
+    lengths = [struct.unpack_from("<II", raw, at + 4 + 8 * k) for k in range(count)]
+    if sum(length for length, _ in lengths) > MAX_BYTES:
+        raise InputError("path", str(path), f"at most {MAX_BYTES} bytes unpacked")
+    at += 4 + 8 * count
+    data = []
+    for length, packed in lengths:
+        data.append(zlib.decompressobj().decompress(raw[at : at + packed], length))
+        at += packed
+    plain = b"DIGITAL SURF" + raw[12 : _SUR_HEADER + comment + private] + b"".join(data)
+    return io.BytesIO(plain), ("compressed SUR, unpacked here",)

@@ -1,0 +1,254 @@
+"""The border of rectangular scenes: sizes, grids of two numbers, arrays of another ratio, rigid bodies."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.accuracy.refinement import FIRST_GRIDS, GRID_SIZES
+from refimpl.driver.options import Options
+
+STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
+
+
+def strip(size: object = (2e-3, 1e-3), **changes: object) -> rf.Scene:
+    given = {
+        "upper": rf.Body(STEEL, rf.Sphere(0.14)),
+        "lower": rf.Body(COPPER, rf.Flat()),
+        "friction": rf.Friction(tau=15e6, beta=0.08),
+        "load": 20.0,
+    }
+    return rf.Scene(**given | changes, size=size)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "size",
+    [(0.0, 1e-3), (1e-3, -1e-3), (1e-3,), (1e-3, 1e-3, 1e-3), 1e-3, "1x2", (1e-3, math.nan), (1e-3, True),
+     (1e-3, 1.1), (1e-3, 9e-7), ("a", "b")],
+)  # fmt: skip
+def test_bad_sizes_are_refused(size: object) -> None:
+    with pytest.raises(rf.InputError, match=r"^size = "):
+        strip(size)
+
+
+def test_side_and_size_are_one_or_the_other() -> None:
+    with pytest.raises(rf.InputError, match=r"size = \(0\.002, 0\.001\): expected none beside side = 0\.001"):
+        strip(side=1e-3)
+    with pytest.raises(rf.InputError, match="side = None: expected a length in m, or size"):
+        strip(None)
+    assert strip(None, side=1e-3).lengths == (1e-3, 1e-3)
+    assert strip([2e-3, np.float64(1e-3)]).lengths == (2e-3, 1e-3)
+    assert replace(strip(), size=(1e-3, 3e-3)).lengths == (1e-3, 3e-3)
+
+
+@pytest.mark.parametrize(
+    "grid", [(64,), (64, 32, 16), (64, 0), (64, -1), (64.0, 32), "64", (4096, 1), 0, 1.5, True]
+)
+def test_bad_grids_are_refused(grid: object) -> None:
+    with pytest.raises(rf.InputError, match=r"^grid = "):
+        Options(scene=strip(), grid=grid)  # type: ignore[arg-type]
+
+
+def test_one_number_counts_along_the_longer_side() -> None:
+    assert strip().grid(64).shape == (64, 32)
+    assert strip((1e-3, 2e-3)).grid(64).shape == (32, 64)
+    assert strip((3e-3, 1e-3)).grid(64).shape == (64, 21)
+    assert strip((1.0, 60.0)).grid(7).shape == (1, 7)
+    assert strip((1e-3, 1e-3)).grid(7).shape == (7, 7)
+    for ratio in np.geomspace(1.0, 900.0, 40):
+        for M in (1, 2, 7, 64, 100):
+            scene = strip((ratio * 1e-3, 1e-3))
+            nx, ny = scene.grid(M).shape
+
+            def oblong(n: int, ratio: float = ratio, M: int = M) -> float:
+                return abs(math.log(ratio / M * n))
+
+            assert nx == M
+            assert oblong(ny) <= min(oblong(n) for n in range(1, M + 1)) + 1e-12
+
+
+def test_grids_of_a_refinement_have_one_element_ratio() -> None:
+    for ratio in (1.0, 1.3, 2.5, 3.999, 4.0, 4.1, 12.0, 60.0, 777.0):
+        scene = strip((1e-3, ratio * 1e-3), load=1e-6)
+        grids = [scene.refined(M * scene.slenderness) for M in (*FIRST_GRIDS, *GRID_SIZES)]
+        ratios = [grid.spacings[0] / grid.spacings[1] for grid in grids]
+        assert ratios == pytest.approx([ratios[0]] * len(ratios), rel=1e-14)
+        assert 1 / math.sqrt(1.25) <= ratios[0] <= math.sqrt(1.25)
+        assert [max(grid.shape) for grid in grids] == [
+            M * scene.slenderness for M in (*FIRST_GRIDS, *GRID_SIZES)
+        ]
+    square = strip((1e-3, 1e-3))
+    assert [square.refined(M).shape for M in FIRST_GRIDS] == [(M, M) for M in FIRST_GRIDS]
+
+
+def test_accuracy_on_a_rectangle() -> None:
+    found = rf.solve(strip((2.2e-3, 1e-3)), accuracy=0.02)
+    assert found.converged
+    nx, ny = found.grid.shape
+    assert 2.2 / nx * ny == pytest.approx(2.2 / 16 * 7)
+    assert found.summary()["grid"] == [nx, ny]
+    assert found.summary()["size"] == [2.2e-3, 1e-3]
+    fine = rf.solve(strip((2.2e-3, 1e-3)), grid=(704, 320))
+    bar = sum(found.uncertainty["friction_coefficient"].values())
+    assert abs(found.friction_coefficient - fine.friction_coefficient) <= bar
+
+
+def test_the_summary_of_squares_is_one_number() -> None:
+    summary = rf.solve(strip(None, side=1e-3), 16).summary()
+    assert (summary["grid"], summary["side"]) == (16, 1e-3)
+    assert "size" not in summary
+    oblong = rf.solve(strip(None, side=1e-3), (16, 32)).summary()
+    assert (oblong["grid"], oblong["side"]) == ([16, 32], 1e-3)
+
+
+def test_sensitivities_stay_on_the_solutions_grid() -> None:
+    scene = strip(size=(1.6e-3, 1e-3))
+    found = rf.sensitivity(scene, rf.solve(scene, (40, 40)))
+    mirrored = strip(size=(1e-3, 1.6e-3), sliding_direction=math.pi / 2)
+    same = rf.sensitivity(mirrored, rf.solve(mirrored, (40, 40)))
+    for number, row in found.derivatives.items():
+        for name, value in row.items():
+            unit = 20.0 if number == "binormal_force" else found.found[number]
+            scale = abs(unit / found.parameters[name])
+            assert same.derivatives[number][name] == pytest.approx(value, rel=1e-5, abs=1e-5 * scale)
+
+
+def test_a_start_may_be_a_coarser_rectangle() -> None:
+    scene = strip()
+    coarse = rf.solve(scene, (32, 20))
+    assert rf.solve(scene, (64, 40), start=coarse).friction_coefficient == pytest.approx(
+        rf.solve(scene, (64, 40)).friction_coefficient, rel=1e-7
+    )
+    for grid in ((64, 16), 31):
+        with pytest.raises(rf.InputError, match=r"^start = "):
+            rf.solve(scene, grid, start=coarse)
+    with pytest.raises(rf.InputError, match=r"start = '32 x 20 elements on 0\.002 x 0\.001 m'"):
+        rf.solve(strip((2e-3, 1.1e-3)), 64, start=coarse)
+
+
+# --- arrays ---
+
+
+def test_arrays_are_never_squeezed() -> None:
+    z = 1e-7 * np.random.default_rng(0).normal(size=(128, 64))
+    with pytest.raises(
+        rf.InputError, match=r"whose pixels here are 7\.8125e-06 x 1\.5625e-05 m'.*pixel=\(dx, dy\)"
+    ):
+        rf.solve(strip((1e-3, 1e-3), lower=rf.Body(COPPER, z)), 64)
+    stated = rf.ArraySurface(z, pixel=(1e-3 / 128, 1e-3 / 64))
+    assert rf.solve(strip((1e-3, 1e-3), lower=rf.Body(COPPER, stated)), 32).converged
+    assert rf.solve(strip((1e-3, 0.5e-3), lower=rf.Body(COPPER, z)), 32).converged
+    assert rf.solve(strip((1e-3, 0.5049e-3), lower=rf.Body(COPPER, z)), 32).converged  # 1 % are let pass
+    with pytest.raises(rf.InputError, match=r"heights"):
+        rf.solve(strip((1e-3, 0.506e-3), lower=rf.Body(COPPER, z)), 32)
+    with pytest.raises(
+        rf.InputError, match=r"pixel = 'array of 0\.001 x 0\.001 m on a domain of 0\.001 x 0\.0005 m'"
+    ):
+        rf.solve(strip((1e-3, 0.5e-3), lower=rf.Body(COPPER, stated)), 32)
+    assert strip(None, lower=rf.Body(COPPER, stated)).lengths == pytest.approx((1e-3, 1e-3))
+    for pixel in (0.0, (1.0,), (1.0, -1.0), "a"):
+        with pytest.raises(rf.InputError, match=r"^pixel = "):
+            rf.ArraySurface(z, pixel=pixel)  # type: ignore[arg-type]
+
+
+def test_arrays_of_the_grids_shape_are_used_as_they_are() -> None:
+    z = 1e-7 * np.random.default_rng(0).normal(size=(20, 40))
+    scene = strip((1e-3, 1e-3), lower=rf.Body(COPPER, rf.ArraySurface(z, pixel=(5e-5, 2.5e-5))))
+    lower, _ = scene.sampled(scene.grid((20, 40)))
+    np.testing.assert_allclose(lower - lower[0, 0], z - z[0, 0], rtol=0, atol=1e-22)
+
+
+# --- files ---
+
+TOML = """
+load = 20.0
+size = [2e-3, 1e-3]
+[upper.material]
+E = "rigid"
+nu = 0.3
+[[upper.surface]]
+kind = "sphere"
+radius = 0.14
+[lower.material]
+E = 118e9
+nu = 0.3
+"""
+
+
+def test_scene_files_hold_sizes_and_rigid_bodies(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(TOML)
+    scene = rf.read_scene(file)
+    assert scene.lengths == (2e-3, 1e-3)
+    assert scene.upper.material.is_rigid
+    text = rf.scene_to_toml(scene)
+    assert 'E = "rigid"' in text
+    assert "side" not in text
+    file.write_text(text)
+    again = rf.read_scene(file)
+    assert (again.lengths, again.materials) == (scene.lengths, scene.materials)
+    for old, new, field in (
+        ("size = ", "side = 1e-3\nsize = ", "size"),
+        ("[2e-3, 1e-3]", "[2e-3]", "size"),
+        ("[2e-3, 1e-3]", "[2e-3, -1e-3]", "size"),
+        ("[2e-3, 1e-3]", "[2e-3, 1e-6]", "size"),
+        ("size = [2e-3, 1e-3]", "", "side"),
+        ('"rigid"', '"stiff"', "upper.material.E"),
+        ("118e9", '"rigid"', "upper.material.E"),
+    ):
+        file.write_text(TOML.replace(old, new, 1))
+        with pytest.raises(rf.InputError) as refused:
+            rf.read_scene(file)
+        assert refused.value.field == field
+        assert "\n" not in str(refused.value)
+
+
+# --- rigid bodies ---
+
+
+@pytest.mark.parametrize("rigid_upper", [True, False])
+@pytest.mark.parametrize("nu", [0.3, 0.5, -0.5])
+@pytest.mark.parametrize("slope_correction", [True, False])
+def test_a_rigid_body_is_the_limit_of_stiff_ones(
+    rigid_upper: bool, nu: float, slope_correction: bool
+) -> None:
+    def solved(E: float) -> rf.Solution:
+        rigid, soft = rf.Material(E=E, nu=nu), COPPER
+        upper, lower = (rigid, soft) if rigid_upper else (soft, rigid)
+        rough = rf.GaussianRoughness(rms=3e-7, correlation_length=1.5e-4, seed=3)
+        scene = strip(upper=rf.Body(upper, rf.Sphere(0.14) + rough), lower=rf.Body(lower, rough))
+        return rf.solve(scene, 48, slope_correction=slope_correction)
+
+    limit, stiff = solved(math.inf), solved(1e100)
+    assert limit.converged
+    assert np.array_equal(limit.pressure, stiff.pressure)
+    assert limit.friction_coefficient == stiff.friction_coefficient
+    assert limit.uncertainty == stiff.uncertainty
+    assert limit.warnings == stiff.warnings
+    assert limit.slope_error == stiff.slope_error
+    assert limit.bounds.friction_coefficient == stiff.bounds.friction_coefficient
+
+
+def test_budgets_with_a_rigid_body() -> None:
+    scene = strip(upper=rf.Body(rf.Material(E=math.inf, nu=0.3), rf.Sphere(0.14)))
+    solution = rf.solve(scene, 32)
+    found = rf.sensitivity(scene, solution)
+    assert not any(name.startswith("upper.material") for name in found.parameters)
+    stiff = strip(upper=rf.Body(rf.Material(E=1e90, nu=0.3), rf.Sphere(0.14)))
+    same = rf.sensitivity(stiff, rf.solve(stiff, 32))
+    for number, row in found.derivatives.items():
+        assert row == {name: same.derivatives[number][name] for name in row}
+
+
+def test_two_rigid_bodies_are_refused() -> None:
+    rigid = rf.Material(E=math.inf, nu=0.3)
+    with pytest.raises(rf.InputError, match=r"upper\.material\.E = inf: expected a finite modulus"):
+        strip(upper=rf.Body(rigid, rf.Flat()), lower=rf.Body(rigid, rf.Flat()))
+    for wrong in (-math.inf, math.nan, 1e101):
+        with pytest.raises(rf.InputError, match=r"^E = "):
+            rf.Material(E=wrong, nu=0.3)

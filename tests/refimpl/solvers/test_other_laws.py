@@ -1,0 +1,180 @@
+"""Another friction law through the same solvers: shear that a strength of the surface limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.grid import Array, Grid, Mask
+from refimpl.model.certificate import State
+from refimpl.model.friction import FrictionLaw, is_frictionless, shear_at
+from refimpl.model.materials import Pair
+from refimpl.model.problem import Problem, Terms
+from refimpl.model.state import SolverResult
+from refimpl.operators.fft import Counter
+from refimpl.scene.discretise import discretise
+from refimpl.solvers.dense import solve_dense
+from refimpl.solvers.paper import solve_paper
+from refimpl.solvers.production.nested_solver import solve_fft
+
+TOLERANCE = 1e-12
+SAME = 1e-11
+"""Of the largest pressure; measured: 2e-12 at most."""
+
+
+@dataclass(frozen=True)
+class LimitedShear:
+    """``r = min(tau + beta f, r_max)`` on contact."""
+
+    jump: float
+    slope: float
+    r_max: float
+    is_linear = False
+
+    def traction(self, pressure: Array, active: Mask) -> Array:
+        """Return r (Pa)."""
+        law = np.minimum(self.jump + self.slope * pressure, self.r_max)
+        return np.where(active, law, self.slope * pressure)
+
+    def held_traction(self, pressure: Array, active: Mask) -> Array:
+        """Return ``r - beta f`` (Pa)."""
+        return self.traction(pressure, active) - self.slope * pressure
+
+
+SOFT, HARD = rf.Material(E=2.5e9, nu=0.2), rf.Material(E=200e9, nu=0.3)
+PAIR = Pair(lower=SOFT, upper=HARD)
+SMOOTH = rf.Scene(
+    upper=rf.Body(HARD, rf.Sphere(radius=0.02)),
+    lower=rf.Body(SOFT, rf.Flat()),
+    friction=rf.Friction(tau=5e5, beta=0.3),
+    load=5.0,
+    side=1.6e-3,
+    sliding_direction=0.7,
+)
+ROUGH = replace(SMOOTH, lower=rf.Body(SOFT, rf.GaussianRoughness(rms=4e-7, correlation_length=3e-4, seed=4)))
+WAVY = replace(ROUGH, upper=rf.Body(HARD, rf.Flat()), periodic=True, load=3.0)
+SQUARE, OBLONG = Grid.square(1.6e-3, 20), Grid((24, 15), (1.6e-3, 1.6e-3))
+
+CASES = {
+    "level": (SMOOTH, SQUARE, Terms(oblique=False), None),
+    "oblique": (SMOOTH, SQUARE, Terms(), None),
+    "oblique, oblong elements": (SMOOTH, OBLONG, Terms(), None),
+    "at an approach": (SMOOTH, OBLONG, Terms(), 4e-6),
+    "rough": (ROUGH, SQUARE, Terms(), None),
+    "rough, level": (ROUGH, OBLONG, Terms(oblique=False), None),
+    "rough, at an approach": (ROUGH, SQUARE, Terms(), 5e-6),
+    "uncoupled": (ROUGH, SQUARE, Terms(coupled=False), None),
+    "facet tractions": (ROUGH, SQUARE, Terms(slope_correction=True), None),
+    "periodic": (WAVY, replace(OBLONG, periodic=True), Terms(), None),
+    "periodic, at an approach": (WAVY, replace(SQUARE, periodic=True), Terms(oblique=False), -4e-7),
+}
+on_cases = pytest.mark.parametrize("case", CASES)
+
+
+def problem_with(case: str, law: FrictionLaw) -> Problem:
+    scene, grid, terms, approach = CASES[case]
+    return replace(discretise(scene, grid, terms, approach), friction=law)
+
+
+def limited(tau: float = SMOOTH.friction.tau) -> LimitedShear:
+    """The scenes' law, limited where the pressure is 8 MPa: a third of the largest pressures."""
+    beta = SMOOTH.friction.beta
+    return LimitedShear(tau, beta, r_max=tau + beta * 8e6)
+
+
+def by_fft(problem: Problem) -> tuple[SolverResult, State]:
+    return solve_fft(problem, TOLERANCE, Counter())
+
+
+def agree(found: SolverResult, expected: SolverResult) -> None:
+    assert found.status is expected.status
+    assert np.array_equal(found.excluded, expected.excluded)
+    assert np.abs(found.pressure - expected.pressure).max() <= SAME * expected.pressure.max()
+    assert np.abs(found.traction - expected.traction).max() <= SAME * np.abs(expected.traction).max()
+
+
+def test_the_law_satisfies_the_protocol() -> None:
+    law: FrictionLaw = LimitedShear(2.0, 0.5, 5.0)
+    pressure, active = np.array([0.0, 2.0, 8.0, 8.0]), np.array([False, True, True, False])
+    np.testing.assert_array_equal(law.traction(pressure, active), [0.0, 3.0, 5.0, 4.0])
+    np.testing.assert_array_equal(law.held_traction(pressure, active), [0.0, 2.0, 1.0, 0.0])
+    assert shear_at(law, 100.0) == 5.0
+    assert not is_frictionless(law)
+
+
+@on_cases
+def test_the_reference_and_the_production_solver_agree(case: str) -> None:
+    """And the law holds to the last bit, with shear at its limit on a part of the contact."""
+    law = limited()
+    problem = problem_with(case, law)
+    (dense, _), (fft, state) = solve_dense(problem), by_fft(problem)
+    agree(fft, dense)
+    assert state.certificate.satisfies(TOLERANCE)
+    at_limit = fft.traction == law.r_max
+    assert 0 < np.count_nonzero(at_limit & state.contact) < np.count_nonzero(state.contact)
+    if fft.status is rf.Status.CONVERGED:
+        assert state.certificate.law_violations == 0
+        assert np.array_equal(fft.traction > 0, state.contact)
+        assert fft.traction.max() == law.r_max
+
+
+@on_cases
+def test_without_a_limit_it_is_the_papers_law(case: str) -> None:
+    friction = SMOOTH.friction
+    unlimited = LimitedShear(friction.tau, friction.beta, np.inf)
+    for solve in (solve_dense, by_fft):
+        expected, _ = solve(problem_with(case, friction))
+        found, state = solve(problem_with(case, unlimited))
+        agree(found, expected)
+        assert state.certificate.satisfies(TOLERANCE)
+
+
+@pytest.mark.parametrize("case", ["level", "rough", "periodic"])
+def test_a_law_without_a_jump_is_limited_too(case: str) -> None:
+    """One solve, on an active set of all elements."""
+    law = limited(tau=0.0)
+    problem = problem_with(case, law)
+    (dense, _), (fft, state) = solve_dense(problem), by_fft(problem)
+    agree(fft, dense)
+    assert dense.iterations["active sets"] == 1
+    assert state.certificate.satisfies(TOLERANCE)
+    assert state.certificate.law_violations == 0
+    assert fft.traction.max() == law.r_max
+
+
+class Linear(LimitedShear):
+    """``r = tau + beta f`` of any sign."""
+
+    is_linear = True
+
+
+def test_shear_of_either_sign_lags_where_coupling_is_strong() -> None:
+    """A shear that CG does not invert must be updated."""
+    law = Linear(jump=0.0, slope=-0.5 / abs(PAIR.coupling_ratio), r_max=np.inf)
+    problem = problem_with("level", law)
+    (dense, _), (fft, state) = solve_dense(problem), by_fft(problem)
+    agree(fft, dense)
+    assert state.certificate.satisfies(TOLERANCE)
+
+
+def test_a_limit_of_tau_is_shear_of_tau_whatever_beta_is() -> None:
+    """``min(tau + beta f, tau) = tau``: the part ``beta f`` that solvers invert must cancel."""
+    tau = SMOOTH.friction.tau
+    constant = rf.Friction(tau=tau, beta=0.0)
+    for solve in (solve_dense, by_fft):
+        expected, _ = solve(problem_with("rough", constant))
+        found, state = solve(problem_with("rough", LimitedShear(tau, 0.3, tau)))
+        assert np.abs(found.pressure - expected.pressure).max() <= SAME * expected.pressure.max()
+        assert state.certificate.law_violations == 0
+
+
+def test_the_papers_scheme_solves_it_too() -> None:
+    problem = problem_with("rough, level", limited())
+    dense, _ = solve_dense(problem)
+    paper, _, _ = solve_paper(problem, 1e-9, Counter())
+    # pressure steps end at 1e-10 of the pressure; 100 of them for what steepest descent still had to go
+    assert np.abs(paper.pressure - dense.pressure).max() <= 1e-8 * dense.pressure.max()
+    assert np.array_equal(paper.excluded, dense.excluded)

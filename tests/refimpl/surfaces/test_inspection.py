@@ -1,0 +1,261 @@
+"""Roughness parameters against analytic values and SurfaceTopography; fits of random roughness."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import SurfaceTopography
+
+import refimpl as rf
+from refimpl.surfaces.areal_parameters import (
+    Autocorrelation,
+    Spectrum,
+    height_parameters,
+    mean_square_slopes,
+    nayak,
+)
+from refimpl.surfaces.inspection import PARAMETERS
+from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd, _self_affine_psd, fit_roughness
+
+SHAPE, PIXEL = (256, 200), (1e-6, 1.5e-6)
+GAUSSIAN = {"rms": 1e-6, "lx": 20e-6, "ly": 20e-6}
+WITH_LAY = {"rms": 1e-6, "lx": 45e-6, "ly": 15e-6, "lay": 0.5}
+FRACTAL = {"hurst": 0.8, "rms": 1e-6, "roll_off": 60e-6, "long_cut": 300e-6, "short_cut": 4e-6}
+
+
+def gaussian(values: dict[str, float] = GAUSSIAN, seed: int = 0) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    return _drawn(SHAPE, PIXEL, _gaussian_psd(values), values["rms"], rng)
+
+
+# --- analytic values ---
+
+
+def test_a_sine() -> None:
+    """Amplitude a, 8 waves of 64 points along x: Sq = a / sqrt 2, Sa = 2 a / pi, Sku = 3/2.
+
+    The difference of neighbours is the slope times sinc(1/64); Nayak's parameter of a profile of one wave is
+    1, here the mean over x and y of m4 doubles: m0 m4 / m2^2 = (m4/2) / (m2/2)^2 = 2.
+    """
+    a, n = 3e-7, 64
+    z = a * np.sin(2 * np.pi * (np.arange(8 * n) + 0.5) / n)[:, None] * np.ones(40)
+    found = height_parameters(z)
+    assert found["Sq"] == pytest.approx(a / math.sqrt(2), rel=1e-12)
+    assert found["Sa"] == pytest.approx(2 * a / math.pi, rel=1e-3)  # a mean over points, not an integral
+    assert found["Sz"] == pytest.approx(2 * a, rel=2e-3)
+    assert found["Ssk"] == pytest.approx(0, abs=1e-12)
+    assert found["Sku"] == pytest.approx(1.5, rel=1e-12)
+    slope_x, slope_y = mean_square_slopes(z, (1e-6, 1e-6))
+    exact = (a * 2 * math.pi / (n * 1e-6) * np.sinc(1 / n)) ** 2 / 2
+    assert slope_x == pytest.approx(exact, rel=2e-2)  # 8 waves less one point
+    assert slope_y == 0
+    assert nayak(z, (1e-6, 1e-6)) == pytest.approx(2, rel=2e-2)
+    acf = Autocorrelation.of(z, (1e-6, 1e-6))
+    expected = np.cos(2 * np.pi * acf.lags[0] / (n * 1e-6))
+    # of the 256 points left at the longest lag the mean of cos(2 k x) is below 1 / (256 sin(2 pi / 64))
+    np.testing.assert_allclose(acf.values[:, acf.values.shape[1] // 2], expected, rtol=0, atol=0.04)
+
+
+def test_a_sphere_cap(tmp_path: Path) -> None:
+    """On a square of side s a paraboloid of radius R has Sq^2 = s^4 / (360 R^2), Sz = s^2 / (4 R),
+    Sdq^2 = s^2 / (6 R^2); the sphere is one up to (s / R)^2."""
+    n, edge, radius = 200, 1e-6, 1e-2
+    x = (np.arange(n) - (n - 1) / 2) * edge
+    np.save(tmp_path / "cap.npy", np.sqrt(radius**2 - x[:, None] ** 2 - x[None, :] ** 2))
+    keys = {"unit": "m", "pixel_size": edge}
+    found = rf.inspect(tmp_path / "cap.npy", level="mean", **keys).parameters
+    s = n * edge
+    assert found["Sq"] == pytest.approx(s**2 / (math.sqrt(360) * radius), rel=2e-4)
+    assert found["Sz"] == pytest.approx(s**2 / (4 * radius), rel=2e-2)  # of points, not up to the corners
+    assert found["Sdq"] == pytest.approx(s / (math.sqrt(6) * radius), rel=1e-2)
+    sphere = rf.inspect(tmp_path / "cap.npy", level="sphere", **keys)
+    assert sphere.radius == pytest.approx(radius, rel=1e-6)
+    assert sphere.parameters["Sq"] < 1e-6 * found["Sq"]
+
+
+def test_a_gaussian_field() -> None:
+    """Means over 12 fields against Eq. (9): Sdq, Sal, lengths, Nayak's 3; within three deviations."""
+    fields = [gaussian(seed=k) for k in range(12)]
+    l, rms = GAUSSIAN["lx"], GAUSSIAN["rms"]  # noqa: E741  # Eq. (9)'s letter
+    expected = {
+        "Sq": rms,
+        "Ssk": 0.0,
+        "Sku": 3.0,
+        "Sdq": rms * math.sqrt(9.2) / l,
+        "nayak": 3.0,
+        "l_e": l * math.sqrt(1 / 2.3),
+        "l_20": l * math.sqrt(math.log(5) / 2.3),
+    }
+    found: dict[str, list[float]] = {name: [] for name in expected}
+    for z in fields:
+        for name, value in height_parameters(z).items():
+            if name in found:
+                found[name].append(value)
+        found["Sdq"].append(math.sqrt(sum(mean_square_slopes(z, PIXEL))))
+        found["nayak"].append(nayak(z, PIXEL))
+        acf = Autocorrelation.of(z, PIXEL)
+        found["l_e"].append(float(np.mean(acf.distances(math.exp(-1)))))
+        found["l_20"].append(float(np.mean(acf.distances(0.2))))
+    for name, values in found.items():
+        error = abs(np.mean(values) - expected[name])
+        scatter = np.std(values, ddof=1) / math.sqrt(len(values))
+        assert error < 3 * scatter + 0.01 * abs(expected[name]), (
+            name
+        )  # 1 %: differences over 20 points a length
+
+
+# --- SurfaceTopography ---
+
+
+def test_parameters_agree_with_surface_topography() -> None:
+    z = gaussian(seed=5)
+    z -= z.mean()
+    sizes = tuple(n * edge for n, edge in zip(SHAPE, PIXEL, strict=True))
+    theirs = SurfaceTopography.Topography(z, sizes)
+    assert height_parameters(z)["Sq"] == pytest.approx(theirs.rms_height_from_area(), rel=1e-12)
+    assert math.sqrt(sum(mean_square_slopes(z, PIXEL))) == pytest.approx(theirs.rms_gradient(), rel=5e-3)
+    # along x: A(r) = <(h(0) - h(r))^2> / 2; a twelfth of the points lies within r of an edge and counts less
+    r, half = theirs.autocorrelation_from_profile()
+    use = ~np.ma.getmaskarray(half) & (r > 0) & (r < 20e-6)
+    assert np.count_nonzero(use) > 5
+    acf = Autocorrelation.of(z, PIXEL)
+    middle = tuple(n // 2 for n in acf.values.shape)
+    ours = np.interp(r[use], acf.lags[0][middle[0] :], acf.values[middle[0] :, middle[1]])
+    np.testing.assert_allclose(ours, 1 - np.asarray(half[use]) / np.var(z), rtol=0, atol=1 / 12)
+
+
+@pytest.mark.parametrize(
+    ("values", "stated"),
+    [
+        (GAUSSIAN, {"Sq": 1.0418817762834056e-06, "Sa": 8.231806315161034e-07, "Sz": 7.305411914321235e-06,
+                    "Ssk": 0.08408424239727362, "Sku": 3.0588493884491617, "Sdq": 0.15086545103148152,
+                    "Sal": 16.6256256e-06, "Str": 0.9046110459}),
+        (WITH_LAY | {"lx": 40e-6, "ly": 12e-6},
+         {"Sq": 1.0457382149859178e-06, "Sa": 8.273905973891109e-07, "Sz": 7.030523906113201e-06,
+          "Ssk": 0.005422502325881285, "Sku": 3.0151346364602905, "Sdq": 0.19106831813132177,
+          "Sal": 10.2528363e-06, "Str": 0.3300421174}),
+    ],
+    ids=["isotropic", "lay"],
+)  # fmt: skip
+def test_parameters_agree_with_surfalize(
+    tmp_path: Path, values: dict[str, float], stated: dict[str, float]
+) -> None:
+    """Numbers of surfalize 0.19.2 on these maps, levelled by a plane; Sal and Str are interpolated."""
+    rng = np.random.default_rng(2)
+    np.save(tmp_path / "a.npy", _drawn((256, 256), (1e-6, 1e-6), _gaussian_psd(values), 1e-6, rng))
+    found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=1e-6).parameters
+    for name, value in stated.items():
+        assert found[name] == pytest.approx(value, rel=1e-3 if name in ("Sal", "Str") else 1e-9), name
+
+
+def test_spectra_agree_with_surface_topography() -> None:
+    z = _drawn(SHAPE, PIXEL, _self_affine_psd(FRACTAL), 1e-6, np.random.default_rng(8))
+    sizes = tuple(n * edge for n, edge in zip(SHAPE, PIXEL, strict=True))
+    q, C = SurfaceTopography.Topography(z - z.mean(), sizes).power_spectrum_from_area(window="hann")
+    ours = Spectrum.of(z, PIXEL)
+    use = (q > 0.15e6) & (q < 1.4e6) & ~np.ma.getmaskarray(C)
+    ratio = np.exp(np.interp(np.log(q[use]), np.log(ours.q), np.log(ours.C))) / np.asarray(C[use])
+    assert np.exp(np.mean(np.log(ratio))) == pytest.approx(1, abs=0.05)  # their window is round, ours square
+
+
+def test_the_spectrum_integrates_to_the_mean_square() -> None:
+    """A wave well inside the map, of amplitude 1: (2 pi)^-2 int C d^2q = 1/2."""
+    z = np.cos(2 * np.pi * 25.3 * np.arange(SHAPE[0]) / SHAPE[0])[:, None] * np.ones(SHAPE[1])
+    found = Spectrum.of(z, PIXEL)
+    cell = math.prod(2 * np.pi / (n * edge) for n, edge in zip(SHAPE, PIXEL, strict=True))
+    assert float(np.sum(found.C * found.count)) * cell / (2 * np.pi) ** 2 == pytest.approx(0.5, rel=1e-2)
+
+
+# --- missing points, lay, what a map does not tell ---
+
+
+def test_missing_points_are_left_out() -> None:
+    z = gaussian(seed=3)
+    holed = z.copy()
+    holed[:40, :30] = holed[100:120, 50:90] = np.nan
+    full, part = (Autocorrelation.of(values, PIXEL).distances(0.2).mean() for values in (z, holed))
+    assert part == pytest.approx(full, rel=0.05)
+    assert height_parameters(holed)["Sq"] == pytest.approx(height_parameters(z)["Sq"], rel=0.05)
+    assert mean_square_slopes(holed, PIXEL) == pytest.approx(mean_square_slopes(z, PIXEL), rel=0.05)
+
+
+@pytest.mark.parametrize("lay", [0.0, 0.5, 1.6, 2.9])
+def test_a_lay_is_found(tmp_path: Path, lay: float) -> None:
+    np.save(tmp_path / "a.npy", gaussian(WITH_LAY | {"lay": lay, "lx": 50e-6, "ly": 10e-6}, 1))
+    found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL).parameters
+    away = (math.radians(found["lay_deg"]) - lay + math.pi / 2) % math.pi - math.pi / 2
+    assert abs(away) < 0.12
+    assert found["Str"] == pytest.approx(0.2, abs=0.06)
+
+
+def test_what_the_map_does_not_tell_is_no_number(tmp_path: Path) -> None:
+    np.save(tmp_path / "ridge.npy", np.sin(np.arange(60) / 20)[:, None] * np.ones(50))
+    found = rf.inspect(tmp_path / "ridge.npy", unit="um", pixel_size=1e-6).parameters
+    assert set(found) == set(PARAMETERS)
+    assert math.isnan(found["Str"])
+    assert math.isnan(found["le_along"])
+
+
+def test_an_inspection_says_what_the_file_holds(tmp_path: Path) -> None:
+    z = gaussian()
+    z[0, 0] = np.nan
+    np.save(tmp_path / "a.npy", z * 1e6)
+    found = rf.inspect(tmp_path / "a.npy", unit="um", pixel_size=PIXEL, size=(100e-6, 60e-6))
+    document = found.document()
+    assert document["points"] == [256, 200]
+    assert document["missing"] == 1
+    assert document["window"] == {"points": [100, 40], "missing": 0}
+    assert document["unit"] == "um"
+    assert document["size"] == pytest.approx([256e-6, 300e-6])
+    surface = rf.MeasuredSurface(tmp_path / "a.npy", unit="um", pixel_size=PIXEL, max_missing=0.1)
+    assert rf.inspect(surface).parameters["Sq"] == pytest.approx(np.nanstd(z), rel=0.05)
+
+
+# --- fits ---
+
+
+@pytest.mark.parametrize("values", [GAUSSIAN, WITH_LAY], ids=["isotropic", "lay"])
+def test_a_gaussian_surface_comes_back_within_its_deviations(values: dict[str, float]) -> None:
+    for seed in (1, 2):
+        fit = fit_roughness(gaussian(values, seed), PIXEL, "gaussian")
+        for name, value in values.items():
+            assert abs(fit.values[name] - value) < 4 * fit.deviations[name], name
+            assert fit.deviations[name] < 0.15 * value
+    assert ("lay" in fit.values) == ("lay" in values)
+
+
+def test_a_self_affine_surface_comes_back_within_its_deviations() -> None:
+    z = _drawn(SHAPE, PIXEL, _self_affine_psd(FRACTAL), 1e-6, np.random.default_rng(8))
+    fit = fit_roughness(z, PIXEL, "self-affine")
+    for name in ("hurst", "rms", "roll_off"):
+        assert abs(fit.values[name] - FRACTAL[name]) < 4 * fit.deviations[name], name
+        assert fit.deviations[name] < 0.25 * FRACTAL[name]
+    assert fit.values["short_cut"] == pytest.approx(FRACTAL["short_cut"], rel=0.2)
+    assert set(fit.deviations) == {"hurst", "rms", "roll_off"}  # the cuts are set
+
+
+def test_stated_deviations_are_the_scatter() -> None:
+    fits = [fit_roughness(gaussian(seed=k), PIXEL, "gaussian", 8) for k in range(10)]
+    for name in ("rms", "lx"):
+        scatter = np.std([fit.values[name] for fit in fits], ddof=1)
+        stated = np.mean([fit.deviations[name] for fit in fits])
+        assert 0.5 < stated / scatter < 2.0  # 95 % of ratios of ten draws each
+
+
+def test_a_fit_is_a_surface_of_a_scene_file() -> None:
+    fit = fit_roughness(gaussian(), PIXEL, "gaussian", 4)
+    surface = rf.surfaces.surface_from_dict(fit.table(seed=7))
+    assert isinstance(surface, rf.GaussianRoughness)
+    assert surface.seed == 7
+    text = fit.toml(seed=7)
+    assert text.startswith('kind = "gaussian"\nrms = ')
+    assert "  # m +- " in text
+
+
+@pytest.mark.parametrize(("kind", "z"), [("fractal", gaussian()), ("gaussian", np.zeros((40, 40)))])
+def test_fits_that_cannot_be(kind: str, z: np.ndarray) -> None:
+    with pytest.raises(rf.InputError, match="fit"):
+        fit_roughness(z, PIXEL, kind)
