@@ -96,7 +96,8 @@ def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
     """Solve one run; the row of `OUTCOMES`, and the processor seconds it took.
 
     Runs anywhere: in this process, a worker, or on a cluster, on one thread. Raises RuntimeError where
-    another version of the code is installed than the one that the inputs name, and what `refimpl.solve` raises.
+    another version of the code is installed than the one that the inputs name, and what `refimpl.solve`
+    raises.
     """
     if inputs["code"] != code_digest():
         raise RuntimeError("this worker's refimpl differs from the one that planned the sweep")
