@@ -233,11 +233,82 @@ DECLARED = (
             "p/(E* h')",
             {"A/A0": "this code, mean"},
             exact={"Persson": "Persson"},
-            xlabel="mean pressure / (E* rms slope)",
+            xlabel="mean pressure / (E* rms gradient)",
             ylabel="contact fraction",
             marker=True,
         ),
         "Contact fraction of a rough plane over the load.",
+    ),
+    *(
+        Figure(
+            f"reference/self-affine-{case}",
+            ("alpha", "kappa", "kappa, H = 0.3", "kappa, H = 0.8", "Persson", "Bush, Gibson and Thomas"),
+            lines(
+                "alpha",
+                {
+                    "kappa": "mean of eight realisations",
+                    "kappa, H = 0.3": "H = 0.3",
+                    "kappa, H = 0.8": "H = 0.8",
+                },
+                exact={
+                    "Bush, Gibson and Thomas": "Bush, Gibson and Thomas 1975",
+                    "simulations, low": "simulations, from",
+                    "Persson": "Persson 2001",
+                },
+                band=("standard error", "standard error"),
+                xlabel="Nayak's parameter",
+                ylabel="A E* rms gradient / P",
+                log="x",
+                marker=True,
+            ),
+            "Slope of the area-load line of self-affine surfaces over Nayak's parameter, by Hurst exponent.",
+        )
+        for case in ("kappa", "spectral-breadth")
+    ),
+    *(
+        Figure(
+            "reference/lay-friction",
+            tuple(f"{what}, {name}" for name in ("isotropic", "lay along x")),
+            lines(
+                "direction (deg)",
+                {f"{what}, {name}": name for name in ("isotropic", "lay along x")},
+                xlabel="direction of sliding (degrees)",
+                ylabel=ylabel,
+                marker=True,
+            ),
+            caption,
+        )
+        for what, ylabel, caption in (
+            (
+                "mu",
+                "friction coefficient",
+                "Friction over the direction of sliding, mean of 24 realisations.",
+            ),
+            (
+                "rms elastic part of mu",
+                "rms elastic part of the friction coefficient",
+                "Elastic part of friction over the direction of sliding, rms of 24 realisations.",
+            ),
+            (
+                "A over its mean",
+                "real contact area / mean",
+                "Real contact area over the direction of sliding, mean of 24 realisations.",
+            ),
+        )
+    ),
+    Figure(
+        "surfaces/self-affine-psd",
+        ("q", "power / specified", "standard error"),
+        lines(
+            "q",
+            {"power / specified": "eight realisations"},
+            band=("standard error", "standard error"),
+            xlabel="wave number (rad/m)",
+            ylabel="power / specified power",
+            log="x",
+            marker=True,
+        ),
+        "Power of a self-affine surface in bands of a third of an octave, over the specified one.",
     ),
     Figure(
         "appendix-strip/crest-small",

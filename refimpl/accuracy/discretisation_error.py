@@ -102,7 +102,17 @@ class _Grids:
 
 
 def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
-    """Return estimates of the reported numbers, from grids coarse to fine (one at least)."""
+    """Return estimates of the reported numbers, from grids coarse to fine (one at least).
+
+    A maximum pressure that is the hardness is exact.
+    """
+    found, last = _estimates(results), results[-1]
+    if last.yields:
+        found["max_pressure"] = Estimate(last.numbers["max_pressure"], 0.0)
+    return found
+
+
+def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     grids = _Grids([at_first_contact(result) for result in results])
     area, load = _area(grids.results), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
@@ -112,6 +122,7 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
         "friction_force": _sheared(grids, "friction_force", area, dmu_dA * grids.found("normal_force"), load),
         "contact_area": area,
         "contact_area_corrected": area,
+        "plastic_area": _plastic_area(grids.results[-1]),
         "max_pressure": _peak(grids),
         "binormal_force": grids.smooth(grids.found("binormal_force"), BINORMAL, *across),
     }
@@ -120,7 +131,7 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
         by_shear = SHEAR_BOUNDS["approach"] * last.shear_by_edge * last.depth
         return found | {"approach": _approach(grids).widened(by_shear)}
     bounds = first_contact_bounds(last)
-    widened = {name: estimate.widened(bounds[name]) for name, estimate in found.items()}
+    widened = {name: estimate.widened(bounds.get(name, 0.0)) for name, estimate in found.items()}
     widened["normal_force"] = _force(grids)
     for name in ("normal_force", "max_pressure"):
         widened[name] = widened[name].widened(SHEAR_BOUNDS[name] * last.shear_by_edge * grids.finest(name))
@@ -233,6 +244,13 @@ def _area(results: Sequence[GridFeatures]) -> Estimate:
     spread = math.hypot(EDGE_SIZE_SPREAD, OBLONG_SPREAD * math.log(results[-1].grid.aspect))
     bias = Bias(excess, EDGE_SIZE, spread)
     return fit_line(area, scatter / scatter[-1], prior, bias)
+
+
+def _plastic_area(fine: GridFeatures) -> Estimate:
+    """The area at the hardness: the count of its edge elements, and their excess either way."""
+    edge, dA = fine.plastic_edge, fine.grid.element_area
+    counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity) if edge > 0 else 0.0
+    return Estimate(fine.numbers.get("plastic_area", 0.0), edge + 2 * AREA.scatter * counted)
 
 
 def area_scatter(results: Sequence[GridFeatures]) -> Array:

@@ -19,6 +19,7 @@ HERTZ_EXPONENTS = {
     "binormal_force": 1.5,
     "contact_area": 1.0,
     "contact_area_corrected": 1.0,
+    "plastic_area": 1.0,
     "max_pressure": 0.5,
 }
 """Exponents of the approach (Hertz 1882); friction is tau times the area plus a share of the force."""

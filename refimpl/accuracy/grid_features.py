@@ -11,6 +11,7 @@ from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.grid import Array, Grid, inner, second_differences
 from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
+from refimpl.model.forces import perimeter_corrected_area
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
@@ -31,6 +32,7 @@ class GridFeatures:
     parts : uncertainties that the grid's own solution states (iteration, active set, neglected terms)
     depth : how far tractions pressed the contact in (m)
     shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's
+    plastic_edge : the like along the edge of the elements at the hardness (m^2)
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 
@@ -45,12 +47,18 @@ class GridFeatures:
     parts: Mapping[str, Mapping[str, float]]
     depth: float = 0.0
     shear_to_normal_ratio: float = 0.0
+    plastic_edge: float = 0.0
     loaded: bool = True
 
     @property
     def touching(self) -> bool:
         """True if anything is in contact."""
         return self.numbers["contact_area"] > 0
+
+    @property
+    def yields(self) -> bool:
+        """True if the maximum pressure is the hardness, and known."""
+        return self.numbers.get("plastic_area", 0.0) > 0
 
     @property
     def edge_fraction(self) -> float:
@@ -82,6 +90,7 @@ class GridFeatures:
             parts=merged(*stated),
             depth=depth(problem, state),
             shear_to_normal_ratio=abs(problem.elasticity.coupling_ratio) * per_area * state.contact_area,
+            plastic_edge=state.plastic_area - perimeter_corrected_area(state.plastic, grid),
             loaded=problem.load is not None,
         )
 
@@ -100,6 +109,7 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> float:
     surface is resolved it falls as h^3. Where slopes are uncorrelated between elements it is 1.4 times the
     standard error of their mean.
 
+    >>> import numpy as np
     >>> bump = Slopes(np.pad([[1.0]], 1), np.zeros((3, 3)))
     >>> round(12 * slope_sampling_error(np.pad([[7.0]], 1), bump, Grid.square(1.0, 3)) ** 2, 9)  # bends of 2
     8.0

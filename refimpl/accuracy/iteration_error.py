@@ -13,6 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from refimpl.model.certificate import State
+from refimpl.model.forces import contact_area
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult
@@ -21,6 +22,7 @@ AREAS = "contact_area", "contact_area_corrected"  # both depend on the same elem
 NUMBERS = (
     "friction_coefficient",
     *AREAS,
+    "plastic_area",
     "max_pressure",
     "approach",
     "normal_force",
@@ -40,6 +42,7 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
         "friction_coefficient": state.friction_coefficient,
         "contact_area": state.contact_area,
         "contact_area_corrected": state.contact_area_corrected,
+        "plastic_area": state.plastic_area,
         "max_pressure": state.max_pressure,
         "approach": state.approach - problem.datum,
         "normal_force": state.forces.normal,
@@ -55,18 +58,27 @@ def iteration_parts(problem: Problem, state: State) -> Uncertainty:
     normal force, which slopes turn to friction and to Q. The area is uncertain by the elements whose pressure
     or clearance is within ten residuals of zero, and friction by tau on them. The maximum pressure is
     uncertain by the pressure that would close what is left of the gap at the highest elements, where that is
-    more.
+    more; at the hardness it is certain, and the plastic area is uncertain as the area is. Where no contact is
+    elastic, the approach is uncertain by half the interval that the load leaves.
     """
     residual = state.certificate.largest
     margin = _MARGIN * residual
     marginal = state.contact & (state.pressure <= margin * state.max_pressure)
     lift = abs(state.approach) or problem.grid.element_size
-    marginal |= (state.pressure == 0) & (state.clearance <= margin * lift)
-    area = float(np.count_nonzero(marginal)) * problem.grid.element_area
+    clearance = state.clearance
+    marginal |= (state.pressure == 0) & (clearance <= margin * lift)
+    area = contact_area(marginal, problem.grid)
     normal = abs(state.forces.normal)
     sizes = dict.fromkeys(("normal_force", "binormal_force"), normal) | {"approach": lift}
     parts: Uncertainty = {name: {"iteration": residual * size} for name, size in sizes.items()}
     parts["max_pressure"] = {"iteration": max(residual * state.max_pressure, _peak_misfit(problem, state))}
+    yielding = state.plastic & (clearance >= -margin * lift)
+    yielding |= ~state.plastic & (state.pressure >= (1 - margin) * problem.cap)
+    parts["plastic_area"] = {"iteration": contact_area(yielding, problem.grid)}
+    if state.plastic_area:
+        parts["max_pressure"] = {"iteration": 0.0}
+    if problem.load is not None and state.plastic_area == state.contact_area > 0:
+        parts["approach"]["not unique"] = _approach_interval(state)
     parts |= {name: {"iteration": area} for name in AREAS}
     turned = math.sqrt(state.slopes.mean_square(state.pressure)) * normal
     friction = residual * (abs(state.forces.friction) + turned) + problem.friction.jump * area
@@ -75,6 +87,12 @@ def iteration_parts(problem: Problem, state: State) -> Uncertainty:
     per_area = friction_per_area(problem.friction, state.forces.normal)
     parts["friction_coefficient"] = {"iteration": share + per_area * area}
     return parts
+
+
+def _approach_interval(state: State) -> float:
+    """Half the interval of approaches of a contact without elastic elements (m)."""
+    lowest = float(np.min(state.v, where=~state.contact, initial=math.inf))
+    return lowest - state.approach
 
 
 def _peak_misfit(problem: Problem, state: State) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from refimpl.accuracy.refinement import Quantity, check_accuracy, check_quantity, tolerance_for
 from refimpl.errors import InputError, keep_doubles, require_number
@@ -43,6 +43,7 @@ class Options:
             self.scene.check_approach(self.approach)
         self._check_strains()
         self._check_method()
+        self._check_plastic()
         check_quantity(self.target_quantity)
         if self.accuracy is not None:
             check_accuracy(self.accuracy)
@@ -60,6 +61,27 @@ class Options:
             raise InputError("method", self.method, f"one of {', '.join(METHODS)}")
         if self.method == "paper" and self.scene.periodic:
             raise InputError("method", self.method, "dense or fft for a periodic scene")
+
+    def _check_plastic(self) -> None:
+        """Take the scene's choice where there is no other; what cannot have a cap is elastic without one.
+
+        Refuse a cap without a hardness, by the paper's scheme, and under a load that no contact can bear.
+        """
+        scene, plastic = self.scene, self.requested.plastic
+        plastic = scene.plastic if plastic is None else plastic
+        hardness = scene.materials.softer_hardness
+        if plastic and hardness is None:
+            raise InputError("plastic", plastic, "a hardness of one body at least (Pa)")
+        if plastic and self.method == "paper":
+            raise InputError("method", self.method, "dense or fft: the paper's scheme has no pressure cap")
+        if plastic is None and (self.method == "paper" or self.requested.slope_correction):
+            plastic = False
+        object.__setattr__(self, "requested", replace(self.requested, plastic=plastic))
+        if plastic is False or hardness is None or self.approach is not None:
+            return
+        most = hardness * scene.lengths[0] * scene.lengths[1]
+        allowed = f"at most {most:.6g} N, the hardness times the nominal area (or plastic = false)"
+        require_number("load", scene.load, allowed, at_most=most)
 
     def _check_strains(self) -> None:
         """Refuse tau, loads and approaches beyond a strain of 1e6: squares of slopes would overflow."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -29,7 +30,6 @@ from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.nested_solver import solve_fft
-from refimpl.surfaces import GaussianRoughness
 
 Progress = Callable[[str], None]
 
@@ -46,6 +46,7 @@ def solve(
     slope_correction: bool = False,
     coupled: bool | None = None,
     tilted: bool | None = None,
+    plastic: bool | None = None,
     tolerance: float | None = None,
     start: Solution | None = None,
     progress: Progress | None = None,
@@ -68,6 +69,8 @@ def solve(
     slope_correction : exact facet tractions in Eq. (7): `refimpl.model.forces`
     coupled, tilted : request or exclude what shear does to the gap, and to the slopes of the common surface;
         None lets the scene decide
+    plastic : True ends pressures at the hardness of the softer body, False never does; None takes the
+        scene's own choice, and without one the cap enters where pressures reach a given hardness
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, a share of it), and for "paper" its own load tolerance of 1e-4
         (its pressure tolerance is a tenth of it)
@@ -89,7 +92,7 @@ def solve(
         accuracy=accuracy,
         quantity=quantity,
         approach=approach,
-        requested=RequestedTerms(coupled, oblique, tilted, slope_correction),
+        requested=RequestedTerms(coupled, oblique, tilted, slope_correction, plastic),
         tolerance=tolerance,
         start=start,
     )
@@ -125,6 +128,7 @@ class _Refinement:
             )
         plan = self.plan.on(self.scene.refined(M))
         solved = _solve_on_grid(plan, self._discretiser, self._tolerance, self._progress, guess)
+        self.plan = solved.plan  # with the cap, if it was restored
         self.costs.append(solved.cost)
         self.last = solved
         effects = effects_in(
@@ -194,7 +198,12 @@ def _solve_on_grid(
     problem = discretiser.problem(plan.grid, plan.switches)
     result, state = _solve_problem(problem, plan.method, tolerance, counter, guess)
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, result.iterations)
-    return Solved(problem, plan, result, state, tolerance, cost)
+    solved = Solved(problem, plan, result, state, tolerance, cost)
+    hardness = problem.pair.softer_hardness or math.inf
+    if plan.requested.plastic is not None or plan.includes("plastic") or state.max_pressure <= hardness:
+        return solved
+    capped = _solve_on_grid(plan.restore(problem, "plastic"), discretiser, tolerance, progress, guess)
+    return replace(capped, cost=total_cost([cost, capped.cost]))
 
 
 def _solve_problem(
@@ -227,5 +236,6 @@ def _guess(problem: Problem, pressure: Array, clearance: Array, approach: float)
 def _notes(scene: Scene, grid: Grid, lines: Sequence[str]) -> tuple[Notice, ...]:
     """Notes of the surfaces; unresolved roughness has a named warning of its own."""
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    named = {line for part in parts if isinstance(part, GaussianRoughness) for line in part.cautions(grid)}
+    rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
+    named = {line for part in rough for line in part.cautions(grid)}
     return tuple(Notice(line) for line in lines if line not in named)

@@ -28,9 +28,10 @@ _ROUNDING = 2.0
 class Certificate:
     """Residuals of contact, all dimensionless; zero for an exact discrete solution.
 
-    gap : complementarity gap ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``
-    penetration : ``max(0, approach - min v) / approach``
-    negative_pressure : largest negative pressure over the peak
+    gap : complementarity gap ``sum f (v - min v) dA`` over the elastic energy ``1/2 sum f (a f) dA``; with a
+        cap ``sum [f (v - approach)+ + (H - f) (approach - v)+] dA`` over the energy
+    penetration : ``max(0, approach - min v) / approach``, of elements with ``f < H``
+    negative_pressure : largest negative pressure, or excess over H, over the peak
     load_error : ``|N - P| / P`` under a load; ``|sum f (v - approach)| dA`` over the energy at an approach,
         to which one unit in the last place of the approach is added
     slope : change of the slopes' tangents between the given ones and those of the recomputed displacements
@@ -62,12 +63,14 @@ class State:
 
     pressure, traction : f and r (Pa)
     displacement_lower, displacement_upper : normal displacements into each body (m)
+    indentation : plastic indentation w_p of the softer body (m), None without a cap
     slopes : of the common surface
     v : ``u / (cos theta_x cos theta_y) + h`` of Eq. (6) (m): the approach where there is contact
     approach : from first contact (m)
     forces : N, F and Q (N)
     friction_coefficient : mu, Eq. (4)
     contact_area, contact_area_corrected : real contact area, and less the excess along its edge (m^2)
+    plastic, plastic_area : elements at the hardness, and their area (m^2)
     certificate : residuals
     """
 
@@ -75,6 +78,7 @@ class State:
     traction: Array
     displacement_lower: Array
     displacement_upper: Array
+    indentation: Array | None
     slopes: Slopes
     v: Array
     approach: float
@@ -82,6 +86,8 @@ class State:
     friction_coefficient: float
     contact_area: float
     contact_area_corrected: float
+    plastic: Mask
+    plastic_area: float
     certificate: Certificate
 
     @property
@@ -127,27 +133,41 @@ def displacement_rounding(problem: Problem) -> float:
     return _ROUNDING * math.sqrt(problem.grid.elements) * eps * compliance
 
 
-def certify(problem: Problem, operator: Influence, pressure: Array, traction: Array, slopes: Slopes) -> State:
+def certify(
+    problem: Problem,
+    operator: Influence,
+    pressure: Array,
+    traction: Array,
+    slopes: Slopes,
+    indentation: Array | None = None,
+) -> State:
     """Recompute displacements, slopes, approach, forces and every residual from the returned arrays.
 
     ``slopes`` enter only through the facet tractions of the slope correction and through the residual
-    ``slope``; the cosines are those of the recomputed displacements.
+    ``slope``, and the plastic ``indentation`` (m) only through the slopes of the common surface; the cosines
+    are those of the recomputed displacements.
     """
+    cap = problem.cap
     normal = problem.elasticity.normal(operator, pressure)
     lower, upper = problem.displacements(operator, pressure, traction, slopes, normal=normal)
-    found = problem.slopes(lower, upper)
+    found = problem.slopes(lower, upper, indentation)
     v = found.per_obliqueness(lower + upper)
     v += problem.gap
     box = Window.around((pressure != 0) | (traction != 0), margin=0)  # elsewhere the summands vanish
     f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
-    total, lowest = float(f.sum()), float(v.min())
+    total, lowest = float(f.sum()), float(np.min(v, where=pressure < cap, initial=np.inf))
     contact: Mask = f > 0
     shares = f / total if total > 0 else f  # products of very small pressures would underflow
-    mean_v = inner(shares, v[box.slices]) if total > 0 else lowest
+    mean_v = approach_from(pressure, v, cap)
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, problem.grid.element_area)
     energy = 0.5 * inner(shares, normal[box.slices])
-    gap = inner(shares, v[box.slices] - lowest)
+    if math.isinf(cap) or total <= 0:
+        gap = inner(shares, v[box.slices] - lowest)
+    else:
+        excess = v - approach
+        products = pressure * np.maximum(excess, 0) + (cap - pressure) * np.maximum(-excess, 0)
+        gap = float(products.sum()) / total
     rounding = displacement_rounding(problem) * float(f.max())
     relative, penetration = contact_residuals(gap, energy, approach, lowest, rounding)
     if problem.load is not None:
@@ -157,12 +177,16 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
             approach
         )  # the least approaches have no digits to agree in
         load_error = relative_gap(missed, energy) if total > 0 else 0.0
-    everywhere = pressure > 0
+    plastic = problem.indentation(pressure, lower + upper, found.obliqueness, approach)
+    requested = on_slopes if plastic is None else problem.slopes(lower, upper, plastic).windowed(box)
+    everywhere, at_cap = pressure > 0, pressure >= cap
+    beyond = max(0.0, -float(f.min()), float(f.max()) - cap)
     return State(
         pressure=pressure,
         traction=traction,
         displacement_lower=lower,
         displacement_upper=upper,
+        indentation=plastic,
         slopes=found,
         v=v,
         approach=approach,
@@ -170,12 +194,32 @@ def certify(problem: Problem, operator: Influence, pressure: Array, traction: Ar
         friction_coefficient=friction_coefficient(forces.friction, problem.nominal_load(forces.normal)),
         contact_area=contact_area(everywhere, problem.grid),
         contact_area_corrected=perimeter_corrected_area(everywhere, problem.grid),
+        plastic=at_cap,
+        plastic_area=contact_area(at_cap, problem.grid),
         certificate=Certificate(
             gap=relative,
             penetration=penetration,
-            negative_pressure=max(0.0, -float(f.min())) / max(float(f.max()), float(np.finfo(float).tiny)),
+            negative_pressure=beyond / max(float(f.max()), float(np.finfo(float).tiny)),
             load_error=load_error,
-            slope=on_slopes.distance(slopes.windowed(box), contact),
+            slope=max(on_slopes.distance(other, contact) for other in (slopes.windowed(box), requested)),
             law_violations=int(np.count_nonzero(r != problem.friction.traction(f, contact))),
         ),
     )
+
+
+def approach_from(f: Array, v: Array, cap: float) -> float:
+    """Return the approach of a state (m): the mean of ``v`` weighted by pressure over ``0 < f < H``.
+
+    Where no element is free it is the middle of the interval between the capped and the unloaded ones;
+    without any pressure it is the lowest v.
+    """
+    box = Window.around(f != 0, margin=0).slices
+    free = f[box] * (f[box] < cap)
+    total = float(free.sum())
+    if total > 0:
+        return inner(free / total, v[box])
+    lowest = float(np.min(v, where=f < cap, initial=np.inf))
+    deepest = float(np.max(v, where=f >= cap, initial=-np.inf))
+    if not math.isfinite(deepest):
+        return lowest
+    return 0.5 * (deepest + lowest) if math.isfinite(lowest) else deepest

@@ -89,6 +89,19 @@ class Pair:
         return self.lower.shear_compliance - self.upper.shear_compliance
 
     @property
+    def softer_hardness(self) -> float | None:
+        """The smaller of the hardnesses given (Pa); None when neither is. A body without one counts as
+        unlimited."""
+        given = [h for h in (self.lower.hardness, self.upper.hardness) if h is not None]
+        return min(given, default=None)
+
+    @property
+    def softer_sign(self) -> float:
+        """1 if the lower body is softer, -1 if the upper one is, 0 if they are equally hard."""
+        lower, upper = (math.inf if m.hardness is None else m.hardness for m in (self.lower, self.upper))
+        return float(lower < upper) - float(upper < lower)
+
+    @property
     def upper_share(self) -> float:
         """Share of the closing of the gap that the upper body takes."""
         return self.upper.normal_compliance / self.normal_compliance

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,12 +22,14 @@ class Terms:
     oblique : slope terms; without them cosines are 1 and sines 0 (small-slope approximation)
     tilted : shear moves the common surface (c, mean of both bodies): slope change by shear
     slope_correction : exact facet tractions in Eq. (7)
+    plastic : pressures end at the hardness of the softer body
     """
 
     coupled: bool = True
     oblique: bool = True
     tilted: bool = True
     slope_correction: bool = False
+    plastic: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +62,12 @@ class Problem:
     def pair(self) -> Pair:
         """The two materials."""
         return self.elasticity.pair
+
+    @property
+    def cap(self) -> float:
+        """Largest pressure (Pa): the hardness of the softer body, infinite without a cap."""
+        hardness = self.pair.softer_hardness
+        return hardness if self.terms.plastic and hardness is not None else math.inf
 
     @property
     def heights(self) -> tuple[Array, Array]:
@@ -125,14 +134,28 @@ class Problem:
                 shear = shear + operator.shear_across(across)
         return self.elasticity.body_displacements(normal, down, shear)
 
-    def slopes(self, lower: Array, upper: Array) -> Slopes:
+    def slopes(self, lower: Array, upper: Array, indentation: Array | None = None) -> Slopes:
         """Return the slopes of the common surface from the displacements of both bodies (m).
 
-        The common surface is the mean of both deformed surfaces; without slope terms the slopes are zero.
+        The common surface is the mean of both deformed surfaces, the softer one lowered into itself by the
+        plastic ``indentation`` (m); without slope terms the slopes are zero.
         """
         if not self.terms.oblique:
             return Slopes.flat(lower.shape)
-        return Slopes.of_surface(self.mean_surface + 0.5 * (upper - lower), self.grid, self.direction)
+        surface = self.mean_surface + 0.5 * (upper - lower)
+        if indentation is not None:
+            surface -= 0.5 * self.pair.softer_sign * indentation
+        return Slopes.of_surface(surface, self.grid, self.direction)
+
+    def indentation(self, pressure: Array, displacement: Array, K: Array, approach: float) -> Array | None:
+        """Return the plastic indentation ``w_p = (approach - v) K`` where ``f = H`` (m); None without a cap.
+
+        ``displacement`` is ``u_lower + u_upper`` (m), and ``v = displacement / K + h``.
+        """
+        if math.isinf(self.cap):
+            return None
+        depth = K * (approach - self.gap) - displacement
+        return np.where(pressure >= self.cap, np.maximum(depth, 0.0), 0.0)
 
     def load_weights(self, slopes: Slopes, held_traction: Array) -> tuple[Array, float]:
         """Return Eq. (2) as an affine map of the pressure: ``N = sum(weights f) dA - offset`` (N).

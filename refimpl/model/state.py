@@ -47,6 +47,7 @@ class SolverResult:
     excluded : elements that the rule for tau's active set leaves without adhesive shear
     cycle_states : summaries of the states of all cycles
     iterations : counts by loop
+    indentation : plastic indentation that the slopes contain (m), None without a cap
     """
 
     pressure: Array
@@ -56,6 +57,7 @@ class SolverResult:
     excluded: Mask
     cycle_states: tuple[CycleState, ...]
     iterations: dict[str, int] = field(default_factory=dict)
+    indentation: Array | None = None
 
 
 def cycle_state(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> CycleState:

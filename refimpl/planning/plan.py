@@ -70,6 +70,7 @@ class Plan:
             oblique=self.includes("oblique"),
             tilted=self.includes("tilted"),
             slope_correction=self.includes("slope_correction"),
+            plastic=self.includes("plastic"),
         )
 
     def on(self, grid: Grid) -> Plan:

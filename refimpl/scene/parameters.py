@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 
 from refimpl.errors import InputError, require_number
 from refimpl.scene.scene import Body, Scene
-from refimpl.surfaces import Surface, SurfaceSum
+from refimpl.surfaces import SurfaceSum
 
 BODIES = ("upper", "lower")
-_OF_SURFACES = ("rms", "correlation_length", "radius")
 _TOLERANCE = "a relative tolerance between 0 and 1 (half-width, 95 %)"
 
 
@@ -18,7 +17,8 @@ def parameters(scene: Scene) -> dict[str, float]:
     """All parameters with their values, SI; a surface's parts count from 0.
 
     ``load``, ``friction.tau``, ``friction.beta``, ``upper.material.E``, ``upper.material.nu``,
-    ``upper.surface[0].rms`` and so on.
+    ``upper.material.hardness`` where one is given, ``upper.surface[0].rms`` and so on; of two correlation
+    lengths ``lower.surface[0].correlation_length[1]``.
 
     >>> from refimpl.scene.scene_file import read_scene
     >>> parameters(read_scene("hertz"))["load"]
@@ -28,8 +28,10 @@ def parameters(scene: Scene) -> dict[str, float]:
     for name in BODIES:
         body = getattr(scene, name)
         found |= {f"{name}.material.E": body.material.E, f"{name}.material.nu": body.material.nu}
+        if body.material.hardness is not None:
+            found[f"{name}.material.hardness"] = body.material.hardness
         for k, part in enumerate(body.surface.parts):
-            found |= {f"{name}.surface[{k}].{key}": getattr(part, key) for key in _keys(part)}
+            found |= {f"{name}.surface[{k}].{key}": value for key, value in part.parameters().items()}
     return found
 
 
@@ -52,7 +54,7 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
     else:
         parts = list(body.surface.parts)
         k = int(place[len("surface[") : -1])
-        parts[k] = replace(parts[k], **{key: value})  # type: ignore[type-var]  # parts with keys are dataclasses
+        parts[k] = parts[k].with_parameter(key, value)
         body = Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
     return replace(scene, upper=body) if which == "upper" else replace(scene, lower=body)
 
@@ -60,17 +62,19 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 def moving(scene: Scene) -> dict[str, float]:
     """Return the parameters that have derivatives: those that are not zero.
 
-    The correlation length of a periodic surface is not among them: another length is another realisation. Nor
-    are the modulus and Poisson's ratio of a rigid body, which change nothing.
+    Without the modulus and Poisson's ratio of a rigid body, which change nothing, and without the numbers of
+    surfaces that make another realisation: seeds, cut-offs of a spectrum, and the correlation length of an
+    isotropic periodic surface.
     """
-    rigid = tuple(f"{name}.material" for name in BODIES if getattr(scene, name).material.is_rigid)
-    return {
-        name: value
-        for name, value in parameters(scene).items()
-        if value != 0
-        and not name.startswith(rigid)
-        and not (scene.periodic and name.endswith("correlation_length"))
-    }
+    found = parameters(scene)
+    for name in BODIES:
+        body: Body = getattr(scene, name)
+        if body.material.is_rigid:
+            del found[f"{name}.material.E"], found[f"{name}.material.nu"]
+        for k, part in enumerate(body.surface.parts):
+            for key in part.parameters().keys() - set(part.same_realisation(scene.periodic)):
+                del found[f"{name}.surface[{k}].{key}"]
+    return {name: value for name, value in found.items() if value != 0}
 
 
 def check_tolerances(scene: Scene, tolerances: Mapping[str, float]) -> None:
@@ -79,8 +83,3 @@ def check_tolerances(scene: Scene, tolerances: Mapping[str, float]) -> None:
         if name not in moving(scene):
             raise InputError(f"tolerances.{name!r}", tolerance, f"one of {', '.join(moving(scene))}")
         require_number(f"tolerances.{name!r}", tolerance, _TOLERANCE, at_least=0, below=1)
-
-
-def _keys(part: Surface) -> tuple[str, ...]:
-    known = {field.name for field in fields(part)}  # type: ignore[arg-type]  # all surfaces are dataclasses
-    return tuple(key for key in _OF_SURFACES if key in known)

@@ -51,6 +51,7 @@ class Scene:
     sliding_direction : phi (rad)
     sliding_offset : how far the upper body has slid (m); the lower surface is sampled at x + offset
     periodic : the doubly periodic problem instead of a half-space that is free outside the domain
+    plastic : whether pressures end at the hardness of the softer body; None: where they reach it
     size : lengths ``(Lx, Ly)`` of a rectangular domain (m), in place of ``side``
 
     With measured surfaces neither side nor size need be given: the domain is then the largest rectangle that
@@ -69,6 +70,7 @@ class Scene:
     sliding_offset: float = 0.0
     periodic: bool = False
     size: tuple[float, float] | None = field(default=None, kw_only=True)
+    plastic: bool | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for name in ("upper", "lower"):
@@ -82,6 +84,8 @@ class Scene:
         require_number("sliding_offset", self.sliding_offset, allowed, at_least=-MOST, at_most=MOST)
         if not isinstance(self.periodic, bool):
             raise InputError("periodic", self.periodic, "true or false")
+        if not isinstance(self.plastic, bool | None):
+            raise InputError("plastic", self.plastic, "true, false, or unset to let the hardness decide")
         keep_doubles(self, "load", "sliding_direction", "sliding_offset")
         self._check_lengths()
         if self.upper.material.is_rigid and self.lower.material.is_rigid:

@@ -25,7 +25,7 @@ _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a sc
 _MAX_PARTS = 32  # of a dotted key; the parser's time grows with their square
 _PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_MAX_PARTS}}}")
-_OPTIONAL_KEYS = ("side", "size", "sliding_direction", "sliding_offset", "periodic")
+_OPTIONAL_KEYS = ("side", "size", "sliding_direction", "sliding_offset", "periodic", "plastic")
 _RIGID = "rigid"  # E of a rigid body
 _SCENE_KEYS = ("load", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
 
@@ -118,6 +118,7 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         "sliding_direction": scene.sliding_direction,
         "sliding_offset": scene.sliding_offset,
         "periodic": scene.periodic,
+        **({} if scene.plastic is None else {"plastic": scene.plastic}),
         "friction": {"tau": scene.friction.tau, "beta": scene.friction.beta},
         "upper": _body_to_dict(scene.upper),
         "lower": _body_to_dict(scene.lower),

@@ -8,10 +8,11 @@ Every entry is a half-width in the number's unit that holds with 95 %.
   derivatives of `refimpl.sensitivity` (V&V 20, section 3-2).
 - sampling: of a mean over realisations of roughness; of one realisation there is none to state.
 - model form: what is known of the model's own error. V&V 20 leaves it to comparison with experiment;
-  two of its sources can be bounded from within. "coefficients": a flat half-space's influence coefficients on
+  three of its sources can be found from within. "coefficients": a flat half-space's influence coefficients on
   a slope (`refimpl.solution.influence_error`), taken as if all of them were wrong by as much as the worst
-  neighbour at the contact's rms slope, which is a change of both moduli by that share. "cosines": the printed
-  cosines of Eqs (2) and (3) against the exact tractions of a facet.
+  neighbour at the contact's rms gradient, which is a change of both moduli by that share. "cosines": the
+  printed cosines of Eqs (2) and (3) against the exact tractions of a facet. "plasticity": of an elastic
+  solution whose pressures exceed a given hardness, the difference to the capped solution.
 
 Independent sources add in squares; a model's error is no matter of chance, and is added as it is:
 ``total = model form + sqrt(numerical^2 + input^2 + sampling^2)``.
@@ -27,7 +28,7 @@ from refimpl.errors import InputError, require_number
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Scene
-from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity
+from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity, solved_again
 from refimpl.solution.solution import Solution
 
 
@@ -93,6 +94,8 @@ def budget(
         require_number(f"sampling.{number!r}", half_width, "a half-width, not negative", at_least=0)
     derivatives = sensitivity(scene, solution)
     sources = _model_form(solution, derivatives)
+    for number, change in _plasticity(scene, solution).items():
+        sources[number]["plasticity"] = change
     numbers = {
         number: Budget(
             value=derivatives.found[number],
@@ -128,6 +131,23 @@ def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[
         coefficients = math.inf if wrong is None else abs(stiffness) * wrong
         found[number] = {"coefficients": coefficients, "cosines": cosines[number]}
     return found
+
+
+def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
+    """Difference of each number to the solution with capped pressures; infinite where none converges.
+
+    Empty where no pressure exceeds the hardness, and where none is given.
+    """
+    hardness, problem = solution.problem.pair.softer_hardness, solution.problem
+    if hardness is None or solution.max_pressure <= hardness or problem.terms.plastic:
+        return {}
+    if scene.load > hardness * problem.grid.nominal_area:
+        return dict.fromkeys(NUMBERS, math.inf)
+    capped = solved_again(scene, solution, plastic=True)
+    return {
+        number: abs(getattr(capped, number) - getattr(solution, number)) if capped.converged else math.inf
+        for number in NUMBERS
+    }
 
 
 def _cosines(solution: Solution, derivatives: Sensitivity) -> dict[str, float]:

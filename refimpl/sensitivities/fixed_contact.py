@@ -1,10 +1,10 @@
 """The contact problem on a contact set that stays as it is: a smooth system, and its answer to a change.
 
-Unknown are the pressures on the set and the approach, ``x = (f, delta)``; the equations are Eq. (6) with
-equality on the set, written ``u + K (h - delta) = 0`` with ``K = cos theta_x cos theta_y``, and
-``N = P``. Cosines, shear and load all follow from ``x``, so one residual holds the whole model; its
-Jacobian is applied by a difference quotient and inverted by GMRES (Knoll and Keyes 2004), which starts
-from the inverse of what is left without friction and slopes.
+Unknown are the pressures on the set, but for elements at the hardness, and the approach,
+``x = (f, delta)``; the equations are Eq. (6) with equality on the set, written ``u + K (h - delta) = 0`` with
+``K = cos theta_x cos theta_y``, and ``N = P``. Cosines, shear and load all follow from ``x``, so one residual
+holds the whole model; its Jacobian is applied by a difference quotient and inverted by GMRES (Knoll and Keyes
+2004), which starts from the inverse of what is left without friction and slopes.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from refimpl.grid import Array, Mask
+from refimpl.model.certificate import approach_from
 from refimpl.model.forces import Forces, resultants
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
@@ -45,23 +46,26 @@ class FixedContact:
         cut = self.window.slices
         self.pressure, self.active = pressure[cut], active[cut]
         self.contact = self.pressure > 0
+        self.capped: Mask = self.pressure >= problem.cap
+        self.free: Mask = self.contact & ~self.capped
         self.peak = float(self.pressure.max())
         self.operator = window_influence(problem.grid, problem.direction, self.window)
         self.problem = problem.windowed(self.window)
         self._slopes = Slopes(slopes.tan_x[cut], slopes.tan_y[cut])
-        u, K, _ = self._state(self.problem, self.pressure)
-        weight = self.pressure / self.pressure.sum()
-        self.approach = float(np.sum(weight * (u / K + self.problem.gap)))
+        traction = problem.friction.traction(self.pressure, self.active)
+        u = np.add(*self.problem.displacements(self.operator, self.pressure, traction, self._slopes))
+        v = self._slopes.per_obliqueness(u) + self.problem.gap
+        self.approach = approach_from(self.pressure, v, problem.cap)
         self._base = self.residual(self.problem, self.pressure, self.approach)
 
-    def forces(self, problem: Problem, pressure: Array) -> Forces:
+    def forces(self, problem: Problem, pressure: Array, approach: float) -> Forces:
         """N, F and Q of a state on the set (N)."""
-        return self._state(problem, pressure)[2]
+        return self._state(problem, pressure, approach)[2]
 
     def residual(self, problem: Problem, pressure: Array, approach: float) -> Array:
         """Misfit of Eq. (6) on the set over the base approach, then that of the load over the load."""
-        u, K, forces = self._state(problem, pressure)
-        misfit = (u + K * (problem.gap - approach))[self.contact] / self.approach
+        u, K, forces = self._state(problem, pressure, approach)
+        misfit = (u + K * (problem.gap - approach))[self.free] / self.approach
         return np.append(misfit, forces.normal / (problem.load or forces.normal) - 1)
 
     def response(self, change: Array) -> Response:
@@ -96,36 +100,41 @@ class FixedContact:
         """
         x = np.ravel(x)
         load = self.problem.load or float(self.pressure.sum()) * self.problem.grid.element_area
-        misfit = np.zeros(self.contact.shape)
-        misfit[self.contact] = self.approach * x[:-1]
-        pressure, lifted = self._precondition(misfit)[self.contact], self._lifted
+        misfit = np.zeros(self.free.shape)
+        misfit[self.free] = self.approach * x[:-1]
+        pressure, lifted = self._precondition(misfit)[self.free], self._lifted
         approach = (load * x[-1] / self.problem.grid.element_area - pressure.sum()) / lifted.sum()
         return np.append((pressure + approach * lifted) / self.peak, approach / self.approach)
 
     @cached_property
     def _precondition(self) -> ExtendedPreconditioner:
         spectral = SpectralPreconditioner(self.operator, self.problem.elasticity.symbol(self.operator.symbol))
-        return ExtendedPreconditioner(spectral, self.contact)
+        return ExtendedPreconditioner(spectral, self.free)
 
     @cached_property
     def _lifted(self) -> Array:
         """Pressures on the set for an approach of one, about (Pa/m)."""
-        return self._precondition(self.contact.astype(np.float64))[self.contact]
+        return self._precondition(self.free.astype(np.float64))[self.free]
 
     def _unpacked(self, x: Array) -> tuple[Array, float]:
         """Pressures on the window and approach of a vector in peaks and base approaches."""
-        pressure = np.zeros(self.contact.shape)
-        pressure[self.contact] = self.peak * x[:-1]
+        pressure = np.zeros(self.free.shape)
+        pressure[self.free] = self.peak * x[:-1]
         return pressure, self.approach * float(x[-1])
 
-    def _state(self, problem: Problem, pressure: Array) -> tuple[Array, Array, Forces]:
+    def _state(self, problem: Problem, pressure: Array, approach: float) -> tuple[Array, Array, Forces]:
         """Displacement u (m), obliqueness and forces.
 
-        Facet tractions take the slopes that they leave themselves: from the base state's, a few times over.
+        Facet tractions take the slopes that they leave themselves, and so does plastic indentation: from the
+        base state's, a few times over. Elements at the hardness bear the problem's own.
         """
+        if self.capped.any():
+            pressure = np.where(self.capped, problem.cap, pressure)
         traction, slopes = problem.friction.traction(pressure, self.active), self._slopes
-        for _ in range(_FACETS if problem.terms.slope_correction else 1):
+        repeated = problem.terms.slope_correction or bool(self.capped.any())
+        for _ in range(_FACETS if repeated else 1):
             lower, upper = problem.displacements(self.operator, pressure, traction, slopes)
-            slopes = problem.slopes(lower, upper)
+            yielded = problem.indentation(pressure, lower + upper, slopes.obliqueness, approach)
+            slopes = problem.slopes(lower, upper, yielded)
         forces = resultants(pressure, traction, slopes, problem.grid.element_area)
         return lower + upper, slopes.obliqueness, forces

@@ -9,7 +9,8 @@ to friction.
   linear answer grows like there (`refimpl.sensitivities.edge_motion`), up to one factor. That is taken from
   the load, for which the area is differenced over two full solves.
 - Shapes and roughness bring contact to new places, which no fixed set foresees: the area is differenced
-  over two full solves for each.
+  over two full solves for each. So it is for all parameters where pressures reach the hardness: there the
+  edge has no such growth.
 
 The scatter stated beside the area (and through tau beside friction) is that of counting elements in
 two solves, and of comparing the edge with 5 x 5 or with 9 x 9 elements. Beside every number's answer to the
@@ -42,7 +43,11 @@ NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_for
 _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
 _STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
-_RANGES = {".nu": (math.nextafter(-1, 0), 0.5), ".E": (LEAST, RIGID)}  # that steps may not leave
+_RANGES = {  # that steps may not leave
+    ".nu": (math.nextafter(-1, 0), 0.5),
+    ".E": (LEAST, RIGID),
+    ".hurst": (LEAST, 1.0),
+}
 _TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
 _SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
 
@@ -90,12 +95,12 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     base = solution.problem.with_terms(_terms(solution))
     active = solution.contact & ~solution.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
-    values = moving(scene)
+    values, yields = moving(scene), bool(fixed.capped.any())
     answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
     solved = {
         name: _differenced(scene, solution, name, value)
         for name, value in values.items()
-        if name == "load" or ".surface" in name
+        if name == "load" or ".surface" in name or yields
     }
     counted = {
         name: (derivatives["contact_area"], _scatter(scene, solution, name, values[name]))
@@ -103,7 +108,9 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     }
     edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
     areas = {
-        name: counted[name] if ".surface" in name else edge.derivative(answers[name].pressure)
+        name: counted[name]
+        if name in counted and (yields or name != "load")
+        else edge.derivative(answers[name].pressure)
         for name in values
     }
     return _gathered(scene, solution, answers, areas, solved)
@@ -119,6 +126,8 @@ def _check(scene: Scene, solution: Solution) -> None:
     if not solution.certified:
         raise InputError("solution", solution.status.value, "a solution whose certificate holds")
     problem = solution.problem
+    if solution.plastic_area == solution.contact_area:
+        raise InputError("solution", "all contact at the hardness", "one with elastic contact")
     if not (problem.gap.any() or problem.counts_from_first_contact):
         raise InputError("solution", "two periodic flats", "one whose approach is not zero")
     if problem.load != scene.load:
@@ -156,9 +165,7 @@ class _Answer:
 
 
 def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float) -> _Answer:
-    low, high = sorted((value * (1 - _STEP), value * (1 + _STEP)))
-    least, most = next((ends for key, ends in _RANGES.items() if name.endswith(key)), (low, high))
-    low, high = max(low, least), min(high, most)
+    low, high = _ends(name, value, _STEP)
     span = high - low
     below, above = (
         _changed(scene, base, with_parameter(scene, name, at)).windowed(fixed.window) for at in (low, high)
@@ -167,17 +174,33 @@ def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: 
     found = fixed.response((residuals[1] - residuals[0]) / span)
     if not found.residual <= _SOLVED:
         raise ArithmeticError(f"the derivative over {name} is not found: {found.residual:.1e} is left of it")
-    before = fixed.forces(below, fixed.pressure + (low - value) * found.pressure)
-    after = fixed.forces(above, fixed.pressure + (high - value) * found.pressure)
-    tied = found.pressure[fixed.pressure >= (1 - _TIED) * fixed.peak]
+    before, after = (
+        fixed.forces(
+            problem,
+            fixed.pressure + (at - value) * found.pressure,
+            fixed.approach + (at - value) * found.approach,
+        )
+        for problem, at in ((below, low), (above, high))
+    )
+    pressure = found.pressure
+    if fixed.capped.any():
+        pressure = np.where(fixed.capped, (above.cap - below.cap) / span, pressure)
+    tied = pressure[fixed.pressure >= (1 - _TIED) * fixed.peak]
     return _Answer(
-        pressure=found.pressure,
+        pressure=pressure,
         peak=0.5 * float(tied.max() + tied.min()),
         torn=0.5 * float(np.ptp(tied)),
         friction=(after.friction - before.friction) / span,
         binormal=(after.binormal - before.binormal) / span,
         residual=found.residual,
     )
+
+
+def _ends(name: str, value: float, step: float) -> tuple[float, float]:
+    """A parameter's values a relative step below and above, within its range."""
+    low, high = sorted((value * (1 - step), value * (1 + step)))
+    least, most = next((ends for key, ends in _RANGES.items() if name.endswith(key)), (low, high))
+    return max(low, least), min(high, most)
 
 
 def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
@@ -189,38 +212,55 @@ def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
 
 
 def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> dict[str, float]:
-    """Each number's derivative by a central difference of two solves."""
-    terms, step = solution.problem.terms, _stride(scene, name, value)
+    """Each number's derivative by a difference of two solves, central but at the end of a range."""
+    step = _stride(scene, name, value)
+    low, high = _ends(name, value, step)
     below, above = (
-        solve(
-            with_parameter(scene, name, value * factor),
-            solution.grid.shape,
-            oblique=terms.oblique,
-            slope_correction=terms.slope_correction,
-            coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
-            tilted=terms.tilted,
-            tolerance=solution.tolerance,
-        )
-        for factor in (1 - step, 1 + step)
+        solved_again(with_parameter(scene, name, at), solution, plastic=solution.problem.terms.plastic)
+        for at in (low, high)
     )
     for ended in (below, above):
         if not ended.converged:
             raise ArithmeticError(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
-    return {
-        number: (getattr(above, number) - getattr(below, number)) / (2 * step * value) for number in NUMBERS
-    }
+    return {number: (getattr(above, number) - getattr(below, number)) / (high - low) for number in NUMBERS}
+
+
+def solved_again(scene: Scene, solution: Solution, *, plastic: bool) -> Solution:
+    """Solve a scene on a solution's grid, with its terms and its tolerance."""
+    terms = solution.problem.terms
+    corrected = terms.slope_correction and not plastic
+    return solve(
+        scene,
+        solution.grid.shape,
+        oblique=terms.oblique,
+        slope_correction=corrected,
+        coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
+        tilted=terms.tilted,
+        plastic=plastic,
+        tolerance=solution.tolerance,
+    )
 
 
 def _stride(scene: Scene, name: str, value: float) -> float:
-    if name.endswith("correlation_length"):  # stretches the whole surface about its corner
+    """The relative step of full solves. Numbers that deform a surface about its corner move it farthest at
+    the other border: by no more than a share of its finest length."""
+    head, _, key = name.rpartition(".")
+    if key.startswith("correlation_length"):
         return min(_STRIDE, _SHIFT * value / max(scene.lengths))
+    if key in ("lay", "anisotropy"):
+        which, _, place = head.partition(".")
+        part = getattr(scene, which).surface.parts[int(place[len("surface[") : -1])]
+        finest: float = part.detail(max(scene.lengths)).length
+        turn = abs(value) if key == "lay" else 1.0
+        return min(_STRIDE, _SHIFT * finest / max(scene.lengths) / turn)
     return _STRIDE
 
 
 def _scatter(scene: Scene, solution: Solution, name: str, value: float) -> float:
     """95 % bound of what counting elements twice does to ``dA/dp``: as the error bars have it of one grid."""
     one = AREA.scatter * float(area_scatter([solution.features])[0])
-    return math.sqrt(2) * one / (_stride(scene, name, value) * abs(value))
+    low, high = _ends(name, value, _stride(scene, name, value))
+    return 2 * math.sqrt(2) * one / (high - low)
 
 
 def _gathered(

@@ -84,6 +84,7 @@ class Bounds:
 UNPROVEN = "slopes and tau's active set are held as returned; the grid's own error is not included"
 NO_BOUND_CORRECTED = "the slope correction's matrix is not a plus a skew one: no bound"
 NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic domain: no bound"
+NO_BOUND_PLASTIC = "pressures reach the hardness, and these bounds are of elastic contact: no bound"
 NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressure: no bound"
 
 
@@ -95,6 +96,8 @@ def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Sl
     """
     if problem.terms.slope_correction:
         return _none(problem, NO_BOUND_CORRECTED)
+    if pressure.max() >= problem.cap:
+        return _none(problem, NO_BOUND_PLASTIC)
     norm = EnergyNorm(problem, slopes.obliqueness)
     if problem.approach is not None and not norm.operator.displaces_mean:
         return _none(problem, NO_BOUND_PERIODIC)
@@ -104,7 +107,11 @@ def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Sl
     distance, approach = frozen.distance()
     if not math.isfinite(distance):
         return _none(problem, "the load does not fix the contact: " + UNPROVEN)
-    return _translated(frozen, distance, approach)
+    found = _translated(frozen, distance, approach)
+    # an elastic solution below the hardness is the capped problem's as well
+    if math.isfinite(problem.cap) and float(pressure.max()) + found.pressure >= problem.cap:
+        return _none(problem, NO_BOUND_PLASTIC)
+    return found
 
 
 class _Frozen:

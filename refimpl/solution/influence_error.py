@@ -29,9 +29,12 @@ _NEIGHBOUR = 2.0  # offset of the next element in half-widths
 
 @dataclass(frozen=True)
 class SlopeError:
-    """Slopes of a contact (rad) and the coefficient error at each; None beyond the table."""
+    """Slopes of a contact and the coefficient error at each; None beyond the table.
 
-    rms_slope: float
+    rms_gradient, max_slope : angles (rad) whose tangents are the rms and the largest of |grad z|
+    """
+
+    rms_gradient: float
     max_slope: float
     at_rms: float | None
     at_max: float | None
@@ -78,7 +81,7 @@ def coefficient_error(
 
 
 def slope_error(slopes: Slopes, pressure: Array, pair: Pair) -> SlopeError:
-    """Return the error at a contact's rms slope (weighted by pressure) and at its steepest loaded element."""
+    """Return the error at a contact's rms gradient, weighted by pressure, and at its steepest element."""
     loaded = pressure > 0
     squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2
     if not squared.any():

@@ -13,7 +13,6 @@ import numpy as np
 from refimpl.grid import Grid, Mask
 from refimpl.grid.contact_patches import patch_sizes
 from refimpl.model.certificate import State
-from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.planning.plan import Plan
@@ -28,7 +27,6 @@ from refimpl.surfaces.statistics import rms_slopes
 
 _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (Greenwood and Williamson 1966)
 _COEFFICIENT_ERROR = 0.02  # section 4: what the paper accepts of flat-surface influence coefficients
-_CORRELATION = 4.0  # elements: slopes are resolved from four elements per correlation length (surfaces)
 _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle of radius r, here a tenth
 
 
@@ -37,10 +35,11 @@ class Limit(StrEnum):
 
     PLASTICITY = "plasticity index"
     HARDNESS = "peak pressure"
-    RMS_SLOPE = "rms slope"
+    RMS_GRADIENT = "rms gradient"
     MAX_SLOPE = "maximum slope"
     BORDER = "border"
     CORRELATION = "correlation length"
+    SHORT_CUT = "shortest wave"
     DATA = "points of data"
     RADIUS = "contact radius"
     ACTIVE_SET = "active set of tau"
@@ -111,8 +110,8 @@ class Evidence:
         return self.problem.grid
 
 
-def model_warnings(evidence: Evidence) -> tuple[ModelWarning, ...]:
-    """Return a warning for every limit that a solution exceeds; none without contact."""
+def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
+    """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact."""
     if not evidence.state.contact.any():
         return ()
     found = (
@@ -125,14 +124,34 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning, ...]:
         _radius(evidence),
         _active_set(evidence),
         *_neglected(evidence),
+        *_plastic_notes(evidence),
     )
     return tuple(warning for warning in found if warning is not None)
 
 
-def softer_hardness(pair: Pair) -> float | None:
-    """Return the smaller of the hardnesses given (Pa); None when neither is."""
-    given = [h for h in (pair.lower.hardness, pair.upper.hardness) if h is not None]
-    return min(given, default=None)
+def _plastic_notes(evidence: Evidence) -> list[Notice]:
+    """What is not known of yield, or left out of it."""
+    pair, state = evidence.problem.pair, evidence.state
+    area = state.contact_area
+    if pair.softer_hardness is None:
+        mean = float(state.pressure.sum()) * evidence.grid.element_area / area
+        text = (
+            f"no hardness given: mean contact pressure {mean / 1e6:.4g} MPa, maximum "
+            f"{state.max_pressure / 1e6:.4g} MPa; plasticity not checked"
+        )
+        return [Notice(text)]
+    bodies = (("lower", pair.lower), ("upper", pair.upper))
+    unlimited = [name for name, material in bodies if material.hardness is None]
+    notes = [Notice(f"the {name} body has no hardness: taken as unlimited") for name in unlimited]
+    if state.plastic_area:
+        text = (
+            f"{state.plastic_area / area:.1%} of the contact area is at the hardness (first loading): "
+            "hardening, flow below the surface and growth of junctions under shear are not modelled"
+        )
+        notes.append(Notice(text))
+    if state.plastic_area == area and evidence.problem.load is not None:
+        notes.append(Notice("all contact is plastic: the approach is not unique"))
+    return notes
 
 
 def roughness_slope(scene: Scene, grid: Grid) -> float:
@@ -152,29 +171,37 @@ def roughness_slope(scene: Scene, grid: Grid) -> float:
 def _plasticity(evidence: Evidence) -> ModelWarning | None:
     """Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9)'s roughness (``sqrt(4.6) = 2.14``)."""
     pair = evidence.problem.pair
-    hardness = softer_hardness(pair)
-    if hardness is None:
+    hardness = pair.softer_hardness
+    if hardness is None or evidence.problem.terms.plastic:
         return None
     index = pair.reduced_modulus / hardness * roughness_slope(evidence.scene, evidence.grid)
-    text = f"plasticity index {index:.3g} of Eq. (12) reaches 1: contact is no longer purely elastic"
+    text = f"plasticity index {index:.3g} of Eq. (12) reaches 1: contact is no longer purely elastic; "
+    text += "set plastic = true"
     return ModelWarning(Limit.PLASTICITY, index, _PLASTICITY, text) if index >= _PLASTICITY else None
 
 
 def _hardness(evidence: Evidence) -> ModelWarning | None:
-    hardness, largest = softer_hardness(evidence.problem.pair), evidence.state.max_pressure
+    hardness, largest = evidence.problem.pair.softer_hardness, evidence.state.max_pressure
     if hardness is None or largest <= hardness:
         return None
     text = (
         f"maximum contact pressure, {largest / 1e6:.4g} MPa, exceeds the softer body's hardness, "
-        f"{hardness / 1e6:.4g} MPa"
+        f"{hardness / 1e6:.4g} MPa: A, mu and pressures are not reliable{_area_missing(evidence, hardness)}; "
+        "set plastic = true"
     )
     return ModelWarning(Limit.HARDNESS, largest, hardness, text)
+
+
+def _area_missing(evidence: Evidence, hardness: float) -> str:
+    """By how much an elastic area is smaller than P / H, which is the least at the hardness."""
+    least = evidence.state.forces.normal / hardness / evidence.state.contact_area - 1
+    return f" (at the hardness A is at least P/H, {least:.1%} more)" if least > 0 else ""
 
 
 def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
     error = _error_at_slopes(evidence)
     return [
-        _slope(Limit.RMS_SLOPE, error.rms_slope, error.at_rms),
+        _slope(Limit.RMS_GRADIENT, error.rms_gradient, error.at_rms),
         _slope(Limit.MAX_SLOPE, error.max_slope, error.at_max),
     ]
 
@@ -222,13 +249,15 @@ def _is_concave(body: Body, sign: int) -> bool:
 
 def _correlation(evidence: Evidence) -> ModelWarning | None:
     found = resolution(evidence.scene, evidence.grid, evidence.plan.demand)
-    if found is None or found.elements >= _CORRELATION:
+    if found is None or found.elements >= found.detail.resolved:
         return None
+    detail = found.detail
+    missed = f"; the grid misses {detail.missed}" if detail.missed else ""
     text = (
-        f"{found.elements:.2g} elements per correlation length, {found.correlation_length:.3g} m: "
-        "slopes of the roughness are not resolved below 4"
+        f"{found.elements:.2g} elements per {detail.name}, {detail.length:.3g} m: "
+        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}"
     )
-    return ModelWarning(Limit.CORRELATION, found.elements, _CORRELATION, text)
+    return ModelWarning(Limit(detail.name), found.elements, detail.resolved, text)
 
 
 def _data(evidence: Evidence) -> ModelWarning | None:

@@ -72,12 +72,14 @@ class Solution:
     normal_force, friction_force, binormal_force : N, F and the transverse (binormal) force Q
     friction_coefficient : mu
     contact_area, contact_area_corrected : real contact area, and less the excess along its edge
+    plastic_area : area of the contact at the hardness
     max_pressure : maximum contact pressure p_max
     pressure, traction : local f and r of Eq. (1)
     slopes : of the deformed common surface
     surface_lower, surface_upper : deformed heights
     separation : deformed upper minus lower height
     clearance : what Eq. (6) asks to be zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``
+    plastic_indentation : depth w_p by which the softer body has yielded
     excluded : elements that the rule for tau's active set leaves without adhesive shear
     slope_error : error of flat-surface influence coefficients at this contact's slopes, by Appendix A's table
     grid : shape and lengths
@@ -101,6 +103,7 @@ class Solution:
     friction_coefficient: float
     contact_area: float
     contact_area_corrected: float
+    plastic_area: float
     max_pressure: float
     pressure: Array
     traction: Array
@@ -109,6 +112,7 @@ class Solution:
     surface_upper: Array
     separation: Array
     clearance: Array
+    plastic_indentation: Array
     excluded: Mask
     slope_error: SlopeError
     grid: Grid
@@ -150,6 +154,11 @@ class Solution:
         """True if the certificate holds, as it may where a requested accuracy was not reached."""
         return self.certificate.satisfies(self.tolerance)
 
+    @property
+    def plastic_share(self) -> float:
+        """Share of the contact area that is at the hardness; 0 without contact."""
+        return self.plastic_area / self.contact_area if self.contact_area else 0.0
+
     @cached_property
     def bounds(self) -> Bounds:
         """Proven bounds at the state's slopes and active set of tau; computed when first used."""
@@ -161,6 +170,7 @@ class Solution:
         return {
             "status": self.status.value,
             **numbers,
+            "plastic_share": self.plastic_share,
             **_dimensions(self.grid),
             "tolerance": self.tolerance,
             "certificate": asdict(self.certificate),
@@ -241,7 +251,10 @@ class Solved:
                 self.neglected,
                 float(state.traction.sum()) / total if total else 0.0,
                 problem.nominal_load(forces.normal),
-                dict.fromkeys(AREAS, state.contact_area) | {"max_pressure": state.max_pressure} | moved,
+                dict.fromkeys(AREAS, state.contact_area)
+                | {"plastic_area": state.plastic_area}
+                | {"max_pressure": 0.0 if state.plastic_area else state.max_pressure}
+                | moved,
             ),
         )
 
@@ -275,6 +288,7 @@ def assemble(
         friction_coefficient=state.friction_coefficient,
         contact_area=state.contact_area,
         contact_area_corrected=state.contact_area_corrected,
+        plastic_area=state.plastic_area,
         max_pressure=state.max_pressure,
         pressure=state.pressure,
         traction=state.traction,
@@ -283,6 +297,7 @@ def assemble(
         surface_upper=surface_upper,
         separation=surface_upper - surface_lower,
         clearance=state.clearance,
+        plastic_indentation=problem.grid.zeros if state.indentation is None else state.indentation,
         excluded=result.excluded,
         slope_error=error,
         grid=problem.grid,

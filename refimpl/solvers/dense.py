@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.grid import Array, Mask
-from refimpl.model.certificate import State, certify
+from refimpl.model.certificate import State, approach_from, certify
 from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import CycleState, SolverResult, Status, cycle_state
@@ -51,12 +51,14 @@ def solve_dense(problem: Problem) -> tuple[SolverResult, State]:
         pressure=solver.pressure,
         traction=solver.traction,
         slopes=solver.slopes,
+        indentation=solver.indentation,
         status=ended.status(solver.contact) if solver.converged else Status.ITERATION_LIMIT,
         excluded=ended.excluded,
         cycle_states=ended.cycle_states,
         iterations={"linear solves": solver.solves, "slopes": solver.picard, "active sets": ended.solves},
     )
-    return result, certify(problem, operator, result.pressure, result.traction, result.slopes)
+    found = result.pressure, result.traction, result.slopes, result.indentation
+    return result, certify(problem, operator, *found)
 
 
 class _DenseSolver:
@@ -70,10 +72,12 @@ class _DenseSolver:
         self.pressure = np.zeros(problem.gap.shape)
         self.traction = np.zeros(problem.gap.shape)
         self.slopes = Slopes.flat(problem.gap.shape)
+        self.indentation: Array | None = None
         self.converged = False
         self.solves = self.picard = 0
         self._operator = operator
-        self._active: Mask = problem.gap.ravel() <= np.quantile(problem.gap, 0.05)
+        self._free: Mask = problem.gap.ravel() <= np.quantile(problem.gap, 0.05)
+        self._capped: Mask = np.zeros_like(self._free)
         self._a = problem.elasticity.normal_matrix(operator)
 
     @property
@@ -99,9 +103,12 @@ class _DenseSolver:
             self._solve_frozen(law.held_traction(self.pressure, active))
             self.picard += 1
             self.traction = law.traction(self.pressure, active)
-            self.slopes = problem.slopes(
-                *problem.displacements(self._operator, self.pressure, self.traction, self.slopes)
-            )
+            lower, upper = problem.displacements(self._operator, self.pressure, self.traction, self.slopes)
+            K = self.slopes.obliqueness
+            approach = approach_from(self.pressure, (lower + upper) / K + problem.gap, problem.cap)
+            approach = approach if problem.approach is None else problem.approach
+            self.indentation = problem.indentation(self.pressure, lower + upper, K, approach)
+            self.slopes = problem.slopes(lower, upper, self.indentation)
             change = float(np.abs(self.pressure - before).max() / self.pressure.max(initial=1e-300))
             change = max(change, self.slopes.distance(slopes_before, ~no_elements(problem)))
             at_floor = change <= _ROUNDING_FLOOR and change >= last
@@ -115,48 +122,63 @@ class _DenseSolver:
         return self.converged
 
     def _solve_frozen(self, held_traction: Array) -> None:
+        """Solve with slopes and held traction fixed."""
         frozen = self._freeze(held_traction)
         h = self.problem.gap.ravel()
         if self.problem.approach is None:
             self._solve_load(frozen, h)
-            return
-        q = frozen.g - frozen.K * (self.problem.approach - h)
-        found = complementarity(frozen.G, q, self._active)
+        else:
+            self.pressure = self._contact(frozen, h, self.problem.approach).reshape(self.pressure.shape)
+
+    def _contact(self, frozen: _Frozen, h: Array, approach: float) -> Array:
+        """The pressure at an approach (Pa); the sets of free and capped elements are kept for the next
+        one."""
+        q = frozen.g - frozen.K * (approach - h)
+        found = complementarity(frozen.G, q, self._free, self.problem.cap, self._capped)
         self.solves += found.solves
-        self._active = found.active
-        self.pressure = found.pressure.reshape(self.pressure.shape)
+        self._free, self._capped = found.free, found.capped
+        return found.pressure
 
     def _solve_load(self, frozen: _Frozen, h: Array) -> None:
-        """Newton on the piecewise linear ``N(approach)``, kept within a bracket, until the set stays."""
+        """Newton on the piecewise linear ``N(approach)``, kept within a bracket, until the sets stay."""
         assert self.problem.load is not None
         target = (self.problem.load + frozen.offset) / self.problem.grid.element_area
         low, high = -np.inf, np.inf
         for _ in range(_APPROACH_ITERATIONS):
             if self.exhausted:
                 return
-            right = np.stack([frozen.K, frozen.K * h + frozen.g], axis=1)
-            per_approach, at_zero = restricted_solve(frozen.G, right, self._active).T
+            at_cap = np.where(self._capped, self.problem.cap, 0.0) if self._capped.any() else np.zeros(len(h))
+            at_zero = frozen.K * h + frozen.g + frozen.G @ at_cap
+            per_approach, less = restricted_solve(
+                frozen.G, np.stack([frozen.K, at_zero], axis=1), self._free
+            ).T
             stiffness = float(frozen.weights @ per_approach)
             if stiffness == 0:  # nothing presses: shear on slopes alone bears the load, or more than that
                 break
-            approach = (target + frozen.weights @ at_zero) / stiffness
+            approach = (target + frozen.weights @ (less - at_cap)) / stiffness
             if not low < approach < high:
                 approach = 0.5 * (low + high)
-            found = complementarity(frozen.G, frozen.g - frozen.K * (approach - h), self._active)
-            self.solves += found.solves + 1
-            same = np.array_equal(found.active, self._active)
-            self._active = found.active
-            total = float(frozen.weights @ found.pressure)
+            before = self._free, self._capped
+            pressure = self._contact(frozen, h, approach)
+            self.solves += 1
+            same = all(np.array_equal(a, b) for a, b in zip(before, (self._free, self._capped), strict=True))
+            total = float(frozen.weights @ pressure)
             if same and abs(total - target) <= 1e-12 * abs(target):
-                self.pressure = found.pressure.reshape(self.pressure.shape)
+                self.pressure = pressure.reshape(self.pressure.shape)
                 return
-            if total < target:
-                low = approach
-                if not found.active.any():
-                    self._active[np.argmin(h + frozen.g / frozen.K)] = True
-            else:
-                high = approach
+            low, high = (approach, high) if total < target else (low, approach)
+            if not self._free.any():
+                self._release(frozen, h, pressure, more=total < target)
         raise ArithmeticError("no approach balances the load")
+
+    def _release(self, frozen: _Frozen, h: Array, pressure: Array, *, more: bool) -> None:
+        """Free the element that is the next to change as the approach grows (``more``) or falls, if any."""
+        candidates = ~self._capped if more else self._capped
+        if not candidates.any():
+            return
+        v = (frozen.G @ pressure + frozen.g) / frozen.K + h
+        next_one = int(np.argmin(np.where(candidates, v if more else -v, np.inf)))
+        self._free[next_one], self._capped[next_one] = True, False
 
     def _freeze(self, held_traction: Array) -> _Frozen:
         """Eq. (7) for ``f`` alone, after ``r = held + beta f`` and, on request, facet tractions."""

@@ -1,9 +1,10 @@
-"""Surfaces: shapes, Gaussian roughness (Eq. 9), measured heights, arrays and their sums."""
+"""Surfaces: shapes, Gaussian (Eq. 9) and self-affine roughness, measured heights, arrays and their sums."""
 
 from refimpl.surfaces.from_table import surface_from_dict
 from refimpl.surfaces.gaussian import GaussianRoughness
 from refimpl.surfaces.inspection import Inspection, inspect
 from refimpl.surfaces.measured import MeasuredSurface
+from refimpl.surfaces.self_affine import SelfAffineRoughness
 from refimpl.surfaces.shapes import Flat, Sphere
 from refimpl.surfaces.surface import ArraySurface, Surface, SurfaceSum, SurfaceWarning, as_surface
 
@@ -13,6 +14,7 @@ __all__ = [
     "GaussianRoughness",
     "Inspection",
     "MeasuredSurface",
+    "SelfAffineRoughness",
     "Sphere",
     "Surface",
     "SurfaceSum",

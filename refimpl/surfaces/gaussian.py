@@ -1,130 +1,166 @@
 """Gaussian roughness with the paper's autocorrelation, Eq. (9), as one continuous random field per seed.
 
-Eq. (9), ``R(r) = rms^2 exp(-2.3 r^2 / l^2)``, falls to exp(-2.3) = 0.1003 at r = l (2.3 is the paper's
-ln 10). ``exp(-4.6 r^2 / l^2)`` convolved with itself is proportional to R. So independent standard normal
-numbers w on the nodes of an infinite square lattice of spacing h, smoothed by that kernel,
+Isotropic, Eq. (9), ``R(r) = rms^2 exp(-2.3 r^2 / l^2)``, falls to exp(-2.3) = 0.1003 at r = l (2.3 is the
+paper's ln 10). A lattice of white noise realises it (`refimpl.surfaces.noise_lattice`).
 
-    z(x, y) = rms (h k / l) sum_mn exp(-4.6 ((x - m h)^2 + (y - n h)^2) / l^2) w_mn,    k = sqrt(9.2 / pi),
+Two lengths and a lay: the isotropic field of unit length in sheared coordinates (`refimpl.surfaces.lay`),
+``((x + s y) / a, y / b)``, so that Eq. (9) holds to rounding for any lengths and lay.
 
-make a Gaussian field, analytic in x and y. Its covariance is R(r) but for two errors, both below rounding:
-
-- The lattice. By Poisson's sum the covariance at the mean position c of two points is R(r) times
-  ``1 + 2 exp(-pi^2 l^2 / (9.2 h^2)) cos(2 pi c / h) + ...`` for each axis: with h = l / 6, 3.4e-17 cos(...).
-- Cutting the kernel off at 17 nodes, r = 2.83 l: what is dropped is below exp(-4.6 * 2.83^2) = 9e-17 of its
-  peak.
+Periodic: isotropic noise repeats on a lattice that divides the period. A sheared lattice does not close over
+both periods, so two lengths are summed as waves of the torus (`refimpl.surfaces.waves`). The power of a wave
+is Eq. (9)'s transform, ``exp(-(lx^2 q'_x^2 + ly^2 q'_y^2) / 9.2)``; by Poisson's sum that is the periodic sum
+of Eq. (9). Waves below 2e-17 of the largest amplitude are dropped.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar, NoReturn
 
 import numpy as np
 from scipy.sparse import csr_array
 
-from refimpl.errors import InputError, require_size
+from refimpl.errors import InputError, require_number, require_size
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.surface import Surface, positive
-from refimpl.surfaces.white_noise import white_noise
+from refimpl.surfaces.lay import Lay
+from refimpl.surfaces.noise_lattice import DECAY, NoiseLattice
+from refimpl.surfaces.surface import Detail, Surface, finite, positive, require_seed
+from refimpl.surfaces.waves import Torus, turned
 
-DECAY = 2.3  # exponent of Eq. (9)
-NODES_PER_LENGTH = 6
-HALF_WIDTH = 17 / NODES_PER_LENGTH  # half-width of the kernel, in correlation lengths
-MAX_NODES = 8192  # an axis: 512 MiB of noise
-MAX_FAR = 1e6  # lattice spacings from the origin: rounding of x there moves heights by < 1e-9 rms
-_ALLOWED_SEED = "a whole number, 0 <= seed < 2^63"
+RESOLVED = 4.0  # elements per correlation length from which slopes count as resolved
+_REACH = 26.6  # l q of the highest wave: exp(-26.6^2 / 18.4) = 2e-17
 _ALLOWED_FLAG = "true or false"
+_ALLOWED_LENGTH = "a positive length in m, or two: along the lay and across it"
 
 
 @dataclass(frozen=True)
 class GaussianRoughness(Surface):
-    """Isotropic Gaussian roughness, autocorrelation Eq. (9); the same surface on every grid, at every offset.
+    """Gaussian roughness, autocorrelation Eq. (9); the same surface on every grid, at every offset.
 
-    ``rms`` height and ``correlation_length`` (autocorrelation 10 %) in m. The seed alone fixes the noise:
-    another rms scales the heights, another length stretches the surface; bodies that shall differ need
-    different seeds. ``rms`` holds for the ensemble, the mean of which is 0; ``normalise=True`` scales this
-    realisation (it does not shift it), so that its standard deviation over the scene's square at offset 0,
-    an integral that knows no grid, is ``rms``, as in the paper's section 6.1.
+    rms : rms height (m) in the ensemble, the mean of which is 0
+    correlation_length : the length (m) at which the autocorrelation falls to ``acf_level``; or two,
+        ``(lx, ly)``, along and across the lay
+    seed : fixes the noise alone. Another rms scales the heights, other lengths and lays deform the surface;
+        bodies that shall differ need different seeds
+    normalise : scale this realisation (without a shift), so that its standard deviation over the domain at
+        offset 0, an integral that knows no grid, is ``rms``, as in the paper's section 6.1
+    lay : angle from x to the axis of lx (rad)
+    acf_level : 0.1 as in the paper: ``l of (9) = given * sqrt(ln 10 / ln(1 / level))``. ISO 25178's Sal has
+        the level 0.2 (of a lay it is the shorter length), other definitions have 1/e
 
-    Periodic scenes get another realisation, one that repeats with ``side``: the noise repeats, on a lattice
-    that divides the side. Its covariance is the periodic sum of Eq. (9) scaled to ``rms``; length <= side.
+    Periodic scenes get another realisation, one that repeats with the domain. Its covariance is the periodic
+    sum of Eq. (9) scaled to ``rms``; lengths are at most the periods.
     """
 
     rms: float
-    correlation_length: float
+    correlation_length: float | tuple[float, float]
     seed: int
     normalise: bool = False
+    lay: float = 0.0
+    acf_level: float = 0.1
     kind: ClassVar[str] = "gaussian"
 
     def __post_init__(self) -> None:
         require_size("rms", self.rms, "a positive rms height in m")
         object.__setattr__(self, "rms", float(self.rms))
-        length = positive("correlation_length", self.correlation_length, "a positive length in m")
-        object.__setattr__(self, "correlation_length", length)
-        whole = isinstance(self.seed, int | np.integer) and not isinstance(self.seed, bool)
-        if not whole or not 0 <= self.seed < 2**63:
-            raise InputError("seed", self.seed, _ALLOWED_SEED)
-        object.__setattr__(self, "seed", int(self.seed))
+        object.__setattr__(self, "correlation_length", _lengths(self.correlation_length))
+        object.__setattr__(self, "seed", require_seed(self.seed))
         if not isinstance(self.normalise, bool):
             raise InputError("normalise", self.normalise, _ALLOWED_FLAG)
+        object.__setattr__(self, "lay", finite("lay", self.lay, "a finite angle in rad"))
+        level = "a level of the autocorrelation between 0 and 1"
+        require_number("acf_level", self.acf_level, level, above=0, below=1)
+        object.__setattr__(self, "acf_level", float(self.acf_level))
 
-    def autocorrelation(self, distance: Array) -> Array:
-        """Eq. (9): ``rms^2 exp(-2.3 r^2 / l^2)`` (m^2) at distances r (m)."""
-        return np.asarray(self.rms**2 * np.exp(-DECAY * (distance / self.correlation_length) ** 2))
+    @cached_property
+    def ellipse(self) -> Lay:
+        """The lengths of Eq. (9) (m), ``along`` the lay lx and ``across`` ly."""
+        given = self.correlation_length
+        lx, ly = given if isinstance(given, tuple) else (given, given)
+        factor = math.sqrt(math.log(10.0) / math.log(1.0 / self.acf_level))
+        return Lay(lx * factor, ly * factor, self.lay)
+
+    def autocorrelation(self, x: Array, y: Array | float = 0.0) -> Array:
+        """Eq. (9) at lags (x, y) (m): ``rms^2 exp(-2.3 (x'^2 / lx^2 + y'^2 / ly^2))`` (m^2)."""
+        a, s, b = self.ellipse.sheared
+        return np.asarray(self.rms**2 * np.exp(-DECAY * (((x + s * y) / a) ** 2 + (y / b) ** 2)))
 
     @property
     def rms_slope(self) -> float:
-        """Ensemble rms of dz/dx: ``sqrt(-R''(0)) = rms sqrt(2 * 2.3) / l``."""
-        return self.rms * math.sqrt(2.0 * DECAY) / self.correlation_length
+        """Ensemble rms of dz/dx: ``rms sqrt(2 * 2.3) / l``, l the length along x."""
+        return self.rms * math.sqrt(2.0 * DECAY) / self.ellipse.on_axes[0]
+
+    @property
+    def rms_gradient(self) -> float:
+        """Ensemble rms of |grad z| (Sdq): ``rms sqrt(2 * 2.3) sqrt(1 / lx^2 + 1 / ly^2)``."""
+        return self.rms * math.sqrt(2.0 * DECAY) * math.hypot(1 / self.ellipse.along, 1 / self.ellipse.across)
+
+    def parameters(self) -> dict[str, float]:
+        given = self.correlation_length
+        lengths = {"correlation_length": given}
+        if isinstance(given, tuple):
+            lengths = {f"correlation_length[{k}]": length for k, length in enumerate(given)}
+        return {"rms": self.rms, **lengths, "lay": self.lay, "seed": self.seed}  # type: ignore[dict-item]  # a float
+
+    def with_parameter(self, name: str, value: float) -> GaussianRoughness:
+        if name.endswith("]"):
+            assert isinstance(self.correlation_length, tuple)
+            lx, ly = self.correlation_length
+            return replace(self, correlation_length=(value, ly) if "[0]" in name else (lx, value))
+        return super().with_parameter(name, value)
+
+    def same_realisation(self, periodic: bool) -> tuple[str, ...]:
+        lattice = periodic and self.ellipse.is_isotropic  # another length has another lattice
+        return ("rms",) if lattice else tuple(name for name in self.parameters() if name != "seed")
 
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
         return self._field(grid.x + offset[0], grid.y + offset[1], grid) * self._scale(grid)
 
     def _field(self, x: Array, y: Array, grid: Grid) -> Array:
         """Ensemble heights (m) at all pairs of ``x``, ``y``."""
-        periods = grid.lengths if grid.periodic else (None, None)
-        nodes_x, smooth_x = self.smoothing(x, periods[0])
-        nodes_y, smooth_y = self.smoothing(y, periods[1])
-        noise = white_noise(self.seed, nodes_x, nodes_y)
-        return self.rms * np.ascontiguousarray((smooth_y @ (smooth_x @ noise).T).T)
+        if grid.periodic:
+            self._refuse_longer(grid.lengths)
+            if not self.ellipse.is_isotropic:
+                return self._waves(x, y, grid)
+        return self.rms * self._lattice.field(self.seed, x, y, grid.lengths if grid.periodic else None)
 
     def smoothing(self, x: Array, period: float | None = None) -> tuple[range, csr_array]:
-        """One axis of the sum above: the nodes it needs, and the kernel as a matrix S, ``(len(x), nodes)``.
+        """The lattice's nodes and matrix along x (`NoiseLattice.smoothing`)."""
+        return self._lattice.smoothing(x, 0, period)
 
-        Heights are ``rms S_x w S_y^T``: the exact correlation along an axis, in the ensemble, is ``S S^T``.
-        """
-        length, h = self.correlation_length, self._lattice_spacing(period)
-        reach = math.ceil(HALF_WIDTH * length / h)
-        self._refuse_too_many(x, h, reach)
-        node = np.rint(x / h).astype(np.int64)[:, None] + np.arange(-reach, reach + 1)
-        from_node = (x[:, None] - node * h) / length
-        peak = math.sqrt(math.sqrt(4.0 * DECAY / math.pi) * h / length)
-        weight = peak * np.exp(-2.0 * DECAY * from_node**2)
-        if period is not None:
-            node %= round(period / h)
-            weight /= math.sqrt(_images(period / length))
-        nodes = range(int(node.min()), int(node.max()) + 1)
-        row = np.repeat(np.arange(len(x)), node.shape[1])
-        entries = (weight.ravel(), (row, node.ravel() - nodes.start))
-        return nodes, csr_array(entries, shape=(len(x), len(nodes)))  # entries of one node add up
+    @cached_property
+    def _lattice(self) -> NoiseLattice:
+        return NoiseLattice(self.ellipse, self._refused)
 
-    def _lattice_spacing(self, period: float | None) -> float:
-        length = self.correlation_length
-        if period is None:
-            return length / NODES_PER_LENGTH
-        if length > period:
-            raise InputError("correlation_length", length, f"at most the period, {period:.6g} m")
-        return period / math.ceil(NODES_PER_LENGTH * period / length)
+    def _waves(self, x: Array, y: Array, grid: Grid) -> Array:
+        """Periodic heights (m) of two lengths."""
+        torus = self._torus(grid)
+        scale = self.rms / math.sqrt(torus.mean_squares(self._amplitude)[0])
+        return scale * torus.field(self._amplitude, self.seed, x, y)
 
-    def _refuse_too_many(self, x: Array, h: float, reach: int) -> None:
-        extent, farthest = float(x.max() - x.min()), float(np.abs(x).max())
-        if extent / h + 2 * reach + 2 > MAX_NODES:
-            least = extent / h / (MAX_NODES - 2 * reach - 2) * self.correlation_length
-            need = f"at least {least:.3g} m on this domain ({MAX_NODES} noise nodes an axis)"
-            raise InputError("correlation_length", self.correlation_length, need)
-        if farthest / h > MAX_FAR:
-            raise InputError("offset", farthest, f"within {MAX_FAR:.3g} x {h:.3g} m: beyond, digits are lost")
+    def _torus(self, grid: Grid) -> Torus:
+        along_x, along_y = (2.0 * math.pi / _REACH * length for length in self.ellipse.on_axes)
+        return Torus.holding(grid.lengths, (along_x, along_y), self._refused)
+
+    def _amplitude(self, qx: Array, qy: Array) -> Array:
+        """Root of Eq. (9)'s transform over its peak."""
+        along, across = turned(qx, qy, self.lay)
+        lx, ly = self.ellipse.along, self.ellipse.across
+        return np.asarray(np.exp(-((lx * along) ** 2 + (ly * across) ** 2) / (8.0 * DECAY)))
+
+    def _refuse_longer(self, periods: tuple[float, float]) -> None:
+        for extent, period in zip(self.ellipse.extents, periods, strict=True):
+            if extent > period:
+                allowed = f"at most the period, {period:.6g} m"
+                raise InputError("correlation_length", self.correlation_length, allowed)
+
+    def _refused(self, factor: float, limit: str) -> NoReturn:
+        """Refuse lengths that are too short for the domain by a factor; of two, the shorter is named."""
+        least = factor * float(np.min(self.correlation_length))
+        need = f"at least {least:.3g} m on this domain ({limit})"
+        raise InputError("correlation_length", self.correlation_length, need)
 
     def _scale(self, grid: Grid) -> float:
         return self.rms / self._realised_rms(grid) if self.normalise else 1.0
@@ -132,39 +168,63 @@ class GaussianRoughness(Surface):
     def _realised_rms(self, grid: Grid) -> float:
         """Standard deviation (m) of the unscaled field over the domain: Gauss-Legendre with 10 points on each
         panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
-        if min(grid.lengths) < self.correlation_length:
-            least = f"false, or a side of at least one correlation length, {self.correlation_length:.6g} m"
-            raise InputError("normalise", True, least)
-        (x, along), (y, across) = (self._panels(length) for length in grid.lengths)
+        lengths = self.ellipse.on_axes
+        for side, length in zip(grid.lengths, lengths, strict=True):
+            if side < length:
+                least = f"false, or a side of at least one correlation length, {length:.6g} m"
+                raise InputError("normalise", True, least)
+        (x, along), (y, across) = map(_panels, grid.lengths, lengths)
         z = self._field(x, y, grid)
         mean = along @ z @ across
         return math.sqrt(along @ (z - mean) ** 2 @ across)
 
-    def _panels(self, length: float) -> tuple[Array, Array]:
-        """Quadrature points (m) and weights, which add up to 1, along one side."""
-        panels = math.ceil(2.0 * length / self.correlation_length)
-        node, weight = np.polynomial.legendre.leggauss(10)
-        points = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (length / panels)).ravel()
-        return points, np.tile(weight / (2.0 * panels), panels)
+    def detail(self, spacing: float) -> Detail:
+        # mean squares of the Laplacian and the gradient of Eq. (9): 32 c^2 and 4 c, c = 2.3 / l^2
+        length = min(self.ellipse.along, self.ellipse.across)
+        return Detail("correlation length", length, RESOLVED, math.sqrt(8.0 * DECAY))
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         over = f"over the domain of {_by(grid.lengths)} m" if self.normalise else "in the ensemble"
-        said = f"rms {self.rms:.6g} m {over}, correlation length {self.correlation_length:.6g} m"
-        return (f"Gaussian roughness of seed {self.seed}: {said}", *self.cautions(grid))
+        return (
+            f"Gaussian roughness of seed {self.seed}: rms {self.rms:.6g} m {over}, {self._said_lengths}",
+            *self.cautions(grid),
+        )
+
+    @property
+    def _said_lengths(self) -> str:
+        given, level = self.correlation_length, self.acf_level
+        at = "" if level == 0.1 else f" (autocorrelation {level:.3g})"
+        if isinstance(given, tuple):
+            turned = f"lay {math.degrees(self.lay):.4g} degrees"
+            return f"correlation lengths {given[0]:.6g} m along and {given[1]:.6g} m across{at}, {turned}"
+        return f"correlation length {given:.6g} m{at}"
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
-        if max(grid.spacings) <= self.correlation_length / 4.0:
+        length = self.detail(max(grid.spacings)).length
+        if max(grid.spacings) <= length / RESOLVED:
             return ()
         return (
             f"the element, {max(grid.spacings):.3g} m, exceeds a quarter of the roughness's correlation "
-            f"length, {self.correlation_length:.3g} m: its slopes are not resolved",
+            f"length, {length:.3g} m: its slopes are not resolved",
         )
 
 
-def _images(ratio: float) -> float:
-    """``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: one axis's variance with images."""
-    m = np.arange(1, 6)  # the sixth image would add exp(-2.3 * 36) = 1e-36
-    return float(1.0 + 2.0 * np.exp(-DECAY * (m * ratio) ** 2).sum())
+def _lengths(given: object) -> float | tuple[float, float]:
+    """The correlation length, or both, as doubles."""
+    if isinstance(given, list | tuple):
+        if len(given) != 2:
+            raise InputError("correlation_length", given, _ALLOWED_LENGTH)
+        along, across = (positive("correlation_length", length, _ALLOWED_LENGTH) for length in given)
+        return along, across
+    return positive("correlation_length", given, _ALLOWED_LENGTH)
+
+
+def _panels(side: float, length: float) -> tuple[Array, Array]:
+    """Quadrature points (m) and weights, which add up to 1, along one side."""
+    panels = math.ceil(2.0 * side / length)
+    node, weight = np.polynomial.legendre.leggauss(10)
+    points = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (side / panels)).ravel()
+    return points, np.tile(weight / (2.0 * panels), panels)
 
 
 def _by(lengths: tuple[float, float]) -> str:

@@ -101,17 +101,26 @@ def _text(path: Path, given: Given) -> Reading:
             "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
         )
     if is_triples(table):
+        _refuse_interruption(path, table)
         return _points(path, table, given)
     if not table.header:
+        _refuse_interruption(path, table)
         return _plain(path, checked(path, table.rows), given, "as a plain table of text", table.notes)
     try:
         return _with_header(path, table, given)
     except InputError as refused:
         if refused.field == "channel":
             raise
+    _refuse_interruption(path, table)
     image = checked(path, table.rows).T[:, ::-1]
     reading = _plain(path, np.ascontiguousarray(image), given, "as text with a header", table.notes)
     return replace(reading, orientation=IMAGE)
+
+
+def _refuse_interruption(path: Path, table: TextTable) -> None:
+    if table.interrupted:
+        found = f"after row {len(table.rows)} stands {table.interrupted[:60]!r}, then numbers"
+        raise InputError("path", str(path), f"numbers in one block ({found})")
 
 
 def _with_header(path: Path, table: TextTable, given: Given) -> Reading:

@@ -18,7 +18,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.surfaces.areal_parameters import Autocorrelation, Pixel, Spectrum
 from refimpl.surfaces.detrending import fit as fit_polynomial
-from refimpl.surfaces.gaussian import DECAY
+from refimpl.surfaces.noise_lattice import DECAY
 
 KINDS = ("gaussian", "self-affine")
 ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:

@@ -43,6 +43,9 @@ class Sphere(Surface):
             raise InputError("radius", self.radius, allowed)
         object.__setattr__(self, "radius", float(self.radius))
 
+    def parameters(self) -> dict[str, float]:
+        return {"radius": self.radius}
+
     def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
         x, y = (_from_centre(grid, axis) + offset[axis] for axis in (0, 1))
         if grid.periodic:

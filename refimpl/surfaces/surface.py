@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -19,6 +19,31 @@ from refimpl.surfaces.arrays import cautions_of, check_domain, checked, sampled,
 
 class SurfaceWarning(UserWarning):
     """Heights were delivered, but a user should know how: resampled finer than measured, points filled in."""
+
+
+@dataclass(frozen=True)
+class Detail:
+    """The finest detail of a random roughness, and how a grid resolves it.
+
+    name, length : of the detail's length (m)
+    resolved : elements per length from which slopes count as resolved
+    curvature : rms of the Laplacian over rms of the gradient, times the length
+    missed : what a grid of the given spacing misses, in words; empty where that has no simple number
+    """
+
+    name: str
+    length: float
+    resolved: float
+    curvature: float
+    missed: str = ""
+
+    def required(self, accuracy: float) -> float:
+        """Elements per length at which central differences see the rms slope too small by ``accuracy``.
+
+        A wave q at the angle t to the axis has ``sin(q h cos t) / h`` in place of ``q cos t``: of the mean
+        square slope ``(h curvature / length)^2 / 4`` is missing, of the rms slope half of that.
+        """
+        return self.curvature / math.sqrt(8.0 * accuracy)
 
 
 class Surface(ABC):
@@ -64,6 +89,24 @@ class Surface(ABC):
         """Return the finest distance between data points on a domain of those lengths (m); None for a
         formula."""
         return None
+
+    def detail(self, spacing: float) -> Detail | None:
+        """Return the finest detail of a random roughness on elements of a spacing (m); None for others."""
+        return None
+
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that a study may vary, by name, SI."""
+        return {}
+
+    def with_parameter(self, name: str, value: float) -> Self:
+        """Return the surface with one of its `parameters` changed; a whole number may come as a float."""
+        if name == "seed" and float(value).is_integer():
+            value = int(value)
+        return replace(self, **{name: value})  # type: ignore[type-var]  # dataclasses all
+
+    def same_realisation(self, periodic: bool) -> tuple[str, ...]:
+        """Return those of the `parameters` on which heights depend smoothly: there are derivatives."""
+        return tuple(self.parameters())
 
     def extent(self, offset: tuple[float, float]) -> tuple[float, float] | None:
         """Return the largest rectangle (m) that the surface's data cover at an offset; None for a formula."""
@@ -185,6 +228,14 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
     if isinstance(value, np.ndarray):
         return ArraySurface(value)
     raise InputError("surface", value, "a surface, a sum of surfaces or a 2-D array of heights in m")
+
+
+def require_seed(seed: object) -> int:
+    """The seed of a random roughness as a whole number; else InputError."""
+    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
+    if not whole or not 0 <= seed < 2**63:  # type: ignore[operator]  # a number, as above
+        raise InputError("seed", seed, "a whole number, 0 <= seed < 2^63")
+    return int(seed)  # type: ignore[call-overload, no-any-return]  # as above
 
 
 def require_one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:

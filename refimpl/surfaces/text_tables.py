@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice, takewhile
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -23,11 +22,15 @@ _WHOLE = re.compile(r"\d+")
 
 @dataclass(frozen=True)
 class TextTable:
-    """Numbers of a text file as they stand, missing entries NaN; the lines before them; what was changed."""
+    """Numbers of a text file as they stand, missing entries NaN; the lines before them; what was changed.
+
+    ``interrupted``: a line of text that is followed by more numbers; empty where there is none.
+    """
 
     rows: Array
     header: tuple[str, ...]
     notes: tuple[str, ...]
+    interrupted: str = ""
 
     def normalised(self) -> bytes:
         """Header and numbers in UTF-8, with blanks between and decimal points."""
@@ -53,13 +56,13 @@ def read_table(path: Path) -> TextTable:
     lines = [line.strip() for line in decoded(path).splitlines()]
     start, layout = _layout(path, lines)
     header = tuple(line for line in lines[:start] if line.strip(",; \t"))
-    data = takewhile(bool, (line for line in lines[start:]))
-    width = len(layout.cells(lines[start]))
-    rows = _numbers(path, layout, data, width)
+    data = [line for line in lines[start:] if line]
+    rows, used = _numbers(path, layout, data, len(layout.cells(lines[start])))
+    interrupted = data[used] if any(layout.is_data(line) for line in data[used + 1 :]) else ""
     notes = [f"separator {layout.name}, decimal comma"] if layout.comma else []
     if rows.shape[1] > 1 and _is_index(rows[:, 0], layout, lines[start : start + 50]):
         rows, notes = rows[:, 1:], [*notes, "a leading index column was dropped"]
-    return TextTable(rows, header, tuple(notes))
+    return TextTable(rows, header, tuple(notes), interrupted)
 
 
 @dataclass(frozen=True)
@@ -113,33 +116,33 @@ def _layout(path: Path, lines: list[str]) -> tuple[int, _Layout]:
     )
 
 
-def _numbers(path: Path, layout: _Layout, lines: Iterator[str], width: int) -> Array:
-    """The numbers of lines; NumPy's reader first, for it is 20 times faster on plain numbers."""
-    kept = list(lines)
+def _numbers(path: Path, layout: _Layout, lines: list[str], width: int) -> tuple[Array, int]:
+    """The numbers of lines up to a line of text, and how many lines that are.
+
+    NumPy's reader first: it is 20 times faster on plain numbers.
+    """
     if not layout.comma:
-        ended = kept if layout.separator is None else [line.rstrip(layout.separator) for line in kept]
+        ended = lines if layout.separator is None else [line.rstrip(layout.separator) for line in lines]
         try:
-            return np.loadtxt(ended, delimiter=layout.separator, ndmin=2)
+            return np.loadtxt(ended, delimiter=layout.separator, ndmin=2), len(lines)
         except ValueError:
             pass
-    rows = []
-    for number, line in enumerate(kept, 1):
+    rows: list[list[float]] = []
+    for number, line in enumerate(lines):
         cells = layout.cells(line)
-        if not cells:
-            continue
         try:
             row = [layout.value(cell) for cell in cells]
         except ValueError:
             if line.startswith("#"):
                 continue
-            break  # a footer
+            return np.array(rows), number
         if len(row) < width and layout.separator not in (None, ","):
             row += [np.nan] * (width - len(row))  # empty entries at the end of the line
         if len(row) != width:
-            allowed = f"rows of one length (row {number} of numbers has {len(row)}, the first {width})"
+            allowed = f"rows of one length (row {number + 1} of numbers has {len(row)}, the first {width})"
             raise InputError("path", str(path), allowed)
         rows.append(row)
-    return np.array(rows)
+    return np.array(rows), len(lines)
 
 
 def _is_index(column: Array, layout: _Layout, lines: list[str]) -> bool:

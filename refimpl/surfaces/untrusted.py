@@ -29,14 +29,19 @@ def read_untrusted(path: Path, load: Callable[[], T]) -> T:
     """
     try:
         if _is_binary(path):
-            _try_in_child(path, lambda: (_refuse_external_data(path), load()))
-            _refuse_external_data(path)
-        return load()
+            _try_in_child(path, lambda: _load_whole(path, load))
+        return _load_whole(path, load)
     except InputError:
         raise
     except Exception as error:
         brief = " ".join(f"{type(error).__name__}: {error}".split())[:160]
         raise InputError("path", str(path), f"a file that can be read ({brief})") from error
+
+
+def _load_whole(path: Path, load: Callable[[], T]) -> T:
+    """What ``load`` returns, of a file that holds all its data."""
+    _refuse_external_data(path)
+    return load()
 
 
 def _is_binary(path: Path) -> bool:

@@ -9,10 +9,10 @@ from scipy.special import ndtri
 from refimpl.grid import Array
 
 _TILE = 64
-_STREAM = 0x726F7567686E6573  # the key's second word, ASCII "roughnes": keeps these streams apart from others
+STREAM = 0x726F7567686E6573  # the key's second word, ASCII "roughnes": keeps these streams apart from others
 
 
-def white_noise(seed: int, rows: range, columns: range) -> Array:
+def white_noise(seed: int, rows: range, columns: range, stream: int = STREAM) -> Array:
     """Independent standard normal numbers at the lattice nodes ``rows x columns``; indices may be negative.
 
     Philox (Salmon et al. 2011) is a function of key and counter, so a tile ``(p, q)`` is drawn without any
@@ -28,12 +28,12 @@ def white_noise(seed: int, rows: range, columns: range) -> Array:
         for q in range(columns.start // _TILE, (columns.stop - 1) // _TILE + 1):
             here_i, tile_i = _overlap(rows, p)
             here_j, tile_j = _overlap(columns, q)
-            noise[here_i, here_j] = ndtri(_uniform_tile(seed, p, q)[tile_i, tile_j])
+            noise[here_i, here_j] = ndtri(_uniform_tile(seed, stream, p, q)[tile_i, tile_j])
     return noise
 
 
-def _uniform_tile(seed: int, p: int, q: int) -> Array:
-    key = np.array([seed, _STREAM], dtype=np.uint64)
+def _uniform_tile(seed: int, stream: int, p: int, q: int) -> Array:
+    key = np.array([seed, stream], dtype=np.uint64)
     counter = np.array([0, 0, p % 2**64, q % 2**64], dtype=np.uint64)  # low words run within the tile
     words: NDArray[np.uint64] = np.random.Philox(key=key, counter=counter).random_raw(_TILE * _TILE)
     uniform = ((words >> np.uint64(11)).astype(np.float64) + 0.5).reshape(_TILE, _TILE) * 2.0**-53

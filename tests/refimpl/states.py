@@ -10,4 +10,5 @@ from refimpl.operators.influence import window_influence
 def state_of(solution: rf.Solution) -> State:
     """The state that certification recomputes from the solution's arrays."""
     operator = window_influence(solution.grid, solution.sliding_direction)
-    return certify(solution.problem, operator, solution.pressure, solution.traction, solution.slopes)
+    yielded = solution.plastic_indentation if solution.problem.terms.plastic else None
+    return certify(solution.problem, operator, solution.pressure, solution.traction, solution.slopes, yielded)

@@ -6,7 +6,6 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from refimpl.scene.resolution import resolution
-from refimpl.surfaces.gaussian import DECAY
 from verification.cli.output import columns
 
 if TYPE_CHECKING:
@@ -71,7 +70,8 @@ def _resolved(resolved: Resolution, *, refined: bool) -> str:
     if refined:  # the grid is not known yet
         return f"{resolved.required:.3g} required by the accuracy"
     found = resolved.elements
-    return f"{found:.3g}: rms slopes are seen {DECAY / found**2:.1e} too small"
+    missing = resolved.detail.curvature**2 / 8 / found**2
+    return f"{found:.3g}: rms slopes are seen {missing:.1e} too small"
 
 
 def _expectations(options: Options, plan: Plan) -> list[list[str]]:
@@ -87,5 +87,5 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
     ]
     refined = options.grid is None
     if (resolved := _resolution(options, plan)) is not None:
-        rows.append(["elements per correlation length", _resolved(resolved, refined=refined)])
+        rows.append([f"elements per {resolved.detail.name}", _resolved(resolved, refined=refined)])
     return rows if refined else [*rows, ["memory", f"{plan.memory / 1e6:.3g} MB"]]

@@ -48,7 +48,7 @@ ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "m
 
 # Options with the names of `refimpl.solve`, and the switches of terms among them.
 PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
-SWITCHES = ("coupled", "oblique", "tilted", "slope_correction")
+SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
 # What to do about an end that is no success.
 NEXT = {
@@ -123,6 +123,12 @@ def add_parser(commands: Parsers) -> None:
         help="include or exclude the slope change by shear (default: the scene decides)",
     )
     add("--slope-correction", action="store_true", help="exact tractions of oblique facets in Eq. (7)")
+    add(
+        "--plastic",
+        metavar="on|off",
+        type=_on_or_off,
+        help="end pressures at the hardness, or never (default: the scene's own, or where they reach it)",
+    )
     add("--explain", action="store_true", help="print what the scene requires, and solve nothing")
     add("--tolerance", metavar="T", type=float, help="for the certificate (default 1e-8; paper 1e-4)")
     add(
@@ -134,6 +140,12 @@ def add_parser(commands: Parsers) -> None:
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
     add_json(parser)
     parser.set_defaults(run=run)
+
+
+def _on_or_off(text: str) -> bool:
+    if text not in ("on", "off"):
+        raise argparse.ArgumentTypeError(f"{text}: expected on or off")
+    return text == "on"
 
 
 def elements(text: str) -> int | tuple[int, int]:
@@ -251,6 +263,10 @@ def table(solution: Solution, scene: str) -> str:
         ]
         for attribute, name, factor, unit in QUANTITIES
     ]
+    if solution.plan.includes("plastic"):
+        area, bar = solution.plastic_area * 1e6, error_bar(solution, "plastic_area") * 1e6
+        name = f"plastic area, {solution.plastic_share:.1%} of A"
+        found.insert(3, [name, _shown(area), _bar(bar), "mm^2"])
     summary = solution.summary()
     certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
     not_modelled = [

@@ -34,12 +34,14 @@ where it was; runs that the store has are not done again. Exit status 1 when a r
 message is shown, or did not converge: then its row says so by its status.
 
   scene = "table1-rough"      # a shipped scene, or a scene file relative to this file
-  realisations = 75           # of every Gaussian roughness; seeds from first_seed (default 1).
+  realisations = 75           # of every random roughness; seeds from first_seed (default 1).
                               #   Without such a roughness (smooth, measured) there is one alone
   normalise = true            # scale each realisation to its rms (default: as the scene says)
   [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
-  grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad); grid is needed
+  grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and by full name
+                              #   numbers of surfaces and hardnesses; grid is needed
   lower_rms = [0.504e-6, 1.68e-6]
+  "lower.surface[0].lay" = [0.0, 0.7854]
   [solve]                     # optional: method, oblique, slope_correction, tolerance
 
 With --target-error the study is an ensemble that varies the grid alone, each grid twice the one

@@ -147,7 +147,7 @@ def _periodic_waves(dice: _Dice) -> rf.Scene:
 
 
 def _periodic_rough(dice: _Dice) -> rf.Scene:
-    """Rough planes; contact takes about ``2 p / (E* rms slope)`` of the area (Bush et al. 1975)."""
+    """Rough planes; contact takes about ``2 p / (E* rms gradient)`` of the area (Bush et al. 1975)."""
     rough = rf.GaussianRoughness(SIDE * dice.log(1e-4, 3e-3), SIDE * dice.log(0.08, 0.4), dice.seeds[0])
     scale = dice.modulus * math.sqrt(2) * rough.rms_slope
     mean = scale * dice.log(0.02, 0.2)

@@ -2,12 +2,13 @@
 
 Chosen are the contact set, the pressure on it, the active set of tau and the common surface with its slopes.
 Eq. (7) then gives the displacements, as plain sums in 30 digits over influence integrals in 50 digits, and
-Eq. (6) the gap: its equality on contact, with room to spare elsewhere. Eq. (2) gives the load.
+Eq. (6) the gap: its equality on contact, with room to spare elsewhere. Eq. (2) gives the load. With a
+hardness some pressures are at it, and there the bodies come nearer by a chosen plastic indentation.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -44,11 +45,17 @@ class Manufactured:
 
 
 @cache
-def manufacture(M: int, seed: int, angle: float, oblique: bool, slope_correction: bool) -> Manufactured:
-    """A random state on ``M x M`` elements sliding at ``angle`` (rad); slopes only if ``oblique``."""
+def manufacture(
+    M: int, seed: int, angle: float, oblique: bool, slope_correction: bool, hardness: float | None = None
+) -> Manufactured:
+    """A random state on ``M x M`` elements sliding at ``angle`` (rad); slopes only if ``oblique``.
+
+    ``hardness`` is that of the lower body (Pa).
+    """
     random = np.random.default_rng(seed)
     touching = random.random((M, M)) < 0.4
     f = np.where(touching, PEAK * random.uniform(0.01, 1.0, (M, M)), 0.0)
+    capped, f = f >= (hardness or np.inf), np.minimum(f, hardness or np.inf)
     with mp.workdps(DIGITS):
         r = TAU * touching + mp.mpf(BETA) * _exact(f)
         common = _common_surface(M, random) if oblique else _exact(np.zeros((M, M)))
@@ -60,18 +67,23 @@ def manufacture(M: int, seed: int, angle: float, oblique: bool, slope_correction
         cos_x, cos_y = (1 / _sqrt(1 + t * t) for t in (tan_x, tan_y))
         v = (lower + upper) / (cos_x * cos_y)
         room = _exact(np.where(touching, 0.0, random.uniform(0.01, 1.0, (M, M)))) * v.max()
+        depth = (
+            _exact(np.where(capped, random.uniform(0.01, 0.3, (M, M)), 0.0)) * v.max() if hardness else 0 * v
+        )
+        room -= depth / (cos_x * cos_y)
         approach = max((v - room).ravel())
         gap = approach - v + room
-        mean_surface = common - (upper - lower) / 2
+        mean_surface = common - (upper - lower) / 2 + depth / 2  # the lower body yields
         dA = (mp.mpf(SIDE) / M) ** 2
         load = mp.fsum(((f * cos_x - r * tan_x * cos_x) * cos_y).ravel()) * dA
     scene = rf.Scene(
         upper=rf.Body(UPPER, _rounded(mean_surface + gap / 2)),
-        lower=rf.Body(LOWER, _rounded(mean_surface - gap / 2)),
+        lower=rf.Body(replace(LOWER, hardness=hardness), _rounded(mean_surface - gap / 2)),
         friction=rf.Friction(TAU, BETA),
         load=float(load),
         side=SIDE,
         sliding_direction=angle,
+        plastic=hardness is not None,
     )
     return Manufactured(scene, M, oblique, slope_correction, f, _rounded(r), float(approach))
 

@@ -1,5 +1,5 @@
-"""Random rough planes: true area against load at light pressure, A/A0 = kappa p/(E* h'), h' the rms slope
-(gradient length).
+"""Random rough planes: true area against load at light pressure, A/A0 = kappa p/(E* h'), h' the rms
+gradient, that of |grad h|.
 
 Two theories bracket, and simulations fill, the range:
 - Bush, Gibson and Thomas 1975 (Wear 35, 87): kappa = sqrt(2 pi) = 2.507, the limit of vanishing area.
@@ -33,19 +33,19 @@ def persson_area(reduced_pressure: ArrayLike) -> Array:
     return np.asarray(erf(np.sqrt(2) * np.asarray(reduced_pressure, dtype=float)))
 
 
-def kappa(area_fraction: ArrayLike, pressure: ArrayLike, modulus: float, rms_slope: float) -> Array:
+def kappa(area_fraction: ArrayLike, pressure: ArrayLike, modulus: float, rms_gradient: float) -> Array:
     """Secant slope A/A0 E* h'/p, shapes broadcast; ``pressure`` and ``modulus`` in Pa."""
     fraction, p = np.asarray(area_fraction, dtype=float), np.asarray(pressure, dtype=float)
-    return np.asarray(fraction * modulus * rms_slope / p)
+    return np.asarray(fraction * modulus * rms_gradient / p)
 
 
-def spectral_rms_slope(heights: Array, side: float) -> float:
+def spectral_rms_gradient(heights: Array, side: float) -> float:
     """Root mean square gradient (m/m) of a periodic surface ``(M, M)`` (m) over a square of ``side`` (m), by
     Parseval.
 
     >>> x = np.arange(8) / 8
     >>> wave = np.cos(2 * np.pi * x)[:, None] * np.ones(8)
-    >>> bool(np.isclose(spectral_rms_slope(wave, 1.0), np.sqrt(2) * np.pi))
+    >>> bool(np.isclose(spectral_rms_gradient(wave, 1.0), np.sqrt(2) * np.pi))
     True
     """
     M = len(heights)

@@ -21,9 +21,8 @@ import scipy.io
 import refimpl as rf
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import MeasuredSurface
-from reports.generator import render
 from reports.result_files import compact
-from verification.cli.report import read_run
+from verification.cli.report import read_run, rendered
 from verification.sweep.engine import sweep
 from verification.sweep.export import to_csv
 from verification.sweep.store import files_of
@@ -168,7 +167,7 @@ def _places(item: Any) -> Iterator[tuple[Any, Any]]:
 def _shown_results(path: Path) -> None:
     """A report of the file with one value changed, where it is one."""
     _changed_results(path)
-    render(read_run(path))
+    rendered(read_run(path), path, {}, path.parent)
 
 
 def _study() -> Study:

@@ -25,7 +25,7 @@ from refimpl.sensitivities.budget import Budget
 from refimpl.solution import bounds, energy_norm, influence_error, solution
 from refimpl.solution.solution import Solved
 from refimpl.solvers import paper, pivoting
-from refimpl.surfaces import gaussian, statistics
+from refimpl.surfaces import gaussian, noise_lattice, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness
 from verification.matrix import replacements as wrong
 from verification.matrix.faults import Patch
@@ -101,18 +101,21 @@ IN_REFIMPL: dict[str, LocalFault] = {
         "2.0 in place of 2.2 in Eq. (12)",
         lambda: wrapped(forces.plasticity_index, lambda x: x / 1.1),
     ),
-    "decay": ("ln 10 in place of 2.3 in Eq. (9)", lambda: ((gaussian, "DECAY", math.log(10)),)),
+    "decay": (
+        "ln 10 in place of 2.3 in Eq. (9)",
+        lambda: tuple((module, "DECAY", math.log(10)) for module in (gaussian, noise_lattice)),
+    ),
     "noise-lattice": (
         "three noise nodes per correlation length",
-        lambda: ((gaussian, "NODES_PER_LENGTH", 3),),
+        lambda: ((noise_lattice, "NODES_PER_LENGTH", 3),),
     ),
     "noise-origin": (
         "noise numbered from the grid's corner",
-        lambda: ((gaussian, "white_noise", wrong.lattice_from_zero),),
+        lambda: ((noise_lattice, "white_noise", wrong.lattice_from_zero),),
     ),
     "noise-uniform": (
         "uniform noise of the same variance",
-        lambda: ((gaussian, "white_noise", wrong.uniform),),
+        lambda: ((noise_lattice, "white_noise", wrong.uniform),),
     ),
     "not-normalised": (
         "normalise=True ignored",

@@ -86,7 +86,7 @@ def from_first_contact(found: Solution) -> Solution:
 def small_dropped(*args: Any) -> Any:
     found = _complementarity(*args)
     kept = found.pressure > 1e-8 * found.pressure.max(initial=0.0)
-    return found._replace(pressure=np.where(kept, found.pressure, 0.0), active=found.active & kept)
+    return found._replace(pressure=np.where(kept, found.pressure, 0.0), free=found.free & kept)
 
 
 def never_corrected(self: Any, u: Array, inside: Any, *, on_circle: bool) -> Any:

@@ -286,6 +286,6 @@ def _checked(study: Study, target: float) -> list[int]:
         raise InputError("first_seed", study.first_seed, "seeds that leave room for all terms, below 9e18")
     if not study.is_rough:
         raise InputError(
-            "--target-error", target, "none: no surface of the scene is Gaussian, nothing scatters"
+            "--target-error", target, "none: no surface of the scene is random, nothing scatters"
         )
     return grids

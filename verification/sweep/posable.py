@@ -25,7 +25,8 @@ def check(study: Study) -> None:
     """Raise InputError, naming the field, for what `refimpl.solve` would refuse of any run but its memory.
 
     Options are made of every point of one realisation (0.1 ms each). Heights are sampled, of the first
-    realisation, only where a limit may be met, 8 times at most: the largest roughness (peak-to-valley), the
+    realisation, only where a limit may be met, 8 times at most, and twice as often for each number of a
+    surface that varies by its full name: the largest roughness (peak-to-valley), the
     shortest and the longest correlation (noise nodes; period), the farthest slides either way in the
     directions nearest to the axes (measured area). What remains for the runs: other realisations' peaks,
     and windows on the way of a slide that miss too many points.
@@ -67,4 +68,5 @@ def _closest(study: Study) -> Iterator[Scene]:
 
 def _ends(axis: str, values: Sequence[float]) -> tuple[float, ...]:
     """The values of an axis that come closest to a limit; one of those that heights do not depend on."""
-    return tuple(dict.fromkeys(end(values) for end in _CLOSEST.get(axis, _SMALL)))
+    ends = _CLOSEST.get(axis, _BOTH if ".surface[" in axis else _SMALL)
+    return tuple(dict.fromkeys(end(values) for end in ends))

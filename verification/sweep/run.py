@@ -21,9 +21,12 @@ from verification.framework.threads import limited_to_one_thread
 
 COORDINATES = (
     "realisation", "grid", "load", "upper_rms", "lower_rms", "correlation_length",
-    "sliding_direction", "sliding_offset", "tau", "beta",
+    "sliding_direction", "sliding_offset", "tau", "beta", "parameters",
 )  # fmt: skip
-"""What tells the runs of one study apart; SI units and rad, None where a scene has no such thing."""
+"""What tells the runs of one study apart; SI units and rad, None where a scene has no such thing.
+``parameters`` is the JSON text of the hardnesses and the numbers of surfaces that the study varies by their
+full names.
+"""
 
 OUTCOMES = (
     "status", "friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure",

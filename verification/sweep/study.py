@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ SCENE_AXES = ("load", "sliding_direction", "sliding_offset")
 FRICTION_AXES = ("tau", "beta")
 ROUGHNESS_AXES = ("upper_rms", "lower_rms", "correlation_length")
 AXES = ("grid", *ROUGHNESS_AXES, *SCENE_AXES, *FRICTION_AXES)
+RANDOM = ("gaussian", "self_affine")  # kinds of surfaces that have realisations
 MAX_RUNS = 1_000_000
 
 Table = dict[str, Any]
@@ -23,12 +25,14 @@ Table = dict[str, Any]
 
 @dataclass(frozen=True)
 class Study:
-    """A base scene and what varies. Bodies' Gaussian parts get the seeds ``first_seed + 2 k`` (upper) and
+    """A base scene and what varies. Bodies' random parts get the seeds ``first_seed + 2 k`` (upper) and
     ``first_seed + 2 k + 1`` (lower) in realisation k, whatever else varies, so that roughnesses, loads and
     directions are compared on the same surfaces.
 
-    ``vary`` maps names of `AXES` to their values (SI, rad); an rms of 0 leaves that body's roughness out.
-    Realisations are of Gaussian roughness: where a point has none left, they are all one and the same run.
+    ``vary`` maps names of `AXES`, and of `refimpl.scene.parameters` of surfaces (``lower.surface[0].hurst``,
+    counted in the base scene) and hardnesses (``lower.material.hardness``), to their values (SI, rad); an rms
+    of 0 leaves that body's roughness out.
+    Realisations are of random roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
     `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
     ``notes`` say what was chosen for it. ``grid`` counts elements along the longer side of a rectangle.
@@ -46,18 +50,30 @@ class Study:
     def runs(self) -> Iterator[Run]:
         """All runs, realisations outermost, then the axes in the order of `AXES`."""
         files = measured_files(self.scene)
-        values = [self.vary.get(axis, (None,)) for axis in AXES]
+        axes = (*AXES, *self.own_axes)
+        values = [self.vary.get(axis, (None,)) for axis in axes]
         for k in range(self.realisations):
             for point in itertools.product(*values):
-                yield self._run(k, dict(zip(AXES, point, strict=True)), files)
+                yield self._run(k, dict(zip(axes, point, strict=True)), files)
+
+    @property
+    def own_axes(self) -> tuple[str, ...]:
+        """The varied hardnesses and numbers of surfaces, by their full names."""
+        return tuple(axis for axis in self.vary if axis not in AXES)
 
     @property
     def is_rough(self) -> bool:
-        """Whether realisations differ anywhere: at some point, a surface is Gaussian."""
+        """Whether realisations differ anywhere: at some point, a surface is random."""
         return any(
-            _gaussian(self.scene[side], "rms") and any(self.vary.get(f"{side}_rms", (True,)))
+            _random(self.scene[side]) and any(self.vary.get(f"{side}_rms", (True,)))
             for side in ("upper", "lower")
         )
+
+    @property
+    def has_correlation_length(self) -> bool:
+        """Whether a surface of the scene has one correlation length."""
+        lengths = (_random(self.scene[side]).get("correlation_length") for side in ("upper", "lower"))
+        return any(isinstance(length, float) for length in lengths)
 
     def __len__(self) -> int:
         number = self.realisations
@@ -76,13 +92,14 @@ class Study:
             "realisation": k,
             "grid": int(point["grid"]),
             "load": scene["load"],
-            "upper_rms": _gaussian(scene["upper"], "rms"),
-            "lower_rms": _gaussian(scene["lower"], "rms"),
+            "upper_rms": _random(scene["upper"]).get("rms", 0.0),
+            "lower_rms": _random(scene["lower"]).get("rms", 0.0),
             "correlation_length": _length(scene),
             "sliding_direction": scene["sliding_direction"],
             "sliding_offset": scene["sliding_offset"],
             "tau": scene["friction"]["tau"],
             "beta": scene["friction"]["beta"],
+            "parameters": json.dumps(own) if (own := {axis: point[axis] for axis in self.own_axes}) else None,
         }
         inputs = {
             "scene": scene,
@@ -97,26 +114,44 @@ class Study:
         body: Table = self.scene[name]
         rms, length = point[f"{name}_rms"], point["correlation_length"]
         parts = []
-        for part in body["surface"]:
-            if part["kind"] != "gaussian":
+        for k, part in enumerate(body["surface"]):
+            own = {axis: point[axis] for axis in self.own_axes if axis.startswith(f"{name}.surface[{k}].")}
+            part = _changed(part, {axis.partition("].")[2]: value for axis, value in own.items()})
+            if part["kind"] not in RANDOM:
                 parts.append(part)
             elif rms != 0:
                 change: Table = {"seed": seed}
                 change |= {} if rms is None else {"rms": float(rms)}
-                change |= {} if length is None else {"correlation_length": float(length)}
-                change |= {} if self.normalise is None else {"normalise": self.normalise}
+                if part["kind"] == "gaussian":
+                    change |= {} if length is None else {"correlation_length": float(length)}
+                    change |= {} if self.normalise is None else {"normalise": self.normalise}
                 parts.append(part | change)
-        return body | {"surface": parts or [{"kind": "flat"}]}
+        hardness = point.get(f"{name}.material.hardness")
+        material = body["material"] | ({} if hardness is None else {"hardness": hardness})
+        return body | {"material": material, "surface": parts or [{"kind": "flat"}]}
 
 
-def _gaussian(body: Table, key: str) -> float:
-    return next((part[key] for part in body["surface"] if part["kind"] == "gaussian"), 0.0)
+def _random(body: Table) -> Table:
+    """The random part of a body; an empty table without one."""
+    return next((part for part in body["surface"] if part["kind"] in RANDOM), {})
 
 
 def _length(scene: Table) -> float | None:
-    """The correlation length of the scene's roughness; None without roughness or where the bodies differ."""
-    lengths = {_gaussian(scene[name], "correlation_length") for name in ("upper", "lower")} - {0.0}
-    return lengths.pop() if len(lengths) == 1 else None
+    """The correlation length of the scene's roughness; None without one, or where there are several."""
+    found = [_random(scene[name]).get("correlation_length") for name in ("upper", "lower")]
+    lengths = [length for length in found if length is not None]
+    same = lengths and isinstance(lengths[0], float) and lengths.count(lengths[0]) == len(lengths)
+    return lengths[0] if same else None
+
+
+def _changed(part: Table, own: Mapping[str, float]) -> Table:
+    """A surface's table with other numbers; ``key[j]`` is one of a list."""
+    for name, value in own.items():
+        key, _, place = name.partition("[")
+        old = part[key]
+        new = [value if j == int(place[:-1]) else same for j, same in enumerate(old)] if place else value
+        part = part | {key: new}
+    return part
 
 
 def measured_files(scene: Table) -> dict[str, str]:

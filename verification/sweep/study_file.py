@@ -14,9 +14,10 @@ from refimpl import read_scene
 from refimpl.errors import InputError, require_number
 from refimpl.planning.plan import METHODS
 from refimpl.planning.terms import RequestedTerms
+from refimpl.scene.parameters import parameters
 from refimpl.scene.scene_file import read_toml, scene_to_dict
 from verification.sweep import posable
-from verification.sweep.study import AXES, MAX_RUNS, Study, measured_files
+from verification.sweep.study import AXES, MAX_RUNS, RANDOM, Study, measured_files
 
 KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
 SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance")
@@ -58,12 +59,18 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     for key, value in (("vary", vary), ("solve", settings)):
         if not isinstance(value, Mapping):
             raise InputError(key, value, f"a [{key}] table")
-    _refuse_unknown("vary", vary, AXES)
     _check_settings(settings)
     normalise = table.get("normalise")
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
-    scene = scene_to_dict(read_scene(scene_file))
+    base = read_scene(scene_file)
+    own = tuple(
+        name
+        for name in parameters(base)
+        if (".surface[" in name and not name.endswith(".seed")) or name.endswith(".hardness")
+    )
+    _refuse_unknown("vary", vary, (*AXES, *own))
+    scene = scene_to_dict(base)
     study = Study(
         scene=scene,
         realisations=_whole("realisations", table.get("realisations", 1), at_least=1),
@@ -90,16 +97,17 @@ def _check(study: Study) -> None:
     if runs > MAX_RUNS:
         raise InputError("vary", f"{runs} runs", f"at most {MAX_RUNS} runs")
     for side in ("upper", "lower"):
-        gaussian = sum(part["kind"] == "gaussian" for part in study.scene[side]["surface"])
-        if gaussian > 1:
-            raise InputError(f"scene.{side}.surface", f"{gaussian} Gaussian parts", "at most one in a study")
-        if f"{side}_rms" in study.vary and not gaussian:
+        random = [part for part in study.scene[side]["surface"] if part["kind"] in RANDOM]
+        if len(random) > 1:
+            raise InputError(f"scene.{side}.surface", f"{len(random)} random parts", "at most one in a study")
+        if f"{side}_rms" in study.vary and not (random and "rms" in random[0]):
             raise InputError(f"vary.{side}_rms", study.vary[f"{side}_rms"], "a scene with such a roughness")
     if study.realisations > 1 and not study.is_rough:
-        raise InputError("realisations", study.realisations, "1: no surface of the scene is Gaussian")
-    if "correlation_length" in study.vary and not study.is_rough:
+        raise InputError("realisations", study.realisations, "1: no surface of the scene is random")
+    if "correlation_length" in study.vary and not (study.is_rough and study.has_correlation_length):
         lengths = study.vary["correlation_length"]
-        raise InputError("vary.correlation_length", lengths, "a scene with a Gaussian surface")
+        allowed = "a scene with a Gaussian surface of one correlation length"
+        raise InputError("vary.correlation_length", lengths, allowed)
     for M in study.vary["grid"]:
         _whole("vary.grid", M, at_least=1)
     if study.scene["periodic"] and study.settings.get("method") == "paper":

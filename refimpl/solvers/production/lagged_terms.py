@@ -48,6 +48,7 @@ class LaggedTerms:
     slopes : those that the last update found
     slopes_used : those that the displacements of the present state came from
     diverged : slopes or shear displacements ran out of range
+    indentation : plastic indentation that the slopes contain (m), None without a cap
     """
 
     def __init__(self, problem: Problem, operator: WindowOperator, cg: ProjectedCG) -> None:
@@ -55,6 +56,8 @@ class LaggedTerms:
         self.slopes = self.slopes_used = Slopes.flat(problem.gap.shape)
         self.active = no_elements(problem)
         self.diverged = False
+        self.indentation: Array | None = None
+        self._posed = False
         self._weakly_coupled = couples_weakly(problem)
         self._used: tuple[Array, Array] | None = None  # shear and weights that the present state came from
         self._requested: tuple[Array, Array]
@@ -93,7 +96,9 @@ class LaggedTerms:
         shear, slopes = self._displacements()
         self.slopes_used, change = slopes, 0.0
         if problem.terms.slope_correction:  # the displacements are those of facets at the last slopes
-            self.slopes_used, change = self.slopes, slopes.distance(self.slopes, self._cg.pressure > 0)
+            self.slopes_used = self.slopes
+        if problem.terms.slope_correction or self.indentation is not None:  # no gap shows these changes
+            change = slopes.distance(self.slopes, self._cg.pressure > 0)
         within = max(shear.max(), -shear.min()) < LARGEST_DISPLACEMENT * problem.grid.size
         self.diverged = not (slopes.obliqueness.min() > STEEPEST_COSINE and within)
         if not self.diverged:
@@ -127,6 +132,7 @@ class LaggedTerms:
     def _set_problem(self, shear: Array, K: Array, target: float | None) -> None:
         problem = self._problem
         self._cg.set_problem(K * problem.gap + shear, K, target=target, approach=problem.approach)
+        self._posed = True
 
     def _target(self, K: Array) -> tuple[float | None, float]:
         """What ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| / P."""
@@ -157,7 +163,13 @@ class LaggedTerms:
             lower, upper = problem.displacements(
                 operator, pressure, self.traction, self.slopes, normal=displacement
             )
-        return lower + upper - displacement, problem.slopes(lower, upper)
+        K = self.slopes.obliqueness
+        self.indentation = problem.indentation(pressure, lower + upper, K, self._approach())
+        return lower + upper - displacement, problem.slopes(lower, upper, self.indentation)
+
+    def _approach(self) -> float:
+        """The present approach; before the first problem is set, that of a contact without shear."""
+        return self._cg.approach if self._posed else 0.0
 
     def _gap_by_shear(self) -> Array:
         """What shear that CG has not taken in adds to the closing of the gap (m)."""
@@ -168,10 +180,11 @@ class LaggedTerms:
 
     def _shear_of_pressure(self) -> Array:
         """The shear product of the pressure (Pa m), applied once a CG step: afterwards only its scale
-        changes."""
+        changes, but under a cap."""
         pressure = self._cg.pressure
         total = float(pressure.sum())
-        if self._of_pressure is None:
+        scales = math.isinf(self._problem.cap)
+        if self._of_pressure is None or not (scales or self._of_pressure[0] == total):
             self._of_pressure = total, self._operator.shear(pressure)
         applied, product = self._of_pressure
         return product if applied in (0.0, total) else (total / applied) * product

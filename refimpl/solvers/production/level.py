@@ -21,10 +21,21 @@ from refimpl.operators.influence import WindowInfluence, whole_grid_influence
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production import constants
 from refimpl.solvers.production.anderson import MixingControl
+from refimpl.solvers.production.capped_cg import CappedCG
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.lagged_terms import LaggedTerms, pressure_compliance
 from refimpl.solvers.production.projected_cg import ProjectedCG
 from refimpl.solvers.tau_active_set import iterate
+
+
+def projected_cg(
+    problem: Problem, operator: WindowInfluence, precondition: Apply, pressure: Array
+) -> ProjectedCG:
+    """Return CG for a window's problem, with a second bound where pressures are capped."""
+    compliance, rounding = pressure_compliance(problem, operator), displacement_rounding(problem)
+    if math.isinf(problem.cap):
+        return ProjectedCG(compliance, precondition, pressure, rounding)
+    return CappedCG(compliance, precondition, np.minimum(pressure, problem.cap), problem.cap, rounding)
 
 
 class LevelSolver:
@@ -48,8 +59,7 @@ class LevelSolver:
         self.window = operator.source
         self.problem = problem.windowed(self.window)
         self.operator = operator
-        compliance = pressure_compliance(self.problem, operator)
-        self.cg = ProjectedCG(compliance, precondition, pressure, displacement_rounding(problem))
+        self.cg = projected_cg(self.problem, operator, precondition, pressure)
         self.lagged = LaggedTerms(self.problem, operator, self.cg)
         self.stagnated = False
         self.residual = math.inf
@@ -86,7 +96,12 @@ class LevelSolver:
             excluded=self.full(excluded),
             cycle_states=ended.cycle_states,
             iterations={f"CG at {self.whole.grid}": self.cg_iterations},
+            indentation=self._full_indentation(),
         )
+
+    def _full_indentation(self) -> Array | None:
+        used = self.lagged.indentation
+        return None if used is None else self.full(used)
 
     @property
     def contact(self) -> Mask:

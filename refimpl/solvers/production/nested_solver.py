@@ -42,13 +42,13 @@ def solve_fft(
         del solver  # frees its memory before the arrays of the whole grid are made
         needed = window.mask(problem.grid.shape)
         if not too_small:
-            state = _certified(problem, result, counter)
-            missed = _missed_by_window(problem, state, window, tolerance)
+            state = certified(problem, result, counter)
+            missed = missed_by_window(problem, state, window, tolerance)
             if not missed.any():
                 result.iterations.update(iterations)
                 return result, state
             needed |= missed  # windows only grow, so the loop ends
-        solver = _widened(problem, result, needed, counter, needs_mixing=needs_mixing)
+        solver = widened(problem, result, needed, counter, needs_mixing=needs_mixing)
 
 
 def from_guess(problem: Problem, start: InitialGuess, counter: Counter) -> LevelSolver:
@@ -88,15 +88,15 @@ def _from_winkler(problem: Problem, counter: Counter) -> LevelSolver:
     return LevelSolver(problem, operator, precondition, winkler_pressure(problem))
 
 
-def _certified(problem: Problem, result: SolverResult, counter: Counter) -> State:
-    """The state on the whole grid, from a source window that holds all tractions."""
+def certified(problem: Problem, result: SolverResult, counter: Counter) -> State:
+    """Return the state on the whole grid, from a source window that holds all tractions."""
     loaded = Window.around((result.pressure != 0) | (result.traction != 0), margin=0)
     operator = whole_grid_influence(problem.grid, problem.direction, loaded, counter)
-    return certify(problem, operator, result.pressure, result.traction, result.slopes)
+    return certify(problem, operator, result.pressure, result.traction, result.slopes, result.indentation)
 
 
-def _missed_by_window(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
-    """Elements outside a window or on its edge for which it is too small.
+def missed_by_window(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
+    """Return the elements outside a window or on its edge for which it is too small.
 
     They penetrate by more than the tolerance; or, with slope terms, they are in contact on the edge, where
     slopes are one-sided.
@@ -108,10 +108,10 @@ def _missed_by_window(problem: Problem, state: State, window: Window, tolerance:
     return missed
 
 
-def _widened(
+def widened(
     problem: Problem, result: SolverResult, needed: Mask, counter: Counter, *, needs_mixing: bool
 ) -> LevelSolver:
-    """A solver that starts from a pressure found, on a window that holds all elements needed."""
+    """Return a solver that starts from a result's pressure, on a window that holds all elements needed."""
     window = Window.around(needed, MARGIN).filling(problem.grid.shape)
     pressure = result.pressure[window.slices]
     operator, precondition = _operators(problem, window, counter)

@@ -51,8 +51,8 @@ class ProjectedCG:
     def __init__(self, apply: Apply, precondition: Apply, pressure: Array, rounding: float = 0.0) -> None:
         self._apply, self._precondition = apply, precondition
         self.normal_displacement = apply(pressure)
-        self.contact: Mask = pressure > 0
-        self._vectors = ContactVectors(self.contact)
+        self.free: Mask = pressure > 0
+        self._vectors = ContactVectors(self.free)
         self._pressing = self._vectors.gather(pressure)
         self._direction: Array | None = None
         self._separation: Separation | None = None
@@ -68,6 +68,11 @@ class ProjectedCG:
         self._exchanged = True
         if target is not None:
             self._scale_to_target()
+
+    @property
+    def contact(self) -> Mask:
+        """Elements that bear pressure; on the ``free`` ones pressures are still sought."""
+        return self.free
 
     @property
     def pressure(self) -> Array:
@@ -117,17 +122,17 @@ class ProjectedCG:
         ``stiffness`` is the pressure per displacement of a single element (Pa/m).
         """
         v, approach = self._separate().v, self.approach
-        margin = CERTAINTY * float((np.abs(v - approach) * self.contact).max())
+        margin = CERTAINTY * float((np.abs(v - approach) * self.free).max())
         pressing = np.count_nonzero(self._pressing > stiffness * margin)
         close = np.count_nonzero(v <= approach + margin)
-        return bool(pressing == close == np.count_nonzero(self.contact))
+        return bool(pressing == close == np.count_nonzero(self.free))
 
     def iterate(self) -> None:
         """One step of projected CG on the contact set, then the exchange of elements.
 
         At an approach the set may be empty: there is no step then, and elements that penetrate come back.
         """
-        if self.contact.any():
+        if self.free.any():
             self._step()
         self._separation = None
         self._enter(self.separation < self.approach)  # [PK 7]
@@ -143,7 +148,7 @@ class ProjectedCG:
 
     def _exchange(self) -> None:
         """Move all vectors to the present contact set, with the load's weights and their squares."""
-        last, self._vectors = self._vectors, ContactVectors(self.contact)
+        last, self._vectors = self._vectors, ContactVectors(self.free)
         self._pressing = self._vectors.gather(last.scatter(self._pressing))
         if self._separation is not None:
             self._separation = self._separation._replace(
@@ -198,9 +203,9 @@ class ProjectedCG:
         change = (TRIAL_SHARE * self._length) * direction
         trial = self._pressing + change
         cut: Mask | None = None
-        if trial.min() < 0:
+        if not self._within_bounds(trial):
             cut = trial < 0
-            if not cut_at_zero(trial, self._pressing, change, self._weights, self._target):
+            if not self._cut(trial, change):
                 return False
         moved = self._apply(self._vectors.scatter(change))  # [PK 4]
         curvature = inner(change, self._vectors.gather_view(moved))
@@ -214,9 +219,9 @@ class ProjectedCG:
         """Add a share of a change; elements whose pressure is cut or falls to zero leave the contact."""
         before = self._pressing
         pressure = before + share * change
-        beyond = share > 1 and bool(pressure.min() < 0)
+        beyond = share > 1 and not self._within_bounds(pressure)
         if beyond:
-            share = longest_step(before, change)
+            share = self._longest_step(before, change)
             pressure = before + share * change
         if beyond or cut is not None:
             pressure[pressure < VANISHING * before] = 0.0  # rounding
@@ -228,15 +233,25 @@ class ProjectedCG:
         moved *= share
         self.normal_displacement += moved
 
+    def _within_bounds(self, pressing: Array) -> bool:
+        """Whether pressures on the free elements are allowed."""
+        return bool(pressing.min() >= 0)
+
+    def _longest_step(self, before: Array, change: Array) -> float:
+        return longest_step(before, change)
+
+    def _cut(self, trial: Array, change: Array) -> bool:
+        return cut_at_zero(trial, self._pressing, change, self._weights, self._target)
+
     def _enter(self, penetrating: Mask) -> None:
-        entering = penetrating > self.contact
+        entering = penetrating > self.free
         if entering.any():
-            self.contact |= entering
+            self.free |= entering
             self._exchanged = True
 
     def _leave(self, lifted: Mask) -> None:
         if lifted.any():
-            self.contact &= ~lifted
+            self.free &= ~lifted
             self._exchanged = True
 
     def _step_then_cut(self, residual: Array, direction: Array) -> None:

@@ -152,6 +152,7 @@ def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
             "binormal_force": force,
             "contact_area": area,
             "contact_area_corrected": unit * s,
+            "plastic_area": unit * s,
             "max_pressure": unit * s**0.5,
             "friction_force": friction,
             "friction_coefficient": friction / force,

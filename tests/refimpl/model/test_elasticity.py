@@ -53,6 +53,7 @@ def test_shear_couples_by_the_difference_and_tilts_by_the_sum(coupled: bool, til
     np.testing.assert_allclose(closing, coupled * (c_lower - c_upper) * shear, rtol=0, atol=bound)
     np.testing.assert_allclose(tilting, -tilted * (c_lower + c_upper) * shear, rtol=0, atol=bound)
     np.testing.assert_allclose(elasticity.gap_by_shear(shear), closing, rtol=0, atol=bound)
+    assert Elasticity(PAIR) == Elasticity(PAIR, coupled=True, tilted=True)
     assert elasticity.coupling_ratio == (PAIR.shear_compliance / PAIR.normal_compliance if coupled else 0)
 
 

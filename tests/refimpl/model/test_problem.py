@@ -70,6 +70,18 @@ def test_a_periodic_approach_counts_from_the_mean_planes() -> None:
     assert problem_with().counts_from_first_contact
 
 
+def test_displacements_are_of_pressure_and_shear() -> None:
+    """Of the tractions as printed, and of facet tractions along and across the sliding direction."""
+    A = operator()
+    for terms in (Terms(), CORRECTED):
+        problem = problem_with(terms)
+        down, along, across = problem.tractions(F, 0.2 * F, SLOPES)
+        shear = A.shear(along) + (0 if across is None else A.shear_across(across))
+        expected = problem.elasticity.body_displacements(problem.elasticity.normal(A, down), down, shear)
+        np.testing.assert_array_equal(problem.displacements(A, F, 0.2 * F, SLOPES), expected)
+        assert np.abs(problem.elasticity.gap_by_shear(shear)).max() > 1e-3 * np.abs(expected).max()
+
+
 def test_known_normal_displacements_are_used() -> None:
     problem, A, flat = problem_with(), operator(), Slopes.flat(GRID.shape)
     plain = problem.displacements(A, F, 0.2 * F, flat)

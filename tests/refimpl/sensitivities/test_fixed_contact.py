@@ -134,5 +134,5 @@ def test_the_answer_to_the_load_is_that_of_two_solves_on_rectangles_as_well(grid
     exact = (high.pressure - low.pressure)[fixed.window.slices] / (2 * step)
     assert np.abs(found.pressure - exact).max() <= 2e-4 * np.abs(exact).max()
     assert found.approach == pytest.approx((high.approach - low.approach) / (2 * step), rel=2e-4)
-    forces = fixed.forces(fixed.problem, fixed.pressure)
+    forces = fixed.forces(fixed.problem, fixed.pressure, fixed.approach)
     assert forces == pytest.approx(base.forces, rel=1e-10)

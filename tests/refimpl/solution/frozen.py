@@ -57,9 +57,9 @@ def frozen_solution(problem: Problem, held: Array, slopes: Slopes) -> tuple[Arra
         if not low < approach < high:
             approach = 0.5 * (low + high)
         found = complementarity(G, g - K * approach, active)
-        unsettled = not np.array_equal(found.active, active)
+        unsettled = not np.array_equal(found.free, active)
         low, high = (approach, high) if weights @ found.pressure < target else (low, approach)
-        active = found.active
+        active = found.free
     return found.pressure, approach - lift * float(K @ found.pressure), a
 
 

@@ -191,16 +191,16 @@ def test_a_solution_quotes_its_slopes() -> None:
     steepest = np.hypot(np.tan(solution.theta_x), np.tan(solution.theta_y))[loaded].max()
     assert quoted.max_slope == pytest.approx(math.atan(steepest), rel=1e-12)
     assert quoted.at_max == coefficient_error(quoted.max_slope, COPPER, STEEL)
-    assert quoted.rms_slope <= quoted.max_slope
+    assert quoted.rms_gradient <= quoted.max_slope
 
 
 def test_slopes_are_weighted_by_pressure_where_it_is() -> None:
     # squares of the tangents 0.25 and 0.01, weighted 1 : 3, make (0.25 + 0.03) / 4 = 0.07; the rest is free
     tan_x, tan_y = np.array([[0.3, 0.06], [9.0, 0.0]]), np.array([[-0.4, 0.08], [0.0, 9.0]])
     found = slope_error(Slopes(tan_x, tan_y), np.array([[1e6, 3e6], [0.0, -1e6]]), PAIR)
-    assert found.rms_slope == pytest.approx(math.atan(math.sqrt(0.07)), rel=1e-15)
+    assert found.rms_gradient == pytest.approx(math.atan(math.sqrt(0.07)), rel=1e-15)
     assert found.max_slope == pytest.approx(math.atan(0.5), rel=1e-15)
-    assert found.at_rms == coefficient_error(found.rms_slope, COPPER, STEEL)
+    assert found.at_rms == coefficient_error(found.rms_gradient, COPPER, STEEL)
     assert found.at_max == coefficient_error(found.max_slope, COPPER, STEEL)
 
 

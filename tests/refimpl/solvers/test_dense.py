@@ -194,12 +194,12 @@ def test_newton_steps_that_are_not_within_the_bracket_halve_it(
         """The pressures whose sum is the target at the proposal."""
         return np.tile([1 / M**2, (next(proposals) - target) / M**2], (M**2, 1))
 
-    def contact(G: Array, q: Array, active: Mask) -> SimpleNamespace:
+    def contact(G: Array, q: Array, free: Mask, cap: float, capped: Mask) -> SimpleNamespace:
         """A force that grows in proportion to the approach, and is the load near 4."""
         tried.append(-q[0])
         share = 1.0 if abs(tried[-1] - 4) < 1e-6 else tried[-1] / 4
         pressure = np.full(M**2, target * share / M**2)
-        return SimpleNamespace(pressure=pressure, active=np.ones(M**2, dtype=bool), solves=1)
+        return SimpleNamespace(pressure=pressure, free=np.ones(M**2, dtype=bool), capped=capped, solves=1)
 
     monkeypatch.setattr(dense, "restricted_solve", restricted)
     monkeypatch.setattr(dense, "complementarity", contact)

@@ -43,7 +43,7 @@ def test_random_problems(n: int, seed: int, skew: float, start: int) -> None:
     begin = np.array([bool(start >> k & 1) for k in range(n)])
     found = complementarity(G, q, begin)
     np.testing.assert_allclose(found.pressure, by_enumeration(G, q), atol=1e-9)
-    assert np.array_equal(found.active, found.active & (found.pressure >= 0))
+    assert np.array_equal(found.free, found.free & (found.pressure >= 0))
 
 
 def test_nothing_to_do() -> None:
@@ -144,21 +144,21 @@ def test_single_exchanges_follow_ten_of_blocks_without_progress(
 def test_an_element_without_gap_and_pressure_stays_where_it_is(start: bool) -> None:
     found = complementarity(np.eye(4), np.zeros(4), np.full(4, start))
     assert found.solves == 1
-    assert np.all(found.active == start)
+    assert np.all(found.free == start)
 
 
 @pytest.mark.parametrize("gap", [-1e-17, 0.0, 1e-17])
 def test_gaps_are_judged_against_rounding(gap: float) -> None:
     found = complementarity(np.eye(2), np.array([-1.0, gap]), np.array([True, False]))
     assert found.solves == 1
-    assert found.active.tolist() == [True, False]
+    assert found.free.tolist() == [True, False]
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-30])
 @pytest.mark.parametrize("start", [[False, False], [True, True]])
 def test_rounding_is_of_the_problems_own_size(unit: float, start: list[bool]) -> None:
     found = complementarity(np.eye(2), unit * np.array([-1.0, 0.1]), np.array(start))
-    assert found.active.tolist() == [True, False]
+    assert found.free.tolist() == [True, False]
     assert found.pressure.tolist() == [unit, 0.0]
 
 

@@ -57,9 +57,8 @@ def heights(grid: Grid, seed: int = 3) -> Array:
 
 def problem_on(grid: Grid, terms: Terms | None = None) -> Problem:
     upper = rf.Flat() if grid.periodic else SCENE.upper.surface
-    rough = replace(
-        SCENE, upper=rf.Body(HARD, upper), lower=rf.Body(SOFT, heights(grid)), periodic=grid.periodic
-    )
+    lower = rf.ArraySurface(heights(grid), pixel=grid.spacings)
+    rough = replace(SCENE, upper=rf.Body(HARD, upper), lower=rf.Body(SOFT, lower), periodic=grid.periodic)
     load = SCENE.load * grid.nominal_area / SCENE.side**2  # the same mean pressure on every domain
     return replace(discretise(rough, grid, terms), load=load)
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning
-from refimpl.surfaces.gaussian import MAX_NODES
+from refimpl.surfaces.noise_lattice import MAX_NODES
 from refimpl.surfaces.statistics import kurtosis, skewness
 from refimpl.surfaces.white_noise import white_noise
 

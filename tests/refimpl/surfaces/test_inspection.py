@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -253,6 +254,21 @@ def test_a_fit_is_a_surface_of_a_scene_file() -> None:
     text = fit.toml(seed=7)
     assert text.startswith('kind = "gaussian"\nrms = ')
     assert "  # m +- " in text
+
+
+def test_fits_of_a_lay_and_of_self_affine_maps_are_surfaces_too() -> None:
+    """Drawn by the surfaces themselves, fitted, and read back from TOML with those values."""
+    grid = rf.Grid(SHAPE, (256e-6, 300e-6))
+    lay = rf.GaussianRoughness(1e-6, (45e-6, 15e-6), seed=3, lay=0.5)
+    fractal = rf.SelfAffineRoughness(
+        hurst=0.8, rms=1e-6, roll_off=60e-6, long_cut=250e-6, short_cut=6e-6, seed=2, anisotropy=3.0, lay=2.0
+    )
+    for surface, kind in ((lay, "gaussian"), (fractal, "self-affine")):
+        fit = fit_roughness(surface.sample(grid), PIXEL, kind, 8)
+        back = rf.surfaces.surface_from_dict(tomllib.loads(fit.toml(seed=9)))
+        assert isinstance(back, type(surface))
+        assert abs(fit.values["lay"] - surface.lay) < 4 * fit.deviations["lay"]
+        assert getattr(back, "rms", 0) == pytest.approx(1e-6, rel=0.3)
 
 
 @pytest.mark.parametrize(("kind", "z"), [("fractal", gaussian()), ("gaussian", np.zeros((40, 40)))])

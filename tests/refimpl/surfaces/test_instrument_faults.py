@@ -15,8 +15,7 @@ import SurfaceTopography
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface
-from refimpl.surfaces.missing_points import fill
+from refimpl.surfaces import MeasuredSurface, missing_points
 from refimpl.surfaces.readers import read
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import MAP, NX, NY, PIXEL, sur_bytes
@@ -118,6 +117,35 @@ def test_a_refusal_says_what_was_found(tmp_path: Path, content: str, said: str) 
     (tmp_path / "a.csv").write_text(content)
     with pytest.raises(InputError, match=said):
         read(tmp_path / "a.csv", unit="um", pixel_size=PIXEL)
+
+
+def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
+    blocks = ["\n".join(f"{i} {j} {i - 2 * j}" for j in range(6)) for i in range(5)]
+    (tmp_path / "map.xyz").write_text("\n\n".join(blocks) + "\n")
+    assert read(tmp_path / "map.xyz", unit="um").heights.shape == (5, 6)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.xyz"])
+def test_text_among_the_numbers_is_refused_and_after_them_is_not(tmp_path: Path, name: str) -> None:
+    rows = [f"{i} {j} {i * j}" if name == "a.xyz" else " ".join("12345") for i in range(5) for j in range(5)]
+    (tmp_path / name).write_text("\n".join([*rows, "end of data"]))
+    whole = read(tmp_path / name, unit="um", pixel_size=PIXEL).heights
+    assert whole.size == (25 if name == "a.xyz" else 125)
+    (tmp_path / name).write_text("\n".join([*rows[:7], "lost", *rows[7:]]))
+    with pytest.raises(InputError, match="after row 7 stands 'lost', then numbers"):
+        read(tmp_path / name, unit="um", pixel_size=PIXEL)
+
+
+def test_a_text_of_two_images_gives_either(tmp_path: Path) -> None:
+    write.write_txt(tmp_path / "one.txt", MAP)
+    one = (tmp_path / "one.txt").read_bytes().decode("latin-1")
+    write.write_txt(tmp_path / "one.txt", 2 * MAP)
+    other = (tmp_path / "one.txt").read_bytes().decode("latin-1").replace("Topography", "Retrace")
+    (tmp_path / "two.txt").write_text(one + other)
+    same(read(tmp_path / "two.txt").heights)
+    second = read(tmp_path / "two.txt", channel="Retrace")
+    same(second.heights / 2)
+    assert second.channels == ("Topography", "Retrace")
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "utf-8", "utf-8-sig", "utf-16"])
@@ -283,7 +311,7 @@ def test_a_large_hole_is_filled_in_bounded_time() -> None:
     holed = saddle.copy()
     holed[60:940, 60:940] = np.nan
     start = time.process_time()
-    filled = fill(holed, (1.0, 1.0))
+    filled = missing_points.fill(holed, (1.0, 1.0))
     assert time.process_time() - start < 15
     np.testing.assert_allclose(filled, saddle, rtol=0, atol=1e-8)
 
@@ -293,18 +321,18 @@ def test_both_ways_of_filling_agree(monkeypatch: pytest.MonkeyPatch, pixel: tupl
     z = np.random.default_rng(2).normal(size=(70, 90))
     z[10:50, 20:80] = z[65:, :] = z[:4, 60:] = z[2, :] = np.nan
     z[30, 40] = 0.3
-    eliminated = fill(z, pixel)
-    monkeypatch.setattr("refimpl.surfaces.missing_points.MAX_ELIMINATED", 3)
-    np.testing.assert_allclose(fill(z, pixel), eliminated, rtol=0, atol=1e-8)
-    monkeypatch.setattr("refimpl.surfaces.missing_points.MAX_ELIMINATED", 10**6)
-    monkeypatch.setattr("refimpl.surfaces.missing_points.MAX_TOGETHER", 3)
-    np.testing.assert_allclose(fill(z, pixel), eliminated, rtol=0, atol=1e-8)
+    eliminated = missing_points.fill(z, pixel)
+    monkeypatch.setattr(missing_points, "MAX_ELIMINATED", 3)
+    np.testing.assert_allclose(missing_points.fill(z, pixel), eliminated, rtol=0, atol=1e-8)
+    monkeypatch.setattr(missing_points, "MAX_ELIMINATED", 10**6)
+    monkeypatch.setattr(missing_points, "MAX_TOGETHER", 3)
+    np.testing.assert_allclose(missing_points.fill(z, pixel), eliminated, rtol=0, atol=1e-8)
 
 
 def test_a_map_of_which_almost_all_is_missing_is_filled() -> None:
     z = np.full((300, 300), np.nan)
     z[:10, :10], z[299, 299] = 1.0, 2.0
-    filled = fill(z, (1.0, 1.0))
+    filled = missing_points.fill(z, (1.0, 1.0))
     assert np.isfinite(filled).all()
     assert (filled >= 1.0).all()
     assert (filled <= 2.0).all()

@@ -297,7 +297,7 @@ def test_relative_paths_start_at_the_folder() -> None:
         ({"kind": "sphere", "radius": 1.0, "radios": 2.0}, "surface.radios = 2.0"),
         ({"kind": "sphere"}, "surface.radius"),
         ({"kind": "sphare"}, "surface.kind = 'sphare'"),
-        ({"kind": "sphare"}, "expected one of flat, sphere, gaussian, measured, sum"),
+        ({"kind": "sphare"}, "expected one of flat, sphere, gaussian, self_affine, measured, sum"),
         ({"kind": ["sphere"]}, "surface.kind"),
         ({}, "surface.kind = None"),
         ({"kind": "flat", "height": 1}, "surface.height"),

@@ -77,7 +77,7 @@ TWO_LAWFUL = Sample(
 
 def test_of_two_lawful_states_both_solvers_take_the_rules() -> None:
     dense, fft = (
-        rf.solve(TWO_LAWFUL.scene, TWO_LAWFUL.M, method=method, oblique=False, tolerance=TOLERANCE)
+        rf.solve(TWO_LAWFUL.scene, 4, method=method, oblique=False, tolerance=TOLERANCE)
         for method in ("dense", "fft")
     )
     assert dense.status is fft.status is rf.Status.CONVERGED

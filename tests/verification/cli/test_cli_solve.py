@@ -333,3 +333,27 @@ def test_maps_and_profiles_have_x_to_the_right(scene: str) -> None:
     plot._profile(along_y, marked, None, axis=1)
     assert np.argmax(along_x.lines[0].get_ydata()) == 6
     assert np.max(along_y.lines[0].get_ydata()) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "included"), [([], True), (["--plastic", "on"], True), (["--plastic", "off"], False)]
+)
+def test_pressures_end_at_the_hardness(
+    words: list[str], included: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, found = tmp_path / "hard.toml", tmp_path / "hard.json"
+    path.write_text(SCENE.replace("nu = 0.38", "nu = 0.38\nhardness = 8e6"))
+    assert main(["solve", str(path), "--grid", "32", "--json", str(found), *words]) == 0
+    table, document = capsys.readouterr().out, json.loads(found.read_text())
+    assert ("plastic area" in table) == included
+    assert ("at the hardness A is at least" in " ".join(table.split())) == (not included)
+    assert (document["plastic_share"] > 0.3) == included
+    assert (document["max_pressure"] == 8e6) == included
+    assert document["uncertainty"]["plastic_area"]
+
+
+def test_plastic_is_on_or_off(scene: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["solve", scene, "--plastic", "yes"])
+    assert "expected on or off" in capsys.readouterr().err
+    assert main(["solve", scene, "--plastic", "on"]) == 2  # no hardness

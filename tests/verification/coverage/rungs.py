@@ -19,7 +19,7 @@ def rung(M: int, *, size: float = 0.85, wrong: float = 0.0, seed: int = 3) -> Ru
     """A disc on a grid, with an area wrong by a share; the finest grid of `GRIDS` is never wrong."""
     h, radius = SIDE / M, 0.2 * SIDE
     edge, limit = EDGE_SHARE * 8 * radius * h, np.pi * radius**2
-    numbers = dict.fromkeys(REPORTED, 1.0)
+    numbers = dict.fromkeys(REPORTED, 1.0) | {"plastic_area": 0.0}
     area = (limit + size * edge) * (1 + (wrong if M in GRIDS[:-1] else 0.0))
     numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
     numbers["friction_coefficient"] = 0.1 + 1e5 * area

@@ -58,7 +58,7 @@ def test_a_study_that_is_no_ensemble_is_refused(tmp_path: Path, change: dict, fi
 
 
 def test_a_scene_without_scatter_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="Gaussian"):
+    with pytest.raises(InputError, match="random"):
         ensemble(study_from_dict(TABLE | {"scene": "hertz"}), tmp_path / "a.sqlite", 0.05)
     assert list(tmp_path.iterdir()) == []
 

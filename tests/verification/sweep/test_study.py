@@ -241,3 +241,82 @@ def test_files_that_are_no_study(tmp_path: Path) -> None:
 def test_studies_are_frozen() -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         varied().realisations = 3  # type: ignore[misc]  # the point of the test
+
+
+SELF_AFFINE = """
+[upper.material]
+E = 2e11
+nu = 0.3
+[[upper.surface]]
+kind = "gaussian"
+rms = 1e-7
+correlation_length = [3e-4, 1e-4]
+seed = 1
+lay = 0.3
+[lower.material]
+E = 2e11
+nu = 0.3
+[[lower.surface]]
+kind = "self_affine"
+hurst = 0.8
+rms_gradient = 0.01
+roll_off = 3e-4
+long_cut = 6e-4
+short_cut = 1e-4
+seed = 1
+"""
+
+
+def test_numbers_of_surfaces_vary_by_their_full_names(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(f"load = 1.0\nside = 1e-3\n{SELF_AFFINE}")
+    axes = {
+        "lower.surface[0].hurst": [0.3, 0.8],
+        "lower.surface[0].short_cut": [5e-5, 1e-4],
+        "upper.surface[0].correlation_length[1]": [5e-5],
+        "upper.surface[0].lay": [0.0, 0.5],
+    }
+    table = {"scene": "scene.toml", "realisations": 2, "vary": {"grid": [32], **axes}}
+    runs = list(study_from_dict(table, tmp_path).runs())
+    assert len(runs) == len({run.key for run in runs}) == 16
+    last = runs[-1].inputs["scene"]
+    assert last["lower"]["surface"][0]["hurst"] == 0.8
+    assert last["lower"]["surface"][0]["seed"] == 4
+    assert last["upper"]["surface"][0]["correlation_length"] == [3e-4, 5e-5]
+    assert last["upper"]["surface"][0]["lay"] == 0.5
+    assert '"lower.surface[0].hurst": 0.8' in runs[-1].coordinates["parameters"]
+    assert execute(runs[-1].inputs)[0]["status"] == "converged"
+
+
+def test_hardness_varies_by_its_full_name(tmp_path: Path) -> None:
+    hard = SELF_AFFINE.replace("[lower.material]", "[lower.material]\nhardness = 1e9")
+    (tmp_path / "scene.toml").write_text(f"load = 100.0\nside = 1e-3\n{hard}")
+    axes = {"lower.material.hardness": [0.2e9, 1e12]}
+    runs = list(study_from_dict({"scene": "scene.toml", "vary": {"grid": [32], **axes}}, tmp_path).runs())
+    soft, unlimited = (execute(run.inputs)[0] for run in runs)
+    assert soft["max_pressure"] == 0.2e9 < unlimited["max_pressure"]
+    assert soft["contact_area"] > unlimited["contact_area"]
+    with pytest.raises(InputError, match=r"upper\.material\.hardness"):
+        study_from_dict(
+            {"scene": "scene.toml", "vary": {"grid": [32], "upper.material.hardness": [1e9]}}, tmp_path
+        )
+
+
+@pytest.mark.parametrize(
+    ("field", "axis", "values"),
+    [
+        ("vary.lower.surface[0].seed", "lower.surface[0].seed", [1, 2]),
+        ("vary.lower.surface[1].hurst", "lower.surface[1].hurst", [0.3]),
+        ("vary.lower.surface[0].rms", "lower.surface[0].rms", [1e-7]),
+        ("vary.lower_rms", "lower_rms", [1e-7]),
+        ("vary.correlation_length", "correlation_length", [1e-4]),
+        ("lower.surface[0].hurst", "lower.surface[0].hurst", [0.3, 1.2]),
+        ("lower.surface[0].long_cut", "lower.surface[0].long_cut", [6e-4, 1e-4]),
+    ],
+)
+def test_bad_numbers_of_surfaces_are_refused(
+    tmp_path: Path, field: str, axis: str, values: list[float]
+) -> None:
+    (tmp_path / "scene.toml").write_text(f"load = 1.0\nside = 1e-3\n{SELF_AFFINE}")
+    with pytest.raises(InputError) as refused:
+        study_from_dict({"scene": "scene.toml", "vary": {"grid": [32], axis: values}}, tmp_path)
+    assert refused.value.field == field

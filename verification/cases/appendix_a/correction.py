@@ -117,7 +117,7 @@ def changes(pair: str, slope_deg: float) -> dict[str, Array]:
         plain = rf.solve(scene, M)
         found[TREATMENTS[0]].append(change(rf.solve(scene, M, slope_correction=True), plain))
         found[TREATMENTS[1]].append(change(remedied(scene, M), plain))
-        found["contact"].append(np.degrees([plain.slope_error.rms_slope, plain.slope_error.max_slope]))
+        found["contact"].append(np.degrees([plain.slope_error.rms_gradient, plain.slope_error.max_slope]))
     return {name: np.array(rows) for name, rows in found.items()}
 
 
@@ -125,7 +125,7 @@ def over_slopes(pair: str) -> dict[str, object]:
     """Means over realisations with 95 % intervals, and what both treatments share, over SLOPES."""
     data: dict[str, object] = {"rms slope (degrees)": list(SLOPES)}
     found = [changes(pair, slope) for slope in SLOPES]
-    for k, name in enumerate(("rms slope in contact (degrees)", "largest slope in contact (degrees)")):
+    for k, name in enumerate(("rms gradient in contact (degrees)", "largest slope in contact (degrees)")):
         data[name] = [float(one["contact"][:, k].mean()) for one in found]
     for treatment in TREATMENTS:
         for k, quantity in enumerate(QUANTITIES):

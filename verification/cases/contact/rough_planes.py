@@ -94,7 +94,7 @@ def self_affine(M: int, seed: int, *, longest: int = 4, shortest: int = 16) -> A
 
 
 LOADS = (0.02, 0.04, 0.08)
-"""Mean pressure over E* times rms slope."""
+"""Mean pressure over E* times rms gradient."""
 
 
 def area_curves(M: int) -> Array:
@@ -102,7 +102,7 @@ def area_curves(M: int) -> Array:
     curves = []
     for seed in range(5):
         heights = 1e-3 * self_affine(M, seed)
-        slope = rough_plane.spectral_rms_slope(heights, 1.0)
+        slope = rough_plane.spectral_rms_gradient(heights, 1.0)
         gap = heights.max() - heights
 
         def plane(x: Array, y: Array, gap: Array = gap) -> Array:

@@ -164,7 +164,7 @@ def rough_plane_area(entrant: Entrant) -> Measured:
     found = []
     for seed in (31, 32):
         heights = AMPLITUDE * waves(64, seed, longest=3, shortest=8)
-        slope = rough_plane.spectral_rms_slope(heights, 1.0)
+        slope = rough_plane.spectral_rms_gradient(heights, 1.0)
         pressure = 0.04 * MODULUS * slope
         pressed = entrant.press(heights.max() - heights, 1.0, load=pressure, periodic=True)
         fraction = float(np.mean(pressed.pressure > 0))

@@ -29,16 +29,16 @@ def problem(
 ) -> Problem:
     """A flat on heights, or on random ones."""
     lower = np.random.default_rng(shape[0]).normal(size=shape) * 1e-6 if heights is None else heights
-    steel = rf.Material(E=200e9, nu=0.3)
+    steel, grid = rf.Material(E=200e9, nu=0.3), Grid(shape, (SIDE, SIDE))
     scene = rf.Scene(
         upper=rf.Body(steel, rf.Flat()),
-        lower=rf.Body(steel, lower),
+        lower=rf.Body(steel, rf.ArraySurface(lower, pixel=grid.spacings)),
         friction=rf.Friction(tau=0.0, beta=0.0),
         load=3.0,
         side=SIDE,
     )
     terms = Terms(coupled=False, oblique=oblique, tilted=False)
-    return discretise(scene, Grid(shape, (SIDE, SIDE)), terms, approach)
+    return discretise(scene, grid, terms, approach)
 
 
 @pytest.mark.parametrize(

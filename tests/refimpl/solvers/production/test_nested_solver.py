@@ -19,7 +19,7 @@ from refimpl.operators.influence import window_influence
 from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.constants import MARGIN
 from refimpl.solvers.production.level import LevelSolver
-from refimpl.solvers.production.nested_solver import _certified, _missed_by_window, _widened, solve_fft
+from refimpl.solvers.production.nested_solver import certified, missed_by_window, solve_fft, widened
 from tests.refimpl.solvers.production.levels import BALL, FAINT, coupled, level_solver, problem_of
 
 
@@ -63,7 +63,7 @@ def test_the_certificate_knows_all_tractions_and_transforms_no_more(rows: slice)
         pressure, traction, flat, rf.Status.CONVERGED, excluded=pressure > 0, cycle_states=()
     )
     found, everything = Counter(), Counter()
-    state = _certified(problem, result, found)
+    state = certified(problem, result, found)
     operator = window_influence(problem.grid, problem.direction, counter=everything)
     exact = certify(problem, operator, pressure, traction, flat)
     for name in ("displacement_lower", "displacement_upper"):
@@ -78,8 +78,8 @@ def test_without_friction_the_certificate_transforms_no_more_than_the_contact_ne
     problem = problem_of(replace(BALL, friction=rf.Friction()), 32)
     result = level_solver(problem).result(1e-6)
     found, everything = Counter(), Counter()
-    _certified(problem, result, found)
-    _certified(problem, replace(result, pressure=np.ones((32, 32))), everything)
+    certified(problem, result, found)
+    certified(problem, replace(result, pressure=np.ones((32, 32))), everything)
     assert found.point_logs < 0.6 * everything.point_logs
 
 
@@ -90,13 +90,13 @@ def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
     solver = level_solver(problem, Window(22, 27, 21, 26))
     for _ in range(20):
         result = solver.result(tolerance)
-        state = _certified(problem, result, Counter())
-        missed = _missed_by_window(problem, state, solver.window, tolerance)
+        state = certified(problem, result, Counter())
+        missed = missed_by_window(problem, state, solver.window, tolerance)
         if not missed.any():
             break
         assert not missed[solver.window.interior(shape).slices].any()
         steps, needed = solver.cg_iterations, missed | solver.window.mask(shape)
-        solver = _widened(problem, result, needed, Counter(), needs_mixing=solver.needs_mixing)
+        solver = widened(problem, result, needed, Counter(), needs_mixing=solver.needs_mixing)
         assert solver.cg_iterations == steps
     assert np.abs(result.pressure - expected).max() <= 1e-6 * expected.max()
     assert solver.window.shape < shape
@@ -113,7 +113,7 @@ def test_a_wider_window_holds_the_contact_and_what_penetrates_beside_it() -> Non
     outside[18] = result.pressure[18] > 0  # as contact on the edge is where slopes count
     assert outside[18].any()
     needed = solver.window.mask(shape) | outside
-    wider = _widened(solver.whole, result, needed, Counter(), needs_mixing=True)
+    wider = widened(solver.whole, result, needed, Counter(), needs_mixing=True)
     assert wider.needs_mixing
     assert wider.window == Window.around(needed, MARGIN).filling(shape)
     assert wider.window.shape < shape
@@ -122,26 +122,26 @@ def test_a_wider_window_holds_the_contact_and_what_penetrates_beside_it() -> Non
 
 def test_what_just_touches_outside_a_window_is_no_penetration() -> None:
     problem = problem_of(BALL, 16)
-    state = _certified(problem, level_solver(problem).result(1e-8), Counter())
+    state = certified(problem, level_solver(problem).result(1e-8), Counter())
     touching = replace(state, v=np.full((16, 16), state.approach))
-    assert not _missed_by_window(problem, touching, Window(7, 9, 7, 9), 1e-8).any()
+    assert not missed_by_window(problem, touching, Window(7, 9, 7, 9), 1e-8).any()
 
 
 def test_contact_on_a_windows_edge_has_outgrown_it_where_slopes_count() -> None:
     """One-sided on the edge, they are central on the whole grid."""
     problem = problem_of(replace(BALL, load=20.0), 16, oblique=True)
-    state = _certified(problem, level_solver(problem).result(1e-8), Counter())
+    state = certified(problem, level_solver(problem).result(1e-8), Counter())
     tight = Window.around(state.contact, margin=0)
     assert 0 < tight.i0 < tight.i1 < 16
     on_edge = state.contact.copy()
     on_edge[tight.interior((16, 16)).slices] = False
     assert on_edge.any()
-    assert np.array_equal(_missed_by_window(problem, state, tight, 1e-8), on_edge)
+    assert np.array_equal(missed_by_window(problem, state, tight, 1e-8), on_edge)
     faint = replace(state, pressure=1e-12 * state.pressure)  # no pascal is too little
-    assert np.array_equal(_missed_by_window(problem, faint, tight, 1e-8), on_edge)
-    assert not _missed_by_window(problem, state, Window.around(state.contact, margin=1), 1e-8).any()
+    assert np.array_equal(missed_by_window(problem, faint, tight, 1e-8), on_edge)
+    assert not missed_by_window(problem, state, Window.around(state.contact, margin=1), 1e-8).any()
     flat = problem_of(replace(BALL, load=20.0), 16)
-    assert not _missed_by_window(flat, state, tight, 1e-8).any()
+    assert not missed_by_window(flat, state, tight, 1e-8).any()
 
 
 def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -155,10 +155,10 @@ def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) ->
 
     def once_too_small(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
         asked.append(window)
-        return state.contact if len(asked) == 1 else _missed_by_window(problem, state, window, tolerance)
+        return state.contact if len(asked) == 1 else missed_by_window(problem, state, window, tolerance)
 
     asked: list[Window] = []
-    monkeypatch.setattr(nested_solver, "_missed_by_window", once_too_small)
+    monkeypatch.setattr(nested_solver, "missed_by_window", once_too_small)
     monkeypatch.setattr(LevelSolver, "result", recorded)
     solve_fft(problem_of(FAINT, 80), 1e-8, Counter())
     assert len(windows) > 1 + windows.index(asked[0])

@@ -220,6 +220,6 @@ def test_contact_is_certain_beyond_twice_the_misfit(
 def test_contact_is_not_certain_where_elements_are_about_to_touch() -> None:
     cg = ProjectedCG(lambda f: f.copy(), lambda r: r.copy(), np.array([[2.0, 0.0]]))
     cg.set_problem(np.array([[-1.0, 0.5]]), np.ones((1, 2)), target=None, approach=1.0)
-    cg.contact |= cg.separation < cg.approach
+    cg.free |= cg.separation < cg.approach
     assert cg.contact.all()
     assert not cg.contact_is_certain(1e-9)

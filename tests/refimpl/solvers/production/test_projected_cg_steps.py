@@ -203,3 +203,22 @@ def test_a_step_that_overshoots_every_element_leaves_no_tension() -> None:
     assert not cg.pressure.any()
     assert not cg.contact.any()
     assert cg.residuals() == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("approach", [2.0, -0.5])
+def test_penetration_is_relative_to_the_approach(approach: float) -> None:
+    cg = ProjectedCG(np.copy, np.copy, np.array([[1.0, 0.0]]))
+    cg.set_problem(
+        np.array([[approach - 1.0, approach - 0.25]]), np.ones((1, 2)), target=None, approach=approach
+    )
+    assert cg.residuals()[1] == pytest.approx(0.25 / abs(approach), rel=1e-15)
+
+
+@pytest.mark.parametrize(("K", "spared"), [(1.0, True), (0.9, False), (2.0, False)])
+def test_a_weight_of_one_for_all_is_recognised(K: float, spared: bool) -> None:
+    """It spares multiplications; an array of ones does not."""
+    cg = ProjectedCG(np.copy, np.copy, np.array([[1.0, 2.0]]))
+    cg.set_problem(np.zeros((1, 2)), np.broadcast_to(K, (1, 2)), target=3.0, approach=None)
+    assert cg._unweighted is spared
+    cg.set_problem(np.zeros((1, 2)), np.full((1, 2), K), target=3.0, approach=None)
+    assert not cg._unweighted

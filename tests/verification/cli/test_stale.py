@@ -11,8 +11,8 @@ import pytest
 
 from reports.result_files import result_paths
 from tests.documents import ROOT
-from verification import provenance
 from verification.cli import main, stale
+from verification.framework import provenance
 
 JUDGED = ("refimpl",)
 NOW = {"refimpl": "a", "refimpl/kernels": "b", "verification": "c"}

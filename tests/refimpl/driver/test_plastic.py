@@ -1,0 +1,217 @@
+"""Pressures that end at the hardness: the option, when the cap enters, its numbers and their error bars."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.driver.options import Options
+from refimpl.planning.terms import RequestedTerms
+from refimpl.scene.parameters import with_parameter
+from refimpl.sensitivities.budget import budget
+from refimpl.solution.bounds import NO_BOUND_PLASTIC
+from refimpl.solution.limits import Limit, ModelWarning
+
+H = 0.8e9
+STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.34, hardness=H)
+ROUGH = rf.Scene(
+    upper=rf.Body(STEEL, rf.Sphere(5e-3)),
+    lower=rf.Body(COPPER, rf.GaussianRoughness(0.3e-6, 100e-6, seed=1)),
+    friction=rf.Friction(15e6, 0.08),
+    load=50.0,
+    side=1e-3,
+)
+FLATS = replace(ROUGH, upper=rf.Body(STEEL, rf.Flat()))
+
+
+def hard(hardness: float | None, scene: rf.Scene = ROUGH) -> rf.Scene:
+    return replace(scene, lower=rf.Body(replace(COPPER, hardness=hardness), scene.lower.surface))
+
+
+def limits(s: rf.Solution) -> set[str]:
+    return {str(w.limit) for w in s.warnings}
+
+
+def test_the_hardness_decides() -> None:
+    """Far above all pressures it leaves the elastic solution, below them it caps them."""
+    free, capped = rf.solve(hard(1e12), 32), rf.solve(ROUGH, 32)
+    assert not free.plan.includes("plastic")
+    assert free.plastic_area == 0
+    assert not free.plastic_indentation.any()
+    assert capped.plan.includes("plastic")
+    assert capped.max_pressure == H < free.max_pressure
+    assert capped.contact_area > free.contact_area
+    assert capped.status is rf.Status.CONVERGED
+
+
+def test_what_the_estimate_misses_the_elastic_solution_restores() -> None:
+    """A hardness that the highest pressure alone exceeds; the estimate is made blind to it."""
+    elastic = rf.solve(ROUGH, 32, plastic=False)
+    scene = hard(0.99 * elastic.max_pressure)
+    options = Options(scene=scene, grid=32)
+    expected = options.plan().contact.mean_pressure
+    assert 3 * expected < 0.99 * elastic.max_pressure or options.plan().includes("plastic")
+    blind = hard(4 * expected) if 4 * expected < elastic.max_pressure else scene
+    s = rf.solve(blind, 32)
+    assert s.max_pressure == blind.lower.material.hardness
+    assert s.plastic_area > 0
+
+
+def test_restored_cap_costs_both_solves(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("refimpl.planning.terms._PEAK_OVER_MEAN", 0.0)
+    s = rf.solve(ROUGH, 32)
+    at_once = rf.solve(ROUGH, 32, plastic=True)
+    assert "restored" in s.plan.term("plastic").reason
+    assert np.array_equal(s.pressure, at_once.pressure)
+    assert s.cost.point_logs > at_once.cost.point_logs
+
+
+@pytest.mark.parametrize("accuracy", [0.02])
+def test_restored_in_a_refinement(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("refimpl.planning.terms._PEAK_OVER_MEAN", 0.0)
+    s = rf.solve(ROUGH, accuracy=accuracy)
+    assert s.plan.includes("plastic")
+    assert s.max_pressure == H
+
+
+def test_off_is_elastic_and_says_so() -> None:
+    s, soft = rf.solve(ROUGH, 32, plastic=False), rf.solve(hard(None), 32)
+    assert np.array_equal(s.pressure, soft.pressure)
+    warned = next(w for w in s.warnings if isinstance(w, ModelWarning) and w.limit is Limit.HARDNESS)
+    assert "set plastic = true" in warned
+    assert "A is at least P/H" in warned
+    assert "plasticity not checked" in " ".join(soft.warnings)
+    assert Limit.HARDNESS not in limits(soft)
+
+
+def test_notes_of_a_capped_solution() -> None:
+    s = rf.solve(ROUGH, 32)
+    told = " ".join(s.warnings)
+    assert not {"peak pressure", "plasticity index"} & limits(s)
+    assert "the upper body has no hardness" in told
+    assert f"{s.plastic_share:.1%} of the contact area is at the hardness" in told
+    assert "growth of junctions" in told
+
+
+def test_error_bars_at_the_hardness() -> None:
+    """The maximum pressure is known; the plastic area has the bar of its edge, which a finer grid meets."""
+    coarse, fine = rf.solve(ROUGH, 64), rf.solve(ROUGH, 192)
+    assert sum(coarse.uncertainty["max_pressure"].values()) == 0
+    bar = sum(coarse.uncertainty["plastic_area"].values())
+    assert 0 < abs(coarse.plastic_area - fine.plastic_area) < bar < 0.5 * coarse.plastic_area
+    assert coarse.summary()["plastic_share"] == coarse.plastic_area / coarse.contact_area
+
+
+def test_indentation_is_where_pressures_are_capped() -> None:
+    s = rf.solve(ROUGH, 32)
+    at_cap = s.pressure == H
+    assert np.count_nonzero(at_cap) * s.grid.element_area == pytest.approx(s.plastic_area)
+    assert not s.plastic_indentation[~at_cap].any()
+    assert s.plastic_indentation[at_cap].min() >= 0
+    K = s.slopes.obliqueness
+    # with the indentation the bodies fit: v - approach + w_p / K vanishes where pressures are capped
+    assert np.abs(s.clearance + s.plastic_indentation / K)[at_cap].max() < 1e-12
+
+
+def test_a_hardness_as_is() -> None:
+    """Needed by a request; what cannot have a cap is elastic, unless it is requested."""
+    for scene, word, field in (
+        (hard(None), {"plastic": True}, "plastic"),
+        (ROUGH, {"plastic": True, "method": "paper"}, "method"),
+        (ROUGH, {"plastic": True, "slope_correction": True}, "plastic"),
+        (ROUGH, {"plastic": "on"}, "plastic"),
+    ):
+        with pytest.raises(rf.InputError) as refused:
+            rf.solve(scene, 8, **word)  # type: ignore[arg-type]
+        assert refused.value.field == field
+    for word in ({"method": "paper"}, {"slope_correction": True}):
+        s = rf.solve(ROUGH, 8, **word)  # type: ignore[arg-type]
+        assert not s.plan.includes("plastic")
+        assert Limit.HARDNESS in limits(s)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("method", ["dense", "fft"])
+def test_no_contact_bears_more_than_the_hardness(method: str, periodic: bool) -> None:
+    most = H * 1e-6
+    scene = replace(FLATS, periodic=periodic, friction=rf.Friction(15e6, 0.1))
+    with pytest.raises(rf.InputError) as refused:
+        rf.solve(replace(scene, load=most * (1 + 1e-9)), 8)
+    assert refused.value.field == "load"
+    assert rf.solve(replace(scene, load=1.01 * most), 8, plastic=False).converged
+    s = rf.solve(replace(scene, load=most), 8, method=method, oblique=False)  # type: ignore[arg-type]
+    assert s.converged
+    assert s.pressure == pytest.approx(np.full((8, 8), H), rel=1e-9)
+    assert s.friction_coefficient == pytest.approx(15e6 / H + 0.1, rel=1e-9)
+    assert s.contact_area == pytest.approx(1e-6)
+    if method == "dense":  # which keeps one element free, at the hardness but for rounding
+        assert s.plastic_area >= s.contact_area - 1.5 * s.grid.element_area
+        return
+    assert s.plastic_area == s.contact_area
+    assert math.isinf(sum(s.uncertainty["approach"].values()))
+    assert "the approach is not unique" in " ".join(s.warnings)
+
+
+def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:
+    off = replace(ROUGH, plastic=False)
+    assert not rf.solve(off, 16).plan.includes("plastic")
+    assert rf.solve(off, 16, plastic=True).plan.includes("plastic")
+    path = tmp_path / "scene.toml"
+    path.write_text(rf.scene_to_toml(off), encoding="utf-8")
+    assert rf.read_scene(path).plastic is False
+    assert "plastic" not in rf.scene_to_toml(ROUGH)
+    with pytest.raises(rf.InputError, match="plastic"):
+        replace(ROUGH, plastic=1)
+    assert Options(scene=off, grid=8, requested=RequestedTerms()).requested.plastic is False
+
+
+def test_bounds_of_capped_states() -> None:
+    """Pressures at the hardness have none; a cap that is not reached changes nothing."""
+    assert rf.solve(ROUGH, 24, oblique=False).bounds.unproven == NO_BOUND_PLASTIC
+    elastic = rf.solve(hard(None), 24, oblique=False)
+    wide = rf.solve(hard(2 * elastic.max_pressure), 24, oblique=False, plastic=True)
+    assert wide.bounds.energy == pytest.approx(elastic.bounds.energy, rel=0.5)
+    close = elastic.max_pressure + 0.5 * wide.bounds.pressure
+    assert rf.solve(hard(close), 24, oblique=False, plastic=True).bounds.unproven == NO_BOUND_PLASTIC
+
+
+def test_model_form_of_an_elastic_solution_beyond_the_hardness() -> None:
+    """The budget holds the difference to the capped one; below the hardness, or with the cap, none."""
+    elastic, capped = rf.solve(ROUGH, 32, plastic=False), rf.solve(ROUGH, 32)
+    found = budget(ROUGH, elastic).numbers["friction_coefficient"]
+    assert found.sources["plasticity"] == pytest.approx(
+        capped.friction_coefficient - elastic.friction_coefficient, rel=1e-6
+    )
+    assert found.total >= found.sources["plasticity"]
+    below = hard(1e12)
+    assert "plasticity" not in budget(below, rf.solve(below, 32)).numbers["max_pressure"].sources
+
+
+def test_sensitivities_of_a_capped_solution() -> None:
+    """At the fixed set as two solves have it: with steps so small that no element changes its state."""
+    scene = replace(ROUGH, friction=rf.Friction(0.0, 0.2))
+    s = rf.solve(scene, 32, tolerance=1e-12)
+    assert 0.1 < s.plastic_share < 0.9
+    d = rf.sensitivity(scene, s)
+    assert d.relative("max_pressure", "lower.material.hardness") == pytest.approx(1.0, rel=1e-9)
+    assert d.derivatives["max_pressure"]["load"] == 0
+    for name in ("load", "lower.material.hardness", "lower.material.E", "upper.surface[0].radius"):
+        value, step = d.parameters[name], 1e-6
+        low, high = (
+            rf.solve(with_parameter(scene, name, value * (1 + sign * step)), 32, tolerance=1e-13)
+            for sign in (-1, 1)
+        )
+        for number in ("friction_coefficient", "binormal_force"):
+            difference = (getattr(high, number) - getattr(low, number)) / (2 * step * value)
+            assert d.derivatives[number][name] == pytest.approx(difference, rel=2e-3), (name, number)
+
+
+def test_no_derivatives_without_elastic_contact() -> None:
+    scene = replace(FLATS, load=H * 1e-6)
+    with pytest.raises(rf.InputError, match="elastic contact"):
+        rf.sensitivity(scene, rf.solve(scene, 8, oblique=False))

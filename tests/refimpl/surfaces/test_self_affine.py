@@ -1,0 +1,479 @@
+"""Self-affine roughness: spectrum, statistics, one surface per seed, what is refused.
+
+The spectrum is written out here anew. A wave of the torus and its opposite have ``2 |Z|^2 / a^2`` of
+chi-square with two degrees of freedom, Z their coefficient and a^2 a wave's mean square, all independent.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import refimpl as rf
+from refimpl.errors import InputError
+from refimpl.grid import Array, Grid
+from refimpl.surfaces import SelfAffineRoughness, SurfaceWarning, surface_from_dict
+from refimpl.surfaces.roughness_fit import fit_roughness
+from refimpl.surfaces.statistics import kurtosis, skewness
+
+SIDE = 1e-3
+PARAMETERS: dict[str, Any] = {
+    "hurst": 0.8, "rms": 1e-6, "roll_off": 2e-4, "long_cut": 5e-4, "short_cut": 2e-5, "seed": 1
+}  # fmt: skip
+
+
+def rough(**changed: Any) -> SelfAffineRoughness:
+    table = PARAMETERS | changed
+    if "rms_gradient" in changed:
+        del table["rms"]
+    return SelfAffineRoughness(**table)
+
+
+def shape(q: Array, table: dict[str, Any] = PARAMETERS) -> Array:
+    """The PSD over its plateau, as the specification has it; ends included."""
+    low, roll, high = (2 * math.pi / table[name] for name in ("long_cut", "roll_off", "short_cut"))
+    power = np.where(q <= roll, 1.0, (np.maximum(q, roll) / roll) ** (-2 - 2 * table["hurst"]))
+    return np.where((q >= low * (1 - 1e-9)) & (q <= high * (1 + 1e-9)), power, 0.0)
+
+
+class Modes:
+    """Coefficients of periodic heights of unit rms, and the mean squares a^2 that they should have."""
+
+    def __init__(self, z: Array, lengths: tuple[float, float], power: Any) -> None:
+        M, N = z.shape
+        qx, qy = (2 * math.pi * np.fft.fftfreq(n, L / n) for n, L in zip(z.shape, lengths, strict=True))
+        self.qx, self.qy = np.broadcast_arrays(qx[:, None], qy[None, :])
+        self.coefficients = np.fft.fft2(z) / (M * N)
+        self.expected = power(self.qx, self.qy)
+        half = (qx[:, None] > 0) | ((qx[:, None] == 0) & (qy[None, :] > 0))
+        self.half = half & (self.expected > 0)
+
+    def chi_square(self, where: Array) -> tuple[float, int]:
+        """Sum over the waves of a band, and its degrees of freedom."""
+        band = self.half & where
+        return float((2 * np.abs(self.coefficients[band]) ** 2 / self.expected[band]).sum()), 2 * int(
+            band.sum()
+        )
+
+
+def isotropic(qx: Array, qy: Array) -> Array:
+    power = shape(np.hypot(qx, qy))
+    return power / power.sum()
+
+
+def periodic_modes(seed: int, **changed: Any) -> Modes:
+    grid = Grid((160, 144), (SIDE, 0.9 * SIDE), periodic=True)
+    return Modes(rough(rms=1.0, seed=seed, **changed).sample(grid), grid.lengths, isotropic)
+
+
+def free_torus(seed: int) -> Modes:
+    """The whole period of a free surface, 8 long cuts, put together from 16 slides of one domain."""
+    grid = Grid.square(SIDE, 128)
+    surface = rough(rms=1.0, seed=seed)
+    tiles = [[surface.sample(grid, (i * SIDE, j * SIDE)) for j in range(4)] for i in range(4)]
+    return Modes(np.block(tiles), (4 * SIDE, 4 * SIDE), isotropic)
+
+
+@pytest.fixture(scope="module")
+def ensembles() -> dict[str, list[Modes]]:
+    """Seeds 1 to 12 periodic, 1 to 3 free: fixed before anything was looked at."""
+    return {
+        "periodic": [periodic_modes(seed) for seed in range(1, 13)],
+        "free": [free_torus(seed) for seed in range(1, 4)],
+    }
+
+
+@pytest.mark.parametrize("kind", ["periodic", "free"])
+def test_psd_is_within_chi_square_bounds_in_every_band(kind: str, ensembles: dict[str, list[Modes]]) -> None:
+    """Thirds of octaves from the long cut to the short one; four standard errors, sqrt(2 / freedoms)."""
+    edges = 2 * math.pi / PARAMETERS["long_cut"] * 2.0 ** (np.arange(15) / 3 - 1e-6)
+    bands = 0
+    for low, high in pairwise(edges):
+        total, freedoms = 0.0, 0
+        for modes in ensembles[kind]:
+            q = np.hypot(modes.qx, modes.qy)
+            part, n = modes.chi_square((q >= low) & (q < high))
+            total, freedoms = total + part, freedoms + n
+        assert freedoms > 50
+        assert abs(total / freedoms - 1) < 4 * math.sqrt(2 / freedoms)
+        bands += 1
+    assert bands == 14
+
+
+@pytest.mark.parametrize("kind", ["periodic", "free"])
+def test_spectrum_is_zero_beyond_its_cuts(kind: str, ensembles: dict[str, list[Modes]]) -> None:
+    for modes in ensembles[kind][:2]:
+        outside = np.abs(modes.coefficients[modes.expected == 0]).max()
+        assert outside < 1e-15  # of heights of unit rms; the smallest inside are 1e-4
+
+
+def test_hurst_exponent(ensembles: dict[str, list[Modes]]) -> None:
+    """Maximum likelihood over all waves beyond the roll-off: with x = ln q, the likelihood of the exponent
+    in ``a^2 = c q^-s`` has the Fisher information N var(x), so s errs by 1 / sqrt(N var x), and H by half of
+    that."""
+    for kind in ("periodic", "free"):
+        x, y = [], []
+        for modes in ensembles[kind]:
+            q = np.hypot(modes.qx, modes.qy)
+            band = modes.half & (q > 2 * math.pi / PARAMETERS["roll_off"])
+            x.append(np.log(q[band]))
+            y.append(np.abs(modes.coefficients[band]) ** 2)
+        logs, squares = np.concatenate(x), np.concatenate(y)
+        from_mean = logs - logs.mean()
+        s = 2.0
+        for _ in range(50):  # Newton's method for sum (y e^(s x) / mean(y e^(s x)) - 1) x = 0
+            weight = squares * np.exp(s * from_mean)
+            weight /= weight.mean()
+            first, second = np.mean(weight * from_mean), np.mean(weight * from_mean**2)
+            s -= first / (second - first**2)
+        error = 0.5 / math.sqrt(len(logs) * float(np.var(logs)))
+        assert error < 0.01
+        assert abs(0.5 * s - 1 - 0.8) < 4 * error
+
+
+@pytest.mark.parametrize("kind", ["periodic", "free"])
+def test_rms_height_and_gradient(kind: str, ensembles: dict[str, list[Modes]]) -> None:
+    """Mean squares over the period: sums of a^2 w^2, of variance 2 sum a^4. The gradient's expectation is
+    that of the waves there are; the integral's is near to it."""
+    for power in (0, 2):
+        found, expected, variance = 0.0, 0.0, 0.0
+        for modes in ensembles[kind]:
+            weight = np.hypot(modes.qx, modes.qy) ** power
+            found += float((weight * np.abs(modes.coefficients) ** 2).sum())
+            expected += float((weight * modes.expected).sum())
+            variance += 2 * float((weight**2 * modes.expected**2).sum())
+        assert abs(found - expected) < 4 * math.sqrt(variance)
+        of_one = expected / len(ensembles[kind])
+        integral = 1.0 if power == 0 else rough(rms=1.0).rms_gradient ** 2
+        assert of_one == pytest.approx(integral, rel=1e-12 if power == 0 else 0.05)
+
+
+@pytest.mark.parametrize("kind", ["periodic", "free"])
+def test_waves_are_normal(kind: str, ensembles: dict[str, list[Modes]]) -> None:
+    """Real and imaginary parts over a / sqrt(2): independent standard normal numbers."""
+    parts = []
+    for modes in ensembles[kind]:
+        scaled = modes.coefficients[modes.half] / np.sqrt(0.5 * modes.expected[modes.half])
+        parts += [scaled.real, scaled.imag]
+    w = np.concatenate(parts)
+    n = w.size
+    assert n > 10_000
+    assert abs(w.mean()) < 4 / math.sqrt(n)
+    assert abs(w.var() - 1) < 4 * math.sqrt(2 / n)
+    assert abs(skewness(w)) < 4 * math.sqrt(6 / n)
+    assert abs(kurtosis(w) - 3) < 4 * math.sqrt(24 / n)
+    assert abs(np.mean(w[1:] * w[:-1])) < 4 / math.sqrt(n)
+
+
+@pytest.mark.parametrize("kind", ["periodic", "free"])
+def test_slopes_are_isotropic(kind: str, ensembles: dict[str, list[Modes]]) -> None:
+    """Of the structure tensor both deviators vanish, up to sums of a^2 w^2 with variance 2 sum a^4."""
+    for weigh in (lambda qx, qy: qx**2 - qy**2, lambda qx, qy: 2 * qx * qy):
+        found, expected, variance = 0.0, 0.0, 0.0
+        for modes in ensembles[kind]:
+            weight = weigh(modes.qx, modes.qy)
+            found += float((weight * np.abs(modes.coefficients) ** 2).sum())
+            expected += float((weight * modes.expected).sum())
+            variance += 2 * float((weight**2 * modes.expected**2).sum())
+        assert abs(found - expected) < 4 * math.sqrt(variance)
+
+
+def test_lay_stretches_the_spectrum() -> None:
+    """Periodic: chi-square of each wave by C(sqrt(g^2 q_along^2 + q_across^2)), in bands and in sectors."""
+    g, lay = 3.0, 0.7
+
+    def stretched(qx: Array, qy: Array) -> Array:
+        along, across = qx * math.cos(lay) + qy * math.sin(lay), qy * math.cos(lay) - qx * math.sin(lay)
+        power = shape(np.sqrt(g**2 * along**2 + across**2))
+        return power / power.sum()
+
+    grid = Grid.square(SIDE, 160, periodic=True)
+    totals = dict.fromkeys(range(6), (0.0, 0))
+    for seed in range(1, 13):
+        z = rough(rms=1.0, seed=seed, anisotropy=g, lay=lay).sample(grid)
+        modes = Modes(z, grid.lengths, stretched)
+        assert np.abs(modes.coefficients[modes.expected == 0]).max() < 1e-15
+        angle = np.mod(np.arctan2(modes.qy, modes.qx), math.pi)
+        for sector, (total, freedoms) in totals.items():
+            part, n = modes.chi_square((angle >= sector * math.pi / 6) & (angle < (sector + 1) * math.pi / 6))
+            totals[sector] = total + part, freedoms + n
+    for total, freedoms in totals.values():
+        assert freedoms > 200
+        assert abs(total / freedoms - 1) < 4 * math.sqrt(2 / freedoms)
+
+
+def test_lay_of_a_free_surface() -> None:
+    """Covariance at lags in the lay's frame is the isotropic one at (along / g, across): products averaged
+    over 40 seeds and a grid of points, against the sum over the isotropic torus' waves. Spread between seeds
+    gives the standard error: four of them with Student's t of 39 freedoms, 3e-4."""
+    g, lay = 2.5, 0.6
+    isotropic_torus = rough(rms=1.0, short_cut=8e-5)._torus(Grid.square(SIDE, 16))
+    k, across = (np.arange(-n, n + 1.0) for n in isotropic_torus.waves)
+    qx, qy = isotropic_torus.wave_vectors(k, across)
+    power = shape(np.hypot(qx, qy), PARAMETERS | {"short_cut": 8e-5})
+    lags = [
+        (0.0, 0.0),
+        (6e-5, 0.0),
+        (0.0, 6e-5),
+        (1.5e-4, 0.0),
+        (0.0, 1.2e-4),
+        (6e-5, -6e-5),
+    ]  # along, across
+    products = []
+    grid = Grid.square(2 * SIDE, 12)
+    for seed in range(40):
+        surface = rough(rms=1.0, short_cut=8e-5, seed=seed, anisotropy=g, lay=lay)
+        z = surface.sample(grid)
+        offsets = [
+            (a * math.cos(lay) - c * math.sin(lay), a * math.sin(lay) + c * math.cos(lay)) for a, c in lags
+        ]
+        products.append([np.mean(z * surface.sample(grid, offset)) for offset in offsets])
+    error = np.std(products, axis=0, ddof=1) / math.sqrt(len(products))
+    for found, spread, (a, c) in zip(np.mean(products, axis=0), error, lags, strict=True):
+        exact = float((power * np.cos(qx * a / g + qy * c)).sum() / power.sum())
+        assert abs(found - exact) < 4 * spread
+    assert error.max() < 0.1
+
+
+@pytest.mark.parametrize(
+    "changed", [{}, {"anisotropy": 3.0, "lay": 0.7}, {"rms_gradient": 0.1, "hurst": 1.0}]
+)
+@pytest.mark.parametrize("periodic", [False, True])
+def test_one_surface_on_every_grid_and_at_every_offset(changed: dict[str, float], periodic: bool) -> None:
+    surface, lengths = rough(**changed), (SIDE, 0.8 * SIDE)
+    rms = surface.rms
+    coarse, middle, fine = (surface.sample(Grid((M, M), lengths, periodic)) for M in (63, 189, 567))
+    np.testing.assert_allclose(middle[1::3, 1::3], coarse, rtol=0, atol=1e-12 * rms)
+    np.testing.assert_allclose(fine[4::9, 4::9], coarse, rtol=0, atol=1e-12 * rms)
+    grid = Grid((63, 63), lengths, periodic)
+    slid = surface.sample(grid, (5 * grid.spacings[0], -9 * grid.spacings[1]))
+    np.testing.assert_allclose(slid[:-5, 9:], coarse[5:, :-9], rtol=0, atol=1e-12 * rms)
+    if periodic:
+        again = surface.sample(grid, (3 * lengths[0], -lengths[1]))
+        np.testing.assert_allclose(again, coarse, rtol=0, atol=1e-12 * rms)
+        rolled = surface.sample(grid, (5 * grid.spacings[0], -70 * grid.spacings[1]))
+        np.testing.assert_allclose(rolled, np.roll(coarse, (-5, 70), (0, 1)), rtol=0, atol=1e-12 * rms)
+    else:  # a domain of nearly the same size: the same plane, the same corner
+        smaller = surface.sample(Grid((45, 42), (45 / 63 * lengths[0], 42 / 63 * lengths[1])))
+        np.testing.assert_allclose(smaller, coarse[:45, :42], rtol=0, atol=1e-12 * rms)
+
+
+def test_a_free_surface_repeats_far_from_its_domain_only() -> None:
+    surface, grid = rough(), Grid.square(SIDE, 32)
+    z = surface.sample(grid)
+    period = 8 * 5e-4
+    np.testing.assert_allclose(surface.sample(grid, (period, -2 * period)), z, rtol=0, atol=1e-17)
+    for shift in (SIDE, 2 * SIDE, 3 * SIDE):
+        assert abs(np.corrcoef(surface.sample(grid, (shift, 0.0)).ravel(), z.ravel())[0, 1]) < 0.5
+
+
+def test_threads_get_the_same_bits() -> None:
+    grid, found = Grid.square(SIDE, 200), []
+    workers = [threading.Thread(target=lambda: found.append(rough().sample(grid))) for _ in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert len(found) == 4
+    for z in found:
+        np.testing.assert_array_equal(z, found[0])
+
+
+def test_pinned() -> None:
+    """A scene file must mean the same surface in every version; other libraries may round differently."""
+    z = rough().sample(Grid.square(SIDE, 16))
+    np.testing.assert_allclose(
+        z[3:5, 7:9],
+        [[-1.0307545790051934e-06, 4.3621835582264294e-07], [-1.188467521533459e-07, -6.558486109367364e-07]],
+        rtol=1e-9,
+        atol=0,
+    )
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
+@pytest.mark.parametrize("roll_off", [2e-4, 5e-4])
+def test_moments_are_the_integrals_of_the_psd(hurst: float, roll_off: float) -> None:
+    surface = rough(hurst=hurst, roll_off=roll_off, anisotropy=2.0, lay=0.4)
+    ends = [2 * math.pi / wave for wave in (5e-4, 2e-4, 2e-5)]
+    for order in (0, 2, 4):
+        exact = sum(
+            quad(lambda q, n=order: q ** (n + 1) * float(shape(np.array(q), vars(surface))), a, b, epsabs=0)[
+                0
+            ]
+            for a, b in pairwise(ends)
+        )
+        assert surface.moment(order) == pytest.approx(exact / (2 * math.pi), rel=1e-9)
+    # over the plane of the stretched PSD, with q_along = q cos t / g and dq_along = d(...) / g
+    height = surface.moment(0) / 2.0
+    gradient = surface.moment(2) / 2.0 * 0.5 * (1 / 4 + 1)
+    assert surface.rms_gradient == pytest.approx(1e-6 * math.sqrt(gradient / height), rel=1e-12)
+    along_x = 0.5 * surface.moment(2) / 2.0 * (math.cos(0.4) ** 2 / 4 + math.sin(0.4) ** 2)
+    assert surface.rms_slope == pytest.approx(1e-6 * math.sqrt(along_x / height), rel=1e-12)
+    plateau = surface.psd(np.array([2 * math.pi / 5e-4]))[0]
+    assert plateau * height == pytest.approx(1e-12)
+    assert rough(hurst=hurst, roll_off=roll_off).nayak > 1.5
+
+
+def test_either_size_gives_the_same_shape() -> None:
+    grid = Grid.square(SIDE, 64, periodic=True)
+    by_height = rough(anisotropy=2.0, lay=0.3)
+    by_gradient = rough(anisotropy=2.0, lay=0.3, rms_gradient=by_height.rms_gradient)
+    assert by_gradient.rms == pytest.approx(by_height.rms, rel=1e-14)
+    assert (by_height.given, by_gradient.given) == ("rms", "rms_gradient")
+    ratio = by_gradient.sample(grid) / by_height.sample(grid)
+    np.testing.assert_allclose(ratio, ratio[0, 0], rtol=1e-9)
+    assert ratio[0, 0] == pytest.approx(1.0, abs=0.05)  # waves there are against the integral
+    double = rough(rms=2e-6).sample(grid)
+    np.testing.assert_allclose(double, 2 * rough().sample(grid), rtol=1e-12)
+
+
+def test_missed_slope_and_curvature_are_those_of_differences() -> None:
+    """Against differences over the spacing, averaged over 6 seeds and a periodic domain."""
+    surface = rough(rms=1.0)
+    for M in (250, 100):  # 5 and 2 elements per shortest wave
+        h, slopes, curvatures = SIDE / M, [], []
+        for seed in range(6):
+            z = rough(rms=1.0, seed=seed).sample(Grid.square(SIDE, M, periodic=True))
+            slopes.append(np.mean((np.roll(z, -1, 0) - np.roll(z, 1, 0)) ** 2) / (2 * h) ** 2)
+            curvatures.append(np.mean((np.roll(z, -1, 0) - 2 * z + np.roll(z, 1, 0)) ** 2) / h**4)
+        slope, curvature = surface.missed(h)
+        full = math.sqrt(0.5 * surface.moment(2) / surface.moment(0))
+        bent = math.sqrt(0.375 * surface.moment(4) / surface.moment(0))
+        # waves of the domain against the integral (2 % measured), and scatter of six realisations (1 %)
+        assert math.sqrt(np.mean(slopes)) == pytest.approx((1 - slope) * full, rel=0.04)
+        assert math.sqrt(np.mean(curvatures)) == pytest.approx((1 - curvature) * bent, rel=0.04)
+
+
+def test_an_unresolved_short_cut_is_warned_of() -> None:
+    with pytest.warns(SurfaceWarning, match=r"2 elements per shortest wave, 2e-05 m: the grid misses"):
+        rough().heights(Grid.square(SIDE, 100))
+    assert rough().cautions(Grid.square(SIDE, 200)) == ()
+    slope, curvature = rough().missed(SIDE / 100)
+    (said,) = rough().cautions(Grid.square(SIDE, 100))
+    assert f"misses {slope:.0%} of the rms slope and {curvature:.0%} of the rms curvature" in said
+
+
+def test_a_solution_warns_of_the_short_cut() -> None:
+    steel = rf.Material(E=200e9, nu=0.3)
+    scene = rf.Scene(
+        upper=rf.Body(steel, rf.Flat()),
+        lower=rf.Body(steel, rough()),
+        friction=rf.Friction(),
+        load=5.0,
+        side=SIDE,
+    )
+    coarse = rf.solve(scene, 64, oblique=False)
+    named = [warning for warning in coarse.warnings if warning.limit == "shortest wave"]
+    assert len(named) == 1
+    assert named[0].number == pytest.approx(1.28)
+    assert "of the rms curvature" in named[0]
+    fine = rf.solve(scene, 200, oblique=False)
+    assert not [warning for warning in fine.warnings if warning.limit == "shortest wave"]
+
+
+def test_what_it_is_is_said() -> None:
+    (said,) = rough(anisotropy=2.0, lay=math.pi / 6).describe(Grid.square(SIDE, 256))
+    for part in (
+        "seed 1",
+        "Hurst exponent 0.8",
+        "0.0005 m",
+        "2e-05 m",
+        "stretched 2 times",
+        "30 degrees",
+        "(rms given)",
+    ):
+        assert part in said
+    assert "stretched" not in rough().describe(Grid.square(SIDE, 256))[0]
+
+
+@pytest.mark.parametrize(
+    ("changed", "field"),
+    [
+        ({"hurst": 0.0}, "hurst"),
+        ({"hurst": 1.01}, "hurst"),
+        ({"hurst": math.nan}, "hurst"),
+        ({"roll_off": 6e-4}, "long_cut"),
+        ({"short_cut": 2e-4}, "short_cut"),
+        ({"short_cut": 0.0}, "short_cut"),
+        ({"long_cut": -1.0}, "long_cut"),
+        ({"rms": None}, "rms, rms_gradient"),
+        ({"rms": 0.0}, "rms"),
+        ({"rms_gradient": -0.1}, "rms_gradient"),
+        ({"anisotropy": 0.0}, "anisotropy"),
+        ({"lay": math.inf}, "lay"),
+        ({"seed": -1}, "seed"),
+        ({"seed": 1.5}, "seed"),
+    ],
+)
+def test_bad_parameters_are_refused(changed: dict[str, Any], field: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        rough(**changed)
+    assert refusal.value.field == field
+
+
+def test_both_sizes_are_refused() -> None:
+    with pytest.raises(InputError, match="rms, rms_gradient = 'both'"):
+        SelfAffineRoughness(**PARAMETERS, rms_gradient=0.1)
+
+
+def test_spectra_that_a_grid_cannot_hold_are_refused() -> None:
+    with pytest.raises(InputError, match="at least two elements"):
+        rough().sample(Grid.square(SIDE, 3))
+    with pytest.raises(InputError, match=r"short_cut = 1e-07: expected at least .* \(8192 waves an axis\)"):
+        rough(short_cut=1e-7).sample(Grid.square(SIDE, 64))
+    with pytest.raises(InputError, match=r"long_cut = 0\.0005: expected at most the period, 0\.0004 m"):
+        rough().sample(Grid.square(4e-4, 64, periodic=True))
+    narrow = rough(long_cut=0.71 * SIDE, roll_off=0.71 * SIDE, short_cut=0.7091 * SIDE)
+    with pytest.raises(InputError, match="a wave of the periodic domain"):
+        narrow.sample(Grid.square(SIDE, 64, periodic=True))
+
+
+def test_cost_is_small() -> None:
+    grid, surface = Grid.square(SIDE, 512), rough(short_cut=8e-6)
+    surface.sample(grid)
+    start = time.process_time()
+    surface.sample(grid)
+    assert time.process_time() - start < 1.0  # CPU seconds; measured 0.1
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"hurst": None}, "surface.hurst"),
+        ({"colour": 1}, "surface.colour"),
+        ({"given": "rms"}, "surface.given"),
+        ({"rms_gradient": 0.1}, "surface.rms, rms_gradient = 'both'"),
+        ({"rms": None}, "surface.rms, rms_gradient = 'neither'"),
+        ({"hurst": 1.5}, "surface.hurst = 1.5"),
+    ],
+)
+def test_tables_are_checked(change: dict[str, Any], said: str) -> None:
+    table = {key: v for key, v in ({"kind": "self_affine"} | PARAMETERS | change).items() if v is not None}
+    with pytest.raises(InputError) as refusal:
+        surface_from_dict(table)
+    assert said in str(refusal.value)
+
+
+def test_tables_hold_the_given_size_alone() -> None:
+    for surface in (rough(anisotropy=2.0), rough(rms_gradient=0.1, lay=0.3)):
+        table = surface.to_dict()
+        assert len({"rms", "rms_gradient"} & table.keys()) == 1
+        assert surface_from_dict(table) == surface
+
+
+def test_a_map_of_it_is_fitted_by_it() -> None:
+    """The fit of measured maps, which knows nothing of this generator, finds the surface that was sampled."""
+    surface, pixel = rough(hurst=0.7), (2e-3 / 256, 2e-3 / 256)
+    found = fit_roughness(surface.sample(Grid.square(2e-3, 256)), pixel, "self-affine")
+    fitted = surface_from_dict(found.table(seed=2))
+    assert isinstance(fitted, SelfAffineRoughness)
+    assert abs(fitted.hurst - 0.7) < 4 * found.deviations["hurst"]
+    assert found.deviations["hurst"] < 0.05
+    assert fitted.rms == pytest.approx(1e-6, rel=0.15)

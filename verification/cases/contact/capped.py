@@ -1,0 +1,211 @@
+"""Pressures that end at the hardness: both solvers, manufactured states, limits and extremes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+import refimpl as rf
+from verification.cases.contact.manufactured import METHODS, ROUNDING, misfit
+from verification.exact.manufactured import PEAK, manufacture
+from verification.framework.case import Measured
+from verification.framework.registry import case
+
+SCENES, M, SIDE = 20, 16, 1e-3
+STATES = 200
+GRID_OF_EXTREMES = 10
+WRONG = 1e-5  # share of the maximum pressure: a wrong state, and no rounding of a right one
+AGREE = 1e-9
+"""Share of the hardness within which pressures of two solvers agree."""
+
+row = partial(case, tags=("capped",), metric="at_most")
+
+
+def rough_scene(seed: int) -> rf.Scene:
+    """Rough bodies without a hardness, free or periodic; tau is up to a fifth of the mean pressure."""
+    random = np.random.default_rng(seed)
+    periodic = seed % 3 == 0
+    copper, steel = rf.Material(118e9, random.uniform(0.0, 0.45)), rf.Material(200e9, 0.3)
+    scene = rf.Scene(
+        upper=rf.Body(steel, rf.Flat() if periodic else rf.Sphere(5e-3)),
+        lower=rf.Body(copper, rf.GaussianRoughness(10 ** random.uniform(-7, -6.3), 150e-6, seed=seed)),
+        friction=rf.Friction(),
+        load=10 ** random.uniform(0.5, 2),
+        side=SIDE,
+        sliding_direction=random.uniform(-3, 3),
+        periodic=periodic,
+    )
+    elastic = rf.solve(scene, M, oblique=False)
+    tau = (0.0, 0.05, 0.2)[seed % 3] * elastic.normal_force / elastic.contact_area
+    return replace(scene, friction=rf.Friction(tau, (0.1, 0.0, 0.3, 0.1)[seed % 4]))
+
+
+def with_hardness(scene: rf.Scene, hardness: float, *, upper: bool = False) -> rf.Scene:
+    """The scene with a hardness (Pa) of the lower body, or of the upper one."""
+    name = "upper" if upper else "lower"
+    body: rf.Body = getattr(scene, name)
+    changed = rf.Body(replace(body.material, hardness=hardness), body.surface)
+    return replace(scene, upper=changed) if upper else replace(scene, lower=changed)
+
+
+def peak_of(scene: rf.Scene, grid: int | tuple[int, int]) -> float:
+    """Maximum pressure of the elastic contact of flat slopes (Pa)."""
+    return rf.solve(scene, grid, plastic=False, oblique=False).max_pressure
+
+
+def apart(dense: rf.Solution, fft: rf.Solution) -> float:
+    """Largest difference of pressures over H, and of F and Q over the load; infinite on other sets."""
+    if not np.array_equal(dense.contact, fft.contact) or dense.plastic_area != fft.plastic_area:
+        return float("inf")
+    forces = (getattr(dense, name) - getattr(fft, name) for name in ("friction_force", "binormal_force"))
+    pressures = np.abs(dense.pressure - fft.pressure).max() / dense.problem.cap
+    return max(float(pressures), *(abs(float(force)) / dense.normal_force for force in forces))
+
+
+@row(
+    "capped/dense-fft",
+    title="Capped contact: production against plain solver",
+    claim="the same sets, pressures to 1e-9 of H, F and Q to 1e-9 of the load: 20 squares and rectangles",
+    source="dense matrices and pivoting between two bounds (Judice and Pires 1994)",
+    tolerance=AGREE,
+    tolerance_reason="certificate of 1e-11, and a condition number of some 30 to 100",
+)
+def dense_and_fft() -> Measured:
+    off, shares = {}, {}
+    for seed, share in enumerate(np.geomspace(0.9, 0.02, SCENES)):
+        bare, grid, oblique = rough_scene(seed), (M, M), seed % 2 == 0
+        if seed % 5 == 4:
+            bare, grid = replace(bare, side=None, size=(SIDE, 0.75 * SIDE)), (M, 3 * M // 4)
+        least = bare.load / (bare.lengths[0] * bare.lengths[1])
+        scene = with_hardness(bare, max(share * peak_of(bare, grid), 1.02 * least), upper=seed % 4 == 0)
+        dense = rf.solve(scene, grid, method="dense", oblique=oblique, plastic=True)
+        fft = rf.solve(scene, grid, tolerance=1e-11, oblique=oblique, plastic=True)
+        off[str(seed)], shares[str(seed)] = apart(dense, fft), dense.plastic_share
+    return Measured(value=max(off.values()), data={"apart": off, "plastic share": shares})
+
+
+@row(
+    "capped/manufactured",
+    title="Manufactured states with elements at both bounds",
+    claim="both solvers return pressure, traction and approach where part of the contact yields",
+    source="method of manufactured solutions (Roache 2002); sums of 50-digit integrals",
+    tolerance=1e-12,
+    tolerance_reason=ROUNDING,
+)
+def manufactured() -> Measured:
+    off = {
+        f"{method}, state {seed}, oblique {oblique}": misfit(
+            manufacture(12, seed, 0.7, oblique, False, 0.6 * PEAK), method
+        )
+        for method in METHODS
+        for seed in (1, 2)
+        for oblique in (False, True)
+    }
+    return Measured(value=max(off.values()), data={"worst": off})
+
+
+@row(
+    "capped/full",
+    title="Fully plastic limit",
+    claim="just below P = H A0 mu is tau / H + beta and pressures are H, free and periodic, by both solvers",
+    source="Eq. (1) at f = H",
+    tolerance=2e-4,
+    tolerance_reason="the load is 1e-4 below the limit, which elements of the least pressure share",
+)
+def full() -> Measured:
+    off = {}
+    for periodic in (False, True):
+        bare = replace(rough_scene(1), periodic=periodic, friction=rf.Friction(15e6, 0.1))
+        hardness = (1 + 1e-4) * bare.load / SIDE**2
+        limit, scene = 15e6 / hardness + 0.1, with_hardness(bare, hardness)
+        for method in METHODS:
+            s = rf.solve(scene, M, method=method, oblique=False)
+            if not s.converged:
+                raise RuntimeError(f"{method}: {s.status.value}")
+            least = float(s.pressure.min() / hardness) - 1
+            off[f"{method}, periodic {periodic}"] = max(
+                abs(s.friction_coefficient / limit - 1), M**-2 * -least
+            )
+    return Measured(value=max(off.values()), data={"off": off})
+
+
+@row(
+    "capped/infinite-hardness",
+    title="A hardness beyond all pressures",
+    claim="the capped solver returns the elastic solution",
+    source="the problem itself",
+    tolerance=AGREE,
+    tolerance_reason="two certificates of 1e-12, and the condition number of some 30 to 100",
+)
+def infinite() -> Measured:
+    off = {}
+    for seed in range(1, 6):
+        scene = rough_scene(seed)
+        elastic = rf.solve(scene, 32, tolerance=1e-12)
+        capped = rf.solve(with_hardness(scene, 1e3 * elastic.max_pressure), 32, plastic=True, tolerance=1e-12)
+        off[str(seed)] = float(np.abs(capped.pressure - elastic.pressure).max() / elastic.max_pressure)
+    return Measured(value=max(off.values()), data={"apart": off})
+
+
+@row(
+    "capped/area-by-hardness",
+    title="Contact area against the hardness",
+    claim="the area grows as the hardness falls, and is never below P / H",
+    source="more room for pressure below the cap leaves less contact (a numerical finding, not a theorem)",
+    tolerance=0.0,
+    tolerance_reason="counts of elements: no decrease at all",
+)
+def area_by_hardness() -> Measured:
+    worst, areas = 0.0, {}
+    for seed in (1, 2, 3):
+        scene = replace(rough_scene(seed), friction=rf.Friction())
+        hardnesses = np.geomspace(1.05 * scene.load / SIDE**2, 2 * peak_of(scene, 32), 10)
+        solved = [rf.solve(with_hardness(scene, H), 32, plastic=True, oblique=False) for H in hardnesses]
+        found = np.array([s.contact_area for s in solved])
+        missing = scene.load / hardnesses * (1 - 1e-9) - found
+        worst = max(worst, float(np.diff(found).max()), float(missing.max()))
+        areas[str(seed)] = found.tolist()
+    return Measured(value=worst, unit="m^2", data=areas)
+
+
+@row(
+    "capped/extremes",
+    title="Hardnesses from just above P / A0 to 1e3 times the elastic peak",
+    claim="of 200 small states none that is called converged differs from the plain solver's",
+    source="dense matrices and pivoting between two bounds",
+    tolerance=0.0,
+    tolerance_reason="a count of wrong answers; wrong: farther apart than 1e-5 of the peak",
+    tier="full",
+)
+def extremes() -> Measured:
+    wrong: list[int] = []
+    ends: dict[str, int] = {}
+    for seed in range(STATES):
+        scene, oblique = extreme_scene(seed), seed % 2 == 0
+        fft = rf.solve(scene, GRID_OF_EXTREMES, plastic=True, oblique=oblique)
+        ends[fft.status.value] = ends.get(fft.status.value, 0) + 1
+        if fft.converged and not _is_right(scene, fft, oblique=oblique):
+            wrong.append(seed)
+    return Measured(value=float(len(wrong)), data={"wrong": wrong, "ends": ends})
+
+
+def extreme_scene(seed: int) -> rf.Scene:
+    """A scene whose hardness lies between P / A0 and 1e3 elastic peaks, evenly on a logarithmic scale."""
+    random, scene = np.random.default_rng(10_000 + seed), rough_scene(seed)
+    least = scene.load / SIDE**2 * (1 + 1e-6)
+    most = 1e3 * peak_of(scene, GRID_OF_EXTREMES)
+    return with_hardness(scene, least * (most / least) ** random.uniform(), upper=seed % 5 == 0)
+
+
+def _is_right(scene: rf.Scene, fft: rf.Solution, *, oblique: bool) -> bool:
+    """Whether pressures are those of the plain solver, where it has a solution."""
+    try:
+        dense = rf.solve(scene, GRID_OF_EXTREMES, method="dense", plastic=True, oblique=oblique)
+    except ArithmeticError:
+        return True
+    return (
+        not dense.converged
+        or float(np.abs(dense.pressure - fft.pressure).max()) <= WRONG * dense.max_pressure
+    )
