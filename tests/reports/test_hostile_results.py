@@ -20,6 +20,7 @@ from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
 from tests.verification.cli.children import Ended, one_line
 from verification.cli import main
 
+Capture = pytest.CaptureFixture[str]
 WHOLE = results(
     case("kernels/textbook-x-fails", data=TEXTBOOK),
     case("a/1", "fail", data={"M": [32, 64, 128], "error": [4.0, 2.0, 1.0], "verdict": "refuted"}),
@@ -76,6 +77,29 @@ def test_every_field_with_every_other_kind_of_value_is_checked(path: tuple[Any, 
 def test_what_passes_the_check_is_shown(path: tuple[Any, ...], value: object, older: bool) -> None:
     made = replaced(WHOLE, path, value)
     shown_or_refused(WHOLE if older else made, made if older else None)
+
+
+@pytest.mark.parametrize("key", ["versions", "machine"])
+def test_a_run_of_an_unknown_machine_is_shown(key: str) -> None:
+    made = replaced(WHOLE, ("provenance", key), {})
+    assert "n/a" in render(made)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"M": [32, 64], "error": [0.0, 0.0]},
+        {"M": [32, 32], "error": [1.0, 2.0]},
+        {"M": [0, 64], "error": [1.0, 2.0]},
+        {"M": [-32, 64], "error": [1.0, 2.0]},
+        {"M": [32, 64], "error": [None, 2.0]},
+        {"M": [32, 64], "error": [2.0]},
+    ],
+)
+def test_errors_without_an_order_are_refused_and_not_fitted(data: dict[str, Any], capfd: Capture) -> None:
+    with pytest.raises(ResultFileError, match="a/1"):
+        render(results(case("a/1", data=data)))
+    assert capfd.readouterr() == ("", "")  # LAPACK prints what it does not like
 
 
 DATA_VALUES = st.recursive(
