@@ -43,7 +43,7 @@ Record = dict[str, Any]
 
 
 @dataclass
-class _Disturbed:
+class Disturbed:
     """One sweep in its folder, what disturbs it, and the store that goes on."""
 
     folder: Path
@@ -122,7 +122,7 @@ def campaign(
     started = time.perf_counter()
     rows: list[Record] = []
     with tempfile.TemporaryDirectory() as name:
-        expected = _undisturbed(Path(name))
+        expected = undisturbed(Path(name))
         for number in range(sweeps):
             folder = Path(name) / str(number)
             folder.mkdir()
@@ -150,7 +150,8 @@ def _document(rows: list[Record], seed: int, seconds: float) -> Record:
     }
 
 
-def _undisturbed(folder: Path) -> str:
+def undisturbed(folder: Path) -> str:
+    """The table of the study, whose file is left in the folder."""
     (folder / "study.toml").write_text(STUDY)
     return to_csv(sweep(read_study(folder / "study.toml"), folder / "undisturbed.sqlite", workers=0).rows)
 
@@ -159,7 +160,7 @@ def _one(folder: Path, source: random.Random, expected: str) -> Record:
     (folder / "study.toml").write_text(STUDY)
     on_cluster = source.random() < CLUSTERS
     faults = [f for f in FAULTS if on_cluster or f != "scheduler"]
-    disturbed = _Disturbed(folder, source, on_cluster, folder / "s.sqlite")
+    disturbed = Disturbed(folder, source, on_cluster, folder / "s.sqlite")
     for _ in range(source.choice((1, 1, 2))):
         disturbed.disturb(source.choice(faults))
     found = kept(disturbed.store)

@@ -25,6 +25,7 @@ RANGES: dict[str, Any] = {
     "Young's moduli (Pa), log10": [3, 13],
     "Poisson's ratios": [-0.9, 0.5],
     "incompressible, share": 0.1,
+    "one body rigid, share": 0.1,
     "mean pressure over the mean modulus, log10": [-12, 0],
     "tau over the mean pressure, log10": [-6, 2],
     "tau = 0, share": 0.3,
@@ -71,6 +72,7 @@ def drawn(number: int, seed: int) -> Drawn:
     moduli = [power("Young's moduli (Pa)") for _ in range(2)]
     ratios = [0.5 if happens("incompressible") else uniform("Poisson's ratios") for _ in range(2)]
     pressure = power("mean pressure over the mean modulus") * math.sqrt(moduli[0] * moduli[1])
+    rigid = source.randrange(2) if happens("one body rigid") else None
     height = 0.0 if happens("flat") else side * power("peak-to-valley over the side")
     single = happens("one high element")
     heights = [[source.random() for _ in range(M)] for _ in range(M)]
@@ -84,7 +86,8 @@ def drawn(number: int, seed: int) -> Drawn:
     return Drawn(
         number, M,
         {
-            "side": side, "moduli": moduli, "ratios": ratios, "load": pressure * side**2,
+            "side": side, "ratios": ratios,
+            "moduli": ["rigid" if k == rigid else E for k, E in enumerate(moduli)], "load": pressure * side**2,
             "tau": 0.0 if happens("tau = 0") else pressure * power("tau over the mean pressure"),
             "beta": 0.0 if happens("beta = 0") else power("beta"),
             "heights": [[height * z for z in row] for row in heights],
@@ -119,7 +122,8 @@ def _judged(state: Drawn) -> Any:
     p = state.parameters
 
     def solved() -> Any:
-        materials = [rf.Material(E, nu) for E, nu in zip(p["moduli"], p["ratios"], strict=True)]
+        moduli = [math.inf if E == "rigid" else E for E in p["moduli"]]
+        materials = [rf.Material(E, nu) for E, nu in zip(moduli, p["ratios"], strict=True)]
         scene = rf.Scene(
             upper=rf.Body(materials[0], rf.Flat()), lower=rf.Body(materials[1], np.array(p["heights"])),
             friction=rf.Friction(p["tau"], p["beta"]), load=p["load"], side=p["side"],
