@@ -86,8 +86,8 @@ def drawn(number: int, seed: int) -> Drawn:
     return Drawn(
         number, M,
         {
-            "side": side, "ratios": ratios,
-            "moduli": ["rigid" if k == rigid else E for k, E in enumerate(moduli)], "load": pressure * side**2,
+            "side": side, "load": pressure * side**2, "ratios": ratios,
+            "moduli": ["rigid" if k == rigid else E for k, E in enumerate(moduli)],
             "tau": 0.0 if happens("tau = 0") else pressure * power("tau over the mean pressure"),
             "beta": 0.0 if happens("beta = 0") else power("beta"),
             "heights": [[height * z for z in row] for row in heights],
