@@ -108,7 +108,7 @@ def run(state: Drawn) -> dict[str, Any]:
         Extreme("drawn", "random", str(state.number), float(state.number), lambda: _judged(state), SECONDS)
     )
     kept = ("at", "verdict", "status", "error", "note", "seconds")
-    parameters = {} if row["verdict"] == "right" else {"parameters": state.parameters}
+    parameters = {"parameters": state.parameters} if row["verdict"] in ("wrong", "crash") else {}
     return {name: row[name] for name in kept} | {"elements": state.M} | parameters
 
 
@@ -156,7 +156,7 @@ def study(
 
 
 def document(rows: list[dict[str, Any]], seed: int) -> dict[str, Any]:
-    """The result file: seed, ranges, counts, rows; parameters of those states that are not right."""
+    """The result file: seed, ranges, counts, rows; parameters of wrong states and of crashes."""
     from verification.extremes.state import Verdict
     from verification.framework.provenance import provenance
 

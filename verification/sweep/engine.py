@@ -10,7 +10,6 @@ import logging
 import multiprocessing
 import multiprocessing.connection
 import os
-import signal
 import threading
 import time
 from collections import Counter
@@ -32,6 +31,7 @@ from typing import Any
 
 from refimpl.errors import InputError
 from verification.framework.threads import one_thread
+from verification.framework.workers import interrupts_blocked, kill_workers
 from verification.sweep.run import CERTIFIED, Row, Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study
@@ -176,25 +176,14 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     with one_thread():
         executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
         before = set(multiprocessing.active_children())
-        with _interrupts_blocked():
+        with interrupts_blocked():
             executor.submit(int)  # starts all workers
         try:
             yield executor
             executor.shutdown()
         finally:
             executor.shutdown(wait=False, cancel_futures=True)
-            for worker in set(multiprocessing.active_children()) - before:
-                worker.kill()  # what runs is done again by the next sweep
-
-
-@contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Processes started in the block take no interrupts: one sent to the whole group is for this process."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+            kill_workers(before)  # what runs is done again by the next sweep
 
 
 def _end_with_parent() -> None:

@@ -81,6 +81,22 @@ def test_an_interrupt_during_the_start_shows_no_traceback(delay: float, tmp_path
     assert err == b""
 
 
+@pytest.mark.parametrize("delay", [0.7, 1.2, 3.0])
+def test_an_interrupted_verification_ends_at_once(delay: float, tmp_path: Path) -> None:
+    """Its workers may be starting."""
+    reset = f"import signal; signal.signal(signal.SIGINT, signal.default_int_handler); {START}"
+    child = subprocess.Popen(
+        [sys.executable, "-c", reset, "verify", "--only", "*s*/*"], cwd=tmp_path, start_new_session=True,
+        stderr=subprocess.PIPE, stdout=subprocess.PIPE,
+    )  # fmt: skip
+    time.sleep(delay)
+    os.killpg(child.pid, signal.SIGINT)
+    begun = time.monotonic()
+    _, err = child.communicate(timeout=60)
+    assert (child.returncode in (130, -signal.SIGINT), err) == (True, b"")
+    assert time.monotonic() - begun < 15
+
+
 def test_an_interrupt_of_the_whole_group_shows_no_traceback(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(STUDY)
     reset = f"import signal; signal.signal(signal.SIGINT, signal.default_int_handler); {START}"
