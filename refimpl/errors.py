@@ -30,7 +30,7 @@ class InputError(ValueError):
             shown = "tables in tables"
         if len(shown) > 120:
             shown = shown[:117] + "..."
-        super().__init__(printable(f"{field} = {shown}: expected {allowed}"))
+        super().__init__(printable(f"{field} = {shown}: expected {' '.join(allowed.split())}"))
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
         return type(self), (self.field, self.value, self.allowed)  # so that it crosses process borders
