@@ -113,11 +113,18 @@ def run(state: Drawn) -> dict[str, Any]:
 
 
 def _judged(state: Drawn) -> Any:
-    """The verdict; building the scene is part of what may be refused."""
+    """The verdict; building the scene is part of what may be refused.
+
+    The upper body is flat. Where it is rigid, its plane is the common surface, whose slopes are zero: the
+    plan may neglect slope terms there. On a contact of one or two elements the discrete equations have slopes
+    all the same, half of those of the other body across the contact's edge. A state whose plan neglects slope
+    terms for a rigid plane is judged without them as well.
+    """
     import numpy as np
 
     import refimpl as rf
-    from verification.extremes.judge import by_oracle, guarded
+    from verification.extremes.judge import GOOD, TOLERANCE, exact_error, guarded, verdict
+    from verification.extremes.oracle import NotSettled
 
     p = state.parameters
 
@@ -134,7 +141,16 @@ def _judged(state: Drawn) -> Any:
             options["slope_correction"] = True
         if p["approach"] is not None:
             options["approach"] = p["approach"]
-        return by_oracle(scene, state.M, p["method"], **options)
+        solution = rf.solve(scene, state.M, method=p["method"], tolerance=TOLERANCE, **options)
+        if p["moduli"][0] == "rigid" and not solution.plan.includes("oblique"):
+            options["oblique"] = False
+        try:
+            error, note = exact_error(scene, solution, **options)
+        except NotSettled as unsettled:
+            if solution.status in GOOD:
+                raise
+            error, note = math.inf, f"the oracle found no state either: {unsettled}"
+        return verdict(solution, error, "the exact discrete state, 34 digits", note)
 
     return guarded(solved)
 
