@@ -26,12 +26,23 @@ class InputError(ValueError):
             shown = repr(value)
         except ValueError:  # Python writes no whole number of more than 4300 digits
             shown = "a number of thousands of digits"
+        except RecursionError:
+            shown = "tables in tables"
         if len(shown) > 120:
             shown = shown[:117] + "..."
-        super().__init__(f"{field} = {shown}: expected {allowed}")
+        super().__init__(printable(f"{field} = {shown}: expected {' '.join(allowed.split())}"))
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
         return type(self), (self.field, self.value, self.allowed)  # so that it crosses process borders
+
+
+def printable(text: str) -> str:
+    """Return the text with what a terminal would obey, or could not show, escaped.
+
+    >>> print(printable("key \x1b[2J"))
+    key \\x1b[2J
+    """
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 @contextmanager

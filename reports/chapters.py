@@ -94,7 +94,7 @@ CHAPTERS = (
         "Every axis to the point of failure, inputs that are broken on purpose, and terms that are "
         "neglected because they cannot matter.",
         ("extremes", "planning", "validity"),
-        ("extremes", "fuzz", "planning"),
+        ("extremes", "extremes_drawn", "fuzz", "chaos", "planning"),
     ),
 )
 

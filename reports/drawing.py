@@ -116,11 +116,16 @@ def order(
     def draw(canvas: Canvas, data: Data) -> None:
         axes = _axes(canvas, "elements per side" if spacing is None else "element (um)", ylabel, "xy")
         grid = np.asarray(data[spacing or "M"], dtype=float) * (1.0 if spacing is None else 1e6)
+        if not (grid.ndim == 1 and np.all((grid > 0) & np.isfinite(grid))):
+            raise ValueError("grids that are no positive numbers")
         h = 1 / grid if spacing is None else grid
         finest = np.inf
         for k, (key, label) in enumerate(series.items()):
             error = np.abs(_numbers(data[key]))
-            fitted = np.polyfit(np.log(h), np.log(error), 1)[0]
+            shown = (error > 0) & np.isfinite(error)  # on logarithmic axes
+            if np.unique(h[shown]).size < 2:
+                raise ValueError(f"fewer than two errors of {label} that are positive numbers")
+            fitted = np.polyfit(np.log(h[shown]), np.log(error[shown]), 1)[0]
             text = f"{label}, order {fitted:.2f}"
             axes.plot(grid, error, marker=MARKERS[k], color=COLOURS[k], label=text)
             finest = min(finest, error[np.argmin(h)])

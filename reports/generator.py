@@ -13,9 +13,12 @@ from reports.chapters import CHAPTERS, exhibits_of, subjects_of, unplaced
 from reports.comparison import compared
 from reports.evidence import Evidence, gathered
 from reports.exhibit import address, as_csv
-from reports.results import Case, by, worst
+from reports.results import Case, CaseDataError, ResultFileError, by, worst
 from reports.summary import groups
 from reports.traceability import traced
+
+_OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+"""Exceptions of drawing where data are not of the shape that a figure needs."""
 
 
 def render(
@@ -33,11 +36,17 @@ def render(
 
     def case_pictures(case: Case) -> list[Mapping[str, Any]]:
         progress(case["id"])
-        return pictures(case, evidence)
+        try:
+            return pictures(case, evidence)
+        except _OTHER_SHAPE as broken:
+            raise CaseDataError(f"data of case {case['id']!r}: {broken}", case["origin"]) from broken
 
     def one_picture(figure: drawing.Figure, data: Mapping[str, Any]) -> Mapping[str, Any]:
         progress(figure.caption)
-        return picture(figure, data)
+        try:
+            return picture(figure, data)
+        except _OTHER_SHAPE as broken:
+            raise ResultFileError(f"data of the figure {figure.caption!r}: {broken}") from broken
 
     environment = Environment(
         loader=PackageLoader("reports"),
@@ -78,8 +87,13 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def anchor(case_id: str) -> str:
-    """The fragment that links to a case."""
-    return "case-" + "".join(c if c.isalnum() else "-" for c in case_id)
+    """The fragment that links to a case; different ids have different ones.
+
+    >>> anchor("hertz/peak-order"), anchor("a.b")
+    ('case-hertz.peak-order', 'case-a_2e_b')
+    """
+    kept = (c if c.isalnum() or c == "-" else "." if c == "/" else f"_{ord(c):x}_" for c in case_id)
+    return "case-" + "".join(kept)
 
 
 def judgement(case: Case) -> str:

@@ -30,7 +30,7 @@ MOST_BYTES = 500_000
 _LINE = 110  # characters; longer values are broken into lines
 _RECORD = 600  # characters; a longer record keeps its keys, so that its numbers stand together
 _SHARED = 40  # characters; a reference needs 23
-_MOST_ENTRIES = 10_000_000  # entries of a `$times`: a corrupt count must not fill the memory
+_MOST_ENTRIES = 2_000_000  # entries of a document: a corrupt count or nested references must not fill memory
 TABLE, TIMES, SAME = "$table", "$times", "$same"
 
 
@@ -44,16 +44,25 @@ def read_result(path: Path) -> Any:
     Raises OSError for a file that cannot be read, ValueError for one that is not JSON, and LayoutError.
     """
     text = path.read_text(encoding="utf-8")
-    found = json.loads(text)
+    found = _loaded(text)
     if not isinstance(found, dict) or found.get("layout") != LAYOUT:
         return found
     document = _document(found)
     try:
         for number, digest in enumerate(found["continued"]["digests"], 2):
-            document[found["continued"]["list"]] += _document(json.loads(_continuing(path, number, digest)))
+            document[found["continued"]["list"]] += _document(_loaded(_continuing(path, number, digest)))
     except (KeyError, TypeError) as broken:
         raise LayoutError(f"a wrong list of continuations ({broken})") from broken
     return document
+
+
+def _loaded(text: str) -> Any:
+    """The JSON value; raises ValueError for NaN and infinity, which Python's reader takes."""
+
+    def refused(constant: str) -> float:
+        raise ValueError(f"{constant} is not JSON")
+
+    return json.loads(text, parse_constant=refused)
 
 
 def _continuing(path: Path, number: int, digest: str) -> str:
@@ -165,7 +174,7 @@ def _continuation(entries: list[Any]) -> str:
 
 def _joined(texts: Sequence[str]) -> Any:
     """The document of the texts."""
-    found = [json.loads(text) for text in texts]
+    found = [_loaded(text) for text in texts]
     document = _document(found[0])
     for part in found[1:]:
         document[found[0]["continued"]["list"]] += _document(part)
@@ -174,37 +183,45 @@ def _joined(texts: Sequence[str]) -> Any:
 
 def _document(file: Mapping[str, Any]) -> Any:
     try:
-        return _expanded(file["document"], file["shared"], ())
-    except (AttributeError, KeyError, TypeError, ValueError) as broken:
+        return _Expansion(file["shared"]).of(file["document"])
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as broken:
         raise LayoutError(f"a wrong marker ({broken!r})") from broken
 
 
-def _expanded(value: Any, shared: Mapping[str, Any], within: tuple[str, ...]) -> Any:
-    """The value without markers; ``within`` names the shared values that it is a part of."""
-    if isinstance(value, list):
-        return list(_entries(value, shared, within))
-    if not isinstance(value, dict):
-        return value
-    if SAME in value:
-        name = value[SAME]
-        if name in within:
-            raise ValueError(f"{name!r} holds itself")
-        return _expanded(shared[name], shared, (*within, name))
-    if TABLE in value:
-        columns = {key: _expanded(column, shared, within) for key, column in value[TABLE].items()}
-        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-    return {key: _expanded(entry, shared, within) for key, entry in value.items()}
+class _Expansion:
+    """Values without markers, of at most `_MOST_ENTRIES` entries in all, counted with their repetitions."""
 
+    def __init__(self, shared: Mapping[str, Any]) -> None:
+        self._shared, self._left = shared, _MOST_ENTRIES
 
-def _entries(values: list[Any], shared: Mapping[str, Any], within: tuple[str, ...]) -> Iterator[Any]:
-    for value in values:
-        if isinstance(value, dict) and TIMES in value:
-            count, repeated = value[TIMES]
-            if not 0 < count <= _MOST_ENTRIES:
-                raise ValueError(f"{count} entries")
-            yield from [_expanded(repeated, shared, within)] * count
-        else:
-            yield _expanded(value, shared, within)
+    def of(self, value: Any, within: tuple[str, ...] = (), copies: int = 1) -> Any:
+        """The value; ``within`` names the shared values that it is part of, ``copies`` of it stand there."""
+        self._left -= copies
+        if self._left < 0:
+            raise ValueError(f"more than {_MOST_ENTRIES} entries")
+        if isinstance(value, list):
+            return list(self._entries(value, within, copies))
+        if not isinstance(value, dict):
+            return value
+        if SAME in value:
+            name = value[SAME]
+            if name in within:
+                raise ValueError(f"{name!r} holds itself")
+            return self.of(self._shared[name], (*within, name), copies)
+        if TABLE in value:
+            columns = {key: self.of(column, within, copies) for key, column in value[TABLE].items()}
+            return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        return {key: self.of(entry, within, copies) for key, entry in value.items()}
+
+    def _entries(self, values: list[Any], within: tuple[str, ...], copies: int) -> Iterator[Any]:
+        for value in values:
+            if isinstance(value, dict) and TIMES in value:
+                count, repeated = value[TIMES]
+                if not isinstance(count, int) or count < 1:
+                    raise ValueError(f"{count!r} entries")
+                yield from [self.of(repeated, within, copies * count)] * count
+            else:
+                yield self.of(value, within, copies)
 
 
 def _packed(plain: Any) -> tuple[Any, dict[str, Any]]:

@@ -2,55 +2,119 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from typing import Any
 
 FORMAT = "rough-friction results, version 1"
-TOP_KEYS = ("tier", "only", "counts", "seconds", "cases", "errata", "provenance")
-CASE_KEYS = (
-    "id", "title", "claim", "source", "metric", "value", "reference", "reference_uncertainty", "error",
-    "tolerance", "tolerance_reason", "status", "seconds", "unit", "note", "tier", "tags", "data",
-)  # fmt: skip
-ERRATUM_KEYS = (
-    "case",
-    "status",
-    "equation",
-    "printed",
-    "corrected",
-    "measure",
-    "printed_error",
-    "corrected_error",
-)
-PROVENANCE_KEYS = ("command", "date", "commit", "dirty", "versions", "machine")
 STATUSES = ("pass", "fail", "error", "unavailable")
+METRICS = ("relative", "absolute", "at_most", "at_least", "equal")
+LARGEST_INTEGER = 2**63 - 1
+_ROUNDING = 4 * 2.0**-52  # relative; a written error is a difference and a quotient of written doubles
 
 Case = Mapping[str, Any]
+Kind = Callable[[object], bool]
+
+
+def _text(value: object) -> bool:
+    return isinstance(value, str)
+
+
+def _number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _size(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0
+
+
+def _flag(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+def _texts(value: object) -> bool:
+    return isinstance(value, list) and all(map(_text, value))
+
+
+def _table(value: object) -> bool:
+    return isinstance(value, Mapping)
+
+
+def _list(value: object) -> bool:
+    return isinstance(value, list)
+
+
+def _id(value: object) -> bool:
+    """Whether the value is "subject/slug" without blanks."""
+    return isinstance(value, str) and all(value.partition("/")) and len(value.split()) == 1
+
+
+def _or_none(kind: Kind) -> Kind:
+    return lambda value: value is None or kind(value)
+
+
+def _one_of(*values: str) -> Kind:
+    return lambda value: isinstance(value, str) and value in values
+
+
+def _labels(value: object) -> bool:
+    """Whether the value is a table of texts, numbers and None."""
+    return isinstance(value, Mapping) and all(
+        item is None or _text(item) or _number(item) for item in value.values()
+    )
+
+
+FILE: Mapping[str, Kind] = {
+    "tier": _text, "only": _texts, "counts": _table, "seconds": _size, "cases": _list, "errata": _list,
+    "provenance": _table,
+}  # fmt: skip
+CASE: Mapping[str, Kind] = {
+    "id": _id, "title": _text, "claim": _text, "source": _text, "metric": _one_of(*METRICS),
+    "value": _or_none(_number), "reference": _or_none(_number), "reference_uncertainty": _or_none(_size),
+    "error": _or_none(_number), "tolerance": _number, "tolerance_reason": _text,
+    "status": _one_of(*STATUSES), "seconds": _size, "unit": _text, "note": _text, "tier": _text,
+    "tags": _texts, "data": _table,
+}  # fmt: skip
+ERRATUM: Mapping[str, Kind] = {
+    "case": _text, "status": _one_of(*STATUSES), "equation": _text, "printed": _text, "corrected": _text,
+    "measure": _text, "printed_error": _or_none(_number), "corrected_error": _or_none(_number),
+}  # fmt: skip
+PROVENANCE: Mapping[str, Kind] = {
+    "command": _text, "date": _text, "commit": _or_none(_text), "dirty": _or_none(_flag),
+    "versions": _labels, "machine": _labels,
+}  # fmt: skip
+SOLVER: Mapping[str, Kind] = {"name": _text}
 
 
 class ResultFileError(ValueError):
     """The file is not a result file that this report understands."""
 
 
+class CaseDataError(ResultFileError):
+    """The data of a case are not of the shape that its figures show; ``origin`` as in `reports.evidence`."""
+
+    def __init__(self, message: str, origin: Mapping[str, Any] | None) -> None:
+        super().__init__(message)
+        self.origin = origin
+
+
 def check(results: object) -> Mapping[str, Any]:
-    """The results, if they are of the known format, complete, and their counts are those of their cases.
+    """Return the results if they follow the schema, verdicts follow from numbers, and counts from cases.
 
     Raises ResultFileError.
     """
     if not isinstance(results, Mapping) or results.get("format") != FORMAT:
         raise ResultFileError(f"not a file of the format {FORMAT!r}")
-    _require(results, TOP_KEYS, "the file")
-    _require(results["provenance"], PROVENANCE_KEYS, "the provenance")
+    _check_values(results, "the file")
+    _require(results, FILE, "the file")
+    _require(results["provenance"], PROVENANCE, "the provenance")
     if "contestant" in results:  # only where somebody else's solver was run
-        _require(results["contestant"], ("name",), "contestant")
-    for key in ("cases", "errata"):
-        if not isinstance(results[key], list):
-            raise ResultFileError(f"{key} are no list")
+        _require(results["contestant"], SOLVER, "contestant")
     for number, erratum in enumerate(results["errata"]):
-        _require(erratum, ERRATUM_KEYS, f"erratum {number}")
+        _require(erratum, ERRATUM, f"erratum {number}")
     for number, case in enumerate(results["cases"]):
-        _require(case, CASE_KEYS, f"case {number}")
-        if case["status"] not in STATUSES:
-            raise ResultFileError(f"case {case['id']!r} has the unknown status {case['status']!r}")
+        _require(case, CASE, f"case {number}")
+        _check_verdict(case)
     ids = [case["id"] for case in results["cases"]]
     if len(set(ids)) < len(ids):
         raise ResultFileError(f"case {max(ids, key=ids.count)!r} is there twice")
@@ -58,6 +122,67 @@ def check(results: object) -> Mapping[str, Any]:
     if counted != results["counts"]:
         raise ResultFileError(f"counts {results['counts']} are not those of the cases, {counted}")
     return results
+
+
+def verdict_of(case: Case) -> str:
+    """Return "pass" or "fail": the verdict that follows from error, tolerance and metric."""
+    error, tolerance = case["error"], case["tolerance"]
+    within = error >= tolerance if case["metric"] == "at_least" else error <= tolerance
+    return "pass" if within else "fail"
+
+
+def _check_verdict(case: Case) -> None:
+    """Refuse a status that does not follow from the numbers, and an error that does not either."""
+    id, status = case["id"], case["status"]
+    if status in ("error", "unavailable"):
+        given = [name for name in ("value", "reference", "error") if case[name] is not None]
+        if given:
+            raise ResultFileError(f"case {id!r} was not judged ({status}), but has {', '.join(given)}")
+        return
+    missing = [name for name in ("value", "reference_uncertainty", "error") if case[name] is None]
+    if case["reference"] is None and case["metric"] not in ("at_most", "at_least"):
+        missing.append("reference")
+    if missing:
+        raise ResultFileError(f"case {id!r} has the status {status!r} without {', '.join(missing)}")
+    if case["tolerance"] < 0 and case["metric"] != "at_least":
+        raise ResultFileError(f"case {id!r} has the negative tolerance {case['tolerance']!r}")
+    if not _error_follows(case):
+        raise ResultFileError(f"case {id!r}: error {case['error']!r} is not that of its value and reference")
+    if verdict_of(case) != status:
+        numbers = f"error {case['error']!r}, tolerance {case['tolerance']!r}, metric {case['metric']}"
+        raise ResultFileError(f"case {id!r} has the status {status!r}, which does not follow from {numbers}")
+
+
+def _error_follows(case: Case) -> bool:
+    """Whether the error is that of value, reference and metric, and the reference certain enough to judge."""
+    value, reference, error, metric = (case[name] for name in ("value", "reference", "error", "metric"))
+    if metric in ("at_most", "at_least"):
+        return reference is None and bool(error == value) and (metric == "at_least" or value >= 0)
+    scale = abs(reference) if metric == "relative" else 1.0
+    if scale == 0 or case["reference_uncertainty"] > case["tolerance"] * scale * (1 + _ROUNDING):
+        return False
+    rounding = _ROUNDING * (abs(value) + abs(reference))
+    return bool(error >= 0 and abs(error * scale - abs(value - reference)) <= rounding)
+
+
+def _check_values(value: object, where: str) -> None:
+    """Refuse, at any depth, numbers that are not finite or that no double holds, and texts without UTF-8."""
+    if isinstance(value, Mapping):
+        for key, entry in value.items():
+            _check_values(key, where)
+            _check_values(entry, where)
+    elif isinstance(value, list):
+        for entry in value:
+            _check_values(entry, where)
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise ResultFileError(f"{where} holds {value}, which is no number")
+    elif isinstance(value, int) and abs(value) > LARGEST_INTEGER:
+        raise ResultFileError(f"{where} holds an integer beyond {LARGEST_INTEGER}")
+    elif isinstance(value, str) and not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError as lone:
+            raise ResultFileError(f"{where} holds a text that is no UTF-8") from lone
 
 
 def worst(cases: list[Case]) -> str:
@@ -83,9 +208,13 @@ def by_subject(cases: list[Case]) -> dict[str, list[Case]]:
     return by([{**case, "subject": case["id"].partition("/")[0]} for case in cases], "subject")
 
 
-def _require(item: object, keys: tuple[str, ...], where: str) -> None:
+def _require(item: object, schema: Mapping[str, Kind], where: str) -> None:
+    """Refuse an item that is no table, lacks a key of the schema, or has a value of another kind."""
     if not isinstance(item, Mapping):
         raise ResultFileError(f"{where} is no table")
-    missing = [key for key in keys if key not in item]
+    missing = [key for key in schema if key not in item]
     if missing:
         raise ResultFileError(f"{where} lacks {', '.join(missing)}")
+    for key, kind in schema.items():
+        if not kind(item[key]):
+            raise ResultFileError(f"{where}: {key} cannot be {str(item[key])[:60]!r}")

@@ -288,6 +288,7 @@ def checks(documents: Documents, evidence: Evidence) -> str:
 def studies(documents: Documents) -> str:
     """Quality of the verification itself: single numbers of the studies."""
     extremes, fuzz, faults = documents["extremes"]["counts"], documents["fuzz"], documents["fault_matrix"]
+    drawn, chaos = documents["extremes_drawn"]["counts"], documents["chaos"]
     invariants, order, ensembles = documents["hypothesis"], documents["random_order"], documents["multilevel"]
     seen = sum(bool(fault["caught_by"]) for fault in faults["faults"])
     covered = {name: found["covered"] for name, found in ensembles["quantities"].items()}
@@ -297,6 +298,17 @@ def studies(documents: Documents) -> str:
             f"{extremes['right']} right, {extremes['honest failure']} detected failures, "
             f"{extremes['wrong']} wrong, {extremes['crash']} crashes",
             link("extremes"),
+        ),
+        (
+            "extreme inputs, all parameters drawn at random",
+            f"{drawn['right']} right, {drawn['honest failure']} detected failures, "
+            f"{drawn['wrong']} wrong, {drawn['crash']} crashes",
+            link("extremes_drawn"),
+        ),
+        (
+            "sweeps that are killed, copied and cut off",
+            f"{chaos['sweeps']} tried, {chaos['different']} other tables, {chaos['tracebacks']} tracebacks",
+            link("chaos"),
         ),
         (
             "damaged input files",

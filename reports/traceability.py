@@ -44,7 +44,7 @@ class Traced:
         """On the paper: the least favourable verdict that a case recorded, and whether errata correct it."""
         if self.status != "pass":
             return "not established"
-        said = {case["data"].get("verdict") for case in self.cases}
+        said = {str(case["data"].get("verdict")) for case in self.cases}
         found = next((verdict for verdict in VERDICTS if verdict in said), "verified")
         if self.errata:
             return f"{found}; print corrected" if said & set(VERDICTS) else "corrected"

@@ -28,10 +28,11 @@ HERTZ_EXPONENTS = {
 def at_first_contact(features: GridFeatures) -> GridFeatures:
     """Return features at a prescribed approach, corrected by how far the grid's first contact lies too
     low."""
-    if features.loaded or not features.numbers["normal_force"] > 0:
-        return features
     approach = features.numbers["approach"]
-    share = approach / (approach + features.first_contact.height)
+    indentation = approach + features.first_contact.height
+    if features.loaded or indentation == 0 or not features.numbers["normal_force"] > 0:
+        return features
+    share = approach / indentation
     return _at(features, share) if _presses(features, share) else features
 
 
@@ -45,8 +46,9 @@ def first_contact_bounds(features: GridFeatures) -> dict[str, float]:
 
 
 def first_contact_share(features: GridFeatures) -> float:
-    """Return the standard deviation of the first contact, over the approach."""
-    return first_contact_error(features) / abs(features.numbers["approach"])
+    """Return the standard deviation of the first contact, over the approach; infinite over none."""
+    approach = abs(features.numbers["approach"])
+    return first_contact_error(features) / approach if approach else math.inf
 
 
 def first_contact_error(features: GridFeatures) -> float:

@@ -7,11 +7,37 @@ number for sizes of 150 to 700. ducc0 takes no more threads than OMP_NUM_THREADS
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+_NAMES = ("OMP_NUM_THREADS", "DUCC0_NUM_THREADS")
 
 
 def allowed_threads() -> int:
-    """Return OMP_NUM_THREADS, as for BLAS, or the number of cores that this process may use."""
-    said = os.environ.get("OMP_NUM_THREADS", "")
-    if said.isdigit() and int(said) > 0:
-        return int(said)
+    """Return OMP_NUM_THREADS, or its first number in a list, or the number of cores for this process."""
+    said = _number(os.environ.get("OMP_NUM_THREADS", "").partition(",")[0])
+    if said is not None:
+        return said
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def plain_number_of_threads() -> Iterator[None]:
+    """In the block, the environment has whole numbers of threads; ducc0 asserts that they are."""
+    before = {name: os.environ.get(name) for name in _NAMES}
+    plain = {name: str(_number(said or "") or allowed_threads()) for name, said in before.items()}
+    os.environ.update(plain)
+    try:
+        yield
+    finally:
+        for name, said in before.items():
+            if said is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = said
+
+
+def _number(said: str) -> int | None:
+    """The positive whole number that the text is, of six digits at most."""
+    return int(said) if re.fullmatch(r"\s*0*[1-9][0-9]{0,5}\s*", said) else None

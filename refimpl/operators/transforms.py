@@ -16,7 +16,7 @@ import scipy.fft as sfft
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
-from refimpl.operators.threads import allowed_threads
+from refimpl.operators.threads import allowed_threads, plain_number_of_threads
 
 Complex = NDArray[np.complex128]
 
@@ -102,6 +102,8 @@ class Ducc:
 
     def __init__(self) -> None:
         self._fft: Any = import_module("ducc0").fft
+        with plain_number_of_threads():
+            self._fft.r2c(np.zeros(1), nthreads=0)  # reads the number once and for all
 
     def columns(self, values: Array, spectrum: Complex, workers: int) -> None:
         """See `Library`."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -11,6 +9,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.model.problem import Problem, Terms
 from refimpl.planning.expected_contact import ExpectedContact, expected_contact
+from refimpl.planning.free_memory import free_memory
 from refimpl.planning.terms import RequestedTerms, Term, budget_of, choose
 
 Method = Literal["dense", "fft", "paper"]
@@ -134,13 +133,3 @@ def memory_of(method: Method, grid: Grid, *, corrected: bool = False) -> int:
         allowed = f"a grid whose estimated {memory / 1e9:.3g} GB fit into the free {free / 1e9:.3g} GB"
         raise InputError("grid", max(grid.shape), allowed)
     return memory
-
-
-def free_memory() -> int:
-    """Return the memory that an allocation may take now (bytes), by the kernel's own estimate if it has
-    one."""
-    with suppress(OSError), open("/proc/meminfo", encoding="ascii") as lines:
-        for line in lines:
-            if line.startswith("MemAvailable:"):
-                return int(line.split()[1]) * 1024
-    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")

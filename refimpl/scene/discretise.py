@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.problem import Problem, Terms
 from refimpl.scene.scene import Scene
+
+_DIGITS = 10  # units in the last place of the mean gap that an approach from the mean planes must have
 
 
 def discretise(
@@ -17,11 +22,17 @@ def discretise(
 
     ``approach`` replaces the load if given: it counts from first contact, or from the mean planes when the
     scene is periodic (m). The datum, the difference of both, is defined here.
+
+    Raises `InputError` for an approach that is rounding of the datum: at full contact, where it is 0, any
+    mean pressure will do.
     """
     lower, upper = scene.sampled(grid)
     gap = upper - lower
     gap -= gap.min()
     datum = float(gap.mean()) if grid.periodic else 0.0
+    if approach is not None and datum and abs(approach) < _DIGITS * math.ulp(datum):
+        least = f"at least {_DIGITS * math.ulp(datum):.1e} m below 0, where contact is full"
+        raise InputError("approach", approach, f"an approach that has digits beside the mean gap: {least}")
     return Problem(
         grid=grid,
         gap=gap,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import MOST, InputError, keep_doubles, require_number, require_size, within
+from refimpl.errors import MOST, InputError, keep_doubles, printable, require_number, require_size, within
 from refimpl.grid import Array, Grid
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
@@ -218,7 +218,7 @@ class Scene:
                     f"{placed.label}: on the upper body, so turned over about the x axis, "
                     "z(x, y) -> -z(x, -y) (turn_over = false uses it as it lies)"
                 )
-        return tuple(dict.fromkeys(lines))
+        return tuple(dict.fromkeys(map(printable, lines)))
 
     def parts(self, name: str) -> tuple[Surface, ...]:
         """The surfaces of the "lower" or the "upper" body, as they lie on it."""
@@ -271,7 +271,8 @@ def _centred(name: str, heights: Array, grid: Grid) -> Array:
         raise InputError(
             f"{name}.surface",
             f"peak-to-valley {high - low:.3g} m",
-            f"heights in m whose peak-to-valley is at most the longer side, {side:.3g} m (wrong unit?)",
+            f"heights in m whose peak-to-valley is at most the longer side, {side:.3g} m (wrong unit? "
+            "Without slope terms, heights and approach times s with moduli over s have the same pressures)",
         )
     heights -= low + 0.5 * (high - low)
     return heights

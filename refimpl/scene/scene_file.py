@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import tomllib
 from collections.abc import Mapping
 from importlib import resources
@@ -21,6 +22,9 @@ from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceSum
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
+_MAX_PARTS = 32  # parts of a dotted key: parse time grows with their square
+_PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
+_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_MAX_PARTS}}}")
 _OPTIONAL_KEYS = ("side", "size", "sliding_direction", "sliding_offset", "periodic", "plastic")
 _RIGID = "rigid"  # E of a rigid body
 _SCENE_KEYS = ("load", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
@@ -55,15 +59,24 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
             path = Path(str(resources.files("refimpl").joinpath("data", "scenes", f"{path}.toml")))
         else:
             raise InputError("scene", str(path), f"a TOML file, or one of {', '.join(shipped_scenes())}")
-    if path.stat().st_size > _MAX_BYTES:
-        raise InputError("scene", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
+    return read_toml(path, "scene"), path.parent
+
+
+def read_toml(path: Path, field: str) -> dict[str, Any]:
+    """The parsed file; raises `InputError`, naming the ``field``, for one that is too large or no TOML."""
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        if path.stat().st_size > _MAX_BYTES:
+            raise InputError(field, str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
+        text = path.read_text(encoding="utf-8-sig")
+        if _LONG_KEY.search(text):
+            raise InputError(field, str(path), f"dotted keys of at most {_MAX_PARTS} parts")
+        return tomllib.loads(text)
+    except InputError:
+        raise
     except OSError as refused:
-        raise InputError("scene", str(path), f"a file that can be read ({refused.strerror})") from refused
+        raise InputError(field, str(path), f"a file that can be read ({refused.strerror})") from refused
     except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
-        raise InputError("scene", str(path), f"valid TOML ({error})") from error
-    return table, path.parent
+        raise InputError(field, str(path), f"valid TOML ({error})") from error
 
 
 def shipped_scenes() -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from refimpl.surfaces.orientation import Oriented, check_orientation, checked_ce
 from refimpl.surfaces.preparation import check_preparation, prepare
 from refimpl.surfaces.readers import UNITS, Reading, read
 from refimpl.surfaces.surface import Surface, finite, pixel_edges, require_one_of
+from refimpl.surfaces.untrusted import read_untrusted, refuse_huge
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
@@ -102,7 +103,9 @@ class MeasuredSurface(Surface):
     def reading(self) -> Reading:
         """The content of the file, as it is (read once)."""
         pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
-        return read(self._file, self.unit, pixel, self.channel)
+        found = read_untrusted(self._file, lambda: read(self._file, self.unit, pixel, self.channel))
+        refuse_huge(self._file, found.heights)
+        return found
 
     @cached_property
     def prepared(self) -> Reading:

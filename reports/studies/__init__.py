@@ -21,7 +21,7 @@ def exhibit(name: str, document: Mapping[str, Any]) -> Exhibit:
         return _plain(name, document)
     try:
         built: Exhibit = importlib.import_module(module).build(document)
-    except (KeyError, TypeError, IndexError) as lacking:
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as lacking:
         raise ResultFileError(f"the study {name} lacks {lacking}") from lacking
     return built
 

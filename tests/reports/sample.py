@@ -4,15 +4,32 @@ from __future__ import annotations
 
 from typing import Any
 
+UNJUDGED: dict[str, Any] = {
+    "value": None, "reference": None, "reference_uncertainty": None, "error": None,
+}  # fmt: skip
+
 
 def case(id: str, status: str = "pass", **other: Any) -> dict[str, Any]:
-    return {
+    """A case whose error and status follow from its numbers, unless ``other`` says otherwise."""
+    numbers = {"value": 1.01 if status == "pass" else 1.2, "reference": 1.0, "reference_uncertainty": 0.0}
+    if status in ("error", "unavailable"):
+        numbers = UNJUDGED
+    made = {
         "id": id, "title": f"Title of {id}", "claim": "Eq. (7) holds", "source": "Johnson 1985",
-        "metric": "relative",
-        "value": 1.01, "reference": 1.0, "reference_uncertainty": 0.0, "error": 0.01, "tolerance": 0.1,
+        "metric": "relative", **numbers, "tolerance": 0.1,
         "tolerance_reason": "first order in h", "status": status, "seconds": 0.5, "unit": "Pa", "note": "",
         "tier": "quick", "tags": ["eq7"], "data": {}, **other,
     }  # fmt: skip
+    return made if "error" in made else {**made, "error": error_of(made)}
+
+
+def error_of(case: dict[str, Any]) -> float | None:
+    """The error that the value, the reference and the metric make."""
+    value, reference = case["value"], case["reference"]
+    if value is None or reference is None:
+        return value
+    scale = abs(reference) if case["metric"] == "relative" else 1.0
+    return float(abs(value - reference) / scale)
 
 
 def results(*cases: dict[str, Any], **other: Any) -> dict[str, Any]:
@@ -37,7 +54,6 @@ def results(*cases: dict[str, Any], **other: Any) -> dict[str, Any]:
     }
 
 
-UNJUDGED = {"value": None, "reference": None, "reference_uncertainty": None, "error": None}
 TEXTBOOK = {
     "offset": [1, 10, 100],
     "textbook": [1e-15, 1e-13, 1e-11],

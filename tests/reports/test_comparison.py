@@ -26,11 +26,6 @@ EXACT: dict[str, Any] = {"metric": "absolute", "reference": 5.0, "tolerance": 0.
         (EXACT | {"value": 5.0}, EXACT | {"value": 5.02, "reference_uncertainty": 0.03}, False),
         (EXACT | {"value": 5.0, "reference_uncertainty": 0.03}, EXACT | {"value": 5.02}, False),
         (EXACT | {"value": 5.0, "reference_uncertainty": 0.03}, EXACT | {"value": 5.04}, True),
-        # a value that is not there any more, or was not
-        ({"value": None}, {"value": 1.0}, True),
-        ({"value": 1.0}, {"value": None}, True),
-        ({"value": 0.0}, {"value": None}, True),
-        ({"value": None}, {"value": None}, False),
     ],
 )
 def test_a_value_changes_beyond_what_is_uncertain_of_it(

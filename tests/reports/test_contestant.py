@@ -13,7 +13,7 @@ from reports.evidence import gathered
 from reports.generator import render
 from reports.results import ResultFileError, check
 from reports.summary import groups
-from tests.reports.sample import UNJUDGED, case, results
+from tests.reports.sample import case, results
 from tests.reports.test_generator import Page, summary_of
 from verification.cli import parser
 
@@ -32,10 +32,10 @@ def theirs(*cases: dict[str, Any], command: str = COMMAND) -> dict[str, Any]:
 
 RUN = theirs(
     case("contestant/pins"),
-    case("contestant/hertz", "fail", error=0.2),
-    case("contestant/shear", "unavailable", note="the solver does not offer: coupling", **UNJUDGED),
+    case("contestant/hertz", "fail", value=1.2),
+    case("contestant/shear", "unavailable", note="the solver does not offer: coupling"),
 )
-OURS = {"quick": results(case("hertz/a"), case("hertz/b", tier="full"), case("hertz/c", "fail", error=0.3))}
+OURS = {"quick": results(case("hertz/a"), case("hertz/b", tier="full"), case("hertz/c", "fail", value=1.3))}
 
 
 def test_title_and_summary_name_the_solver() -> None:
@@ -55,9 +55,9 @@ def test_its_cases_are_counted_apart_from_the_projects_own() -> None:
     assert mine.counts == {"pass": 1, "fail": 1, "error": 0, "unavailable": 1}
     assert ours.counts == {"pass": 2, "fail": 1, "error": 0, "unavailable": 0}
     assert summary_of(render(RUN, OURS)).links == [
-        "#case-contestant-hertz",
-        "#case-contestant-shear",
-        "#case-hertz-c",
+        "#case-contestant.hertz",
+        "#case-contestant.shear",
+        "#case-hertz.c",
     ]
     assert re.findall(r"<b>(\d)</b> pass", render(RUN)) == ["1"]
 

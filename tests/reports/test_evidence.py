@@ -25,10 +25,10 @@ def dated(date: str, *cases: dict, **other: object) -> dict:
 
 def test_the_run_outweighs_committed_runs_and_the_newest_judged_of_those_counts() -> None:
     older = dated("2001-01-01", case("a/1", value=1.0), case("b/1", value=1.0), case("c/1", value=1.0))
-    newer = dated("2002-01-01", case("b/1", value=2.0), case("c/1", "error"))
-    found = gathered(results(case("a/1", value=9.0)), {"older": older, "newer": newer, "study": {"x": 1}})
+    newer = dated("2002-01-01", case("b/1", value=1.02), case("c/1", "error"))
+    found = gathered(results(case("a/1", value=1.09)), {"older": older, "newer": newer, "study": {"x": 1}})
     values = {c["id"]: (c["value"], c["origin"] and c["origin"]["file"]) for c in found.cases}
-    assert values == {"a/1": (9.0, None), "b/1": (2.0, "newer.json"), "c/1": (1.0, "older.json")}
+    assert values == {"a/1": (1.09, None), "b/1": (1.02, "newer.json"), "c/1": (1.0, "older.json")}
     assert [group.counts["pass"] for group in groups(found)] == [3]
     assert list(found.studies) == ["study"]
 
@@ -83,7 +83,7 @@ def test_the_least_favourable_verdict_counts_and_long_cases_replace_quick_ones()
 
 def test_changes_beyond_uncertainty_only() -> None:
     old = results(case("a/1"), case("b/1"), case("c/1"), case("d/1"))
-    new = results(case("a/1", value=1.01 + 1e-5), case("b/1", "fail"), case("c/1", value=1.2), case("e/1"))
+    new = results(case("a/1", value=1.01 + 1e-5), case("b/1", "fail"), case("c/1", value=1.05), case("e/1"))
     assert [(c.kind, c.id) for c in compared(old, new)] == [
         ("status", "b/1"),
         ("value", "c/1"),

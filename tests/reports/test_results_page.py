@@ -34,10 +34,11 @@ def test_every_row_names_a_file_that_is_there() -> None:
 def test_a_refuted_claim_and_a_failed_check_are_named(documents: dict[str, Any]) -> None:
     assert "| refuted | Eq. (11) |" in page(documents)
     run = documents["quick"]
-    broken = {**run["cases"][0], "status": "fail"}
-    counts = run["counts"] | {"pass": run["counts"]["pass"] - 1, "fail": 1}
+    unjudged = dict.fromkeys(("value", "reference", "reference_uncertainty", "error"))
+    broken = {**run["cases"][0], **unjudged, "status": "error"}
+    counts = run["counts"] | {"pass": run["counts"]["pass"] - 1, "error": 1}
     made = page({**documents, "quick": {**run, "cases": [broken, *run["cases"][1:]], "counts": counts}})
-    assert f"Not passed: `{broken['id']}` (fail)." in made
+    assert f"Not passed: `{broken['id']}` (error)." in made
 
 
 def test_table_3_has_the_printed_numbers(documents: dict[str, Any]) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import argparse
 import errno
+import io
 import re
+import signal
 import sys
+import threading
 from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
@@ -33,7 +36,9 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Exit with status 2."""
-        self.exit(BAD_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        from refimpl.errors import printable
+
+        self.exit(BAD_INPUT, f"{self.prog}: {printable(message)} (see {self.prog} --help)\n")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -70,7 +75,15 @@ def joined(arguments: Sequence[str]) -> list[str]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status. Errors that nobody foresaw keep their traceback."""
+    try:
+        return _run(arguments)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     top = parser()
+    _end_in_order()
     options = top.parse_args(joined(sys.argv[1:] if arguments is None else arguments))
     from appendix_a.errors import InputError as AppendixInputError  # here and not above: --help is quick
     from refimpl.errors import InputError
@@ -91,6 +104,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         print(f"{top.prog}: no solution was found: {hopeless}", file=sys.stderr)
         return FAILED
-    except KeyboardInterrupt:
-        return INTERRUPTED
     return status
+
+
+def _end_in_order() -> None:
+    """Interrupts raise, so that no temporary file stays; no text fails on standard output's encoding."""
+    started = threading.current_thread() is threading.main_thread()
+    if started and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # by `verification.start`
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")

@@ -96,7 +96,7 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 def emit(document: object, path: Path | None, table: str) -> None:
     """Write the document where asked and show the table; '-' prints the document in the table's place."""
     if path == Path("-"):
-        show(to_json(document).rstrip("\n"))
+        show(to_json(document, ascii_only=not _takes(to_json(document))).rstrip("\n"))
         return
     try:
         if path is not None:
@@ -112,11 +112,25 @@ def emit_early(document: object, path: Path | None, table: str) -> None:
 
 
 def show(text: str) -> None:
-    """Print a text; where whoever reads has closed the pipe, that and all that follows goes nowhere."""
+    """Print a text, what a terminal would obey escaped.
+
+    Where whoever reads has closed the pipe, that and all that follows goes nowhere.
+    """
+    from refimpl.errors import printable
+
     try:
-        print(text, flush=True)
+        print("\n".join(map(printable, text.split("\n"))), flush=True)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _takes(text: str) -> bool:
+    """Whether standard output can encode the text."""
+    try:
+        text.encode(sys.stdout.encoding or "utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:

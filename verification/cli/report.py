@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -57,9 +58,7 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
     from refimpl.errors import InputError
-    from reports.generator import render
     from reports.result_files import result_paths
-    from reports.results import ResultFileError
     from verification.framework.files import write_text
 
     results = read_run(options.results)
@@ -74,9 +73,7 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     line = StatusLine()
     try:
-        page = render(results, committed, against, line.show)
-    except ResultFileError as alien:  # the runs are checked: it is a study
-        raise InputError("--committed", str(folder), f"result files ({alien})") from alien
+        page = rendered(results, options.results, committed, folder, against, line.show)
     finally:
         line.close()
     try:
@@ -91,6 +88,27 @@ def run(options: argparse.Namespace) -> int:
     document = {"report": str(path), "counts": results["counts"]}
     emit(document, options.json, "\n".join([columns(rows, indent=""), *map(str, map(Path.resolve, written))]))
     return 0
+
+
+def rendered(
+    results: Any,
+    file: Path,
+    committed: Mapping[str, Any],
+    folder: Path,
+    against: Any = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> str:
+    """The page; raises InputError, naming the file or the folder, for data that no figure can show."""
+    from refimpl.errors import InputError
+    from reports.generator import render
+    from reports.results import CaseDataError, ResultFileError
+
+    try:
+        return render(results, committed, against, progress)
+    except ResultFileError as alien:
+        if isinstance(alien, CaseDataError) and alien.origin is None:
+            raise InputError("--results", str(file), f"a result file ({alien})") from alien
+        raise InputError("--committed", str(folder), f"result files ({alien})") from alien
 
 
 def _check_folder(output: Path) -> None:
@@ -131,14 +149,19 @@ def _checked(option: str, path: Path, found: object) -> Any:
 def _read(option: str, path: Path) -> Any:
     from refimpl.errors import InputError
     from reports.result_files import read_result
+    from verification.framework.files import is_stream
 
     try:
+        if is_stream(path) and not os.path.isdir(path):  # it may have no end
+            raise InputError(option, str(path), "a regular file")
         return read_result(path)
     except FileNotFoundError as missing:
         allowed = "a result file; make one with 'rough-friction verify --json FILE'"
         raise InputError(option, str(path), allowed) from missing
     except OSError as refused:
         raise InputError(option, str(path), f"a file that can be read ({refused.strerror})") from refused
+    except InputError:
+        raise
     except (ValueError, RecursionError) as broken:  # JSON, UTF-8, or thousands of digits
         raise InputError(option, str(path), f"JSON ({broken})") from broken
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
+import glob
 import json
 import os
+import re
 import stat
 import sys
 import tempfile
@@ -13,12 +16,16 @@ from pathlib import Path
 
 import reports.result_files
 
+_UNUSUAL = re.compile(r"[^\n -~]")
+_SHOWN = 40  # characters of the target's name in that of a temporary file
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A temporary path beside `path`, of the same suffix, that takes its place when the block ends well.
 
-    The file appears in one step; after an error the old file, if any, is still there. What is no regular
+    The file appears in one step; after an error the old file, if any, is still there. What a killed process
+    has left of an earlier attempt is removed. What is no regular
     file, a device or a pipe, is written to and never replaced; nor is a link, but the file that it leads to.
     A new file has the mode that the umask leaves, another keeps its own.
     Raises OSError where the directory cannot be written to.
@@ -27,14 +34,10 @@ def replacing(path: Path) -> Iterator[Path]:
         yield path
         return
     path = Path(os.path.realpath(path))
-    name = _temporary(path)
-    try:
+    with _temporary(path) as name:
         yield Path(name)
         os.chmod(name, _mode(path))
         os.replace(name, path)
-    except BaseException:
-        os.unlink(name)
-        raise
 
 
 def is_stream(path: Path) -> bool:
@@ -47,13 +50,35 @@ def try_out(path: Path) -> None:
     with suppress(FileNotFoundError):
         os.stat(path)  # the temporary file's name is a short one, whatever the length of this one
     if not is_stream(path):
-        os.unlink(_temporary(Path(os.path.realpath(path))))
+        with _temporary(Path(os.path.realpath(path))):
+            pass
 
 
-def _temporary(path: Path) -> str:
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
-    os.close(handle)
-    return name
+@contextmanager
+def _temporary(path: Path) -> Iterator[str]:
+    """The name of a new file beside the path, locked while it is written and gone afterwards."""
+    prefix = f".{path.name[:_SHOWN]}."
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=path.suffix)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        _remove_left(path, prefix)
+        yield name
+    finally:
+        with suppress(FileNotFoundError):  # it is at its place
+            os.unlink(name)
+        os.close(handle)
+
+
+def _remove_left(path: Path, prefix: str) -> None:
+    """Remove temporary files of the path whose writers are gone: nobody locks them."""
+    for left in path.parent.glob(f"{glob.escape(prefix)}????????{glob.escape(path.suffix)}"):
+        with suppress(OSError):
+            handle = os.open(left, os.O_RDONLY | os.O_NOFOLLOW)
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                os.unlink(left)
+            finally:
+                os.close(handle)
 
 
 def _mode(path: Path) -> int:
@@ -72,9 +97,16 @@ def write_text(text: str, path: Path) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-def to_json(document: object) -> str:
-    """JSON text with a final newline; NaN and infinity, which JSON does not have, raise ValueError."""
-    return json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+def to_json(document: object, *, ascii_only: bool = False) -> str:
+    """JSON text with a final newline; NaN and infinity, which JSON does not have, raise ValueError.
+
+    What is not printable, or is a byte of a file name that is no UTF-8, is escaped.
+
+    >>> to_json("caf\\xe9 \\x9b \\udcff")
+    '"caf\xe9 \\\\u009b \\\\udcff"\\n'
+    """
+    text = json.dumps(document, indent=1, allow_nan=False, ensure_ascii=ascii_only)
+    return _UNUSUAL.sub(lambda c: c[0] if c[0].isprintable() else json.dumps(c[0])[1:-1], text) + "\n"
 
 
 def write_result(document: object, path: Path) -> None:

@@ -1,10 +1,12 @@
-"""Threads of child processes, of BLAS and of transforms: one by default."""
+"""Threads of this process and its children, of BLAS and of transforms: one by default."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+from threadpoolctl import threadpool_info, threadpool_limits
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Where libraries of BLAS, ducc0 and `refimpl.operators.threads` read it, most of them at import."""
@@ -32,3 +34,17 @@ def one_thread() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextmanager
+def limited_to_one_thread() -> Iterator[None]:
+    """In the block, this process has one thread, whatever its environment was when libraries were imported.
+
+    BLAS is limited by its own interface; transforms read the environment at every call. Raises RuntimeError
+    where a library of BLAS or OpenMP does not take the limit.
+    """
+    with one_thread(), threadpool_limits(1):
+        loose = [pool["internal_api"] for pool in threadpool_info() if pool["num_threads"] != 1]
+        if loose:
+            raise RuntimeError(f"{', '.join(loose)} cannot be limited to one thread")
+        yield

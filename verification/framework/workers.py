@@ -6,10 +6,14 @@ import importlib
 import itertools
 import multiprocessing
 import queue
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing.process import BaseProcess
 
 from verification.framework import registry
 from verification.framework.case import Case, Result, Status
@@ -26,7 +30,9 @@ class Worker:
         """The case's verdict; never raises for what the case does."""
         start = time.perf_counter()
         try:
-            return self._pool.submit(_run_in_worker, case.module, case.id).result()
+            with interrupts_blocked():
+                running = self._pool.submit(_run_in_worker, case.module, case.id)
+            return running.result()
         except BrokenProcessPool:
             self.close()
             self._pool = _process()
@@ -44,13 +50,15 @@ def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) ->
     A worker takes the cases of a whole module, in their order, since those may share a cached solution.
     """
     lines: queue.SimpleQueue[list[Case]] = queue.SimpleQueue()
+    before = set(multiprocessing.active_children())
+    stopped = threading.Event()
     for _, line in itertools.groupby(cases, key=lambda c: c.module):
         lines.put(list(line))
 
     def work(_: int) -> list[Result]:
         worker, results = Worker(), []
         try:
-            for case in _drain(lines):
+            for case in _drain(lines, stopped):
                 results.append(worker.run(case))
                 tick(results[-1])
         finally:
@@ -58,18 +66,42 @@ def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) ->
         return results
 
     with one_thread(), ThreadPoolExecutor(jobs) as threads:
-        found = {r.id: r for results in threads.map(work, range(jobs)) for r in results}
+        try:
+            found = {r.id: r for results in threads.map(work, range(jobs)) for r in results}
+        except BaseException:
+            stopped.set()
+            kill_workers(before)
+            raise
     return [found[c.id] for c in cases]
 
 
-def _drain(lines: queue.SimpleQueue[list[Case]]) -> Iterator[Case]:
-    """Cases, line after line, until no line is left."""
+def _drain(lines: queue.SimpleQueue[list[Case]], stopped: threading.Event) -> Iterator[Case]:
+    """Cases, line after line, until no line is left or the event is set."""
     while True:
         try:
             line = lines.get_nowait()
         except queue.Empty:
             return
-        yield from line
+        for case in line:
+            if stopped.is_set():
+                return
+            yield case
+
+
+@contextmanager
+def interrupts_blocked() -> Iterator[None]:
+    """Processes started in the block take no interrupts: one sent to the whole group is for this process."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def kill_workers(others: set[BaseProcess]) -> None:
+    """Kill this process's worker processes but for the others."""
+    for worker in set(multiprocessing.active_children()) - others:
+        worker.kill()
 
 
 def _process() -> ProcessPoolExecutor:

@@ -26,6 +26,13 @@ def outcome(target: Target, content: bytes, folder: Path) -> str:
     """Outcome of an input: accepted, refused, hang, or the fault's type, place and text."""
     path = folder / f"input{target.suffix}"
     path.write_bytes(content)
+    begun = time.process_time()
+    ended = _ended(target, path)
+    # A reader that takes every exception of a parser takes `OutOfTime` too.
+    return "hang" if time.process_time() - begun >= SECONDS else ended
+
+
+def _ended(target: Target, path: Path) -> str:
     try:
         with processor_time(SECONDS), warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -6,6 +6,7 @@ thread everywhere), so how many workers there are, and how often they were kille
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -15,6 +16,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
+    CancelledError,
     Executor,
     Future,
     ProcessPoolExecutor,
@@ -29,12 +31,15 @@ from typing import Any
 
 from refimpl.errors import InputError
 from verification.framework.threads import one_thread
+from verification.framework.workers import interrupts_blocked, kill_workers
 from verification.sweep.run import CERTIFIED, Row, Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study
 
 PER_WORKER = 2  # runs submitted per worker: one at work, one waiting
 CONNECT_SECONDS = 10.0  # for a scheduler to answer
+POLL_SECONDS = 1.0  # between two looks at whether a cluster is still there
+PATIENCE_SECONDS = 30.0  # for a new worker to come when the last one is lost
 
 
 @dataclass(frozen=True)
@@ -74,7 +79,10 @@ class Sweep:
 
 
 class WorkersLost(RuntimeError):
-    """A worker process died; what was finished is kept, and the same sweep goes on from there."""
+    """Workers or the cluster died; what was finished is kept, and the same sweep goes on from there."""
+
+    def __init__(self, found: str) -> None:
+        super().__init__(f"{found}; run the same sweep again to go on")
 
 
 def sweep(
@@ -90,7 +98,8 @@ def sweep(
     ``workers`` processes, or with 0 this process itself, which then should have one BLAS thread;
     ``scheduler`` is the address of a dask.distributed cluster to use instead. A run that raises is reported
     in ``failures``, is not kept, and is tried again by the next sweep. Raises InputError for a store that
-    another sweep is using or a scheduler that cannot serve, WorkersLost when a worker process was killed.
+    another sweep is using or a scheduler that cannot serve, WorkersLost when a worker process was killed, or
+    the scheduler or the last worker of a cluster is lost.
     """
     started = time.perf_counter()
     # Points without roughness are the same run in every realisation, and are solved once.
@@ -103,9 +112,7 @@ def sweep(
         failures: dict[str, str] = {}
         if missing:
             for run, done in _executed(stack, missing, workers, scheduler):
-                failure = done.exception()
-                if isinstance(failure, BrokenProcessPool):
-                    raise WorkersLost("a worker process died; run the same sweep again to go on")
+                failure = _failure(done)
                 if failure is None:
                     kept.add(run, *done.result())
                 else:
@@ -119,10 +126,21 @@ def sweep(
 Done = Iterator[tuple[Run, "Future[tuple[Row, float]]"]]
 
 
+def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
+    """What the run raised; raises WorkersLost where it is not the run's doing."""
+    try:
+        failure = done.exception()
+    except CancelledError as lost:
+        raise WorkersLost("the scheduler was lost") from lost
+    if isinstance(failure, BrokenProcessPool):
+        raise WorkersLost("a worker process died")
+    return failure
+
+
 def _executed(stack: ExitStack, runs: list[Run], workers: int, scheduler: str | None) -> Done:
     if scheduler is not None:
-        executor, size = stack.enter_context(_cluster(scheduler))
-        return _through(executor, runs, PER_WORKER * size)
+        executor, size, check_alive = stack.enter_context(_cluster(scheduler))
+        return _through(executor, runs, PER_WORKER * size, check_alive)
     if workers == 0:
         here = stack.enter_context(ThreadPoolExecutor(1))
         return _through(here, runs, depth=1)
@@ -130,8 +148,10 @@ def _executed(stack: ExitStack, runs: list[Run], workers: int, scheduler: str | 
     return _through(executor, runs, PER_WORKER * workers)
 
 
-def _through(executor: Executor, runs: Iterable[Run], depth: int) -> Done:
-    """Runs as they finish, at most ``depth`` submitted at a time."""
+def _through(
+    executor: Executor, runs: Iterable[Run], depth: int, check_alive: Callable[[], None] = lambda: None
+) -> Done:
+    """Runs as they finish, at most ``depth`` submitted at a time; ``check_alive`` raises where none will."""
     waiting: dict[Future[tuple[Row, float]], Run] = {}
     queue = iter(runs)
     exhausted = False
@@ -142,7 +162,9 @@ def _through(executor: Executor, runs: Iterable[Run], depth: int) -> Done:
                 exhausted = True
             else:
                 waiting[executor.submit(execute, run.inputs)] = run
-        finished, _ = wait(waiting, return_when=FIRST_COMPLETED)
+        finished, _ = wait(waiting, POLL_SECONDS, FIRST_COMPLETED)
+        if waiting and not finished:
+            check_alive()
         for future in finished:
             yield waiting.pop(future), future
 
@@ -153,10 +175,15 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     context = multiprocessing.get_context("spawn")
     with one_thread():
         executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
+        before = set(multiprocessing.active_children())
+        with interrupts_blocked():
+            executor.submit(int)  # starts all workers
         try:
             yield executor
+            executor.shutdown()
         finally:
-            executor.shutdown(cancel_futures=True)
+            executor.shutdown(wait=False, cancel_futures=True)
+            kill_workers(before)  # the next sweep repeats unfinished runs
 
 
 def _end_with_parent() -> None:
@@ -174,8 +201,8 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
-    """The workers of a running dask.distributed scheduler as an executor, and their number."""
+def _cluster(address: str) -> Iterator[tuple[Executor, int, Callable[[], None]]]:
+    """A running dask.distributed scheduler: its workers as an executor, their number, a check of life."""
     try:
         import distributed
 
@@ -183,16 +210,58 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     except ModuleNotFoundError as missing:
         allowed = "dask.distributed installed: pip install 'rough-friction[cluster]'"
         raise InputError("--scheduler", address, allowed) from missing
+    with _no_log():
+        try:
+            client = connect(address, timeout=CONNECT_SECONDS)
+        except (OSError, ValueError) as unreachable:
+            allowed = f"a scheduler's address ({unreachable})"
+            raise InputError("--scheduler", address, allowed) from unreachable
+        cluster = _Cluster(client)
+        try:
+            threads = cluster.threads()
+            if not threads or set(threads.values()) != {1}:
+                found = f"{address} with workers of {sorted(threads.values())} threads"
+                allowed = "workers of one thread each (dask worker --nthreads 1)"
+                raise InputError("--scheduler", found, allowed)
+            yield client.get_executor(pure=False), len(threads), cluster.check_alive
+        finally:
+            client.close(timeout=CONNECT_SECONDS)
+
+
+class _Cluster:
+    """Whether a cluster can still finish what was submitted."""
+
+    def __init__(self, client: Any) -> None:
+        self._client, self._worked = client, time.monotonic()
+
+    def threads(self) -> dict[str, int]:
+        """Threads by worker; raises WorkersLost where the scheduler does not answer in time."""
+        try:
+            ask = self._client.scheduler.ncores
+            found: dict[str, int] = self._client.sync(ask, workers=None, callback_timeout=CONNECT_SECONDS)
+        except (OSError, TimeoutError, CancelledError) as lost:  # comm errors of distributed are OSErrors
+            raise WorkersLost("the scheduler was lost") from lost
+        return found
+
+    def check_alive(self) -> None:
+        """Raise WorkersLost where the scheduler is lost, or there has been no worker for too long."""
+        if self._client.status != "running":
+            raise WorkersLost("the scheduler was lost")
+        if self.threads():
+            self._worked = time.monotonic()
+        elif time.monotonic() - self._worked > PATIENCE_SECONDS:
+            raise WorkersLost("the last worker of the cluster was lost")
+
+
+@contextmanager
+def _no_log() -> Iterator[None]:
+    """No messages of libraries about connections that break: `WorkersLost` is one line about them."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
     try:
-        client = connect(address, timeout=CONNECT_SECONDS)
-    except (OSError, ValueError) as unreachable:
-        raise InputError("--scheduler", address, f"a scheduler's address ({unreachable})") from unreachable
-    with client:
-        threads = client.nthreads()
-        if not threads or set(threads.values()) != {1}:
-            found = f"{address} with workers of {sorted(threads.values())} threads"
-            raise InputError("--scheduler", found, "workers of one thread each (dask worker --nthreads 1)")
-        yield client.get_executor(pure=False), len(threads)
+        yield
+    finally:
+        logging.disable(before)
 
 
 class _Meter:

@@ -6,8 +6,10 @@ import hashlib
 import json
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.scene.scene_file import scene_from_dict
+from verification.framework.threads import limited_to_one_thread
 
 COORDINATES = (
     "realisation", "grid", "load", "upper_rms", "lower_rms", "correlation_length",
@@ -34,6 +37,9 @@ OUTCOMES = (
 that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` what an alternating contact
 edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border.
 """
+
+LIBRARIES = ("numpy", "scipy", "ducc0")
+"""Packages whose version may change the last digits of a run."""
 
 CERTIFIED = (rf.Status.CONVERGED.value, rf.Status.CYCLED.value)
 """Statuses of rows whose numbers are solutions, as `refimpl.Solution.converged` has it."""
@@ -71,11 +77,16 @@ class Run:
 
 @cache
 def code_digest() -> str:
-    """Digest of every source file of `refimpl` in this process's installation."""
+    """Digest of every source file of `refimpl` in this process's installation, and of the libraries' versions
+    that its last digits depend on.
+    """
     root = Path(rf.__file__).parent
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
         digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes() + b"\0")
+    for name in LIBRARIES:
+        with suppress(PackageNotFoundError):
+            digest.update(f"{name} {version(name)}\0".encode())
     return digest.hexdigest()[:16]
 
 
@@ -87,14 +98,16 @@ def file_digest(path: Path) -> str:
 def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
     """Solve one run; the row of `OUTCOMES`, and the processor seconds it took.
 
-    Runs anywhere: in this process, a worker, or on a cluster. Raises RuntimeError where another version of
-    the code is installed than the one that the inputs name, and what `refimpl.solve` raises.
+    Runs anywhere: in this process, a worker, or on a cluster, on one thread. Raises RuntimeError where
+    another version of the code is installed than the one that the inputs name, and what `refimpl.solve`
+    raises.
     """
     if inputs["code"] != code_digest():
         raise RuntimeError("this worker's refimpl differs from the one that planned the sweep")
     started = time.process_time()
     settings = inputs["solve"]
-    solution = rf.solve(scene_from_dict(inputs["scene"], Path()), inputs["grid"], **settings)
+    with limited_to_one_thread():
+        solution = rf.solve(scene_from_dict(inputs["scene"], Path()), inputs["grid"], **settings)
     return outcome(solution), time.process_time() - started
 
 

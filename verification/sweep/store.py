@@ -1,17 +1,26 @@
 """Results kept in one SQLite file: a row per finished run, written at once or not at all.
 
 The journal is a write-ahead log, so that a run is either in the table or not after a kill at any moment, and
-others may read while a sweep writes. A second sweep on the file is refused by an exclusive transaction held
-on a small file beside it, which the system releases when the holder dies, however it dies.
+others may read while a sweep writes. A second sweep is refused by a lock on the database file itself, which
+links to it share, and which the system releases when the holder dies, however it dies.
+
+Damage is found before it is used: on opening, the file's structure, its schema and the checksum of every row
+are compared with what this module writes.
 """
 
 from __future__ import annotations
 
+import fcntl
+import hashlib
+import json
+import math
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
+from typing import Any
+from urllib.parse import quote
 
 from refimpl.errors import InputError
 from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
@@ -19,128 +28,224 @@ from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
 APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
 VERSION = 2
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
+BUSY_SECONDS = 5.0  # for another program to end its transaction
 _OURS = [APPLICATION_ID, VERSION]
 _PRIMARY = 0xFF  # primary part of a result code; the other bits give its kind
 _UNWRITABLE = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR)
+_ALL = (*COLUMNS, "inputs", "seconds", "checksum")
 _TABLE = f"""create table runs (
     key text primary key,
     {", ".join((*COORDINATES, *OUTCOMES))},
-    inputs text not null, seconds real not null
+    inputs text not null, seconds real not null, checksum text not null
 ) without rowid"""
-_INSERT = f"insert into runs values ({', '.join('?' * (len(COLUMNS) + 2))})"
+_INSERT = f"insert into runs values ({', '.join('?' * len(_ALL))})"
+_SELECT = f"select {', '.join(_ALL)} from runs"
 
 
 class Store:
-    """The open file of one sweep. Use `open_store`."""
+    """The open file of one sweep. Use `open_store`.
 
-    def __init__(self, connection: sqlite3.Connection) -> None:
-        self._connection = connection
+    Every method raises InputError where the file is damaged, locked by another program, or no longer at its
+    path.
+    """
+
+    def __init__(self, connection: sqlite3.Connection, path: Path, lock: int) -> None:
+        self._connection, self._path, self._lock = connection, path, lock
 
     def keys(self) -> set[str]:
         """Keys of the finished runs."""
-        return {key for (key,) in self._connection.execute("select key from runs")}
+        with _refused(self._path):
+            return {key for (key,) in self._connection.execute("select key from runs")}
 
     def add(self, run: Run, row: Row, seconds: float) -> None:
         """Keep a finished run; raises sqlite3.IntegrityError for one that is there already."""
         values = [run.key, *run.coordinates.values(), *(row[name] for name in OUTCOMES)]
-        self._connection.execute(_INSERT, [*values, run.canonical, seconds])
+        values = [None if _is_nan(value) else value for value in (*values, run.canonical, seconds)]
+        with _refused(self._path):
+            self.check_place()
+            self._connection.execute(_INSERT, [*values, checksum(values)])
 
     def rows(self, runs: Iterable[Run]) -> Iterator[Row]:
         """Rows of the finished ones among ``runs``, in that order, by the names of `COLUMNS`."""
-        query = f"select {', '.join(COLUMNS)} from runs where key = ?"
-        for run in runs:
-            found = self._connection.execute(query, (run.key,)).fetchone()
-            if found is not None:
-                yield dict(zip(COLUMNS, found, strict=True))
+        for found in self._found(runs):
+            yield {name: found[name] for name in COLUMNS}
 
     def seconds(self, runs: Iterable[Run]) -> Iterator[float]:
         """Processor seconds of the finished ones among ``runs``, in that order."""
+        for found in self._found(runs):
+            yield found["seconds"]
+
+    def check_place(self) -> None:
+        """Raise InputError unless the locked file is still the one at the path."""
+        held = os.fstat(self._lock)
+        try:
+            there = os.stat(self._path)
+        except OSError:
+            there = None
+        if there is None or (there.st_dev, there.st_ino) != (held.st_dev, held.st_ino):
+            found = "deleted" if there is None else "replaced"
+            raise InputError("store", str(self._path), f"a file that stays: it was {found} during the sweep")
+
+    def _found(self, runs: Iterable[Run]) -> Iterator[Row]:
         for run in runs:
-            yield from (
-                self._connection.execute("select seconds from runs where key = ?", (run.key,)).fetchone()
-                or ()
-            )
+            with _refused(self._path):
+                row = self._connection.execute(f"{_SELECT} where key = ?", (run.key,)).fetchone()
+            if row is not None:
+                yield _checked(row, self._path)
+
+
+def _checked(row: Sequence[Any], path: Path) -> Row:
+    """The row by column, if its checksum and its key are those of its values."""
+    *values, stored = row
+    found = dict(zip(_ALL, row, strict=True))
+    if checksum(values) != stored or _key(found["inputs"]) != found["key"]:
+        allowed = f"rows as they were written; that of key {str(found['key'])[:40]!r} is damaged"
+        raise InputError("store", str(path), allowed)
+    return found
+
+
+def checksum(values: Sequence[Any]) -> str:
+    """64 bits of the SHA-256 of a row's values; floats by their shortest exact form.
+
+    >>> checksum(["key", 1.0, None]) == checksum(["key", 1, None])
+    False
+    """
+    return hashlib.sha256(json.dumps(values, default=repr).encode()).hexdigest()[:16]
+
+
+def _key(inputs: object) -> str:
+    return hashlib.sha256(str(inputs).encode("utf-8", "replace")).hexdigest()[:32]
+
+
+def _is_nan(value: object) -> bool:
+    """SQLite keeps NaN as NULL."""
+    return isinstance(value, float) and math.isnan(value)
 
 
 def files_of(store: Path) -> tuple[Path, ...]:
-    """The store, and what SQLite and the lock keep beside it."""
-    return tuple(store.with_name(store.name + end) for end in ("", "-wal", "-shm", "-journal", ".lock"))
+    """The store, and what SQLite keeps beside it."""
+    return tuple(store.with_name(store.name + end) for end in ("", "-wal", "-shm", "-journal"))
 
 
 @contextmanager
 def open_store(path: Path) -> Iterator[Store]:
     """Open or create a store for one sweep.
 
-    Raises InputError for a file that is not a store, cannot be written, or is in use by another sweep; and
-    in the block where the disk is full or no longer lets it be written. Other faults are raised as they are.
+    Raises InputError for a file that is not a store, is damaged, cannot be written, has several names, or is
+    in use by another sweep or program; and in the block where the disk is full or no longer lets it be
+    written. Other faults of the block are raised as they are.
     """
-    with _opened(path) as connection:
-        try:
-            yield Store(connection)
-        except sqlite3.OperationalError as refused:
-            if refused.sqlite_errorcode & _PRIMARY not in _UNWRITABLE:
-                raise
-            raise InputError("store", str(path), f"a file that can be written ({refused})") from refused
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """The locked store's connection; of what is refused no new file stays, but a store of finished runs."""
-    new = [file for file in (path, _lock_file(path)) if not os.path.exists(file)]  # no error for long names
-    kept = False
-    with closing(_lock(path)):
+    path = Path(os.path.realpath(path))
+    with _locked(path) as (lock, is_new):
+        kept = not is_new
         try:
             with closing(_connect(path)) as connection:
+                store = Store(connection, path, lock)
                 try:
-                    yield connection
-                except InputError:
-                    kept = bool(connection.execute("select count(*) from runs").fetchone()[0])
-                    raise
+                    yield store
+                    store.check_place()
+                except sqlite3.OperationalError as refused:
+                    if refused.sqlite_errorcode & _PRIMARY not in _UNWRITABLE:
+                        raise
+                    raise _unusable(path, refused) from refused
+                finally:
+                    kept = kept or _holds_runs(connection)
         except InputError:
-            for file in [] if kept else new:
-                file.unlink(missing_ok=True)  # while it is held, and so is no other sweep's
+            if not kept:  # a refusal leaves no new file, except a store of finished runs
+                for file in files_of(path):
+                    file.unlink(missing_ok=True)  # while it is locked, and so is no other sweep's
             raise
 
 
-def _lock_file(path: Path) -> Path:
-    return path.with_name(path.name + ".lock")
-
-
-def _lock(path: Path) -> sqlite3.Connection:
-    """A connection that holds the exclusive transaction on the file beside ``path`` until it is closed."""
-    holder = None
+@contextmanager
+def _locked(path: Path) -> Iterator[tuple[int, bool]]:
+    """The locked file at the path and whether it was made for this."""
+    is_new = not os.path.exists(path)  # no error for long names
+    for file in files_of(path):
+        if os.path.exists(file) and not os.path.isfile(file):
+            raise InputError("store", str(file), "a regular file")
     try:
-        holder = sqlite3.connect(_lock_file(path), timeout=0.0, isolation_level=None)
-        holder.execute("begin exclusive")
-    except sqlite3.OperationalError as refused:
-        if holder is not None:
-            holder.close()
-        if "locked" in str(refused):
-            raise InputError("store", str(path), "a file that no other sweep is using now") from refused
-        raise InputError("store", str(path), f"a file that can be written ({refused})") from refused
-    return holder
+        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NONBLOCK, 0o666)
+    except OSError as refused:
+        raise InputError("store", str(path), f"a file that can be written ({refused.strerror})") from refused
+    try:
+        if os.fstat(lock).st_nlink > 1:
+            names = f"{os.fstat(lock).st_nlink} names (hard links)"
+            raise InputError("store", f"{path} of {names}", "one name: SQLite keeps its log beside it")
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield lock, is_new
+    except BlockingIOError as held:
+        raise InputError("store", str(path), "a file that no other sweep is using now") from held
+    finally:
+        os.close(lock)
 
 
 def _connect(path: Path) -> sqlite3.Connection:
-    connection = sqlite3.connect(path, timeout=10.0, isolation_level=None)
-    try:
-        if _is_empty(connection):
-            connection.execute("begin immediate")
-            connection.execute(f"pragma application_id = {APPLICATION_ID}")
-            connection.execute(f"pragma user_version = {VERSION}")
-            connection.execute(_TABLE)
-            connection.execute("commit")
-        if [_pragma(connection, name) for name in ("application_id", "user_version")] != _OURS:
-            raise InputError("store", str(path), f"a file of 'sweep', format version {VERSION}")
-        connection.execute("pragma journal_mode = wal")
-        connection.execute("pragma synchronous = normal")
-    except sqlite3.DatabaseError as alien:
-        connection.close()
-        raise InputError("store", str(path), f"an SQLite file of 'sweep' ({alien})") from alien
-    except InputError:
-        connection.close()
-        raise
+    """The database, made if it is empty, if its structure and schema are those that this module writes."""
+    with _refused(path):
+        address = f"file:{quote(os.fsencode(path))}?mode=rw"  # never ":memory:"
+        connection = sqlite3.connect(address, uri=True, timeout=BUSY_SECONDS, isolation_level=None)
+        try:
+            connection.execute("pragma trusted_schema = off")
+            if _is_empty(connection):
+                connection.execute("begin immediate")
+                connection.execute(f"pragma application_id = {APPLICATION_ID}")
+                connection.execute(f"pragma user_version = {VERSION}")
+                connection.execute(_TABLE)
+                connection.execute("commit")
+            _check_schema(connection, path)
+            for row in connection.execute(_SELECT):
+                _checked(row, path)
+            connection.execute("pragma journal_mode = wal")
+            connection.execute("pragma synchronous = normal")
+        except BaseException:
+            connection.close()
+            raise
     return connection
+
+
+def _check_schema(connection: sqlite3.Connection, path: Path) -> None:
+    """Raise InputError for a file of another program or version, another schema, or a damaged structure."""
+    if [_pragma(connection, name) for name in ("application_id", "user_version")] != _OURS:
+        raise InputError("store", str(path), f"a file of 'sweep', format version {VERSION}")
+    schema = connection.execute("select type, name, tbl_name, sql from sqlite_master").fetchall()
+    if schema != [("table", "runs", "runs", _TABLE.replace("create table", "CREATE TABLE", 1))]:
+        raise InputError("store", str(path), "a file of 'sweep' with its table and nothing else")
+    (found,) = connection.execute("pragma integrity_check(1)").fetchone()
+    if found != "ok":
+        raise InputError("store", str(path), f"a file that is not damaged ({' '.join(str(found).split())})")
+
+
+@contextmanager
+def _refused(path: Path) -> Iterator[None]:
+    """InputError in the place of what SQLite raises for a file; a run that is there twice is no fault."""
+    try:
+        yield
+    except sqlite3.IntegrityError:
+        raise
+    except sqlite3.OperationalError as refused:
+        raise _unusable(path, refused) from refused
+    except (sqlite3.DatabaseError, UnicodeDecodeError, OverflowError) as alien:
+        raise InputError("store", str(path), f"an SQLite file of 'sweep' ({alien})") from alien
+
+
+def _unusable(path: Path, refused: sqlite3.OperationalError) -> InputError:
+    """The error by its code; Python's own, of texts that are no UTF-8, have none."""
+    code = getattr(refused, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & _PRIMARY
+    reason = " ".join(str(refused).split())[:100]
+    if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+        return InputError("store", str(path), f"a file that no other program has locked ({reason})")
+    if code in (*_UNWRITABLE, sqlite3.SQLITE_CANTOPEN):
+        return InputError("store", str(path), f"a file that can be written ({reason})")
+    return InputError("store", str(path), f"an undamaged SQLite file of 'sweep' ({reason})")
+
+
+def _holds_runs(connection: sqlite3.Connection) -> bool:
+    """Whether there is any run, or it cannot be told."""
+    try:
+        return bool(connection.execute("select count(*) from runs").fetchone()[0])
+    except sqlite3.Error:
+        return True
 
 
 def _is_empty(connection: sqlite3.Connection) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from importlib import resources
@@ -16,13 +15,12 @@ from refimpl.errors import InputError, require_number
 from refimpl.planning.plan import METHODS
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.parameters import parameters
-from refimpl.scene.scene_file import scene_to_dict
+from refimpl.scene.scene_file import read_toml, scene_to_dict
 from verification.sweep import posable
 from verification.sweep.study import AXES, MAX_RUNS, RANDOM, Study, measured_files
 
 KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
 SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance")
-_MAX_BYTES = 1_000_000  # a study is a page of text
 
 
 def read_study(path: str | Path) -> Study:
@@ -35,15 +33,7 @@ def read_study(path: str | Path) -> Study:
         if str(path) not in shipped_studies():
             raise InputError("study", str(path), f"a TOML file, or one of {', '.join(shipped_studies())}")
         path = Path(str(resources.files("verification").joinpath("studies", f"{path}.toml")))
-    if path.stat().st_size > _MAX_BYTES:
-        raise InputError("study", str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as refused:
-        raise InputError("study", str(path), f"a file that can be read ({refused.strerror})") from refused
-    except (ValueError, RecursionError) as error:  # TOML, UTF-8, or a number of thousands of digits
-        raise InputError("study", str(path), f"valid TOML ({error})") from error
-    study = study_from_dict(table, path.parent)
+    study = study_from_dict(read_toml(path, "study"), path.parent)
     return replace(study, files=(path, *study.files))
 
 

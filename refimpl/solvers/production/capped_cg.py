@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from refimpl.grid import Array, Mask, inner
-from refimpl.model.certificate import relative_gap
+from refimpl.model.certificate import contact_residuals
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.constants import VANISHING
 from refimpl.solvers.production.projected_cg import ProjectedCG
@@ -26,8 +26,10 @@ _FILLINGS = 60  # halvings of the range of a factor that fills pressures up to t
 class CappedCG(ProjectedCG):
     """`ProjectedCG` with the cap H (Pa); ``capped`` marks the elements with ``f = H``."""
 
-    def __init__(self, apply: Apply, precondition: Apply, pressure: Array, cap: float) -> None:
-        super().__init__(apply, precondition, pressure)
+    def __init__(
+        self, apply: Apply, precondition: Apply, pressure: Array, cap: float, rounding: float = 0.0
+    ) -> None:
+        super().__init__(apply, precondition, pressure, rounding)
         self._cap = cap
         self.capped: Mask = np.zeros(pressure.shape, dtype=bool)
         self._move_to_cap(pressure >= cap * (1 - VANISHING))
@@ -63,7 +65,9 @@ class CappedCG(ProjectedCG):
         gap = float(np.sum(f * np.maximum(excess, 0)) + np.sum((self._cap - f) * np.maximum(-excess, 0)))
         lowest = float(np.min(v, where=~self.capped, initial=math.inf))
         missed = 0.0 if self._target is None else abs(inner(self._K, f) - self._target) / self._target
-        return max(relative_gap(gap, energy), missed), max(0.0, approach - lowest) / (abs(approach) or 1.0)
+        rounding = self._rounding * float(f.max())
+        relative, penetration = contact_residuals(gap, energy, approach, lowest, rounding, float(f.sum()))
+        return max(relative, missed), penetration
 
     def contact_is_certain(self, stiffness: float) -> bool:
         """Return what `ProjectedCG` returns where no pressure is at the cap or near it, else False.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Mask
+from refimpl.model.certificate import displacement_rounding
 from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult, Status
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence
@@ -31,10 +32,10 @@ def projected_cg(
     problem: Problem, operator: WindowInfluence, precondition: Apply, pressure: Array
 ) -> ProjectedCG:
     """Return CG for a window's problem, with a second bound where pressures are capped."""
-    compliance = pressure_compliance(problem, operator)
+    compliance, rounding = pressure_compliance(problem, operator), displacement_rounding(problem)
     if math.isinf(problem.cap):
-        return ProjectedCG(compliance, precondition, pressure)
-    return CappedCG(compliance, precondition, np.minimum(pressure, problem.cap), problem.cap)
+        return ProjectedCG(compliance, precondition, pressure, rounding)
+    return CappedCG(compliance, precondition, np.minimum(pressure, problem.cap), problem.cap, rounding)
 
 
 class LevelSolver:

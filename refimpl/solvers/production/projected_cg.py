@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from refimpl.grid import Array, Mask, inner
-from refimpl.model.certificate import relative_gap
+from refimpl.model.certificate import contact_residuals
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.constants import CERTAINTY, FIRST_LENGTH, TRIAL_SHARE, TRUSTED, VANISHING
 from refimpl.solvers.production.contact_vectors import ContactVectors
@@ -43,11 +43,12 @@ class Separation(NamedTuple):
 class ProjectedCG:
     """Iterates ``pressure`` towards the contact of the frozen problem.
 
-    ``apply`` is the flexibility ``a`` on the window, ``precondition`` an approximate inverse. After
-    construction call `set_problem`, then `iterate`; ``normal_displacement`` is ``a f`` at all times.
+    ``apply`` is the flexibility ``a`` on the window, ``precondition`` an approximate inverse, ``rounding``
+    that of displacements over the peak pressure (m/Pa). After construction call `set_problem`, then
+    `iterate`; ``normal_displacement`` is ``a f`` at all times.
     """
 
-    def __init__(self, apply: Apply, precondition: Apply, pressure: Array) -> None:
+    def __init__(self, apply: Apply, precondition: Apply, pressure: Array, rounding: float = 0.0) -> None:
         self._apply, self._precondition = apply, precondition
         self.normal_displacement = apply(pressure)
         self.free: Mask = pressure > 0
@@ -57,6 +58,7 @@ class ProjectedCG:
         self._separation: Separation | None = None
         self._residual, self._product = self._pressing, 0.0
         self._length, self._trusted = FIRST_LENGTH, True
+        self._rounding = rounding
 
     def set_problem(self, b: Array, K: Array, *, target: float | None, approach: float | None) -> None:
         """Set ``b = K h + shear displacement`` (m), the weights ``K``, and the target or the approach."""
@@ -110,7 +112,9 @@ class ProjectedCG:
         gap = inner(self._pressing, on - lowest)
         if self._approach is not None:
             gap = max(gap, abs(mean - approach) * float(self._pressing.sum()))
-        return relative_gap(gap, energy), max(0.0, approach - lowest) / (abs(approach) or 1.0)
+        pressing = self._pressing
+        rounding = self._rounding * float(pressing.max(initial=0.0))
+        return contact_residuals(gap, energy, approach, lowest, rounding, float(pressing.sum()))
 
     def contact_is_certain(self, stiffness: float) -> bool:
         """Return whether the remaining error of the separation can change no element's contact.

@@ -22,7 +22,7 @@ def test_threads_are_the_cores_of_this_process(monkeypatch: pytest.MonkeyPatch) 
     assert threads.allowed_threads() == 7
 
 
-@pytest.mark.parametrize("said", ["none", "0", "-2", ""])
+@pytest.mark.parametrize("said", ["none", "0", "-2", "", "\u00b2", "9" * 20, "1" * 5000, "1e3", "2.0", ",2"])
 def test_a_number_of_threads_that_is_none_counts_for_nothing(
     monkeypatch: pytest.MonkeyPatch, said: str
 ) -> None:
@@ -30,6 +30,21 @@ def test_a_number_of_threads_that_is_none_counts_for_nothing(
     by_itself = threads.allowed_threads()
     monkeypatch.setenv("OMP_NUM_THREADS", said)
     assert threads.allowed_threads() == by_itself
+
+
+@pytest.mark.parametrize("said", ["3,1", " 3 ", "3", "003,x"])
+def test_the_first_number_of_a_list_counts(monkeypatch: pytest.MonkeyPatch, said: str) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", said)
+    assert threads.allowed_threads() == 3
+
+
+@pytest.mark.parametrize("name", ["OMP_NUM_THREADS", "DUCC0_NUM_THREADS"])
+@pytest.mark.parametrize("said", ["2,1", "abc", "", "-1", "9" * 20, "1e3"])
+def test_no_number_of_threads_ends_in_an_assertion_of_a_library(name: str, said: str) -> None:
+    code = "from refimpl.operators.transforms import fourier; import numpy, os; "
+    code += f"assert os.environ[{name!r}] == {said!r}; fourier.plane(numpy.ones((200, 200)), (200, 200), 2)"
+    done = subprocess.run([sys.executable, "-c", code], env=os.environ | {name: said}, capture_output=True)
+    assert done.returncode == 0, done.stderr.decode()
 
 
 def test_small_transforms_have_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -85,7 +85,7 @@ def test_no_two_outputs_are_one_file(
         (["--csv", "x.csv", "--json", "./x.csv"], ("--csv", "--json")),
         (["--csv", "-", "--json", "-"], ("--csv", "--json")),
         (["--store", "s.db", "--json", "s.db-wal"], ("--store", "--json")),
-        (["--store", "s.db", "--csv", "s.db.lock"], ("--store", "--csv")),
+        (["--store", "s.db", "--csv", "s.db-shm"], ("--store", "--csv")),
         (["--store", "-"], ("--store",)),
         (["--parquet", "-"], ("--parquet",)),
         (["--parquet", "x.csv"], ("--parquet", ".csv")),

@@ -1,0 +1,227 @@
+"""Result files that are damaged or dishonest: accepted only if consistent, and then shown."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from reports.generator import anchor, render
+from reports.result_files import LayoutError, compact, read_result
+from reports.results import METRICS, ResultFileError, check, verdict_of
+from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
+from tests.verification.cli.children import Ended, one_line
+from verification.cli import main
+
+Capture = pytest.CaptureFixture[str]
+WHOLE = results(
+    case("kernels/textbook-x-fails", data=TEXTBOOK),
+    case("a/1", "fail", data={"M": [32, 64, 128], "error": [4.0, 2.0, 1.0], "verdict": "refuted"}),
+    case("a/2", "unavailable"),
+    errata=[ERRATUM],
+)
+REPLACEMENTS: tuple[Any, ...] = (
+    None, True, -1, 0, 5, 10**400, 1e308, float("nan"), float("inf"), "", "x", "\ud800", "\x00", "'", [], [1],
+    [[]], ["x"], {}, {"x": 1}, {"x": {"y": []}},
+)  # fmt: skip
+
+
+def places(item: object, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Every place of a document, from the top."""
+    if path:
+        yield path
+    entries = item.items() if isinstance(item, dict) else enumerate(item) if isinstance(item, list) else ()
+    for key, entry in entries:
+        yield from places(entry, (*path, key))
+
+
+def replaced(document: dict[str, Any], path: tuple[Any, ...], value: object) -> dict[str, Any]:
+    made = copy.deepcopy(document)
+    holder: Any = made
+    for key in path[:-1]:
+        holder = holder[key]
+    holder[path[-1]] = value
+    return made
+
+
+def shown_or_refused(document: object, against: object = None) -> bool:
+    """Whether it is shown; any other end than a refusal fails the test."""
+    try:
+        check(document)
+        render(document, {}, against)
+    except ResultFileError:
+        return False
+    return True
+
+
+PLACES = list(places(WHOLE))
+
+
+@pytest.mark.parametrize("path", PLACES, ids=lambda path: ".".join(map(str, path)))
+def test_every_field_with_every_other_kind_of_value_is_checked(path: tuple[Any, ...]) -> None:
+    for value in REPLACEMENTS:
+        with suppress(ResultFileError):  # and nothing else
+            check(replaced(WHOLE, path, value))
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # logarithms of what is no error
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.sampled_from(PLACES), st.sampled_from(REPLACEMENTS), st.booleans())
+def test_what_passes_the_check_is_shown(path: tuple[Any, ...], value: object, older: bool) -> None:
+    made = replaced(WHOLE, path, value)
+    shown_or_refused(WHOLE if older else made, made if older else None)
+
+
+@pytest.mark.parametrize("key", ["versions", "machine"])
+def test_a_run_of_an_unknown_machine_is_shown(key: str) -> None:
+    made = replaced(WHOLE, ("provenance", key), {})
+    assert "n/a" in render(made)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"M": [32, 64], "error": [0.0, 0.0]},
+        {"M": [32, 32], "error": [1.0, 2.0]},
+        {"M": [0, 64], "error": [1.0, 2.0]},
+        {"M": [-32, 64], "error": [1.0, 2.0]},
+        {"M": [32, 64], "error": [None, 2.0]},
+        {"M": [32, 64], "error": [2.0]},
+    ],
+)
+def test_errors_without_an_order_are_refused_and_not_fitted(data: dict[str, Any], capfd: Capture) -> None:
+    with pytest.raises(ResultFileError, match="a/1"):
+        render(results(case("a/1", data=data)))
+    assert capfd.readouterr() == ("", "")  # LAPACK prints what it does not like
+
+
+DATA_VALUES = st.recursive(
+    st.none() | st.booleans() | st.integers(-(10**19), 10**19) | st.floats() | st.text(max_size=3),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
+    max_leaves=6,
+)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # logarithms of what is no error
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.dictionaries(st.sampled_from(["offset", "textbook", "production", "M", "error"]), DATA_VALUES))
+def test_data_of_any_shape_are_shown_or_refused(data: dict[str, Any]) -> None:
+    shown_or_refused(results(case("kernels/textbook-x-fails", data=data), case("a/1", data=data)))
+
+
+NUMBERS = st.floats(-1e3, 1e3) | st.sampled_from([0.0, 1e-9, 0.1, 5.0])
+
+
+@given(st.sampled_from(METRICS), NUMBERS, NUMBERS, NUMBERS, st.sampled_from(["pass", "fail"]))
+def test_no_status_passes_that_the_numbers_contradict(
+    metric: str, value: float, reference: float, tolerance: float, status: str
+) -> None:
+    """Errors by the formulas of the guide, tolerances of any size: a pass means error <= tolerance."""
+    judged = metric not in ("at_most", "at_least")
+    error = abs(value - reference) / (abs(reference) or 1.0 if metric == "relative" else 1.0)
+    made = case(
+        "a/1", status, metric=metric, value=value, reference=reference if judged else None,
+        reference_uncertainty=0.0, error=error if judged else value, tolerance=tolerance,
+    )  # fmt: skip
+    try:
+        check(results(made))
+    except ResultFileError:
+        return
+    assert verdict_of(made) == status
+    if status == "pass" and metric != "at_least":
+        assert (abs(value - reference) if judged else value) <= tolerance * (
+            abs(reference) if metric == "relative" else 1.0
+        ) * (1 + 1e-15)
+
+
+DISHONEST = {
+    "error above the tolerance": {"error": 5.0, "value": 6.0, "tolerance": 1e-9},
+    "error not that of the value": {"value": 6.0, "error": 0.0},
+    "no error": {"error": None},
+    "no value": {"value": None, "error": 0.0},
+    "no number": {"error": float("nan")},
+    "failed although within": {"status": "fail", "value": 1.01},
+    "below the merit": {"metric": "at_least", "reference": None, "value": 0.05, "error": 0.05},
+    "uncertain reference": {"reference_uncertainty": 0.2},
+    "unknown metric": {"metric": "at most"},
+    "not judged, with a number": {"status": "unavailable", "value": 1.0},
+    "negative tolerance": {"tolerance": -1.0},
+}
+
+
+@pytest.mark.parametrize("option", ["--results", "--against"])
+@pytest.mark.parametrize("name", DISHONEST)
+def test_a_status_that_does_not_follow_from_the_numbers_is_refused(
+    name: str, option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = case("a/1") | DISHONEST[name]
+    files = {"--results": tmp_path / "r.json", "--against": tmp_path / "old.json"}
+    for path in files.values():
+        path.write_text(json.dumps(results(case("a/1"))))
+    files[option].write_text(json.dumps(results(made)))
+    (none := tmp_path / "none").mkdir()
+    command = ["report", "--committed", str(none), "--output", str(tmp_path / "out")]
+    assert main([*command, *(str(x) for pair in files.items() for x in pair)]) == 2
+    one_line(Ended(2, capsys.readouterr().err), f"{option} = '{files[option]}'"[:60], 2)
+
+
+def test_data_that_its_figure_cannot_show_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = results(case("kernels/textbook-x-fails", data=TEXTBOOK | {"production": ["x", "y", "z"]}))
+    (tmp_path / "r.json").write_text(json.dumps(made))
+    (none := tmp_path / "none").mkdir()
+    command = ["report", "--results", str(tmp_path / "r.json"), "--committed", str(none)]
+    assert main([*command, "--output", str(tmp_path / "out")]) == 2
+    one_line(Ended(2, capsys.readouterr().err), "data of case 'kernels/textbook-x-fails'", 2)
+
+
+def bomb(depth: int) -> dict[str, Any]:
+    """A compact file of 10^depth entries in some hundred bytes: references in references."""
+    shared: dict[str, Any] = {"0": [0] * 10}
+    shared |= {str(k): [{"$same": str(k - 1)}] * 10 for k in range(1, depth)}
+    file = json.loads(compact({"x": 1})[0])
+    return file | {"document": {"x": {"$same": str(depth - 1)}}, "shared": shared}
+
+
+def times(depth: int) -> dict[str, Any]:
+    """The same by repetition."""
+    value: list[Any] = [0]
+    for _ in range(depth):
+        value = [{"$times": [10, value]}]
+    return json.loads(compact({"x": 1})[0]) | {"document": {"x": value}}
+
+
+@pytest.mark.parametrize("made", [bomb, times])
+def test_a_small_file_does_not_fill_the_memory(made: Any, tmp_path: Path) -> None:
+    path = tmp_path / "r.json"
+    path.write_text(json.dumps(made(3)))
+    read_result(path)
+    path.write_text(json.dumps(made(12)))
+    with pytest.raises(LayoutError, match="entries"):
+        read_result(path)
+
+
+def test_a_pipe_without_an_end_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["report", "--results", "/dev/zero", "--output", str(tmp_path / "out")]) == 2
+    one_line(Ended(2, capsys.readouterr().err), "regular file", 2)
+
+
+IDS = st.text(st.characters(codec="utf-8", exclude_categories=["Z", "C"]), min_size=1)
+
+
+@given(IDS, IDS)
+def test_different_ids_have_different_anchors(one: str, other: str) -> None:
+    assert (anchor(one) == anchor(other)) == (one == other)
+
+
+@given(st.text("a/-._2f", min_size=1), st.text("a/-._2f", min_size=1))
+def test_anchors_of_look_alikes_differ(one: str, other: str) -> None:
+    assert (anchor(one) == anchor(other)) == (one == other)

@@ -1,0 +1,230 @@
+"""Stores that are damaged, replaced, linked or held by others: refused in one line, or the right table."""
+
+from __future__ import annotations
+
+import errno
+import os
+import random
+import shutil
+import sqlite3
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from refimpl.errors import InputError
+from tests.verification.cli.children import STUDY, Ended, one_line, small
+from verification.cli import main
+from verification.sweep import engine, store
+from verification.sweep.export import to_csv
+from verification.sweep.run import execute
+from verification.sweep.store import COLUMNS, checksum, files_of, open_store
+
+STORES = small(4)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store of four runs, closed: everything is in the one file."""
+    path = tmp_path_factory.mktemp("whole") / "s.sqlite"
+    engine.sweep(STORES, path, workers=0)
+    assert [file for file in files_of(path) if file.exists()] == [path]
+    return path
+
+
+@pytest.fixture(scope="module")
+def table(whole: Path) -> str:
+    return to_csv(engine.sweep(STORES, whole, workers=0).rows)
+
+
+def by_sql(*statements: str) -> Callable[[Path], object]:
+    def act(path: Path) -> None:
+        connection = sqlite3.connect(path, isolation_level=None)
+        for statement in ("pragma journal_mode = delete", "pragma writable_schema = on", *statements):
+            connection.execute(statement)
+        connection.close()
+
+    return act
+
+
+def garbled(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[4096:8192] = random.Random(1).randbytes(4096)
+    path.write_bytes(content)
+
+
+ENDLESS = "with recursive t(x) as (select 1 union all select x from t) select x as key from t"
+DAMAGE: dict[str, Callable[[Path], object]] = {
+    "garbled page": garbled,
+    "cut": lambda path: os.truncate(path, path.stat().st_size - 4096),
+    "cut inside a page": lambda path: os.truncate(path, path.stat().st_size - 100),
+    "dropped table": by_sql("drop table runs"),
+    "renamed column": by_sql("alter table runs rename column tau to tan"),
+    "column more": by_sql("alter table runs add column more"),
+    "NULL in a number": by_sql("update runs set contact_area = null"),
+    "NULL in the status": by_sql("update runs set status = null"),
+    "another number": by_sql("update runs set contact_area = contact_area * (1 + 1e-15)"),
+    "a text for a number": by_sql("update runs set approach = 'x'"),
+    "a blob for a number": by_sql("update runs set approach = x'ff00'"),
+    "invalid UTF-8": by_sql("update runs set status = cast(x'ff' as text)"),
+    "another key": by_sql("update runs set key = 'a' where realisation = 0"),
+    "other inputs": by_sql("update runs set inputs = '{}'"),
+    "endless view": by_sql("drop table runs", f"create view runs as {ENDLESS}"),
+    "trigger": by_sql("create trigger t after insert on runs begin delete from runs; end"),
+    "another table": by_sql("create table other (x)"),
+    "older version": by_sql("pragma user_version = 1"),
+    "another program's": by_sql("pragma application_id = 7"),
+    "schema that is no SQL": by_sql("update sqlite_master set sql = 'create nothing'"),
+    "not a database": lambda path: path.write_bytes(b"no database" * 1000),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGE)
+def test_a_damaged_store_is_one_line(
+    name: str, whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "s.sqlite"
+    shutil.copy(whole, path)
+    DAMAGE[name](path)
+    before = path.read_bytes()
+    (tmp_path / "study.toml").write_text(STUDY)
+    assert main(["sweep", str(tmp_path / "study.toml"), "--store", str(path)]) == 2
+    one_line(Ended(2, capsys.readouterr().err), "store", 2)
+    assert path.read_bytes() == before
+
+
+@settings(max_examples=60, deadline=None)
+@given(where=st.floats(0, 1, exclude_max=True), bit=st.integers(0, 7))
+@example(where=0.0, bit=0)
+def test_a_flipped_bit_never_changes_the_table(
+    where: float, bit: int, whole: Path, table: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.mktemp("flip") / "s.sqlite"
+    content = bytearray(whole.read_bytes())
+    content[int(where * len(content))] ^= 1 << bit
+    path.write_bytes(content)
+    with suppress(InputError):  # and nothing else
+        assert to_csv(engine.sweep(STORES, path, workers=0).rows) == table
+
+
+def test_checksums_tell_values_that_look_alike() -> None:
+    values: list[object] = [1, 1.0, True, "1", "1.0", None, "", b"", 0.0, -0.0, "null"]
+    assert len({checksum([value]) for value in values}) == len(values)
+
+
+# --- what is no regular file, or held by others ---
+
+
+@pytest.mark.parametrize("end", ["", "-wal", "-shm", "-journal"])
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir], ids=["FIFO", "folder"])
+def test_a_store_of_pipes_and_folders_is_refused(
+    end: str, make: Callable[[Path], None], tmp_path: Path
+) -> None:
+    path = tmp_path / "s.sqlite"
+    make(path.with_name(path.name + end))
+    with pytest.raises(InputError, match="regular file"):
+        engine.sweep(small(1), path, workers=0)
+
+
+def test_a_store_that_may_not_be_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mode 000, played by the error of the system call: the tests may run as root, whom no mode stops."""
+
+    def refuses(*_: object) -> int:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(store.os, "open", refuses)
+    with pytest.raises(InputError, match="Permission denied"):
+        engine.sweep(small(1), tmp_path / "s.sqlite", workers=0)
+
+
+@pytest.mark.parametrize("how", ["exclusive", "immediate"])
+def test_a_store_that_another_program_has_locked(
+    how: str, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(store, "BUSY_SECONDS", 0.1)
+    path = tmp_path / "s.sqlite"
+    shutil.copy(whole, path)
+    by_sql()(path)
+    other = sqlite3.connect(path, isolation_level=None)
+    other.execute(f"begin {how}")
+    with pytest.raises(InputError, match="no other program"):
+        engine.sweep(small(5), path, workers=0)
+    other.close()
+    assert engine.sweep(small(5), path, workers=0).found == 4
+
+
+LINKS: dict[str, Callable[[Path, Path], object]] = {
+    "the same path": lambda path, link: os.symlink(path.name, link),
+    "a link": lambda path, link: os.symlink(path, link),
+    "a link to a link": lambda path, link: (os.symlink(path, f"{link}2"), os.symlink(f"{link}2", link)),
+    "a hard link": os.link,
+}
+
+
+@pytest.mark.parametrize("name", LINKS)
+def test_no_link_lets_two_sweeps_in(name: str, tmp_path: Path) -> None:
+    path, link = tmp_path / "s.sqlite", tmp_path / "link.sqlite"
+    engine.sweep(small(1), path, workers=0)
+    with open_store(path):
+        LINKS[name](path, link)
+        with pytest.raises(InputError, match=r"no other sweep|hard links"):
+            engine.sweep(small(2), link, workers=0)
+    if name == "a hard link":
+        link.unlink()
+        link = path
+    assert engine.sweep(small(2), link, workers=0).found == 1
+
+
+def test_deleting_what_lies_beside_it_lets_no_second_sweep_in(tmp_path: Path) -> None:
+    path = tmp_path / "s.sqlite"
+    with open_store(path):
+        for file in set(tmp_path.iterdir()) - set(files_of(path)):
+            file.unlink()
+        with pytest.raises(InputError, match="no other sweep"):
+            engine.sweep(small(1), path, workers=0)
+
+
+@pytest.mark.parametrize("again", [False, True], ids=["deleted", "replaced"])
+@pytest.mark.parametrize("after", [1, 2], ids=["between runs", "after the last"])
+def test_a_store_that_vanishes_during_a_sweep_is_noticed(after: int, again: bool, tmp_path: Path) -> None:
+    path = tmp_path / "s.sqlite"
+
+    def vanish(progress: engine.Progress) -> None:
+        if progress.done == after:
+            path.unlink()
+            if again:
+                path.touch()
+
+    with pytest.raises(InputError, match="replaced" if again else "deleted"):
+        engine.sweep(small(2), path, workers=0, tick=vanish)
+
+
+def test_memory_is_a_name_like_any_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in (":memory:", "file:x?mode=memory", "a b%20c#d?e"):
+        assert engine.sweep(small(1), Path(name), workers=0).finished == 1
+        assert (tmp_path / name).stat().st_size > 0
+        assert engine.sweep(small(1), Path(name), workers=0).found == 1
+
+
+def test_a_table_dropped_during_the_sweep(tmp_path: Path) -> None:
+    path, (run,) = tmp_path / "s.sqlite", small(1).runs()
+    row, seconds = execute(run.inputs)
+    with open_store(path) as kept:
+        sqlite3.connect(path, isolation_level=None).execute("drop table runs")
+        with pytest.raises(InputError, match="no such table"):
+            kept.add(run, row, seconds)
+
+
+def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path) -> None:
+    (run,) = small(1).runs()
+    row, seconds = execute(run.inputs)
+    with open_store(tmp_path / "s.sqlite") as kept:
+        kept.add(run, row | {"friction_coefficient": float("nan")}, seconds)
+    with open_store(tmp_path / "s.sqlite") as kept:
+        (found,) = kept.rows([run])
+    assert found["friction_coefficient"] is None
+    assert tuple(found) == COLUMNS

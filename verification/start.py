@@ -1,0 +1,18 @@
+"""Entry of the console script: from its first line on, an interrupt ends it without a traceback."""
+
+from __future__ import annotations
+
+import signal
+
+
+def run() -> int:
+    """Import the command line, which takes a while, and run it; returns the exit status.
+
+    Until `verification.cli.main` takes over, an interrupt ends the process as the system does. Where it is
+    ignored, as in a shell's background job, it stays so.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from verification.cli import main
+
+    return main()
