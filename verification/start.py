@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Sequence
 
 
-def run() -> int:
+def run(arguments: Sequence[str] | None = None) -> int:
     """Import the command line, which takes a while, and run it; returns the exit status.
 
     Until `verification.cli.main` takes over, an interrupt ends the process as the system does. Where it is
@@ -15,4 +16,4 @@ def run() -> int:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     from verification.cli import main
 
-    return main()
+    return main(arguments)
