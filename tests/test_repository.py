@@ -10,7 +10,7 @@ import pytest
 from reports.result_files import MOST_BYTES, result_paths
 from tests.documents import ROOT
 
-MOST_BYTES_IN_ALL = 8_500_000
+MOST_BYTES_IN_ALL = 8_000_000
 RESULTS = ROOT / "reports" / "results"
 
 
