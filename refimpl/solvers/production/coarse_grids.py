@@ -145,4 +145,5 @@ def sharpened(pressure: Array, misfit: Array, contact: Mask, precondition: Apply
 
 
 def _balanced(values: Array, contact: Mask, loaded: bool) -> Array:
-    return values - values.sum() / np.count_nonzero(contact) * contact if loaded else values
+    elements = max(np.count_nonzero(contact), 1)
+    return values - values.sum() / elements * contact if loaded else values

@@ -244,3 +244,16 @@ def test_sharpening_by_hand(loaded: bool) -> None:
     step = 0.7 * (2 * residual + residual.sum() * corner)
     np.testing.assert_allclose(found, np.maximum((pressure + step) * contact, 0), rtol=1e-14)
     assert found[0, 1] == found[1, 1] == 0
+
+
+@pytest.mark.filterwarnings("error")
+def test_sharpening_without_contact_presses_nowhere_and_divides_by_no_count() -> None:
+    nothing = np.zeros((2, 2))
+    found = sharpened(
+        pressure=nothing,
+        misfit=np.array([[4.0, -10.0], [3.0, 7.0]]),
+        contact=nothing > 0,
+        precondition=np.negative,
+        loaded=True,
+    )
+    np.testing.assert_array_equal(found, nothing)
