@@ -141,20 +141,21 @@ class Options:
         """Return the plan; with an accuracy, the terms for all grids.
 
         ``discretiser`` samples the heights for it, and keeps them. Raises `InputError` for a grid to solve on
-        that does not fit into memory, before any heights are sampled. With an accuracy each grid is checked
-        when its turn comes.
+        that does not fit into memory: before any heights are sampled if not even the whole grid's arrays do.
+        With an accuracy each grid is checked when its turn comes.
         """
         grid = self.solve_grid
         if self.grid is not None:
             memory_of(self.method, grid, corrected=self.requested.slope_correction)
         discretiser = discretiser or Discretiser(self.scene, self.approach)
-        return make_plan(
+        plan = make_plan(
             discretiser.with_all_terms(grid),
             self.method,
             self.requested,
             demand=self.accuracy or self.residual_tolerance,
             for_mu=self.accuracy is not None and self.target_quantity == "friction_coefficient",
         )
+        return plan if self.grid is None else plan.on(grid)
 
 
 def _by(grid: Grid) -> str:

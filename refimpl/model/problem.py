@@ -142,7 +142,9 @@ class Problem:
         """
         if not self.terms.oblique:
             return Slopes.flat(lower.shape)
-        surface = self.mean_surface + 0.5 * (upper - lower)
+        surface = upper - lower
+        surface *= 0.5
+        surface += self.mean_surface
         if indentation is not None:
             surface -= 0.5 * self.pair.softer_sign * indentation
         return Slopes.of_surface(surface, self.grid, self.direction)

@@ -43,7 +43,12 @@ class Slopes:
         """
         along_x, along_y = grid.gradient(heights)
         cos, sin = math.cos(direction), math.sin(direction)
-        return cls(cos * along_x + sin * along_y, cos * along_y - sin * along_x)
+        tan_x = cos * along_x
+        tan_x += sin * along_y
+        along_y *= cos
+        along_x *= sin
+        along_y -= along_x
+        return cls(tan_x, along_y)
 
     def mean_square(self, weights: Array) -> float:
         """Return the weighted mean of ``tan^2 theta_x + tan^2 theta_y``; 0 where the weights vanish."""
@@ -87,8 +92,16 @@ class Slopes:
 
     @cached_property
     def obliqueness(self) -> Array:
-        """``cos(theta_x) cos(theta_y)``, the factor of Eq. (6)."""
-        return self.cos_x if self.is_flat else self.cos_x * self.cos_y
+        """``cos(theta_x) cos(theta_y)``, the factor of Eq. (6). On a large grid every array counts."""
+        if self.is_flat:
+            return self.cos_x
+        squares = self.tan_x**2
+        squares += 1
+        other = self.tan_y**2
+        other += 1
+        squares *= other
+        np.sqrt(squares, out=squares)
+        return np.divide(1, squares, out=squares)
 
     def per_obliqueness(self, values: Array) -> Array:
         """Return ``values / obliqueness``, in place where that is 1 everywhere."""

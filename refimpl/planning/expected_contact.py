@@ -38,12 +38,13 @@ _ROUNDING = 1e-9  # share of a surface's range: heights that differ by less are 
 
 @dataclass(frozen=True)
 class ExpectedContact:
-    """A contact in twelve numbers; pressures in Pa, lengths in m, slopes as tangents.
+    """A contact in thirteen numbers; pressures in Pa, lengths in m, slopes as tangents.
 
     ``elements`` in contact, in ``patches`` of equal weight; ``mean_pressure``, and ``pressure`` weighted by
     itself; ``approach`` from first contact; ``slope_squared`` mean square of the common surface's;
     ``least_slope`` and ``least_mean_slope`` are the smaller of both bodies' rms and mean slopes along the
-    sliding direction; ``border`` share of the contact that lies on the domain's border.
+    sliding direction; ``border`` share of the contact that lies on the domain's border; ``extent`` share of
+    the grid in the rectangle around the contact.
     """
 
     elements: int
@@ -55,6 +56,7 @@ class ExpectedContact:
     least_slope: float
     least_mean_slope: float
     border: float
+    extent: float
     symmetric: bool
     mirrored: bool
     window: tuple[int, int]
@@ -174,6 +176,7 @@ def _described(
         least_slope=min(math.sqrt(float(np.sum(weights * tan**2))) for tan in tangents),
         least_mean_slope=min(abs(float(np.sum(weights * tan))) for tan in tangents),
         border=problem.grid.on_border(contact) / elements,
+        extent=math.prod(window.shape) / problem.grid.elements,
         **seen._asdict(),
     )
 

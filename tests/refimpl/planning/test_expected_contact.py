@@ -102,6 +102,7 @@ def by_all_heights(problem: Problem) -> ExpectedContact:
         slope_squared=sum(np.mean(tangent[contact] ** 2) for tangent in common),
         least_slope=min(math.sqrt(np.mean(tangent**2)) for tangent in along),
         least_mean_slope=min(abs(np.mean(tangent)) for tangent in along),
+        extent=math.prod(grid.window_around(contact, margin=1).shape) / contact.size,
         border=0.0 if grid.periodic else np.count_nonzero(border) / count,
         symmetric=all(is_image(z, z[::-1, ::-1]) for z in surfaces),
         mirrored=abs(turns - round(turns)) < 1e-9 and all(is_image(z, np.flip(z, flip)) for z in surfaces),

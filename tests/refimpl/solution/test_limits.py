@@ -247,7 +247,7 @@ def test_dense_matrices_fit_into_the_estimated_memory(corrected: bool) -> None:
 
 
 def test_refinement_out_of_memory_is_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
-    room = plan.memory_of("fft", SMOOTH.grid(64))
+    room = 2 * plan.memory_of("fft", SMOOTH.grid(64))
     monkeypatch.setattr(plan, "free_memory", lambda: room)
     s = rf.solve(SMOOTH, accuracy=1e-5)
     assert s.status is rf.Status.ITERATION_LIMIT
