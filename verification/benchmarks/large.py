@@ -60,7 +60,7 @@ def solved(surface: str, terms: str, M: int) -> dict[str, Any]:
     """Solve in this process and return what it took.
 
     ``transforms`` is the work of all transforms over that of one real transform of the grid's elements;
-    ``bytes an element`` the peak of the process's memory, less what it had before.
+    ``bytes an element`` the peak of the process's memory, less that before the solve.
     """
     before = peak_memory()
     began, processor = time.perf_counter(), time.process_time()
