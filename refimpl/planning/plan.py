@@ -17,8 +17,8 @@ METHODS: tuple[Method, ...] = ("dense", "fft", "paper")
 
 DECISION_GRID = 256  # elements along the longer side on which terms are decided for all grids of a refinement
 
-# Bytes per element at the peak, measured with slopes and coupling: of the grid, when the solution is built from
-# the certified state; of the contact's window before that: FFT work arrays, two kernel tables and their
+# Bytes per element at the peak, measured with slopes and coupling: of the grid, when the solution is built
+# from the certified state; of the contact's window before that: FFT work arrays, two kernel tables and their
 # transforms; or dense matrices of Eq. (7), 5.0 of them without and 8.0 with the slope correction, which has a
 # kernel more (24 to 56 elements a side).
 _GRID_BYTES, _WINDOW_BYTES = 176, 520
