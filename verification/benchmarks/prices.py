@@ -102,7 +102,7 @@ def price(rows: Sequence[Mapping[str, Any]], quantity: str, demand: float) -> Ma
 
 
 def priced(ladders: Sequence[Sequence[Mapping[str, Any]]]) -> list[dict[str, Any]]:
-    """Return the median price of every demand over realisations; none where one of them meets it nowhere."""
+    """Return the median cost of every demand over realisations; none where one of them meets it nowhere."""
     rows = []
     for quantity in QUANTITIES:
         for demand in DEMANDS:
