@@ -4,8 +4,9 @@ Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k
 
 - Areas: ``e_k`` is the excess of whole elements along the contact's edge (Yastrebov, Anciaux and Molinari
   2017), and ``r_k`` depends on which elements the edge happens to contain: the count of n edge elements
-  varies as sqrt(n), and n as 1 / h, so its scatter falls as h^(3/2). Friction takes its edge's share from the
-  area, by ``tau / N``.
+  varies as sqrt(n), and n as 1 / h, so its scatter falls as h^(3/2). Elements of a straight edge along the
+  grid come in and out together (`straight_edges`): each edge varies by its whole length. Friction takes its
+  edge's share from the area, by ``tau / N``.
 - Maximum pressure: that of a parabola through the peak, with its curvature drop for ``e_k`` (`peak`).
   Approaches count from first contact, which is a peak as well (`first_contact`).
 - Where the bodies differ, tau on whole elements displaces more than tau on the contact; this falls as h only
@@ -44,6 +45,8 @@ from refimpl.model.forces import EDGE_SHARE
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
 OBLONG_SPREAD = 0.09  # s_c per ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
 SINGLE_EXCESS = 1.5  # further bias of single elements, over that of an edge
+STRAIGHT_EXCESS = 1.2  # the like of straight edges along the grid: 0.21 of an element, elsewhere 0.09
+STRAIGHT_SCATTER = 0.2  # standard deviation; its bound is 95 % of the range of an even distribution
 PEAK_BIAS, PEAK_BIAS_SPREAD = (
     0.028,
     0.009,
@@ -165,7 +168,7 @@ def _peak(grids: _Grids) -> Estimate:
 def _approach(grids: _Grids) -> Estimate:
     """The approach under a load, counted from the first contact of the surfaces themselves."""
     values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
-    scatter = grids.peak_scatter(grids.finest("approach"))
+    scatter = grids.peak_scatter(max(grids.finest("approach"), grids.results[-1].depth))
     return grids.smooth(values, OTHER, scatter, grids.each(first_contact_error))
 
 
@@ -177,8 +180,13 @@ def _force(grids: _Grids) -> Estimate:
 
 
 def edge_scatter(results: Sequence[GridFeatures]) -> Array:
-    """Return each grid's edge fraction to the power 3/2, the order at which an area's scatter falls."""
-    return np.array([min(1.0, result.edge_fraction) for result in results]) ** DEFAULT_ORDER
+    """Return each grid's edge fraction to the power 3/2, the order at which an area's scatter falls.
+
+    On a disc that is about the standard deviation of the area over the area; that of straight edges is added.
+    """
+    along = [straight_scatter(r) / r.numbers["contact_area"] if r.touching else 0.0 for r in results]
+    around = np.array([min(1.0, result.edge_fraction) for result in results]) ** DEFAULT_ORDER
+    return np.hypot(around, np.minimum(along, 1.0))
 
 
 def slope_scatter(results: Sequence[GridFeatures]) -> Array:
@@ -240,7 +248,7 @@ def _area(results: Sequence[GridFeatures]) -> Estimate:
     area, edge = np.transpose([(result.numbers["contact_area"], result.edge) for result in results])
     scatter = area_scatter(results)
     prior = AREA._replace(scatter=AREA.scatter * scatter[-1])
-    excess = edge * (1 + SINGLE_EXCESS * single_element_share(results) ** 2)
+    excess = edge * (1 + SINGLE_EXCESS * single_element_share(results) ** 2) + straight_excess(results)
     spread = math.hypot(EDGE_SIZE_SPREAD, OBLONG_SPREAD * math.log(results[-1].grid.aspect))
     bias = Bias(excess, EDGE_SIZE, spread)
     return fit_line(area, scatter / scatter[-1], prior, bias)
@@ -250,7 +258,9 @@ def _plastic_area(fine: GridFeatures) -> Estimate:
     """The area at the hardness: the count of its edge elements, and their excess either way."""
     edge, dA = fine.plastic_edge, fine.grid.element_area
     counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity) if edge > 0 else 0.0
-    return Estimate(fine.numbers.get("plastic_area", 0.0), edge + 2 * AREA.scatter * counted)
+    along = 0.5 * dA * math.sqrt(fine.plastic_straight.squares)
+    bound = edge + math.hypot(2 * AREA.scatter * counted, along)
+    return Estimate(fine.numbers.get("plastic_area", 0.0), bound)
 
 
 def area_scatter(results: Sequence[GridFeatures]) -> Array:
@@ -273,4 +283,19 @@ def area_scatter(results: Sequence[GridFeatures]) -> Array:
     scatter: Array = np.maximum(
         counted, np.minimum(counted / _resolved(results, _AREAS), _MOST_AREA * area / AREA.scatter)
     )
-    return scatter
+    return np.hypot(scatter, [straight_scatter(r) / AREA.scatter for r in results])
+
+
+def straight_excess(results: Sequence[GridFeatures]) -> Array:
+    """Return what straight edges along the grid add to each grid's excess, in the unit of ``edge`` (m^2)."""
+    faces = np.array([result.straight.faces * result.grid.element_area for result in results])
+    return STRAIGHT_EXCESS * EDGE_SHARE * faces
+
+
+def straight_scatter(result: GridFeatures) -> float:
+    """Return the standard deviation of the area by straight edges along the grid (m^2).
+
+    Symmetric ones come in and out together.
+    """
+    squares, together = result.straight.squares, min(result.symmetry_multiplicity, result.straight.runs)
+    return STRAIGHT_SCATTER * math.sqrt(squares * max(together, 1)) * result.grid.element_area

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from refimpl.accuracy.iteration_error import merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.grid import Array, Grid, inner, second_differences
+from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES, StraightEdges, straight_edges
 from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
 from refimpl.model.forces import perimeter_corrected_area
@@ -33,6 +34,8 @@ class GridFeatures:
     depth : how far tractions pressed the contact in (m)
     shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's
     plastic_edge : the like along the edge of the elements at the hardness (m^2)
+    straight : edges of the contact along the grid
+    plastic_straight : the like of the elements at the hardness
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 
@@ -48,6 +51,8 @@ class GridFeatures:
     depth: float = 0.0
     shear_to_normal_ratio: float = 0.0
     plastic_edge: float = 0.0
+    straight: StraightEdges = NO_STRAIGHT_EDGES
+    plastic_straight: StraightEdges = NO_STRAIGHT_EDGES
     loaded: bool = True
 
     @property
@@ -91,6 +96,8 @@ class GridFeatures:
             depth=depth(problem, state),
             shear_to_normal_ratio=abs(problem.elasticity.coupling_ratio) * per_area * state.contact_area,
             plastic_edge=state.plastic_area - perimeter_corrected_area(state.plastic, grid),
+            straight=straight_edges(state.contact, grid),
+            plastic_straight=straight_edges(state.plastic, grid),
             loaded=problem.load is not None,
         )
 

@@ -60,6 +60,7 @@ def areas(results: Sequence[GridFeatures], singles: float) -> Numbers:
     edge = np.array([result.edge for result in results])
     scatter = discretisation_error.area_scatter(results)
     wider = edge * (1 + singles * discretisation_error.single_element_share(results) ** 2)
+    wider += discretisation_error.straight_excess(results)
     return Numbers(area / scatter[-1], scatter / scatter[-1], wider / scatter[-1])
 
 
@@ -98,7 +99,7 @@ def peaks(results: Sequence[GridFeatures]) -> Numbers:
 def approaches(results: Sequence[GridFeatures], other: float, touch: float) -> Numbers:
     """Approaches from the surfaces' own first contact, for a scatter of one: both parts of it are given."""
     found = np.array([result.numbers["approach"] for result in results])
-    thin = other * discretisation_error.edge_scatter(results) * abs(found[-1])
+    thin = other * discretisation_error.edge_scatter(results) * max(abs(found[-1]), results[-1].depth)
     hung = np.array([result.peak.widened(size, 0.5) for result, size in zip(results, thin, strict=True)])
     touched = np.array([first_contact_error(result) for result in results]) * (touch / PEAK_ERROR)
     size = np.hypot.reduce([hung, touched, np.full(thin.shape, SOLVED * abs(found[-1]))])

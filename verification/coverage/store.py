@@ -14,6 +14,7 @@ import refimpl as rf
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import Peak
 from refimpl.accuracy.refinement import FIRST_GRIDS, size_of
+from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.friction import is_frictionless
 from verification.coverage.scenes import random_scene
 from verification.framework.files import Progress
@@ -81,9 +82,10 @@ def rungs(path: Path) -> Iterator[Rung]:
 
 def _features(record: dict[str, Any]) -> GridFeatures:
     peaks = {name: Peak(**record[name]) for name in ("peak", "first_contact")}
+    straight = {name: StraightEdges(**record[name]) for name in ("straight", "plastic_straight")}
     grid = record["grid"]
     restored = rf.Grid(tuple(grid["shape"]), tuple(grid["lengths"]), grid["periodic"])
-    return GridFeatures(**{**record, **peaks, "grid": restored})
+    return GridFeatures(**{**record, **peaks, **straight, "grid": restored})
 
 
 def ladders(path: Path) -> dict[int, list[Rung]]:

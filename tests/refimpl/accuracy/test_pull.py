@@ -63,8 +63,8 @@ def test_a_state_without_contact_has_no_depth() -> None:
 
 
 def test_tau_on_the_edge_widens_the_approach_under_a_load_alone() -> None:
-    grids = [made_up(32), made_up(64)]
-    pulled = [replace(grid, shear_to_normal_ratio=0.3, depth=2e-6) for grid in grids]
+    grids = [replace(made_up(M), depth=2e-6) for M in (32, 64)]
+    pulled = [replace(grid, shear_to_normal_ratio=0.3) for grid in grids]
     share = 0.3 * grids[-1].edge / grids[-1].numbers["contact_area"]
     before, after = estimates(grids), estimates(pulled)
     bound = SHEAR_BOUNDS["approach"] * share * 2e-6

@@ -1,0 +1,284 @@
+"""Error bars by class of scene: ``python -m verification.coverage.classes --scenes 100 --json FILE``.
+
+A scene is solved on a grid of 48 to 128 elements along its longer side, and judged against one of four to ten
+times as many. Half of the scenes are free, half periodic; half are squares, half rectangles. Each number's
+bar is that of the single grid, as ``solve(scene, grid=M)`` states it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+import refimpl as rf
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.grid import Array
+from refimpl.model.forces import EDGE_SHARE
+from refimpl.model.materials import Pair
+from verification.cli.output import columns
+from verification.coverage.judge import EDGE_SIZE, EDGE_SIZE_BOUND
+from verification.framework.case import jsonable
+from verification.framework.files import Progress, write_result
+from verification.framework.provenance import provenance
+
+SIDE, RMS = 1e-3, 1e-7  # m
+GRIDS = (48, 64, 96, 128)
+REFERENCE = 512  # along the longer side
+NUMBERS = ("contact_area", "contact_area_corrected", "friction_coefficient", "max_pressure", "approach")
+LEVEL = 0.92
+STRAIGHT_SIZE = 0.21  # mean excess of straight edges along the grid over an element: Westergaard's strips
+
+
+@dataclass(frozen=True)
+class Wave(rf.Surface):
+    """``amplitude cos(2 pi n c / length + phase)`` along one axis: grooves (m)."""
+
+    amplitude: float
+    number: int
+    phase: float
+    axis: int
+    kind = "wave"
+
+    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
+        c, length = (grid.x, grid.y)[self.axis] + offset[self.axis], grid.lengths[self.axis]
+        z = self.amplitude * np.cos(2 * math.pi * self.number * c / length + self.phase)
+        return np.broadcast_to(z[:, None] if self.axis == 0 else z[None, :], grid.shape).copy()
+
+
+class _Draw:
+    """The random choices of a scene that its class does not make."""
+
+    def __init__(self, kind: str, seed: int) -> None:
+        self.rng = np.random.default_rng([38, list(CLASSES).index(kind), seed])
+        self.seed = int(self.rng.integers(2**31))
+        self.periodic, ratio = bool(self.rng.integers(2)), self.rng.choice([1.0, self.log(1.0, 3.0)])
+        self.size = (SIDE, SIDE / ratio) if self.rng.integers(2) else (SIDE / ratio, SIDE)
+        self.lower, self.upper = (
+            rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49))) for _ in range(2)
+        )
+        self.modulus = Pair(lower=self.lower, upper=self.upper).reduced_modulus
+        self.direction = float(self.rng.uniform(0, 2 * math.pi))
+
+    def log(self, low: float, high: float) -> float:
+        return math.exp(self.rng.uniform(math.log(low), math.log(high)))
+
+    def lengths(self) -> tuple[float, float]:
+        """Correlation lengths of a lay, three to ten to one."""
+        across = SIDE * self.log(0.04, 0.12)
+        return across * self.log(3, 10), across
+
+
+Kind = Callable[[_Draw], rf.Surface]
+
+
+def _isotropic(draw: _Draw) -> rf.Surface:
+    return rf.GaussianRoughness(RMS, SIDE * draw.log(0.05, 0.25), draw.seed)
+
+
+def _along(draw: _Draw) -> rf.Surface:
+    draw.direction = float(draw.rng.integers(4)) * math.pi / 2
+    return rf.GaussianRoughness(RMS, draw.lengths(), draw.seed, lay=draw.direction % math.pi)
+
+
+def _across(draw: _Draw) -> rf.Surface:
+    draw.direction = float(draw.rng.integers(4)) * math.pi / 2
+    return rf.GaussianRoughness(RMS, draw.lengths(), draw.seed, lay=(draw.direction + math.pi / 2) % math.pi)
+
+
+def _oblique(draw: _Draw) -> rf.Surface:
+    return rf.GaussianRoughness(
+        RMS, draw.lengths(), draw.seed, lay=math.radians(float(draw.rng.uniform(12, 78)))
+    )
+
+
+def _grooves(draw: _Draw) -> rf.Surface:
+    phase = float(draw.rng.uniform(0, 2 * math.pi))
+    return Wave(RMS, int(draw.rng.integers(1, 5)), phase, int(draw.rng.integers(2)))
+
+
+def _self_affine(draw: _Draw) -> rf.Surface:
+    roll_off = SIDE * draw.log(0.15, 0.4)
+    return rf.SelfAffineRoughness(
+        hurst=float(draw.rng.uniform(0.5, 1.0)),
+        rms=RMS,
+        roll_off=roll_off,
+        long_cut=roll_off * draw.log(1.0, 2.0),
+        short_cut=roll_off / draw.log(4, 10),
+        seed=draw.seed,
+    )
+
+
+CLASSES: dict[str, Kind] = {
+    "isotropic": _isotropic,
+    "lay along sliding": _along,
+    "lay across sliding": _across,
+    "lay oblique to the grid": _oblique,
+    "grooves": _grooves,
+    "self-affine": _self_affine,
+    "capped": _isotropic,
+}
+
+
+def scene(kind: str, seed: int, rough: Kind | None = None) -> rf.Scene:
+    """Return the scene of a seed: its class's roughness on a flat, or under a ball where it is free."""
+    draw = _Draw(kind, seed)
+    surface = (rough or CLASSES[kind])(draw)
+    probe = rf.Scene(
+        upper=rf.Body(draw.upper, rf.Flat()),
+        lower=rf.Body(draw.lower, surface),
+        friction=rf.Friction(),
+        load=1.0,
+        size=draw.size,
+        periodic=draw.periodic,
+    )
+    grid = probe.grid(128)
+    slope = math.sqrt(sum(float(np.mean(g**2)) for g in grid.gradient(surface.sample(grid))))
+    height = float(np.std(surface.sample(grid)))
+    if draw.periodic:
+        pressed = 0.5 * draw.modulus * slope  # in contact, by Bush et al. 1975
+        share = draw.log(0.05, 0.6)
+        return _with_friction(draw, kind, probe, share * pressed * SIDE * min(draw.size), pressed)
+    a = min(draw.size) * draw.log(0.1, 0.3)
+    R = a**2 / (height * draw.log(1.5, 30))
+    load = 4 * draw.modulus * a**3 / (3 * R)
+    pressed = max(load / (math.pi * a**2), 0.5 * draw.modulus * slope)
+    ball = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(R)))
+    return _with_friction(draw, kind, ball, load, pressed)
+
+
+def _with_friction(draw: _Draw, kind: str, base: rf.Scene, load: float, pressed: float) -> rf.Scene:
+    friction = rf.Friction(tau=pressed * draw.log(0.01, 0.3), beta=draw.log(0.01, 0.3))
+    lower = base.lower
+    if kind == "capped":
+        H = max(pressed * draw.log(0.7, 3), 2 * load / (base.lengths[0] * base.lengths[1]))
+        lower = rf.Body(replace(lower.material, hardness=H), lower.surface)
+    return replace(base, lower=lower, friction=friction, load=load, sliding_direction=draw.direction)
+
+
+def judged(one: rf.Scene, M: int) -> list[dict[str, Any]] | None:
+    """Return bar, error and the reference's bound of each number; None where a solve did not end well."""
+    finest = rf.solve(one, grid=REFERENCE)
+    coarse = rf.solve(one, grid=M)
+    if not (coarse.converged and finest.converged) or coarse.contact_area == 0:
+        return None
+    rows = []
+    for name in NUMBERS:
+        exact, bound = reference(finest, name)
+        found = float(getattr(coarse, name))
+        rows.append(
+            {
+                "number": name,
+                "bar": sum(coarse.uncertainty[name].values()),
+                "error": abs(found - exact),
+                "reference_bound": bound,
+                "value": found,
+            }
+        )
+    return rows
+
+
+def reference(finest: rf.Solution, name: str) -> tuple[float, float]:
+    """Return a number of the finest grid without its edges' mean excess, and a bound of what is left."""
+    features: GridFeatures = finest.features
+    value = float(getattr(finest, name))
+    straight = features.straight.faces * features.grid.element_area
+    excess = EDGE_SIZE * features.edge + (STRAIGHT_SIZE - EDGE_SIZE * EDGE_SHARE) * straight
+    bound = (
+        EDGE_SIZE_BOUND * features.edge
+        + 0.5 * math.sqrt(features.straight.squares) * features.grid.element_area
+    )
+    if name == "contact_area":
+        return value - excess, bound
+    if name == "contact_area_corrected":
+        return finest.contact_area - excess, bound
+    if name == "friction_coefficient":
+        return value - features.dmu_dA * excess, features.dmu_dA * bound
+    if name == "max_pressure" and not features.yields:
+        return features.peak.height, sum(finest.uncertainty[name].values())
+    return value, sum(finest.uncertainty[name].values())
+
+
+def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
+    """Return the share of bars that hold, its binomial test against `LEVEL`, and the median length."""
+    rows = list(rows)
+    held = sum(row["error"] <= row["bar"] for row in rows)
+    finite = [row["bar"] / row["error"] for row in rows if row["error"] > 0]
+    test = stats.binomtest(held, len(rows), LEVEL, alternative="less")
+    return {
+        "scenes": len(rows),
+        "held": held / len(rows),
+        "held_at_worst": sum(row["error"] + row["reference_bound"] <= row["bar"] for row in rows) / len(rows),
+        "p": test.pvalue,
+        "median_bar_over_error": float(np.median(finite)) if finite else None,
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Judge the scenes of all classes, write the document and print its table."""
+    parser = argparse.ArgumentParser(prog="python -m verification.coverage.classes", description=__doc__)
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--scenes", type=int, default=100, help="of each class")
+    parser.add_argument("--json", type=Path, required=True)
+    options = parser.parse_args(arguments)
+    progress = Progress(len(CLASSES) * options.scenes)
+    found: list[dict[str, Any]] = []
+    lost: dict[str, int] = dict.fromkeys(CLASSES, 0)
+    for kind in CLASSES:
+        for seed in range(options.first, options.first + options.scenes):
+            M = GRIDS[seed % len(GRIDS)]
+            rows = judged(scene(kind, seed), M)
+            if rows is None:
+                lost[kind] += 1
+            else:
+                found += [{"class": kind, "seed": seed, "M": M, **row} for row in rows]
+            progress.tick(f"{kind}, {seed}")
+    progress.close()
+    table = tables(found)
+    document = {
+        "provenance": provenance(),
+        "first": options.first,
+        "not_converged": lost,
+        "table": table,
+        "rows": found,
+    }
+    write_result(jsonable(document), options.json)
+    print(columns(lines(table), indent=""))
+
+
+def tables(found: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the summary of each class and number, of each class, and of each number."""
+    rows = []
+    for kind in (*CLASSES, None):
+        for number in (*NUMBERS, None):
+            some = [row for row in found if kind in (None, row["class"]) and number in (None, row["number"])]
+            if some:
+                rows.append({"class": kind, "number": number, **summary(some)})
+    return rows
+
+
+def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
+    """Return the lines of the printed table."""
+    head = ["class", "number", "scenes", "held", "with the reference's bound", "p", "bar/error"]
+    return [head] + [
+        [
+            row["class"] or "all",
+            row["number"] or "all",
+            str(row["scenes"]),
+            f"{row['held']:.3f}",
+            f"{row['held_at_worst']:.3f}",
+            f"{row['p']:.2g}",
+            "" if row["median_bar_over_error"] is None else f"{row['median_bar_over_error']:.2f}",
+        ]
+        for row in table
+    ]
+
+
+if __name__ == "__main__":
+    main()
