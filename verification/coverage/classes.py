@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from scipy import stats
 
 import refimpl as rf
 from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.model.materials import Pair
@@ -56,7 +57,7 @@ class _Draw:
     """The random choices of a scene that its class does not make."""
 
     def __init__(self, kind: str, seed: int) -> None:
-        self.rng = np.random.default_rng([38, list(CLASSES).index(kind), seed])
+        self.rng = np.random.default_rng([38, *kind.encode(), seed])
         self.seed = int(self.rng.integers(2**31))
         self.periodic, ratio = bool(self.rng.integers(2)), self.rng.choice([1.0, self.log(1.0, 3.0)])
         self.size = (SIDE, SIDE / ratio) if self.rng.integers(2) else (SIDE / ratio, SIDE)
@@ -126,10 +127,37 @@ CLASSES: dict[str, Kind] = {
 }
 
 
-def scene(kind: str, seed: int, rough: Kind | None = None) -> rf.Scene:
+MEASURED = "windows of a measured map"
+
+
+def read_heights(path: Path) -> Array:
+    """Return the heights of a measured surface at its own points (m)."""
+    surface = rf.MeasuredSurface(path)
+    lengths = surface.extent((0.0, 0.0))
+    pitch = surface.pitch(lengths) if lengths else None
+    if lengths is None or pitch is None:
+        raise InputError("--map", str(path), "a measured surface with an end")
+    shape = round(lengths[0] / pitch), round(lengths[1] / pitch)
+    return surface.sample(rf.Grid(shape, lengths))
+
+
+def windows_of(heights: Array) -> Kind:
+    """Return the class of random square windows of 100 to 300 points of a measured map, at one rms height."""
+
+    def window(draw: _Draw) -> rf.Surface:
+        points = min(int(draw.rng.integers(100, 301)), *heights.shape)
+        i, j = (int(draw.rng.integers(length - points + 1)) for length in heights.shape)
+        z = heights[i : i + points, j : j + points]
+        draw.size, draw.periodic = (SIDE, SIDE), False
+        return rf.ArraySurface(RMS * (z - z.mean()) / z.std())
+
+    return window
+
+
+def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Scene:
     """Return the scene of a seed: its class's roughness on a flat, or under a ball where it is free."""
     draw = _Draw(kind, seed)
-    surface = (rough or CLASSES[kind])(draw)
+    surface = classes[kind](draw)
     probe = rf.Scene(
         upper=rf.Body(draw.upper, rf.Flat()),
         lower=rf.Body(draw.lower, surface),
@@ -225,15 +253,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m verification.coverage.classes", description=__doc__)
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--scenes", type=int, default=100, help="of each class")
+    parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
     parser.add_argument("--json", type=Path, required=True)
     options = parser.parse_args(arguments)
-    progress = Progress(len(CLASSES) * options.scenes)
+    classes = dict(CLASSES)
+    if options.map is not None:
+        classes[MEASURED] = windows_of(read_heights(options.map))
+    progress = Progress(len(classes) * options.scenes)
     found: list[dict[str, Any]] = []
-    lost: dict[str, int] = dict.fromkeys(CLASSES, 0)
-    for kind in CLASSES:
+    lost: dict[str, int] = dict.fromkeys(classes, 0)
+    for kind in classes:
         for seed in range(options.first, options.first + options.scenes):
             M = GRIDS[seed % len(GRIDS)]
-            rows = judged(scene(kind, seed), M)
+            rows = judged(scene(kind, seed, classes), M)
             if rows is None:
                 lost[kind] += 1
             else:
@@ -255,7 +287,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def tables(found: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the summary of each class and number, of each class, and of each number."""
     rows = []
-    for kind in (*CLASSES, None):
+    for kind in (*dict.fromkeys(row["class"] for row in found), None):
         for number in (*NUMBERS, None):
             some = [row for row in found if kind in (None, row["class"]) and number in (None, row["number"])]
             if some:
