@@ -71,16 +71,17 @@ class _Draw:
         return math.exp(self.rng.uniform(math.log(low), math.log(high)))
 
     def lengths(self) -> tuple[float, float]:
-        """Correlation lengths of a lay, three to ten to one."""
-        across = SIDE * self.log(0.04, 0.12)
-        return across * self.log(3, 10), across
+        """Correlation lengths of a lay, three to ten to one within the shorter side."""
+        side = min(self.size)
+        across = side * self.log(0.05, 0.15)
+        return min(across * self.log(3, 10), 0.9 * side), across
 
 
 Kind = Callable[[_Draw], rf.Surface]
 
 
 def _isotropic(draw: _Draw) -> rf.Surface:
-    return rf.GaussianRoughness(RMS, SIDE * draw.log(0.05, 0.25), draw.seed)
+    return rf.GaussianRoughness(RMS, min(draw.size) * draw.log(0.05, 0.25), draw.seed)
 
 
 def _along(draw: _Draw) -> rf.Surface:
@@ -105,7 +106,7 @@ def _grooves(draw: _Draw) -> rf.Surface:
 
 
 def _self_affine(draw: _Draw) -> rf.Surface:
-    roll_off = SIDE * draw.log(0.15, 0.4)
+    roll_off = min(draw.size) * draw.log(0.15, 0.4)
     return rf.SelfAffineRoughness(
         hurst=float(draw.rng.uniform(0.5, 1.0)),
         rms=RMS,
