@@ -79,6 +79,8 @@ def refine_until(
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
     remaining, refusal = [M * slenderness for M in grid_sizes], ""
     while results[-1].touching and relative_bound(results, quantity) > accuracy:
+        if math.isinf(_own_bound(results[-1], quantity)):
+            return Refinement(tuple(results), "the domain cuts the contact off: enlarge it")
         if active_set_dominates(results, accuracy, quantity):
             reason = "tau's active set leaves more than that open, and no less on finer grids"
             return Refinement(tuple(results), reason)

@@ -25,6 +25,7 @@ from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
 from refimpl.solution.limits import Notice
+from refimpl.solution.plausibility import implausible
 from refimpl.solution.solution import Cost, Solution, Solved, assemble, total_cost
 from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
@@ -102,7 +103,7 @@ def solve(
         return _refined(options, plan, discretiser, progress)
     guess = None if start is None else _guess(start.problem, start.pressure, start.clearance, start.approach)
     solved = _solve_on_grid(plan, discretiser, options.residual_tolerance, progress, guess)
-    notes = _notes(scene, solved.problem.grid, discretiser.notes)
+    notes = _notes(scene, solved, discretiser.notes)
     return assemble(scene, solved, uncertainty([solved.features]), notes)
 
 
@@ -161,7 +162,7 @@ def _refined(options: Options, plan: Plan, discretiser: Discretiser, progress: P
     grids = _Refinement(scene, plan, discretiser, options.residual_tolerance, progress)
     ended = refine_until(grids.features_at, options.accuracy, quantity, slenderness=scene.slenderness)
     solved, cost = grids.solved(), total_cost(grids.costs)
-    notes = _notes(scene, solved.problem.grid, discretiser.notes)
+    notes = _notes(scene, solved, discretiser.notes)
     if not ended.results[-1].touching:
         return assemble(scene, solved, uncertainty([ended.results[-1]]), notes, cost=cost)
     shortfall = None
@@ -198,7 +199,7 @@ def _solve_on_grid(
     problem = discretiser.problem(plan.grid, plan.switches)
     result, state = _solve_problem(problem, plan.method, tolerance, counter, guess)
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, result.iterations)
-    solved = Solved(problem, plan, result, state, tolerance, cost)
+    solved = Solved(problem, plan, result, state, tolerance, cost, discretiser.continues)
     hardness = problem.pair.softer_hardness or math.inf
     if plan.requested.plastic is not None or plan.includes("plastic") or state.max_pressure <= hardness:
         return solved
@@ -233,9 +234,10 @@ def _guess(problem: Problem, pressure: Array, clearance: Array, approach: float)
     return InitialGuess(pressure, clearance + (approach + problem.datum) - problem.gap, None)
 
 
-def _notes(scene: Scene, grid: Grid, lines: Sequence[str]) -> tuple[Notice, ...]:
-    """Notes of the surfaces; unresolved roughness has a named warning of its own."""
-    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
+def _notes(scene: Scene, solved: Solved, lines: Sequence[str]) -> tuple[Notice, ...]:
+    """Notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its own."""
+    grid, parts = solved.problem.grid, (*scene.lower.surface.parts, *scene.upper.surface.parts)
+    lines = (*implausible(scene, solved.plan), *lines)
     rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
     named = {line for part in rough for line in part.cautions(grid)}
     return tuple(Notice(line) for line in lines if line not in named)

@@ -101,6 +101,17 @@ class State:
         return float(self.pressure.max())
 
     @property
+    def gap(self) -> Array:
+        """Deformed gap (m): zero in contact, not negative outside.
+
+        It is ``v - approach``, and ``w_p / (cos theta_x cos theta_y)`` more where the softer body yields.
+        """
+        gap = self.clearance
+        if self.indentation is not None:
+            gap += self.indentation / self.slopes.obliqueness
+        return gap
+
+    @property
     def clearance(self) -> Array:
         """``v - approach`` (m): zero in contact, not negative outside."""
         return self.v - self.approach

@@ -65,6 +65,11 @@ class Discretiser:
         self._last: Problem | None = None
         self.notes: tuple[str, ...] = ()
 
+    @property
+    def continues(self) -> bool:
+        """Whether the scene's bodies go on beyond the domain."""
+        return self._scene.continues
+
     def with_all_terms(self, grid: Grid) -> Problem:
         """Return the problem with all terms, for planning, and keep it."""
         self._last = self._problem(grid)

@@ -16,6 +16,7 @@ from refimpl.grid import Array, Grid
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
 from refimpl.surfaces import Surface, SurfaceWarning, as_surface
+from refimpl.surfaces.shapes import Sphere
 
 # Arguments of a surface, by the names of the scene's fields.
 _ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
@@ -224,6 +225,17 @@ class Scene:
         """The surfaces of the "lower" or the "upper" body, as they lie on it."""
         given: tuple[Surface, ...] = getattr(self, name).surface.parts
         return tuple(part.on_upper_body() for part in given) if name == "upper" else given
+
+    @property
+    def continues(self) -> bool:
+        """True if the bodies go on beyond a free domain: paraboloids do, whose sum is no flat."""
+        return not self.periodic and self.curvature != 0
+
+    @property
+    def curvature(self) -> float:
+        """Sum of the curvatures of all paraboloids (1/m): positive of bodies that are convex together."""
+        spheres = [(part, 1) for part in self.parts("upper")] + [(part, -1) for part in self.parts("lower")]
+        return sum(sign / part.radius for part, sign in spheres if isinstance(part, Sphere))
 
     @property
     def _offset(self) -> tuple[float, float]:

@@ -236,10 +236,20 @@ def _border(evidence: Evidence) -> ModelWarning | None:
     advice = (
         f"the {' and '.join(concave)} body is concave (sign of its radius?)"
         if concave
-        else "enlarge the domain"
+        else f"enlarge the domain{_expected_size(evidence)}"
     )
     text = f"contact reaches the border of the domain on {touching} elements: {advice}"
     return ModelWarning(Limit.BORDER, touching, 0, text) if touching else None
+
+
+def _expected_size(evidence: Evidence) -> str:
+    """By Hertz, of the paraboloids alone under the load; their contact goes on beyond the border."""
+    scene, problem = evidence.scene, evidence.problem
+    if not scene.continues or not problem.load or scene.curvature < 0:
+        return ""
+    radius = (0.75 * problem.load / (problem.pair.reduced_modulus * scene.curvature)) ** (1 / 3)
+    half = min(problem.grid.lengths) / 2
+    return f": Hertz's contact radius is {radius:.3g} m, half of the domain {half:.3g} m; no error bar holds"
 
 
 def _is_concave(body: Body, sign: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
@@ -77,8 +78,8 @@ class Solution:
     pressure, traction : local f and r of Eq. (1)
     slopes : of the deformed common surface
     surface_lower, surface_upper : deformed heights
-    separation : deformed upper minus lower height
-    clearance : what Eq. (6) asks to be zero in contact, ``u / (cos theta_x cos theta_y) + h - approach``
+    gap : deformed gap by Eq. (6), ``(u + w_p) / (cos theta_x cos theta_y) + h - approach``: zero in contact,
+        and nowhere negative beyond the certificate's penetration
     plastic_indentation : depth w_p by which the softer body has yielded
     excluded : elements that the rule for tau's active set leaves without adhesive shear
     slope_error : error of flat-surface influence coefficients at this contact's slopes, by Appendix A's table
@@ -110,8 +111,7 @@ class Solution:
     slopes: Slopes
     surface_lower: Array
     surface_upper: Array
-    separation: Array
-    clearance: Array
+    gap: Array
     plastic_indentation: Array
     excluded: Mask
     slope_error: SlopeError
@@ -132,6 +132,19 @@ class Solution:
     def contact(self) -> Mask:
         """Elements with ``f > 0``."""
         return self.pressure > 0
+
+    @property
+    def separation(self) -> Array:
+        """Height of the upper deformed surface over the lower one (m).
+
+        On slopes Eq. (6) leaves it ``u (1 / (cos theta_x cos theta_y) - 1)`` below the `gap`.
+        """
+        return self.surface_upper - self.surface_lower
+
+    @property
+    def clearance(self) -> Array:
+        """``v - approach`` (m): the `gap` without the plastic indentation."""
+        return self.gap - self.plastic_indentation / self.slopes.obliqueness
 
     @cached_property
     def theta_x(self) -> Array:
@@ -206,7 +219,10 @@ def _dimensions(grid: Grid) -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """A solved and certified problem on one grid, before it becomes a `Solution`."""
+    """A solved and certified problem on one grid, before it becomes a `Solution`.
+
+    ``continues`` says that the bodies go on beyond the domain.
+    """
 
     problem: Problem
     plan: Plan
@@ -214,6 +230,7 @@ class Solved:
     state: State
     tolerance: float
     cost: Cost
+    continues: bool = False
 
     @property
     def status(self) -> Status:
@@ -247,6 +264,7 @@ class Solved:
         return merged(
             iteration_parts(problem, state),
             active_set_parts(problem, state),
+            self._cut_off,
             neglected_parts(
                 self.neglected,
                 float(state.traction.sum()) / total if total else 0.0,
@@ -257,6 +275,14 @@ class Solved:
                 | moved,
             ),
         )
+
+    @property
+    def _cut_off(self) -> Uncertainty:
+        """Without bound: every number of a contact that the domain cuts off, but for what is prescribed."""
+        if not (self.continues and self.problem.grid.on_border(self.state.contact)):
+            return {}
+        given = "normal_force" if self.problem.load is not None else "approach"
+        return {name: {"border": math.inf} for name in REPORTED if name != given}
 
 
 def assemble(
@@ -295,8 +321,7 @@ def assemble(
         slopes=state.slopes,
         surface_lower=surface_lower,
         surface_upper=surface_upper,
-        separation=surface_upper - surface_lower,
-        clearance=state.clearance,
+        gap=state.gap,
         plastic_indentation=problem.grid.zeros if state.indentation is None else state.indentation,
         excluded=result.excluded,
         slope_error=error,

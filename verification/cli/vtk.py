@@ -37,7 +37,7 @@ def write(solution: Solution, path: Path) -> None:
     number = np.arange(x.size).reshape(x.shape)
     around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
     squares = np.stack(around, axis=-1).reshape(-1, 4)
-    contact = {"pressure": solution.pressure, "traction": solution.traction, "gap": solution.separation}
+    contact = {"pressure": solution.pressure, "traction": solution.traction, "gap": solution.gap}
     fields = {name: np.tile(values.ravel(), 2) for name, values in contact.items()}
     fields["height"] = np.concatenate([sheet[:, 2] for sheet in sheets])
     fields["body"] = np.repeat([0.0, 1.0], x.size)

@@ -23,7 +23,7 @@ BARE = Terms(coupled=False, oblique=False, tilted=False)
 M = 64
 RETURNED = (
     4 * 8
-)  # bytes per element: both deformed surfaces, separation and clearance, which bare solves lack
+)  # bytes per element: both deformed surfaces and the gap, which bare solves lack
 
 
 @cache

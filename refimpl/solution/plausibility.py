@@ -1,0 +1,90 @@
+"""Notes on inputs that are seldom meant: moduli in GPa, a strength above the hardness, a length in um.
+
+None of them is an error: the theory has no scale, and what is unusual may be right.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from refimpl.model.materials import Material
+from refimpl.planning.plan import Plan
+from refimpl.scene.scene import Scene
+from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
+
+MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
+_STRONG = 10.0  # tau over the mean contact pressure
+_SOFTER = 10.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics and polymers
+_INDEX = 1e3  # plasticity index
+
+
+def implausible(scene: Scene, plan: Plan) -> Iterator[str]:
+    """Return a line for each input beyond its usual range; the mean contact pressure is the expected one."""
+    for name, body in (("lower", scene.lower), ("upper", scene.upper)):
+        yield from _material(name, body.material, scene.friction.jump)
+        yield from _surface(name, scene)
+    mean = plan.contact.mean_pressure
+    if mean > 0 and scene.friction.jump > _STRONG * mean:
+        yield (
+            f"tau, {scene.friction.jump:.4g} Pa, is {scene.friction.jump / mean:.3g} times the mean contact "
+            "pressure to be expected: did you mean MPa (15 MPa is 15e6)?"
+        )
+    yield from _index(scene, plan)
+
+
+def _material(name: str, material: Material, tau: float) -> Iterator[str]:
+    least, most = MODULI
+    if not material.is_rigid and not least <= material.E <= most:
+        help_ = "did you mean GPa (200 GPa is 200e9)?" if least > material.E else "a rigid body is E = rigid"
+        yield f"{name}.E, {material.E:.4g} Pa, is outside {least:g} to {most:g} Pa: {help_}"
+    hardness = material.hardness
+    if hardness is None:
+        return
+    if hardness > material.E / _SOFTER:
+        yield (
+            f"{name}.hardness, {hardness:.4g} Pa, is above a tenth of E, {material.E:.4g} Pa: are both in Pa?"
+        )
+    if hardness < tau:
+        yield f"{name}.hardness, {hardness:.4g} Pa, is below tau, {tau:.4g} Pa: are both in Pa?"
+
+
+def _surface(name: str, scene: Scene) -> Iterator[str]:
+    shorter, longer = min(scene.lengths), max(scene.lengths)
+    for part in scene.parts(name):
+        if isinstance(part, Sphere) and abs(part.radius) < longer:
+            yield (
+                f"{name}: radius {part.radius:.4g} m is below the domain's {longer:.4g} m: "
+                "a paraboloid is no sphere there"
+            )
+        if isinstance(part, GaussianRoughness | SelfAffineRoughness):
+            lengths = [length for length in part.parameters().items() if "length" in length[0]]
+            for label, length in lengths:
+                if length > shorter:
+                    yield (
+                        f"{name}: {label} {length:.4g} m is beyond the domain's {shorter:.4g} m: "
+                        "did you mean um (100 um is 100e-6)?"
+                    )
+            rms = part.parameters().get("rms", 0.0)
+            if rms > shorter:
+                yield f"{name}: rms {rms:.4g} m is beyond the domain's {shorter:.4g} m: did you mean um?"
+
+
+def _index(scene: Scene, plan: Plan) -> Iterator[str]:
+    """The plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
+    bodies = (scene.lower.material, scene.upper.material)
+    hardness = min((m.hardness for m in bodies if m.hardness is not None), default=None)
+    squares = 0.0
+    for name in ("lower", "upper"):
+        for part in scene.parts(name):
+            if isinstance(part, GaussianRoughness | SelfAffineRoughness):
+                squares += part.rms_slope**2
+    if hardness is None or squares == 0:
+        return
+    compliance = sum(0.0 if m.is_rigid else (1 - m.nu**2) / m.E for m in bodies)
+    index = math.sqrt(squares) / (compliance * hardness)
+    if index > _INDEX:
+        yield (
+            f"plasticity index {index:.3g} is beyond {_INDEX:g}: units of E, hardness, rms and correlation "
+            "length?"
+        )
