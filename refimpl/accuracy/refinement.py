@@ -28,6 +28,7 @@ FIRST_GRIDS = (32, 64)  # elements along the longer side
 GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
 MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids are poor beyond
 MAX_BLIND_REFINEMENT = 2  # ratio where the bar is longer than the number, and predicts nothing
+LEAST_ORDER, MOST_ORDER = 1.0, 2.0  # orders of a bar in element size that a forecast takes
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
@@ -81,11 +82,16 @@ def refine_until(
     while results[-1].touching and relative_bound(results, quantity) > accuracy:
         if math.isinf(_own_bound(results[-1], quantity)):
             return Refinement(tuple(results), "the domain cuts the contact off: enlarge it")
-        if active_set_dominates(results, accuracy, quantity):
-            reason = "tau's active set leaves more than that open, and no less on finer grids"
-            return Refinement(tuple(results), reason)
+        for part, reason in REMAINING_PARTS.items():
+            if remains(part, results, accuracy, quantity):
+                return Refinement(tuple(results), reason)
         last = size_of(results[-1])
         remaining = [M for M in remaining if last < M]
+        if remaining and (needed := forecast(results, accuracy, quantity)) > max(remaining):
+            reason = (
+                f"by the bars so far it takes about {needed:.2g} elements a side, more than {max(remaining)}"
+            )
+            return Refinement(tuple(results), refusal or reason)
         if not remaining:
             return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
         M = next_grid(results, accuracy, quantity, remaining)
@@ -133,13 +139,35 @@ def _own_order(results: Sequence[GridFeatures], quantity: str) -> float:
     return min(max(math.log(coarse / fine) / math.log(refinement), 0.0), 1.0)
 
 
-def active_set_dominates(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> bool:
-    """Return whether tau's active set leaves more than the accuracy open, and no less than on the grid
-    before."""
+REMAINING_PARTS = {
+    "active set": "tau's active set leaves more than that open, and no less on finer grids",
+    "data": "what lies between the points of the data leaves more than that open, and no less on finer grids",
+}
+"""Parts that need not fall on finer grids, and what is said where they do not."""
+
+
+def remains(part: str, results: Sequence[GridFeatures], accuracy: float, quantity: str) -> bool:
+    """Return whether a part leaves more than the accuracy open, and no less than on the grid before."""
     if len(results) == len(FIRST_GRIDS):
         return False
-    coarse, fine = (result.parts.get(quantity, {}).get("active set", 0.0) for result in results[-2:])
+    coarse, fine = (result.parts.get(quantity, {}).get(part, 0.0) for result in results[-2:])
     return fine >= coarse and fine > accuracy * abs(results[-1].numbers[quantity])
+
+
+def forecast(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:
+    """Return the elements a side that an accuracy takes if bars go on to fall as over the last two grids.
+
+    The size of the last grid where that cannot be said: before a third grid, or from bars without an end.
+    """
+    size = size_of(results[-1])
+    if len(results) <= len(FIRST_GRIDS):
+        return size
+    coarse, fine = relative_bound(results[:-1], quantity), relative_bound(results, quantity)
+    if not 0 < fine < math.inf or not math.isfinite(coarse):
+        return size
+    steps = math.log(size / size_of(results[-2]))
+    order = min(max(math.log(coarse / fine) / steps, LEAST_ORDER), MOST_ORDER)
+    return size * math.exp(math.log(fine / accuracy) / order)
 
 
 def relative_bound(results: Sequence[GridFeatures], quantity: str) -> float:

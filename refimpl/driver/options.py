@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from refimpl.accuracy.refinement import Quantity, check_accuracy, check_quantity, tolerance_for
+from refimpl.driver.limits import Limits
 from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Grid
 from refimpl.model.friction import is_frictionless
@@ -35,6 +36,7 @@ class Options:
     requested: RequestedTerms = field(default_factory=RequestedTerms)
     tolerance: float | None = None
     start: Solution | None = None
+    limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
         if not isinstance(self.scene, Scene):
@@ -51,6 +53,8 @@ class Options:
         if (self.grid is None) == (self.accuracy is None):
             allowed = "a number of elements along the longer side, or two, or an accuracy, and not both"
             raise InputError("grid", self.grid, allowed)
+        if self.accuracy is None and self.limits.any:
+            raise InputError("max_grid, max_seconds, max_memory", self.limits, "none without an accuracy")
         _ = self.solve_grid  # refuses what is no grid
         if self.start is not None:
             self._check_start(self.start)

@@ -11,6 +11,7 @@ import numpy as np
 
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.refinement import Quantity, refine_until, relative_bound, uncertainty
+from refimpl.driver.limits import Allowance, Limits
 from refimpl.driver.options import Options
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Window
@@ -50,6 +51,9 @@ def solve(
     plastic: bool | None = None,
     tolerance: float | None = None,
     start: Solution | None = None,
+    max_grid: int | None = None,
+    max_seconds: float | None = None,
+    max_memory: float | None = None,
     progress: Progress | None = None,
 ) -> Solution:
     """Solve a scene on a grid of elements, or to a relative ``accuracy``; exactly one of them.
@@ -70,6 +74,10 @@ def solve(
     slope_correction : exact facet tractions in Eq. (7): `refimpl.model.forces`
     coupled, tilted : request or exclude what shear does to the gap, and to the slopes of the common surface;
         None lets the scene decide
+    max_grid, max_seconds, max_memory : with ``accuracy``: the largest number of elements along a side,
+        seconds in all, bytes of a grid; beyond them the status is `ACCURACY_NOT_REACHED`, with
+        the finest grid within them. An interrupt (KeyboardInterrupt) has the last finished grid's solution as
+        its argument
     plastic : True ends pressures at the hardness of the softer body, False never does; None takes the
         scene's own choice, and without one the cap enters where pressures reach a given hardness
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
@@ -96,6 +104,7 @@ def solve(
         requested=RequestedTerms(coupled, oblique, tilted, slope_correction, plastic),
         tolerance=tolerance,
         start=start,
+        limits=Limits(max_grid, max_seconds, max_memory),
     )
     discretiser = Discretiser(scene, options.approach)
     plan = options.plan(discretiser)
@@ -111,12 +120,18 @@ class _Refinement:
     """Solves of one scene on finer and finer grids; terms that turn out to matter are restored for good."""
 
     def __init__(
-        self, scene: Scene, plan: Plan, discretiser: Discretiser, tolerance: float, progress: Progress | None
+        self,
+        scene: Scene,
+        plan: Plan,
+        discretiser: Discretiser,
+        options: Options,
+        progress: Progress | None,
     ) -> None:
         self.scene, self.plan = scene, plan
         self.costs: list[Cost] = []
         self.last: Solved | None = None
-        self._discretiser, self._tolerance, self._progress = discretiser, tolerance, progress
+        self._discretiser, self._progress = discretiser, progress
+        self._tolerance, self._allowance = options.residual_tolerance, Allowance(options.limits)
 
     def features_at(self, M: int) -> GridFeatures:
         """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget."""
@@ -128,10 +143,15 @@ class _Refinement:
                 start.problem, state.pressure, state.clearance, state.approach - start.problem.datum
             )
         plan = self.plan.on(self.scene.refined(M))
+        self._allowance.check(plan.grid, plan.memory)
+        if self._progress is not None and self.last is not None:
+            expected = self._allowance.expected_seconds(plan.grid)
+            self._progress(f"{plan.grid} elements next: about {expected:.2g} s, {plan.memory / 1e9:.2g} GB")
         solved = _solve_on_grid(plan, self._discretiser, self._tolerance, self._progress, guess)
         self.plan = solved.plan  # with the cap, if it was restored
         self.costs.append(solved.cost)
         self.last = solved
+        self._allowance.record(plan.grid, solved.cost.seconds)
         effects = effects_in(
             plan.neglected, solved.problem, solved.state.pressure, plan.contact, plan.decided_on
         )
@@ -148,6 +168,15 @@ class _Refinement:
         return self.last
 
 
+def _interrupted(scene: Scene, grids: _Refinement, discretiser: Discretiser) -> Solution:
+    """The last finished grid's solution of a refinement that was interrupted."""
+    solved = grids.solved()
+    line = Notice("interrupted: the finest grid that was finished")
+    notes = _notes(scene, solved, discretiser.notes)
+    bars = uncertainty([solved.features])
+    return assemble(scene, solved, bars, notes, shortfall=line, cost=total_cost(grids.costs))
+
+
 _CONVERGED = (Status.CONVERGED, Status.CYCLED)
 
 
@@ -155,12 +184,17 @@ def _refined(options: Options, plan: Plan, discretiser: Discretiser, progress: P
     """The finest grid's solution of a refinement, with the uncertainty from all grids and the summed cost.
 
     When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
-    `ITERATION_LIMIT` with a warning that states the accuracy reached.
+    `ACCURACY_NOT_REACHED` with a warning that states the accuracy reached.
     """
     scene, quantity = options.scene, options.target_quantity
     assert options.accuracy is not None
-    grids = _Refinement(scene, plan, discretiser, options.residual_tolerance, progress)
-    ended = refine_until(grids.features_at, options.accuracy, quantity, slenderness=scene.slenderness)
+    grids = _Refinement(scene, plan, discretiser, options, progress)
+    try:
+        ended = refine_until(grids.features_at, options.accuracy, quantity, slenderness=scene.slenderness)
+    except KeyboardInterrupt as interrupt:
+        if grids.last is not None:
+            interrupt.args = (_interrupted(scene, grids, discretiser),)
+        raise
     solved, cost = grids.solved(), total_cost(grids.costs)
     notes = _notes(scene, solved, discretiser.notes)
     if not ended.results[-1].touching:
@@ -199,7 +233,7 @@ def _solve_on_grid(
     problem = discretiser.problem(plan.grid, plan.switches)
     result, state = _solve_problem(problem, plan.method, tolerance, counter, guess)
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, result.iterations)
-    solved = Solved(problem, plan, result, state, tolerance, cost, discretiser.continues)
+    solved = Solved(problem, plan, result, state, tolerance, cost, discretiser.scene)
     hardness = problem.pair.softer_hardness or math.inf
     if plan.requested.plastic is not None or plan.includes("plastic") or state.max_pressure <= hardness:
         return solved

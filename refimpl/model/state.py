@@ -17,6 +17,7 @@ class Status(Enum):
     ITERATION_LIMIT : not converged; a loop's limit came first
     CYCLED : converged, with an alternating contact edge: some elements in contact carry no adhesive shear
         (`refimpl.solvers.tau_active_set`); the certificate holds for the returned traction
+    ACCURACY_NOT_REACHED : the certificate holds, and a requested accuracy was not reached
     NO_CONTACT : at the prescribed approach the surfaces do not touch
     """
 
@@ -24,6 +25,7 @@ class Status(Enum):
     STAGNATED = "stagnated"
     ITERATION_LIMIT = "iteration limit"
     CYCLED = "cycled"
+    ACCURACY_NOT_REACHED = "accuracy not reached"
     NO_CONTACT = "no contact"
 
 

@@ -66,9 +66,9 @@ class Discretiser:
         self.notes: tuple[str, ...] = ()
 
     @property
-    def continues(self) -> bool:
-        """Whether the scene's bodies go on beyond the domain."""
-        return self._scene.continues
+    def scene(self) -> Scene:
+        """The scene."""
+        return self._scene
 
     def with_all_terms(self, grid: Grid) -> Problem:
         """Return the problem with all terms, for planning, and keep it."""

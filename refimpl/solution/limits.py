@@ -249,7 +249,7 @@ def _expected_size(evidence: Evidence) -> str:
         return ""
     radius = (0.75 * problem.load / (problem.pair.reduced_modulus * scene.curvature)) ** (1 / 3)
     half = min(problem.grid.lengths) / 2
-    return f": Hertz's contact radius is {radius:.3g} m, half of the domain {half:.3g} m; no error bar holds"
+    return f": Hertz's contact radius is {radius:.3g} m, half of the domain {half:.3g} m"
 
 
 def _is_concave(body: Body, sign: int) -> bool:

@@ -19,10 +19,11 @@ from refimpl.accuracy.iteration_error import (
     active_set_parts,
     iteration_parts,
     merged,
+    reported_numbers,
 )
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.certificate import Certificate, State
-from refimpl.model.friction import FrictionLaw
+from refimpl.model.friction import FrictionLaw, friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import SolverResult, Status
@@ -30,6 +31,7 @@ from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect, effects_in, neglected_parts
 from refimpl.scene.scene import Scene
 from refimpl.solution.bounds import Bounds, proven_bounds
+from refimpl.solution.data_error import data_error
 from refimpl.solution.influence_error import SlopeError, slope_error
 from refimpl.solution.limits import Evidence, ModelWarning, Notice, model_warnings, plain_warning
 
@@ -217,11 +219,14 @@ def _dimensions(grid: Grid) -> dict[str, Any]:
     return {"grid": grid.shape[0] if same else list(grid.shape), **lengths}
 
 
+_MOST_OUTSIDE = 0.5  # share of the contact found
+
+
 @dataclass(frozen=True, eq=False)
 class Solved:
     """A solved and certified problem on one grid, before it becomes a `Solution`.
 
-    ``continues`` says that the bodies go on beyond the domain.
+    ``scene`` says what lies beyond the domain and between points of data, if it is known.
     """
 
     problem: Problem
@@ -230,7 +235,7 @@ class Solved:
     state: State
     tolerance: float
     cost: Cost
-    continues: bool = False
+    scene: Scene | None = None
 
     @property
     def status(self) -> Status:
@@ -264,7 +269,7 @@ class Solved:
         return merged(
             iteration_parts(problem, state),
             active_set_parts(problem, state),
-            self._cut_off,
+            self._unseen,
             neglected_parts(
                 self.neglected,
                 float(state.traction.sum()) / total if total else 0.0,
@@ -277,12 +282,38 @@ class Solved:
         )
 
     @property
-    def _cut_off(self) -> Uncertainty:
-        """Without bound: every number of a contact that the domain cuts off, but for what is prescribed."""
-        if not (self.continues and self.problem.grid.on_border(self.state.contact)):
+    def _unseen(self) -> Uncertainty:
+        """Parts by what the scene does not say: what lies beyond its domain, and between points of its data.
+
+        A contact that the domain cuts off counts as if it went on over an area like the domain's, as dense as
+        along the border; without bound where that is half of the contact found.
+        """
+        grid, state, given = self.problem.grid, self.state, self.problem.load is None
+        numbers = reported_numbers(self.problem, state)
+        border = grid.on_border(state.contact) if self.scene is not None and self.scene.continues else 0
+        data = data_error(self.scene, grid) if self.scene is not None else 0.0
+        if not state.contact.any() or not (border or data):
             return {}
-        given = "normal_force" if self.problem.load is not None else "approach"
-        return {name: {"border": math.inf} for name in REPORTED if name != given}
+        outside = border / (2 * sum(grid.shape)) * grid.nominal_area / state.contact_area
+        beyond = outside if outside < _MOST_OUTSIDE else math.inf
+        share = friction_per_area(self.problem.friction, state.forces.normal) * state.contact_area
+        shares = dict.fromkeys((*AREAS, "plastic_area", "approach"), data) | {"max_pressure": 2 * data}
+        shares["friction_coefficient"] = data * min(
+            share / (abs(numbers["friction_coefficient"]) or 1.0), 1.0
+        )
+        shares["friction_force"] = shares["friction_coefficient"]
+        prescribed = "approach" if given else "normal_force"
+        return {
+            name: {"border": beyond * abs(number), "data": shares.get(name, 0.0) * abs(number)}
+            for name, number in numbers.items()
+            if name != prescribed and number
+        }
+
+
+def _short_of_accuracy(solved: Solved) -> Status:
+    """The status where a requested accuracy was not reached: a certificate that fails counts more."""
+    ended_well = solved.status in (Status.CONVERGED, Status.CYCLED)
+    return Status.ACCURACY_NOT_REACHED if ended_well else solved.status
 
 
 def assemble(
@@ -306,7 +337,7 @@ def assemble(
     error = slope_error(state.slopes, state.pressure, problem.pair)
     evidence = Evidence(scene, problem, solved.plan, state, result.excluded, error, solved.neglected)
     return Solution(
-        status=Status.ITERATION_LIMIT if shortfall else solved.status,
+        status=_short_of_accuracy(solved) if shortfall else solved.status,
         approach=state.approach - problem.datum,
         normal_force=state.forces.normal,
         friction_force=state.forces.friction,

@@ -129,6 +129,7 @@ CLASSES: dict[str, Kind] = {
 
 
 MEASURED = "windows of a measured map"
+WHOLE = 256  # points of a window that is decimated
 
 
 def read_heights(path: Path) -> Array:
@@ -142,17 +143,28 @@ def read_heights(path: Path) -> Array:
     return surface.sample(rf.Grid(shape, lengths))
 
 
-def windows_of(heights: Array) -> Kind:
-    """Return the class of random square windows of 100 to 300 points of a measured map, at one rms height."""
+def windows_of(heights: Array, *, whole: bool = False) -> Kind:
+    """Return the class of random square windows of a measured map, at one rms height: 100 to 300 points, or
+    `WHOLE`."""
 
     def window(draw: _Draw) -> rf.Surface:
-        points = min(int(draw.rng.integers(100, 301)), *heights.shape)
+        points = WHOLE if whole else min(int(draw.rng.integers(100, 301)), *heights.shape)
         i, j = (int(draw.rng.integers(length - points + 1)) for length in heights.shape)
         z = heights[i : i + points, j : j + points]
         draw.size, draw.periodic = (SIDE, SIDE), False
         return rf.ArraySurface(RMS * (z - z.mean()) / z.std())
 
     return window
+
+
+DECIMATED = "decimated maps"
+
+
+def decimated(one: rf.Scene, seed: int) -> tuple[rf.Scene, int]:
+    """Return the scene with every second or fourth point of its map, and a grid of two elements a point."""
+    step = (2, 4)[seed % 2]
+    z = one.lower.surface.parts[0].sample(one.grid(WHOLE))[::step, ::step]
+    return replace(one, lower=rf.Body(one.lower.material, rf.ArraySurface(z))), 2 * len(z)
 
 
 def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Scene:
@@ -191,10 +203,13 @@ def _with_friction(draw: _Draw, kind: str, base: rf.Scene, load: float, pressed:
     return replace(base, lower=lower, friction=friction, load=load, sliding_direction=draw.direction)
 
 
-def judged(one: rf.Scene, M: int) -> list[dict[str, Any]] | None:
-    """Return bar, error and the reference's bound of each number; None where a solve did not end well."""
+def judged(one: rf.Scene, M: int, known: rf.Scene | None = None) -> list[dict[str, Any]] | None:
+    """Return bar, error and the reference's bound of each number; None where a solve did not end well.
+
+    ``known`` replaces the scene on the coarse grid.
+    """
     finest = rf.solve(one, grid=REFERENCE)
-    coarse = rf.solve(one, grid=M)
+    coarse = rf.solve(known or one, grid=M)
     if not (coarse.converged and finest.converged) or coarse.contact_area == 0:
         return None
     rows = []
@@ -255,18 +270,25 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--scenes", type=int, default=100, help="of each class")
     parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
+    parser.add_argument("--only", help="one class")
     parser.add_argument("--json", type=Path, required=True)
     options = parser.parse_args(arguments)
     classes = dict(CLASSES)
     if options.map is not None:
-        classes[MEASURED] = windows_of(read_heights(options.map))
+        heights = read_heights(options.map)
+        classes |= {MEASURED: windows_of(heights), DECIMATED: windows_of(heights, whole=True)}
+    if options.only:
+        classes = {name: kind for name, kind in classes.items() if name == options.only}
     progress = Progress(len(classes) * options.scenes)
     found: list[dict[str, Any]] = []
     lost: dict[str, int] = dict.fromkeys(classes, 0)
     for kind in classes:
         for seed in range(options.first, options.first + options.scenes):
             M = GRIDS[seed % len(GRIDS)]
-            rows = judged(scene(kind, seed, classes), M)
+            one, known = scene(kind, seed, classes), None
+            if kind == DECIMATED:
+                known, M = decimated(one, seed)
+            rows = judged(one, M, known)
             if rows is None:
                 lost[kind] += 1
             else:

@@ -241,7 +241,7 @@ def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
         for name, bar in bars.items():
             assert abs(getattr(found, name) - getattr(fine, name)) <= bar, (M, name)
         for name in ("friction_coefficient", "binormal_force", "contact_area"):
-            assert math.isfinite(bars[name])
+            assert math.isfinite(bars[name]) or found.grid.on_border(found.contact)
         wide = bars["max_pressure"] > found.max_pressure and bars["approach"] > found.approach
         assert wide, M
         assert Limit.RADIUS in {warning.limit for warning in found.warnings}

@@ -229,7 +229,7 @@ def test_a_rigid_body_is_the_limit_of_stiff_ones(
     assert np.array_equal(limit.pressure, stiff.pressure)
     assert limit.friction_coefficient == stiff.friction_coefficient
     assert limit.uncertainty == stiff.uncertainty
-    assert limit.warnings == stiff.warnings
+    assert limit.warnings == tuple(line for line in stiff.warnings if "is outside 1e+06" not in line)
     assert limit.slope_error == stiff.slope_error
     assert limit.bounds.friction_coefficient == stiff.bounds.friction_coefficient
 

@@ -136,9 +136,10 @@ def test_friction_is_as_uncertain_as_the_area_that_tau_acts_on(adhesive: Sensiti
     assert adhesive.scatter["friction_coefficient"]["load"] == pytest.approx(5e5 / 20.0 * spread, rel=0.05)
 
 
-@pytest.mark.parametrize(("grid", "least", "most"), [(2 * M, 1.0, 1.02), (M, 1.0, 1.05), (12, 1.2, 3.0)])
+@pytest.mark.parametrize(("grid", "least", "most"), [(2 * M, 1.0, 1.12), (M, 1.0, 1.15), (12, 1.2, 3.0)])
 def test_an_areas_scatter_by_the_load_is_that_of_two_counts(grid: int, least: float, most: float) -> None:
-    """Of edge elements that come in and out one by one, over a tenth of the load; more for small patches."""
+    """Of edge elements that come in and out one by one, over a tenth of the load; more for small patches, and
+    up to a tenth for edges along the grid."""
     scene = sliding(tau=5e5)
     solution = rf.solve(scene, grid, tolerance=TIGHT)
     element = (scene.side / grid) ** 2

@@ -250,7 +250,7 @@ def test_refinement_out_of_memory_is_a_note(monkeypatch: pytest.MonkeyPatch) -> 
     room = 2 * plan.memory_of("fft", SMOOTH.grid(64))
     monkeypatch.setattr(plan, "free_memory", lambda: room)
     s = rf.solve(SMOOTH, accuracy=1e-5)
-    assert s.status is rf.Status.ITERATION_LIMIT
+    assert s.status is rf.Status.ACCURACY_NOT_REACHED
     assert [(str(w.limit), w.number) for w in s.warnings] == [("note", None)]
     assert "friction_coefficient is known to" in s.warnings[0]
 
