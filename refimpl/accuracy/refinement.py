@@ -157,13 +157,13 @@ def remains(part: str, results: Sequence[GridFeatures], accuracy: float, quantit
 def forecast(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:
     """Return the elements a side that an accuracy takes if bars go on to fall as over the last two grids.
 
-    The size of the last grid where that cannot be said: before a third grid, or from bars without an end.
+    The size of the last grid where that cannot be said: before a third grid, or from bars longer than the number.
     """
     size = size_of(results[-1])
     if len(results) <= len(FIRST_GRIDS):
         return size
     coarse, fine = relative_bound(results[:-1], quantity), relative_bound(results, quantity)
-    if not 0 < fine < math.inf or not math.isfinite(coarse):
+    if not 0 < fine < 1 or not math.isfinite(coarse):
         return size
     steps = math.log(size / size_of(results[-2]))
     order = min(max(math.log(coarse / fine) / steps, LEAST_ORDER), MOST_ORDER)
