@@ -76,3 +76,16 @@ def test_pressures_are_filled_up_to_the_load_and_no_farther_than_the_cap() -> No
     full = filled_up(np.array([[1.0, 2.0, 0.0]]), ones, 9.0, 4.0)
     np.testing.assert_array_equal(full, [[4.0, 4.0, 0.0]])
     assert not math.isinf(full.max())
+
+
+@pytest.mark.parametrize(
+    ("before", "change", "longest"),
+    [([2.0, 3.0], [1.0, 0.25], 2.0), ([2.0, 1.0], [-0.5, 0.5], 4.0), ([2.0, 1.0], [0.5, -0.1], 4.0)],
+)
+def test_a_step_ends_at_the_nearer_bound(before: list[float], change: list[float], longest: float) -> None:
+    """The cap is 4: 2 to 4 by ones; 2 to 0 by halves; 2 to 4 by halves, before 1 is 0 by tenths."""
+    cg = capped_cg([1.0, 1.0], [0.0, 0.0], approach=1.0)
+    assert cg._longest_step(np.array(before), np.array(change)) == longest
+    assert cg._within_bounds(np.array([0.0, 4.0]))
+    assert not cg._within_bounds(np.array([1.0, 4.1]))
+    assert not cg._within_bounds(np.array([-0.1, 1.0]))
