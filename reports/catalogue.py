@@ -6,6 +6,7 @@ from reports.appendix_figures import APPENDIX
 from reports.contestant_figures import CONTESTANTS
 from reports.drawing import Figure, dots, lines, maps, order
 from reports.reproduction_figures import REPRODUCTION
+from reports.yield_figures import BEYOND_YIELD
 
 
 def _order(cases: str, what: str, expected: float) -> Figure:
@@ -27,6 +28,7 @@ FIG13 = {
 }
 
 DECLARED = (
+    *BEYOND_YIELD,
     *REPRODUCTION,
     *APPENDIX,
     *CONTESTANTS,

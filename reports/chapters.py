@@ -34,6 +34,7 @@ CHAPTERS = (
             "surfaces",
             "manufactured",
             "balance",
+            "capped",
             "hertz",
             "reference",
             "sliding",

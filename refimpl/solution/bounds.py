@@ -37,6 +37,15 @@ the very error if both supports agree, plus what of r is left over the root of t
 both sides of (B1) makes ``a + m K K'`` definite; K.e is known as above. At a prescribed approach it is not,
 and no bound is claimed.
 
+*Pressures that end at a hardness.* With ``0 <= f <= H`` on both sides ``(f - f*).w* >= 0``, so (B1) becomes
+
+    e.a e <= e.r + sum [f p+ + (H - f) p-] + (approach - approach*) K.e
+
+for any split ``w = r + p``: p costs nothing where it is negative at H, or positive without load. The last
+term is absent at a prescribed approach, and under a load where slopes are flat and f is balanced first. The
+approach then comes from any element proven to be free, where ``w* = 0``: it is off by no more than that
+element's w and displacement are. With slopes and a load no bound is claimed.
+
 Not proven, and not contained in these numbers: that slopes and tau's active set are those of the solution
 of the whole problem (see the certificate's ``slope`` and ``law_violations``), and the grid's own error.
 Rounding of the products is allowed for (`EnergyNorm.rounding`); that of sums over elements, below 1e-12 of
@@ -51,6 +60,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.grid import Array, Mask
+from refimpl.model.certificate import approach_from
 from refimpl.model.forces import resultants
 from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
@@ -64,7 +74,8 @@ class Bounds:
     ``energy`` bounds ``sum (f - f*) a (f - f*) dA`` (J), ``pressure`` each element's pressure and the largest
     (Pa), ``pressure_l2`` the root of ``sum (f - f*)^2 dA`` (Pa m). ``approach`` in m, forces in N. The masks
     mark elements that carry load in the solution (pressure above its bound), or do not (separation above
-    its own); ``contact_area`` is the interval they leave (m^2). ``unproven`` says what is not bounded.
+    its own); ``contact_area`` is the interval they leave (m^2). ``plastic`` marks elements that are at the
+    hardness in the solution. ``unproven`` says what is not bounded.
     """
 
     energy: float
@@ -78,13 +89,14 @@ class Bounds:
     in_contact: Mask
     out_of_contact: Mask
     contact_area: tuple[float, float]
+    plastic: Mask
     unproven: str
 
 
 UNPROVEN = "slopes and tau's active set are held as returned; the grid's own error is not included"
 NO_BOUND_CORRECTED = "the slope correction's matrix is not a plus a skew one: no bound"
 NO_BOUND_STEEP = "slopes too uneven for a definite norm on a periodic domain: no bound"
-NO_BOUND_PLASTIC = "pressures reach the hardness, and these bounds are of elastic contact: no bound"
+NO_BOUND_PLASTIC = "pressures reach the hardness under a load on slopes, or all of them do: no bound"
 NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressure: no bound"
 
 
@@ -96,20 +108,23 @@ def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Sl
     """
     if problem.terms.slope_correction:
         return _none(problem, NO_BOUND_CORRECTED)
-    if pressure.max() >= problem.cap:
+    yields = bool(pressure.max() >= problem.cap)
+    if yields and problem.load is not None and not slopes.is_flat:
         return _none(problem, NO_BOUND_PLASTIC)
     norm = EnergyNorm(problem, slopes.obliqueness)
     if problem.approach is not None and not norm.operator.displaces_mean:
         return _none(problem, NO_BOUND_PERIODIC)
     if norm.floor <= 0:
         return _none(problem, NO_BOUND_STEEP)
-    frozen = _Frozen(problem, norm, pressure, traction, slopes)
+    frozen = (_Capped if yields else _Frozen)(problem, norm, pressure, traction, slopes)
     distance, approach = frozen.distance()
     if not math.isfinite(distance):
-        return _none(problem, "the load does not fix the contact: " + UNPROVEN)
+        return _none(
+            problem, NO_BOUND_PLASTIC if yields else "the load does not fix the contact: " + UNPROVEN
+        )
     found = _translated(frozen, distance, approach)
     # an elastic solution below the hardness is the capped problem's as well
-    if math.isfinite(problem.cap) and float(pressure.max()) + found.pressure >= problem.cap:
+    if math.isfinite(problem.cap) and not yields and float(pressure.max()) + found.pressure >= problem.cap:
         return _none(problem, NO_BOUND_PLASTIC)
     return found
 
@@ -141,11 +156,15 @@ class _Frozen:
         if problem.approach is not None:
             self.approach = problem.approach
         else:
-            self.approach = float(np.vdot(f, free)) / self.total if self.total > 0 else 0.0
+            self.approach = self._level(f, free)
         self.w = free - K * self.approach
         # cancellation of h against the approach, as well as the products' own rounding
         cancelled = float(np.linalg.norm(K * (problem.gap + abs(self.approach))))
         self.noise = self.norm.rounding(f, shear) + 4 * np.finfo(float).eps * cancelled
+
+    def _level(self, f: Array, free: Array) -> float:
+        """The approach under a load (m), from ``free = w + K approach``."""
+        return float(np.vdot(f, free)) / self.total if self.total > 0 else 0.0
 
     def _split(self) -> None:
         """``r`` with its dual norm, and ``f.p``."""
@@ -188,11 +207,64 @@ class _Frozen:
         return x, c0 + c1 * x
 
 
+class _Capped(_Frozen):
+    """The like for pressures up to the hardness; under a load for flat slopes, with f balanced first."""
+
+    def __init__(
+        self, problem: Problem, norm: EnergyNorm, pressure: Array, traction: Array, slopes: Slopes
+    ) -> None:
+        self.problem, self.norm, self.slopes = problem, norm, slopes
+        self.pressure, self.traction = pressure, traction
+        self.slope = problem.friction.slope
+        self.K = slopes.obliqueness
+        self.coupled = self.slope > 0 and problem.elasticity.coupling_ratio != 0
+        f = np.clip(pressure, 0.0, problem.cap)
+        between: Mask = (f > 0) & (f < problem.cap)
+        if problem.load is not None and between.any():
+            missing = problem.load / problem.grid.element_area - float(f.sum())
+            f = np.where(between, f + missing / np.count_nonzero(between), f)
+        self._set(f)
+        self.between: Mask = (f > 0) & (f < problem.cap)
+        self.clipped = norm.norm(f - pressure)
+        self._split()
+
+    def _level(self, f: Array, free: Array) -> float:
+        return approach_from(f, free, self.problem.cap)
+
+    def _split(self) -> None:
+        """``r`` with its dual norm; p is nowhere such that it costs."""
+        at_cap: Mask = self.f >= self.problem.cap
+        touching: Mask = self.between | np.where(at_cap, self.w > 0, self.w < 0)
+        z, az = self.norm.solve(self.w, touching)
+        allowed = np.where(at_cap, np.maximum(self.w, az), np.minimum(self.w, az))
+        self.r = np.where(touching, self.w, allowed)
+        left = float(np.linalg.norm(self.r - az)) + self.norm.rounding(z) + self.noise
+        self.residual = self.norm.norm(z) + left / math.sqrt(self.norm.floor)
+        self.slack = 0.0
+
+    def distance(self) -> tuple[float, float]:
+        """``||e||``, and the approach's error from the elements that are proven to be free (m)."""
+        problem, x = self.problem, self.residual
+        lawful = bool(self.f.min() >= 0 and self.f.max() <= problem.cap)
+        if problem.load is None:
+            return (x, 0.0) if lawful else (math.inf, math.inf)
+        off = x / math.sqrt(self.norm.floor)
+        free = (self.f > off) & (self.f < problem.cap - off)
+        if not (lawful and free.any()):
+            return math.inf, math.inf
+        return x, float(np.abs(self.w[free]).min()) + _moved(self, x) + self.noise
+
+
+def _moved(frozen: _Frozen, x: float) -> float:
+    """Bound on an element's displacement by ``||e|| <= x`` (m)."""
+    return x * (math.sqrt(frozen.norm.diagonal) + _shear_row(frozen) / math.sqrt(frozen.norm.floor))
+
+
 def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
     """What ``||e|| <= x`` says of each reported number."""
     problem, norm, slopes, beta = frozen.problem, frozen.norm, frozen.slopes, frozen.slope
     dA, root = problem.grid.element_area, math.sqrt(norm.floor)
-    moved = x * (math.sqrt(norm.diagonal) + _shear_row(frozen) / root)
+    moved = _moved(frozen, x)
     out: Mask = frozen.w > moved + frozen.K * approach + frozen.noise
     inside: Mask = frozen.f > x / root
     total = x + frozen.clipped
@@ -221,6 +293,7 @@ def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
         in_contact=inside,
         out_of_contact=out,
         contact_area=(float(inside.sum()) * dA, float((~out).sum()) * dA),
+        plastic=frozen.w < -(moved + frozen.K * approach + frozen.noise),
         unproven=UNPROVEN,
     )
 
@@ -263,5 +336,6 @@ def _none(problem: Problem, why: str) -> Bounds:
         in_contact=nowhere,
         out_of_contact=nowhere,
         contact_area=(0.0, whole),
+        plastic=nowhere,
         unproven=why,
     )

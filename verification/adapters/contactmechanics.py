@@ -5,6 +5,9 @@ gradients without restarts), since the former, at an offset in free space, is ap
 state (and says so). A periodic half-space keeps its default ``stiffness_q0`` under a load: with zero there,
 version 1.8.3 calls the uniform pressure of its first iteration converged (`verification.adapters.traps`).
 
+A hardness is an argument of ``minimize_proxy``, as a force of an element. Where most of the contact is at it
+the solver turns to relaxation, and may not end.
+
 ``rough-friction verify --solver verification.adapters.contactmechanics:solve``
 """
 
@@ -17,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from verification.adapters.peer import Peer, PeerAnswer, closure, imported
-from verification.contestants.protocol import Abilities, ContactProblem
+from verification.contestants.protocol import Abilities, ContactProblem, Unsupported
 
 _ITERATIONS = 5000
 
@@ -34,9 +37,12 @@ def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> Pe
     system = imported("ContactMechanics.Systems").NonSmoothContactSystem(
         _half_space(package, problem, mean_stiffness), topography
     )
+    if problem.hardness is not None and problem.load is None:
+        raise Unsupported("ContactMechanics does not offer: an offset with a hardness, without restarts")
     if problem.load is not None:
+        hardness = None if problem.hardness is None else problem.hardness * problem.element_area
         found = system.minimize_proxy(
-            external_force=problem.load, maxiter=_ITERATIONS, **_tolerances(problem)
+            external_force=problem.load, hardness=hardness, maxiter=_ITERATIONS, **_tolerances(problem)
         )
         force, work = found.jac, int(found.nfev)
     else:
@@ -80,7 +86,7 @@ solve = Peer(
     extra="contactmechanics",
     setup="NonSmoothContactSystem on the periodic or free FFT half-space: minimize_proxy under a load, "
     "dual_minimize_proxy at an approach",
-    abilities=Abilities(rectangle=True, oblong_elements=True),
+    abilities=Abilities(rectangle=True, oblong_elements=True, hardness=True),
     press=press,
 )
 """Solver under test."""

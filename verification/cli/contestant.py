@@ -41,7 +41,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--able",
         metavar="LIST",
-        help="of aperiodic,periodic,load,approach (default),coupling,rectangle,oblong-elements",
+        help="of aperiodic,periodic,load,approach (default),coupling,rectangle,oblong-elements,hardness",
     )
     group.add_argument(
         "--largest", metavar="M", type=int, help="most elements a side that it should be given"

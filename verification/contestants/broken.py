@@ -26,6 +26,7 @@ from verification.contestants.protocol import Answer, ContactProblem, Contestant
 from verification.contestants.remembering import Forgetful, Remembering
 from verification.contestants.wrong import (
     asked,
+    cut_at_hardness,
     one_off,
     other_sign,
     padded,
@@ -230,5 +231,8 @@ BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.EDGES_EXCHANGED: lambda: Wrong(asked(lambda p: with_spacings(p, *p.spacings[::-1]))),
     Fault.SQUARE_ELEMENTS: lambda: Wrong(asked(lambda p: with_spacings(p, *[p.element_area**0.5] * 2))),
     Fault.STRETCHED: lambda: Wrong(asked(stretched)),
+    Fault.HARDNESS_IGNORED: lambda: Wrong(asked(lambda p: replace(p, hardness=None))),
+    Fault.HARDNESS_CUT: lambda: Wrong(cut_at_hardness),
+    Fault.HARDNESS_KEPT: lambda: Wrong(Remembering("hardness")),
 }
 """A fresh solver with each fault."""

@@ -67,6 +67,9 @@ class Fault(StrEnum):
     EDGES_EXCHANGED = "dx and dy exchanged"
     SQUARE_ELEMENTS = "oblong elements taken for squares of the same area"
     STRETCHED = "a rectangle stretched to a square"
+    HARDNESS_IGNORED = "hardness ignored"
+    HARDNESS_CUT = "elastic pressures cut at the hardness"
+    HARDNESS_KEPT = "hardness kept from an earlier problem"
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +106,7 @@ class Entrant:
         periodic: bool = False,
         coupling: Coupling | None = None,
         modulus: float = MODULUS,
+        hardness: float | None = None,
     ) -> Pressed:
         """Pose a gap (m) on a square of ``side`` (m), or a rectangle; under a load (N) or at an approach (m).
 
@@ -123,6 +127,7 @@ class Entrant:
             periodic=periodic,
             tolerance=self.claim,
             coupling=coupling,
+            hardness=hardness,
         )
         return Pressed(problem, ask(self.contestant, problem))
 

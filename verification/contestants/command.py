@@ -5,7 +5,8 @@ The command is run as ``COMMAND DIRECTORY`` for each problem. In the directory i
     problem.json   one key a line: M, spacing (m), reduced_modulus (Pa), control ("load" or "approach"),
                    value (N or m), periodic (0 or 1), tolerance, friction (0 or 1), tau (Pa), beta,
                    shear_compliance (1/Pa), sliding_direction (rad), the last four 0 without friction; shape
-                   (elements along x and y), lengths (of the domain along x and y, m). M and spacing are
+                   (elements along x and y), lengths (of the domain along x and y, m), hardness (Pa, 0 for
+                   none, as always unless the ability hardness is claimed). M and spacing are
                    the same numbers on a square of square elements, which is all that is posed unless the
                    abilities rectangle and oblong elements are claimed
     gap.csv        the gap (m): a line for each element along x, in it a number for each along y
@@ -154,6 +155,7 @@ def write_problem(problem: ContactProblem, directory: Path) -> None:
         "sliding_direction": coupling.sliding_direction if coupling else 0.0,
         "shape": problem.shape,
         "lengths": problem.lengths,
+        "hardness": problem.hardness or 0.0,
     }
     lines = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in header.items())
     (directory / "problem.json").write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")

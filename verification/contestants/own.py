@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 
 import refimpl as rf
@@ -45,6 +45,7 @@ class Own:
             method=self.method,
             approach=problem.approach,
             oblique=False,
+            plastic=problem.hardness is not None,
             tolerance=problem.tolerance / (1.0 if problem.approach is None else WORK),
         )
         apart = solution.status is rf.Status.NO_CONTACT and problem.approach is not None
@@ -59,6 +60,7 @@ def scene(problem: ContactProblem) -> rf.Scene:
     """
     coupling = problem.coupling
     lower, upper = materials(problem.reduced_modulus, coupling.shear_compliance if coupling else 0.0)
+    lower = replace(lower, hardness=problem.hardness)
     return rf.Scene(
         upper=rf.Body(upper, rf.ArraySurface(problem.gap, pixel=problem.spacings)),
         lower=rf.Body(lower, rf.Flat()),
@@ -91,7 +93,7 @@ def materials(reduced_modulus: float, shear_compliance: float) -> tuple[rf.Mater
     return (soft, rigid) if shear_compliance > 0 else (rigid, soft)
 
 
-solve = Own("fft", Abilities(coupling=True, rectangle=True, oblong_elements=True))
+solve = Own("fft", Abilities(coupling=True, rectangle=True, oblong_elements=True, hardness=True))
 """The production solver."""
-dense = Own("dense", Abilities(coupling=True, largest=24, rectangle=True, oblong_elements=True))
+dense = Own("dense", replace(solve.abilities, largest=24))
 """The plain reference."""

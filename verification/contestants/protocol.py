@@ -7,6 +7,8 @@ along x, y with centres at ``(i + 1/2) dx, (j + 1/2) dy``:
     u(x) = 1/(pi E*) sum f I[1/rho] + c0 sum r I[s/rho^2],      r = tau [f > 0] + beta f
     u + gap >= approach,   f >= 0,   f (u + gap - approach) = 0,
 
+With a hardness H no pressure exceeds it: ``f <= H``, and ``u + gap <= approach`` where f = H.
+
 An element is in contact where f > 0, and tau acts only there: off the contact an answer holds exact zeros.
 ``I`` integrates over one element; rho is the distance from source to field point, and s the offset from
 source to field point along the sliding direction ``(cos phi, sin phi)``, in which the upper body slides.
@@ -27,6 +29,8 @@ Residuals are the complementarity gap ``sum f (v - min v)`` with ``v = u + gap``
 ``1/2 sum f (a f)`` with ``a f`` the first sum; the load balance ``|N - P| / P``, with N the load that the
 pressures carry and P the required load; and the largest tension over the maximum pressure. At a prescribed
 approach the first is ``|sum f (v - approach)| + max(0, approach - min v) sum |f|``, over the same energy.
+With a hardness it is ``sum [f (v - d)+ + (H - f)(d - v)+]``, d being the approach, or under a load the mean
+of v weighted by the pressures between the bounds; and what exceeds H counts as tension does.
 """
 
 from __future__ import annotations
@@ -89,6 +93,7 @@ class ContactProblem:
     periodic : the domain repeats in both directions; otherwise the half-space is free around it
     tolerance : relative residual to reach: complementarity gap over elastic energy, and load balance
     coupling : friction, or None
+    hardness : at which pressures end (Pa), or None; posed only where the ability ``hardness`` is claimed
     spacing_y : edge of one element along y (m), that along x by default; another one only where the ability
         ``oblong_elements`` is claimed
 
@@ -104,6 +109,7 @@ class ContactProblem:
     tolerance: float = 1e-8
     coupling: Coupling | None = None
     spacing_y: float | None = None
+    hardness: float | None = None
 
     def __post_init__(self) -> None:
         gap = np.array(self.gap, dtype=np.float64)
@@ -119,6 +125,8 @@ class ContactProblem:
         require_number("tolerance", self.tolerance, "a number between 0 and 1", above=0, below=1)
         if (self.load is None) == (self.approach is None):
             raise InputError("load", self.load, "a load or an approach, and not both")
+        if self.hardness is not None:
+            require_number("hardness", self.hardness, "a positive pressure in Pa", above=0)
         if self.load is not None:
             require_number("load", self.load, "a positive load in N", above=0)
         if self.approach is not None:
@@ -170,7 +178,7 @@ class Answer:
     converged: bool | np.bool_
 
 
-FLAGS = ("periodic", "aperiodic", "load", "approach", "coupling", "rectangle", "oblong_elements")
+FLAGS = ("periodic", "aperiodic", "load", "approach", "coupling", "rectangle", "oblong_elements", "hardness")
 
 
 @dataclass(frozen=True)
@@ -179,6 +187,7 @@ class Abilities:
 
     rectangle : arrays that are not square
     oblong_elements : elements whose edges differ
+    hardness : pressures that end at a given one
     largest : most elements along the longer axis that it should be given (None: any)
     precision : the least relative residual that it claims to reach, at most 1e-6; it is held to the larger of
         this and the problem's tolerance
@@ -193,6 +202,7 @@ class Abilities:
     precision: float = 1e-8
     rectangle: bool = False
     oblong_elements: bool = False
+    hardness: bool = False
 
     def __post_init__(self) -> None:
         for flag in FLAGS:
@@ -223,7 +233,7 @@ class Abilities:
         if not {*given} <= {*FLAGS} or not domain or not control:
             allowed = (
                 "periodic or aperiodic, load or approach (of both pairs at least one), coupling, rectangle, "
-                "oblong elements"
+                "oblong elements, hardness"
             )
             raise InputError("abilities", names, f"a list of {allowed}")
         return cls(**{name: name in given for name in FLAGS}, largest=largest, precision=precision)
@@ -245,6 +255,8 @@ class Abilities:
             return "rectangle"
         if problem.spacings[0] != problem.spacings[1] and not self.oblong_elements:
             return "oblong elements"
+        if problem.hardness is not None and not self.hardness:
+            return "hardness"
         if self.largest is not None and self.largest < problem.M:
             return f"{problem.M} elements along one axis"
         return None

@@ -23,6 +23,10 @@ from verification.properties.textbook import normal_matrix, normal_offsets, shea
 LARGEST = 32
 
 
+_AT_HARDNESS = 1 - 1e-12
+"""Share of the hardness from which a pressure counts as at it: units that were changed and back round."""
+
+
 class Residual(NamedTuple):
     """The three ways in which pressures can miss a problem, relative; see `residual`."""
 
@@ -117,7 +121,9 @@ def residual(problem: ContactProblem, pressure: Array) -> Residual:
     gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
         approach where that is prescribed, with penetration counted on the whole load
     balance : ``|N - P| / P``, or zero
-    tension : largest negative pressure over the largest positive one
+    tension : largest negative pressure, or excess over the hardness, over the largest positive one
+
+    With a hardness the gap is that of both bounds (`verification.contestants.protocol`).
 
     Raises ValueError for pressures without any elastic energy, or without a finite one: there is no scale
     to judge by.
@@ -131,12 +137,35 @@ def residual(problem: ContactProblem, pressure: Array) -> Residual:
     if problem.load is not None:
         balance = abs(float(pressure.sum()) * dA / problem.load - 1)
     approach = problem.approach_from_touch
-    if approach is None:
+    if problem.hardness is not None:
+        duality = _two_sided_gap(pressure, v, problem.hardness, approach)
+    elif approach is None:
         duality = float(np.vdot(pressure, v - level))
     else:
         penetration = max(0.0, approach - level)
         duality = abs(float(np.vdot(pressure, v - approach))) + penetration * float(np.abs(pressure).sum())
-    return Residual(duality * dA / stored, balance, max(0.0, -float(pressure.min())) / float(pressure.max()))
+    beyond = -float(pressure.min())
+    if problem.hardness is not None:
+        beyond = max(beyond, float(pressure.max()) - problem.hardness)
+    return Residual(duality * dA / stored, balance, max(0.0, beyond) / float(pressure.max()))
+
+
+def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) -> float:
+    """``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d being the approach or the mean of v that f weights.
+
+    It is the most that ``sum (f - g)(v - d)`` reaches for pressures g between the bounds, so at the load of
+    the solution it bounds the squared error in the energy norm, whatever d is (see `misfit`).
+    """
+    at_hardness = f >= hardness * _AT_HARDNESS
+    if approach is None:
+        between = (f > 0) & ~at_hardness
+        if between.any():
+            approach = float(np.vdot(f[between], v[between]) / f[between].sum())
+        else:
+            ends = [v[at_hardness].max(initial=-np.inf), v[~at_hardness].min(initial=np.inf)]
+            approach = float(np.mean([end for end in ends if np.isfinite(end)]))
+    room = np.where(at_hardness, 0.0, hardness - f)
+    return float(np.sum(f * np.maximum(v - approach, 0) + room * np.maximum(approach - v, 0)))
 
 
 def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:

@@ -70,6 +70,19 @@ def without_tau(problem: ContactProblem) -> ContactProblem:
     return replace(problem, coupling=replace(problem.coupling, tau=0.0))
 
 
+def cut_at_hardness(problem: ContactProblem) -> Array:
+    """Elastic pressures cut at the hardness; under a load scaled so that what is left bears it."""
+    pressure = right(replace(problem, hardness=None))
+    if problem.hardness is None:
+        return pressure
+    factors = np.geomspace(1.0, 1e6, 2000) if problem.load is not None else np.ones(1)
+    for factor in factors:
+        cut = np.minimum(factor * pressure, problem.hardness)
+        if problem.load is None or cut.sum() * problem.element_area >= problem.load:
+            break
+    return np.asarray(cut)
+
+
 def lifted(problem: ContactProblem, moved: Array) -> ContactProblem:
     """Bodies with false displacements (m) of a solver added to the gap."""
     gap = problem.gap + moved

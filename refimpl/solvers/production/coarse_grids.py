@@ -11,7 +11,13 @@ import numpy as np
 from refimpl.grid import Array, Mask, Shape, resampled
 from refimpl.model.problem import Problem
 from refimpl.operators.preconditioner import Apply
-from refimpl.solvers.production.constants import COARSEST, COARSEST_OF_TWO, FIRST_LENGTH, QUARTERED
+from refimpl.solvers.production.constants import (
+    CAPPED_STEP,
+    COARSEST,
+    COARSEST_OF_TWO,
+    FIRST_LENGTH,
+    QUARTERED,
+)
 
 
 class InitialGuess(NamedTuple):
@@ -117,6 +123,15 @@ def likely_contact(pressure: Array, v: Array, approach: float | None, problem: P
         approach = _balancing(freed, stiffness, float(pressure.sum()))
     found: Mask = freed + stiffness * approach > 0
     return found, approach
+
+
+def likely_capped(pressure: Array, misfit: Array, contact: Mask, problem: Problem) -> Mask:
+    """Return elements of the likely contact that reach the cap in a Jacobi step from a prolonged pressure.
+
+    ``misfit`` is the approach minus ``v`` (m).
+    """
+    stiffness = CAPPED_STEP / problem.elasticity.element_compliance(problem.grid)
+    return contact & (pressure + stiffness * misfit >= problem.cap)
 
 
 def _balancing(freed: Array, stiffness: float, total: float) -> float:

@@ -11,6 +11,7 @@ from refimpl.operators.influence import WindowInfluence, whole_grid_influence, w
 from refimpl.operators.preconditioner import Apply, SpectralPreconditioner, extended
 from refimpl.solvers.production.coarse_grids import (
     InitialGuess,
+    likely_capped,
     likely_contact,
     nested_problems,
     sharpened,
@@ -70,11 +71,13 @@ def from_guess(problem: Problem, start: InitialGuess, counter: Counter) -> Level
     window, pressure, misfit, contact = _prolonged(problem, start)
     operator, precondition = _operators(problem, window, counter)
     loaded = problem.load is not None
-    pressure = sharpened(pressure, misfit, contact, precondition, loaded=loaded)
+    capped = likely_capped(pressure, misfit, contact, problem)
+    pressure = sharpened(pressure, misfit, contact & ~capped, precondition, loaded=loaded)
+    pressure[capped] = problem.cap
     # where the contact is likely the guess has no pressure: there is nothing to start from
     if loaded and not pressure.any():
         return _from_winkler(problem, counter)
-    precondition = extended(precondition, pressure > 0)
+    precondition = extended(precondition, (pressure > 0) & ~capped)
     return LevelSolver(problem, operator, precondition, pressure, needs_mixing=start.needs_mixing)
 
 

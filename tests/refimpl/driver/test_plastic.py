@@ -14,7 +14,7 @@ from refimpl.driver.options import Options
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.parameters import with_parameter
 from refimpl.sensitivities.budget import budget
-from refimpl.solution.bounds import NO_BOUND_PLASTIC
+from refimpl.solution.bounds import NO_BOUND_PLASTIC, proven_bounds
 from refimpl.solution.limits import Limit, ModelWarning
 
 H = 0.8e9
@@ -171,13 +171,56 @@ def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:
 
 
 def test_bounds_of_capped_states() -> None:
-    """Pressures at the hardness have none; a cap that is not reached changes nothing."""
-    assert rf.solve(ROUGH, 24, oblique=False).bounds.unproven == NO_BOUND_PLASTIC
+    """On slopes under a load they have none; a cap that is not reached changes nothing."""
+    assert rf.solve(ROUGH, 24, oblique=True).bounds.unproven == NO_BOUND_PLASTIC
     elastic = rf.solve(hard(None), 24, oblique=False)
     wide = rf.solve(hard(2 * elastic.max_pressure), 24, oblique=False, plastic=True)
     assert wide.bounds.energy == pytest.approx(elastic.bounds.energy, rel=0.5)
     close = rf.solve(hard(None), 24, oblique=False, tolerance=1e-12).max_pressure * (1 + 1e-12)
     assert rf.solve(hard(close), 24, oblique=False, plastic=True).bounds.unproven == NO_BOUND_PLASTIC
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-11])
+@pytest.mark.parametrize("by", ["load", "approach"])
+def test_bounds_of_capped_states_hold(tolerance: float, by: str) -> None:
+    """Against the dense solution, at any tolerance; they shrink with it, and mark what yields for certain."""
+    scene = replace(ROUGH, friction=rf.Friction(0.0, 0.3))
+    exact = rf.solve(scene, 16, method="dense", oblique=False)
+    assert 0.1 < exact.plastic_share < 0.95
+    approach = exact.approach if by == "approach" else None
+    found = rf.solve(scene, 16, oblique=False, plastic=True, tolerance=tolerance, approach=approach)
+    bounds, H = found.bounds, exact.problem.cap
+    rounding = 1e-12
+    off = np.abs(found.pressure - exact.pressure).max()
+    assert off <= bounds.pressure + rounding * H
+    assert bounds.pressure <= 10 * np.sqrt(tolerance) * H
+    assert abs(found.approach - exact.approach) <= bounds.approach + rounding * exact.approach
+    assert (
+        abs(found.friction_coefficient - exact.friction_coefficient) <= bounds.friction_coefficient + rounding
+    )
+    assert np.all(exact.pressure[bounds.plastic] == H)
+    assert np.all(exact.pressure[bounds.in_contact] > 0)
+    assert np.all(exact.pressure[bounds.out_of_contact] == 0)
+    assert not bounds.plastic[found.pressure < H].any()
+    if tolerance < 1e-9:
+        assert np.count_nonzero(bounds.plastic) == np.count_nonzero(exact.pressure >= H)
+        assert np.count_nonzero(bounds.in_contact) == np.count_nonzero(exact.contact)
+
+
+def test_bounds_of_a_wrong_capped_state_are_wide() -> None:
+    """Pressure that an eighth of the elements at the hardness hand on to free ones."""
+    scene = replace(ROUGH, friction=rf.Friction())
+    exact = rf.solve(scene, 16, oblique=False, tolerance=1e-12)
+    pressure, H = exact.pressure.copy(), exact.problem.cap
+    at_cap = np.flatnonzero(pressure.ravel() >= H)
+    moved = at_cap[::8]
+    pressure.ravel()[moved] = 0.9 * H
+    between = (pressure > 0) & (pressure < 0.8 * H)
+    pressure[between] += (exact.pressure.sum() - pressure.sum()) / between.sum()
+    assert pressure.max() <= H
+    bounds = proven_bounds(exact.problem, pressure, exact.traction, exact.slopes)
+    assert np.abs(pressure - exact.pressure).max() <= bounds.pressure
+    assert not bounds.plastic.ravel()[moved].any()
 
 
 def test_model_form_of_an_elastic_solution_beyond_the_hardness() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +133,10 @@ def test_abilities_decide_what_is_posed() -> None:
     assert (wide.lengths, oblong.lengths) == ((2e-6, 3e-6), (2e-6, 4e-6))
     assert (Abilities().lacking(wide), Abilities().lacking(oblong)) == ("rectangle", "oblong elements")
     assert Abilities(rectangle=True, oblong_elements=True).lacking(wide) is None
+    hard = replace(_still(), hardness=1e8)
+    assert (Abilities().lacking(hard), Abilities(hardness=True).lacking(hard)) == ("hardness", None)
+    with pytest.raises(InputError, match="hardness"):
+        replace(_still(), hardness=0.0)
     with pytest.raises(Unsupported, match="coupling"):
         ask(lambda problem: FINE, PROBLEM)
     for wrong in ("aperiodic", "load", "load,periodic,magic", ""):
@@ -155,7 +160,18 @@ def test_unsupported_is_unavailable_and_an_exception_is_an_error() -> None:
         ask(unwilling, ContactProblem(np.zeros((3, 3)), 1e-6, 1e9, load=1.0))
 
 
-HEADER = {"M", "spacing", "reduced_modulus", "control", "value", "periodic", "tolerance", "friction", "tau"}
+HEADER = {
+    "M",
+    "spacing",
+    "reduced_modulus",
+    "control",
+    "value",
+    "periodic",
+    "tolerance",
+    "friction",
+    "tau",
+    "hardness",
+}
 HEADER |= {"beta", "shear_compliance", "sliding_direction", "shape", "lengths"}
 
 
@@ -173,7 +189,9 @@ def test_a_problem_is_written_to_the_last_digit(tmp_path: Path) -> None:
     write_problem(ContactProblem(GAP, 1e-6, 1e9, approach=-1e-8, periodic=True), tmp_path)
     header = json.loads((tmp_path / "problem.json").read_text())
     assert (header["control"], header["value"], header["periodic"]) == ("approach", -1e-8, 1)
-    assert (header["friction"], header["tau"]) == (0, 0.0)
+    assert (header["friction"], header["tau"], header["hardness"]) == (0, 0.0, 0.0)
+    write_problem(replace(PROBLEM, hardness=2e8), tmp_path)
+    assert json.loads((tmp_path / "problem.json").read_text())["hardness"] == 2e8
 
 
 def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:

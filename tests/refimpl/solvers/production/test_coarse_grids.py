@@ -14,6 +14,7 @@ from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.coarse_grids import (
     coarsened,
+    likely_capped,
     likely_contact,
     nested_problems,
     sharpened,
@@ -211,6 +212,19 @@ def test_the_likely_contact_is_that_of_a_damped_jacobi_step() -> None:
     np.testing.assert_array_equal(found, expected)
     assert used == approach
     assert not likely_contact(np.zeros((4, 4)), np.full((4, 4), approach), approach, given)[0].any()
+
+
+def test_the_likely_capped_elements_are_those_that_a_quarter_step_takes_to_the_cap() -> None:
+    """A quarter of the misfit over the compliance of an element, 2 compliance spacing; in contact alone."""
+    hard = replace(BALL, lower=rf.Body(replace(BALL.lower.material, hardness=2e6), rf.Flat()))
+    given = problem_of(hard, 4, plastic=True)
+    stiffness = 0.25 / (2 * given.pair.normal_compliance * hard.side / 4)
+    pressure = np.array([[1.5e6, 1.5e6, 2.1e6, 1.9e6]])
+    misfit = np.array([[0.501e6, 0.499e6, -0.2e6, 0.3e6]]) / stiffness
+    contact = np.array([[True, True, True, False]])
+    found = likely_capped(pressure, misfit, contact, given)
+    np.testing.assert_array_equal(found, [[True, False, False, False]])
+    assert not likely_capped(pressure, misfit, contact, problem_of(BALL, 4)).any()
 
 
 @pytest.mark.parametrize("shift", [-3e-6, 0.0, 2e-5])

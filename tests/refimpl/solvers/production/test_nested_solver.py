@@ -20,6 +20,7 @@ from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.constants import MARGIN
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.nested_solver import certified, missed_by_window, solve_fft, widened
+from refimpl.solvers.tau_active_set import first_set
 from tests.refimpl.solvers.production.levels import BALL, FAINT, coupled, level_solver, problem_of
 
 
@@ -162,3 +163,19 @@ def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) ->
     assert len(windows) > 1 + windows.index(asked[0])
     for before, after in pairwise(windows):
         assert not np.any(before.mask((80, 80)) & ~after.mask((80, 80)))
+
+
+def test_a_guess_for_a_finer_grid_has_the_plastic_core_at_the_cap() -> None:
+    """The step that sharpens the guess leaves it out: there the misfit is indentation, and no error."""
+    peak = rf.solve(BALL, 64, oblique=False).max_pressure
+    lower = rf.Body(replace(BALL.lower.material, hardness=0.6 * peak), rf.Flat())
+    hard = replace(BALL, lower=lower, load=2.0)
+    coarse, fine = (problem_of(hard, M, plastic=True) for M in (32, 64))
+    solver = level_solver(coarse)
+    solver.solve(1e-6, first_set(coarse))
+    guess = nested_solver.from_guess(fine, solver.initial_guess(), Counter())
+    full = guess.full(guess.cg.pressure) >= 0.6 * peak * (1 - 1e-9)
+    result, _ = solve_fft(fine, 1e-8, Counter())
+    expected = result.pressure >= 0.6 * peak
+    assert expected.sum() > 100
+    assert np.count_nonzero(full != expected) <= 0.05 * expected.sum()

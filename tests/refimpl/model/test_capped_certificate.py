@@ -1,0 +1,75 @@
+"""The certificate of capped states: what breaks the second bound is seen, by hand or from below."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.model.certificate import State, approach_from, certify
+from refimpl.operators.dense import DenseInfluence
+from tests.refimpl.solvers.production.levels import BALL
+
+HARD = replace(
+    BALL,
+    lower=rf.Body(replace(BALL.lower.material, hardness=4e6), rf.GaussianRoughness(1e-6, 5e-4, seed=3)),
+    friction=rf.Friction(),
+)
+
+
+def certified(s: rf.Solution, pressure: np.ndarray) -> State:
+    operator = DenseInfluence(s.grid, s.sliding_direction)
+    return certify(s.problem, operator, pressure, s.traction, s.slopes, s.plastic_indentation)
+
+
+@pytest.fixture(scope="module")
+def solution() -> rf.Solution:
+    s = rf.solve(HARD, 16, method="dense", oblique=False)
+    assert 0.1 < s.plastic_share < 0.9
+    return s
+
+
+def test_an_element_that_bears_too_little_counts_with_its_room_below_the_cap(solution: rf.Solution) -> None:
+    """At d fixed, ``(H - f)(d - v)`` of the one element alone, over the energy, is less than the gap."""
+    s = rf.solve(HARD, 16, method="dense", oblique=False, approach=solution.approach)
+    pressure, H = s.pressure.copy(), s.problem.cap
+    deepest = np.unravel_index(np.argmax(s.plastic_indentation), pressure.shape)
+    assert pressure[deepest] == H
+    pressure[deepest] = 0.5 * H
+    state = certified(s, pressure)
+    u = state.displacement_lower + state.displacement_upper
+    energy = 0.5 * float(np.sum(pressure * u))
+    missed = 0.5 * H * float(s.approach - state.v[deepest])
+    assert missed > 0
+    assert state.certificate.gap >= missed / energy > 1e-3
+
+
+def test_an_excess_over_the_hardness_counts_as_negative_pressure_does(solution: rf.Solution) -> None:
+    pressure = solution.pressure.copy()
+    pressure[np.unravel_index(np.argmax(pressure), pressure.shape)] *= 1.01
+    assert certified(solution, pressure).certificate.negative_pressure == pytest.approx(
+        0.01 / 1.01, rel=1e-12
+    )
+    assert certified(solution, solution.pressure).certificate.largest < 1e-11
+
+
+def test_the_approach_of_a_state_by_hand() -> None:
+    """Weighted by what is between the bounds; else the middle of 2 at H and 5 without load; else 2."""
+    v = np.array([[1.0, 2.0, 5.0]])
+    assert approach_from(np.array([[1.0, 3.0, 4.0]]), v, 4.0) == pytest.approx((1 + 6) / 4, rel=1e-15)
+    assert approach_from(np.array([[4.0, 4.0, 0.0]]), v, 4.0) == 3.5
+    assert approach_from(np.array([[4.0, 4.0]]), v[:, :2], 4.0) == 2.0
+    assert approach_from(np.array([[0.0, 0.0]]), v[:, :2], 4.0) == 1.0
+
+
+def test_slopes_without_the_indentation_are_not_those_of_the_common_surface() -> None:
+    s = rf.solve(HARD, 16, method="dense", oblique=True)
+    operator = DenseInfluence(s.grid, s.sliding_direction)
+    lower, upper = s.problem.displacements(operator, s.pressure, s.traction, s.slopes)
+    elastic = s.problem.slopes(lower, upper, None)
+    with_it = certify(s.problem, operator, s.pressure, s.traction, s.slopes, s.plastic_indentation)
+    without = certify(s.problem, operator, s.pressure, s.traction, elastic, None)
+    assert with_it.certificate.slope < 1e-10
+    assert without.certificate.slope > 1e-5

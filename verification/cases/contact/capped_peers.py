@@ -1,0 +1,79 @@
+"""Capped contact in other codes: the same gaps and hardnesses, free and periodic, if installed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from verification.adapters import contactmechanics, tamaas
+from verification.adapters.peer import Peer
+from verification.contestants import own, referee
+from verification.contestants.check import MODULUS
+from verification.contestants.gaps import rough_bump, waves
+from verification.contestants.protocol import ContactProblem
+from verification.framework.case import Measured
+from verification.framework.registry import case
+
+M, SEEDS = 48, (11, 12)
+SHARES = (0.8, 0.5, 0.25)
+"""Hardness over the elastic peak: 2 to 97 % of the contact is plastic."""
+LOAD = 0.02 * MODULUS
+
+row = partial(case, metric="at_most", tolerance=1e-9, tags=("capped", "peer"))
+
+
+def problems() -> dict[str, ContactProblem]:
+    """Capped problems by name: rough bumps in free space and rough planes that repeat."""
+    found = {}
+    for seed in SEEDS:
+        heights = waves(M, seed, longest=2, shortest=7)
+        gaps = {"free": rough_bump(M, seed), "periodic": 0.01 * (heights.max() - heights)}
+        for kind, gap in gaps.items():
+            elastic = ContactProblem(
+                gap - gap.min(), 1 / M, MODULUS, load=LOAD, periodic=kind == "periodic", tolerance=1e-12
+            )
+            peak = float(np.asarray(own.solve(elastic).pressure).max())
+            for share in SHARES:
+                found[f"{kind}, seed {seed}, H = {share} p_max"] = replace(elastic, hardness=share * peak)
+    return found
+
+
+def agreement(peer: Peer) -> Measured:
+    """Largest difference of pressures over the hardness; and the peer's own residuals of both bounds."""
+    differences, residuals, shares = {}, {}, {}
+    for name, problem in problems().items():
+        assert problem.hardness is not None
+        answer, ours = peer(problem), own.solve(problem)
+        if not (answer.converged and ours.converged):
+            raise RuntimeError(f"{name}: not converged: {peer.distribution if ours.converged else 'refimpl'}")
+        theirs, found = np.asarray(answer.pressure), np.asarray(ours.pressure)
+        differences[name] = float(np.abs(theirs - found).max() / problem.hardness)
+        residuals[name] = referee.residual(problem, theirs).worst
+        shares[name] = float(np.mean(found[found > 0] >= problem.hardness))
+    data = {"differences": differences, "residuals of the peer": residuals, "plastic share": shares}
+    return Measured(max(differences.values()), data=data, note=peer.version)
+
+
+@row(
+    "capped/tamaas",
+    title="Capped contact: pressures of Tamaas on the same gaps",
+    claim="free and periodic, with 2 to 97 % of the contact at the hardness, Tamaas finds the same pressures",
+    source="Tamaas' KatoSaturated (Stanley and Kato 1997; Almqvist and others 2007)",
+    tolerance_reason="relative to the hardness; measured 6e-11 after 3000 steps of a projected gradient",
+)
+def by_tamaas() -> Measured:
+    return agreement(tamaas.solve)
+
+
+@row(
+    "capped/contactmechanics",
+    title="Capped contact: pressures of ContactMechanics on the same gaps",
+    claim="free and periodic, with 2 to 97 % of the contact at the hardness, ContactMechanics finds the "
+    "same pressures",
+    source="ContactMechanics 1.8.3, hardness of minimize_proxy (Pastewka, Sanner and others)",
+    tolerance_reason="relative to the hardness; measured 5e-11, with the tolerance 1e-12 of both solvers",
+)
+def by_contactmechanics() -> Measured:
+    return agreement(contactmechanics.solve)

@@ -1,0 +1,252 @@
+"""A sphere whose pressure ends at the hardness: an axisymmetric solution, plastic limits, published laws."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache, partial
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.model.materials import Pair
+from verification.cases.contact.capped import rough_scene, with_hardness
+from verification.exact.capped_sphere import Capped, capped_sphere, plastic_limit
+from verification.exact.hertz import Sphere
+from verification.exact.sphere_plasticity import (
+    HARDNESS_OVER_YIELD,
+    KOGUT_ETSION_LARGEST,
+    Loaded,
+    hardness_factor,
+    jackson_green,
+    kogut_etsion,
+    yield_factor,
+)
+from verification.framework.case import Measured
+from verification.framework.registry import case
+
+RADIUS, LOAD = 5e-3, 20.0
+MATERIAL = rf.Material(118e9, 0.34)
+SPHERE = Sphere(LOAD, RADIUS, Pair(MATERIAL, MATERIAL).reduced_modulus)
+SHARES = (0.95, 0.85, 0.75, 0.65, 0.55)
+"""Hardnesses over Hertz' maximum pressure: the plastic core has 0.38 to 0.98 of the contact's radius."""
+GRIDS = (64, 128, 256)
+RINGS = 1600
+NU, STEPS = 0.3, 24
+
+row = partial(case, tags=("capped",), metric="at_most")
+
+
+def sphere_scene(hardness: float, load: float = LOAD) -> rf.Scene:
+    """The frictionless sphere on a flat of that hardness (Pa), in 2.6 times the contact's largest radius."""
+    sphere = replace(SPHERE, load=load)
+    radius = max(sphere.contact_radius, plastic_limit(sphere, hardness)[0])
+    return rf.Scene(
+        upper=rf.Body(MATERIAL, rf.Sphere(RADIUS)),
+        lower=rf.Body(replace(MATERIAL, hardness=hardness), rf.Flat()),
+        friction=rf.Friction(),
+        load=load,
+        side=2.6 * radius,
+    )
+
+
+@cache
+def pair(share: float, grid: int) -> tuple[rf.Solution, Capped]:
+    """Our solution and that of rings at a hardness of this share of Hertz' maximum pressure."""
+    hardness = share * SPHERE.peak_pressure
+    found = rf.solve(sphere_scene(hardness), grid, plastic=True)
+    if not found.converged:
+        raise RuntimeError(f"{found.status.value} at {share:g} of the maximum pressure")
+    return found, capped_sphere(SPHERE, hardness, RINGS)
+
+
+@row(
+    "capped/sphere-rings",
+    title="The rings' own convergence",
+    claim="rings of uniform pressure return Hertz above his maximum pressure, and their approach settles",
+    source="Hertz 1882; Johnson 1985, section 3.4",
+    tolerance=3e-6,
+    tolerance_reason="approach against Hertz, and change from 800 to 1600 rings: four times the largest",
+)
+def rings() -> Measured:
+    hertz = capped_sphere(SPHERE, 2 * SPHERE.peak_pressure, RINGS)
+    off = {"against Hertz": abs(hertz.approach / SPHERE.approach - 1)}
+    for share in SHARES:
+        coarse, fine = (capped_sphere(SPHERE, share * SPHERE.peak_pressure, n) for n in (RINGS // 2, RINGS))
+        off[f"at {share:g} p0"] = abs(coarse.approach / fine.approach - 1)
+    return Measured(value=max(off.values()), data={"off": off})
+
+
+@row(
+    "capped/sphere-approach",
+    title="Capped sphere: approach against rings",
+    claim="the approach under a load is that of the axisymmetric problem, at hardnesses of 0.55 to 0.95 p0",
+    source="rings of uniform pressure (verification.exact.capped_sphere), 1600 of them, to 3e-6",
+    tolerance=1.5e-4,
+    tolerance_reason="128 elements a side: the error falls as the element's square; measured 1e-4 or less",
+)
+def approach() -> Measured:
+    off: dict[str, list[float]] = {}
+    for share in SHARES:
+        pairs = [pair(share, M) for M in GRIDS[:2]]
+        off[f"{share:g}"] = [abs(found.approach / exact.approach - 1) for found, exact in pairs]
+    return Measured(value=max(errors[-1] for errors in off.values()), data={"error at 64 and 128": off})
+
+
+@row(
+    "capped/sphere-pressure",
+    title="Capped sphere: pressure against rings",
+    claim="the pressure is that of the axisymmetric problem, and the hardness within the plastic core",
+    source="rings of uniform pressure (verification.exact.capped_sphere)",
+    tolerance=0.02,
+    tolerance_reason="128 elements, rms over the contact relative to H: elements at the edge hold means of a "
+    "square root; the error falls by 2^(3/2) or so a grid",
+)
+def pressure() -> Measured:
+    off: dict[str, list[float]] = {}
+    for share in SHARES:
+        for M in GRIDS[:2]:
+            found, exact = pair(share, M)
+            x = (np.arange(M) + 0.5) * found.grid.lengths[0] / M - found.grid.lengths[0] / 2
+            r = np.hypot(x[:, None], x)
+            expected = np.interp(r, exact.r, exact.pressure)
+            inside = r < exact.radius
+            error = (found.pressure - expected)[inside] / found.problem.cap
+            off.setdefault(f"{share:g}", []).append(float(np.sqrt(np.mean(error**2))))
+    return Measured(value=max(errors[-1] for errors in off.values()), data={"rms error at 64 and 128": off})
+
+
+@row(
+    "capped/sphere-areas",
+    title="Capped sphere: contact and plastic core against rings",
+    claim="the corrected contact area and the plastic area are those of the axisymmetric problem",
+    source="rings of uniform pressure (verification.exact.capped_sphere): edges by extrapolated squares",
+    tolerance=0.03,
+    tolerance_reason="256 elements a side: the plastic area counts whole elements, and the hardness is "
+    "reached as a root is; the smallest core is 77 elements wide",
+)
+def areas() -> Measured:
+    off: dict[str, dict[str, float]] = {"contact": {}, "core": {}}
+    for share in SHARES:
+        found, exact = pair(share, GRIDS[-1])
+        area = found.contact_area_corrected / (np.pi * exact.radius**2)
+        core = found.plastic_area / (np.pi * exact.core**2)
+        off["contact"][f"{share:g}"], off["core"][f"{share:g}"] = float(area - 1), float(core - 1)
+    worst = max(abs(error) for part in off.values() for error in part.values())
+    return Measured(value=worst, data=dict(off))
+
+
+@row(
+    "capped/sphere-plastic-limit",
+    title="Capped sphere: the fully plastic limit",
+    claim="far beyond yield the sphere sinks in as a uniformly loaded circle, with A = P / H",
+    source="Johnson 1985, Eq. (3.29): d = a^2 / 2R + 4 H a / (pi E*), a = sqrt(P / (pi H))",
+    tolerance=0.01,
+    tolerance_reason="128 elements a side: the circle's edge is staggered by half an element of its 49 to "
+    "its radius",
+)
+def limit() -> Measured:
+    off = {}
+    for share in (0.3, 0.1, 0.03):
+        hardness = share * SPHERE.peak_pressure
+        found = rf.solve(sphere_scene(hardness), 128)
+        _, expected = plastic_limit(SPHERE, hardness)
+        bearing = found.contact_area * hardness / LOAD - 1
+        if not found.converged or bearing < -1e-8:
+            raise RuntimeError(f"at {share:g} p0: {found.status.value}, A H / P - 1 = {bearing:.2g}")
+        off[f"{share:g}"] = max(abs(found.approach / expected - 1), bearing)
+    return Measured(value=max(off.values()), data={"off": off})
+
+
+@row(
+    "capped/rough-plastic-limit",
+    title="Rough surfaces: the fully plastic limit",
+    claim="as the hardness falls, A nears P / H from above by what elements below the hardness leave",
+    source="load balance: A H - P = sum (H - f) dA over the contact",
+    tolerance=1e-7,
+    tolerance_reason="the balance to 1e-8 of the load; and A H / P - 1 falls to 3 % or less, else no number",
+)
+def rough_limit() -> Measured:
+    worst, near = 0.0, {}
+    for seed in (1, 2, 4, 5):
+        scene = replace(rough_scene(seed), friction=rf.Friction(15e6, 0.1))
+        least = scene.load / (scene.lengths[0] * scene.lengths[1])
+        excesses = []
+        for factor in (200.0, 40.0, 8.0, 2.0):
+            found = rf.solve(with_hardness(scene, factor * least), 64, plastic=True, oblique=False)
+            H, dA = found.problem.cap, found.grid.element_area
+            room = float(np.sum(H - found.pressure, where=found.contact)) * dA / scene.load
+            excess = found.contact_area * H / scene.load - 1
+            worst = max(worst, abs(excess - room), -excess)
+            excesses.append(excess)
+        near[str(seed)] = excesses
+        if not excesses[-1] <= 0.03:
+            raise RuntimeError(f"seed {seed}: A H / P - 1 = {excesses[-1]:.2g} at 2 P / A0")
+    return Measured(value=worst, data={"A H / P - 1 at 200, 40, 8, 2 P / A0": near})
+
+
+def _capped(loads: list[float], hardness: float) -> list[rf.Solution]:
+    return [rf.solve(sphere_scene(hardness, load), 96, plastic=True) for load in loads]
+
+
+def _compared(laws: list[Loaded], critical: Loaded, hardness: float) -> dict[str, list[float]]:
+    """Area and mean pressure of the capped sphere over those of a law at the same loads.
+
+    ``critical`` is the load (N) and the area (m^2) at first yield.
+    """
+    loads = [law.load * critical.load for law in laws]
+    found = _capped(loads, hardness)
+    ours = np.array([s.contact_area_corrected for s in found])
+    theirs = np.array([law.area * critical.area for law in laws])
+    return {
+        "load / load of first yield": [law.load for law in laws],
+        "mean pressure / H, cap": (loads / ours / hardness).tolist(),
+        "mean pressure / H, law": (loads / theirs / hardness).tolist(),
+        "A of the cap / A of the law - 1": (ours / theirs - 1).tolist(),
+    }
+
+
+def _first_yield(peak: float) -> Loaded:
+    """Load (N) and area (m^2) of Hertz at a maximum pressure (Pa)."""
+    a = np.pi * peak * RADIUS / (2 * SPHERE.modulus)
+    return Loaded(2 / 3 * np.pi * a**2 * peak, np.pi * a**2)
+
+
+@row(
+    "capped/sphere-kogut-etsion",
+    title="Model form: the cap against Kogut and Etsion's sphere",
+    claim="a cap yields at 5.2 times the load of first yield, and its contact area stays within a quarter of "
+    "the finite-element law's up to full plasticity",
+    source="Kogut and Etsion 2002: fits up to 110 critical interferences, H = 2.8 Y, nu = 0.3",
+    tolerance=0.25,
+    tolerance_reason="largest relative difference of A at equal load: model form, no numerical error",
+)
+def against_kogut_etsion() -> Measured:
+    hardness = 0.8e9
+    K = hardness_factor(NU)
+    laws = [kogut_etsion(float(w)) for w in np.geomspace(0.5, KOGUT_ETSION_LARGEST, STEPS)]
+    series = _compared(laws, _first_yield(K * hardness), hardness)
+    off = np.abs(series["A of the cap / A of the law - 1"])
+    data: dict[str, object] = {**series}
+    data |= {"load of the cap's yield / load of first yield": K**-3, "H / Y": HARDNESS_OVER_YIELD}
+    return Measured(value=float(off.max()), data=data)
+
+
+@row(
+    "capped/sphere-jackson-green",
+    title="Model form: the cap against Jackson and Green's sphere",
+    claim="with H = 2.84 Y the contact area stays within a quarter of the finite-element law's up to 200 "
+    "critical interferences; beyond, the law's hardness falls and the cap's does not",
+    source="Jackson and Green 2005, Y / E* = 0.0042 (copper of 0.8 GPa), nu = 0.34",
+    tolerance=0.25,
+    tolerance_reason="largest relative difference of A at equal load: model form, no numerical error",
+)
+def against_jackson_green() -> Measured:
+    hardness, nu = 0.8e9, MATERIAL.nu
+    strength = hardness / 2.84
+    strain, C = strength / SPHERE.modulus, yield_factor(nu)
+    laws = [jackson_green(float(w), strain, nu) for w in np.geomspace(0.5, 200.0, STEPS)]
+    series = _compared(laws, _first_yield(C * strength), hardness)
+    off = np.abs(series["A of the cap / A of the law - 1"])
+    data: dict[str, object] = {**series}
+    data |= {"Y / E*": strain, "load of the cap's yield / load of first yield": (2.84 / C) ** 3}
+    return Measured(value=float(off.max()), data=data)
