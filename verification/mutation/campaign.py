@@ -88,24 +88,28 @@ def imported(source: str) -> set[str]:
 def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record:
     """Write a fault into the tree at ``root``, run the tests, and restore the file.
 
-    ``moment`` (s) dates the file: bytecode of another trial is not taken for its own. Raises RuntimeError for
-    tests that fail without the fault.
+    ``moment`` (s) dates the file: bytecode of another trial is not taken for its own. A test that fails
+    without the fault as well counts for nothing, and the trial is repeated without it.
     """
-    path = root / fault.file
+    path, failing, seconds = root / fault.file, list[str](), 0.0
     source = path.read_text(encoding="utf-8")
-    try:
-        path.write_text(fault.applied(source), encoding="utf-8")
-        os.utime(path, (moment, moment))
-        verdict = Suite(root, tests).verdict_of_tree(LIMIT)
-    finally:
-        path.write_text(source, encoding="utf-8")
-        os.utime(path, (moment + 1, moment + 1))
-    if verdict.outcome == "killed" and verdict.killer:
-        again = Suite(root, [verdict.killer]).verdict_of_tree(LIMIT)
-        if again.outcome != "survived":
-            raise RuntimeError(f"{verdict.killer} fails without the fault")
+    while True:
+        try:
+            path.write_text(fault.applied(source), encoding="utf-8")
+            os.utime(path, (moment, moment))
+            without = [f"--deselect={test}" for test in failing]
+            verdict = Suite(root, [*tests, *without]).verdict_of_tree(LIMIT)
+        finally:
+            path.write_text(source, encoding="utf-8")
+            os.utime(path, (moment + 1, moment + 1))
+        seconds += verdict.seconds
+        if verdict.outcome != "killed" or not verdict.killer or verdict.killer in failing:
+            break
+        if Suite(root, [verdict.killer]).verdict_of_tree(LIMIT).outcome == "survived":
+            break
+        failing.append(verdict.killer)
     outcome = "unnoticed" if verdict.outcome == "survived" else "noticed"
-    return {"outcome": outcome, "test": verdict.killer, "seconds": verdict.seconds}
+    return {"outcome": outcome, "test": verdict.killer, "seconds": round(seconds, 2), "failing": failing}
 
 
 def run(faults: Sequence[Fault], areas: Mapping[str, Sequence[str]], log: Path) -> list[Record]:
