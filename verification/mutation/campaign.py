@@ -1,30 +1,34 @@
 """``python -m verification.mutation.campaign --log FILE --json FILE``: meaningful faults that tests notice.
 
 The faults of ``faults.toml`` were invented by reading the source: a sign, a column, a lost row, a wrong unit.
-Each is written into a clone of the committed tree and judged there by the doctests of its module, the tests
-that import it and the tests of its area, until one fails. A verdict is kept in the log and counts as long as
-the module stands as it was; an unnoticed fault is tried again when its tests have changed.
+With ``--random N`` they are N mutants of each area instead, of all its modules. Each fault is written into a
+clone of the committed tree and judged there: by the doctests of its module, the tests that import it and the
+tests of its area, until one fails. A verdict is kept in the log and counts as long as the module stands as it
+was; an unnoticed fault is tried again when its tests have changed.
 """
 
 from __future__ import annotations
 
 import argparse
-import ast
 import hashlib
 import json
 import os
 import subprocess
 import tempfile
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatch
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 from verification.mutation.judge import Suite
+from verification.mutation.mutants import candidates, mutant
 from verification.mutation.score import lower_bound
+from verification.mutation.session import in_fair_order
+from verification.mutation.targets import near_first
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLE = Path(__file__).with_name("faults.toml")
@@ -32,6 +36,7 @@ GOAL = 0.90  # share of the faults that tests notice
 LIMIT = 600  # processor seconds of one trial: more than the tests of any area take
 
 Record = dict[str, Any]
+Areas = Mapping[str, Mapping[str, Sequence[str]]]
 
 
 class Fault(NamedTuple):
@@ -50,39 +55,24 @@ class Fault(NamedTuple):
         return source.replace(self.old, self.new)
 
 
-def read_faults(path: Path = TABLE) -> tuple[list[Fault], dict[str, list[str]]]:
-    """Return the faults of a table, and the folders of tests by area."""
+def read_faults(path: Path = TABLE) -> tuple[list[Fault], Areas]:
+    """Return the faults of a table, and the areas: their ``modules`` and ``tests``, by folder."""
     table = tomllib.loads(path.read_text(encoding="utf-8"))
     return [Fault(**row) for row in table["fault"]], table["areas"]
 
 
-def tests_of(root: Path, file: str, folders: Sequence[str]) -> tuple[str, ...]:
-    """Return the arguments for pytest, nearest first: doctests, the mirror test, tests that import the file,
-    and the rest of the area.
-    """
-    module = file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
-    area = sorted(path for folder in folders for path in (root / folder).rglob("test_*.py"))
-    every = sorted((root / "tests").rglob("test_*.py"))
-    importing = [path for path in every if module in imported(path.read_text(encoding="utf-8"))]
-    mirrors = [path for path in area if path.name == f"test_{Path(file).stem}.py"]
-    near = [path for path in importing if path in area]
-    ordered = dict.fromkeys((*mirrors, *near, *importing, *area))
-    return file, *(str(path.relative_to(root)) for path in ordered)
-
-
-def imported(source: str) -> set[str]:
-    """Return the names of modules that a source imports, and of what it imports from packages.
-
-    >>> sorted(imported("import a.b\\nfrom c import d"))
-    ['a.b', 'c', 'c.d']
-    """
-    found: set[str] = set()
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Import):
-            found |= {name.name for name in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            found |= {node.module, *(f"{node.module}.{name.name}" for name in node.names)}
-    return found
+def mutants_of(root: Path, name: str, folders: Sequence[str], seed: int) -> Iterable[Fault]:
+    """Mutants of all modules of an area in a fair order, each as a fault of its whole file."""
+    files = [path for folder in folders for path in sorted((root / folder).rglob("*.py"))]
+    files = [path for path in files if path.name not in ("__init__.py", "__main__.py")]
+    sources = {str(path.relative_to(root)): path.read_text(encoding="utf-8") for path in files}
+    found = [one for file, source in sources.items() for one in candidates(file, source)]
+    for candidate in in_fair_order(found, seed):
+        source = sources[candidate.module]
+        changed = mutant(candidate, source)
+        if changed is not None:
+            line = f"{candidate.operator}, line {changed.line}: {changed.before} -> {changed.after}"
+            yield Fault(name, candidate.module, line, source, changed.source)
 
 
 def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record:
@@ -112,84 +102,93 @@ def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record
     return {"outcome": outcome, "test": verdict.killer, "seconds": round(seconds, 2), "failing": failing}
 
 
-def run(faults: Sequence[Fault], areas: Mapping[str, Sequence[str]], log: Path) -> list[Record]:
-    """Try the faults that the log (JSON lines) does not hold; return the records of all, in their order."""
+def run(faults: Sequence[Fault], areas: Areas, log: Path, clone: Path, *, far: bool) -> list[Record]:
+    """Try the faults that the log (JSON lines) does not hold; return the records of all, in their order.
+
+    ``far`` has tests of other areas that import the module run as well.
+    """
     known = {record["key"]: record for record in _read(log)}
     records, progress = [], Progress(len(faults))
-    with tempfile.TemporaryDirectory() as folder:
-        clone = Path(folder) / "clone"
-        subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
-        Suite(clone, ["tests"]).import_foreign()
-        for number, fault in enumerate(faults):
-            tests = tests_of(clone, fault.file, areas[fault.area])
-            key = _digest([*fault, (clone / fault.file).read_text(encoding="utf-8")])
-            suite = _digest((clone / test).read_text(encoding="utf-8") for test in tests)
-            record = known.get(key)
-            if record is None or (record["outcome"] == "unnoticed" and record["suite"] != suite):
-                found = tried(clone, fault, tests, 10**9 + 2 * number)
-                record = {"key": key, "suite": suite, "area": fault.area, "file": fault.file}
-                record |= {"breaks": fault.breaks, **found}
-                with log.open("a", encoding="utf-8") as lines:
-                    lines.write(json.dumps(record, ensure_ascii=False) + "\n")
-            records.append(record)
-            progress.tick(f"{record['outcome']} {fault.file}: {fault.breaks}")
+    Suite(clone, ["tests"]).import_foreign()
+    for number, fault in enumerate(faults):
+        tests = (fault.file, *near_first(clone, fault.file, areas[fault.area]["tests"], far=far))
+        key = _digest([*fault, (clone / fault.file).read_text(encoding="utf-8")])
+        suite = _digest((clone / test).read_text(encoding="utf-8") for test in tests)
+        record = known.get(key)
+        if record is None or (record["outcome"] == "unnoticed" and record["suite"] != suite):
+            found = tried(clone, fault, tests, 10**9 + 2 * number)
+            record = {"key": key, "suite": suite, "area": fault.area, "file": fault.file}
+            record |= {"breaks": fault.breaks, **found}
+            with log.open("a", encoding="utf-8") as lines:
+                lines.write(json.dumps(record, ensure_ascii=False) + "\n")
+        records.append(record)
+        progress.tick(f"{record['outcome']} {fault.file}: {fault.breaks}")
     progress.close()
     return records
 
 
-def summary(records: Sequence[Record], first: Sequence[Record] = ()) -> Record:
-    """Return the result: noticed shares, by area as well, and every fault with its outcome.
+def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: bool = True) -> Record:
+    """Return the result: noticed shares, by area as well, and the faults with their outcomes.
 
     ``first`` are the records of the faults as first judged, before any test was written for one of them.
+    ``every`` lists noticed faults as well.
     """
     before = {record["breaks"]: record["outcome"] for record in first or records}
-    areas = list(dict.fromkeys(record["area"] for record in records))
+    listed = [r for r in records if every or "unnoticed" in (r["outcome"], before[r["breaks"]])]
     return {
-        "faults": len(records),
-        "noticed": _share([record["outcome"] for record in records]),
-        "noticed_lower_bound": lower_bound(
-            sum(record["outcome"] == "noticed" for record in records), len(records)
-        ),
-        "first_noticed": _share(list(before.values())),
-        "first_lower_bound": lower_bound(
-            sum(outcome == "noticed" for outcome in before.values()), len(before)
-        ),
+        "all": _counts(records, before),
         "areas": [
-            {
-                "area": area,
-                "faults": sum(record["area"] == area for record in records),
-                "first": _share([before[r["breaks"]] for r in records if r["area"] == area]),
-                "now": _share([r["outcome"] for r in records if r["area"] == area]),
-            }
-            for area in areas
+            {"area": area, **_counts([r for r in records if r["area"] == area], before)}
+            for area in dict.fromkeys(record["area"] for record in records)
         ],
         "list": [
             {name: record[name] for name in ("area", "file", "breaks", "outcome", "test")}
             | {"first": before[record["breaks"]]}
-            for record in records
+            for record in listed
         ],
     }
+
+
+def _counts(records: Sequence[Record], before: Mapping[str, str]) -> Record:
+    """Number of faults, noticed shares as first judged and now, and the first's lower bound (95 %)."""
+    first = sum(before[record["breaks"]] == "noticed" for record in records)
+    now = sum(record["outcome"] == "noticed" for record in records)
+    n = len(records)
+    shares = {"first": first / n, "first_lower_bound": lower_bound(first, n), "now": now / n}
+    return {"faults": n, **{name: round(share, 4) for name, share in shares.items()}}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status 0 when the goal is met, else 1."""
     parser = argparse.ArgumentParser(prog="python -m verification.mutation.campaign", description=__doc__)
     parser.add_argument("--only", nargs="+", default=["*"], help="patterns of the areas to try now")
+    parser.add_argument(
+        "--random", type=int, metavar="N", help="N mutants of each area, in place of the list"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="of the mutants' order")
     parser.add_argument("--log", type=Path, required=True, help="JSON lines: every verdict; resumed from")
     parser.add_argument("--first", type=Path, help="log of the faults as first judged")
     parser.add_argument("--json", type=Path, help="result to write")
     options = parser.parse_args(arguments)
     faults, areas = read_faults()
-    chosen = [fault for fault in faults if any(fnmatch(fault.area, pattern) for pattern in options.only)]
-    found = summary(run(chosen, areas, options.log), _read(options.first) if options.first else ())
+    chosen = [name for name in areas if any(fnmatch(name, pattern) for pattern in options.only)]
+    with tempfile.TemporaryDirectory() as folder:
+        clone = Path(folder) / "clone"
+        subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
+        if options.random is None:
+            listed = [fault for fault in faults if fault.area in chosen]
+        else:
+            orders = [mutants_of(clone, name, areas[name]["modules"], options.seed) for name in chosen]
+            drawn = [list(islice(order, options.random)) for order in orders]
+            listed = [fault for several in zip(*drawn, strict=True) for fault in several]
+        records = run(listed, areas, options.log, clone, far=options.random is None)
+    first = _read(options.first) if options.first else ()
+    found = summary(records, first, every=options.random is None)
     if options.json:
-        write_result(found | {"provenance": provenance()}, options.json)
-    print({name: found[name] for name in ("faults", "noticed", "first_noticed")})
-    return 0 if found["noticed"] >= GOAL else 1
-
-
-def _share(outcomes: Sequence[str]) -> float:
-    return round(outcomes.count("noticed") / len(outcomes), 4)
+        seed = {} if options.random is None else {"seed": options.seed}
+        write_result({**found, **seed, "provenance": provenance()}, options.json)
+    print(found["all"])
+    return 0 if found["all"]["now"] >= GOAL else 1
 
 
 def _read(log: Path) -> list[Record]:
@@ -198,7 +197,7 @@ def _read(log: Path) -> list[Record]:
     return [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
 
 
-def _digest(texts: Any) -> str:
+def _digest(texts: Iterable[str]) -> str:
     """Fingerprint of texts."""
     return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:12]
 
