@@ -40,7 +40,16 @@ CHAPTERS = (
             "golden",
             "bounds",
         ),
-        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "hypothesis", "random_order"),
+        (
+            "fault_matrix",
+            "faults_by_hand",
+            "mutants_by_area",
+            "mutation",
+            "mutation_fresh",
+            "mutation_judges",
+            "hypothesis",
+            "random_order",
+        ),
     ),
     Chapter(
         "solvers",
