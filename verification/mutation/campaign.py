@@ -102,16 +102,20 @@ def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record
     return {"outcome": outcome, "test": verdict.killer, "seconds": round(seconds, 2), "failing": failing}
 
 
-def run(faults: Sequence[Fault], areas: Areas, log: Path, clone: Path, *, far: bool) -> list[Record]:
+def run(
+    faults: Sequence[Fault], areas: Areas, log: Path, clone: Path, *, far: bool, early: Sequence[str] = ()
+) -> list[Record]:
     """Try the faults that the log (JSON lines) does not hold; return the records of all, in their order.
 
-    ``far`` has tests of other areas that import the module run as well.
+    ``far`` has tests of other areas that import the module run as well; tests whose path matches a pattern of
+    ``early`` come first.
     """
     known = {record["key"]: record for record in _read(log)}
     records, progress = [], Progress(len(faults))
     Suite(clone, ["tests"]).import_foreign()
     for number, fault in enumerate(faults):
-        tests = (fault.file, *near_first(clone, fault.file, areas[fault.area]["tests"], far=far))
+        near = near_first(clone, fault.file, areas[fault.area]["tests"], far=far)
+        tests = sorted((fault.file, *near), key=lambda test: not any(fnmatch(test, one) for one in early))
         key = _digest([*fault, (clone / fault.file).read_text(encoding="utf-8")])
         suite = _digest((clone / test).read_text(encoding="utf-8") for test in tests)
         record = known.get(key)
@@ -166,6 +170,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--random", type=int, metavar="N", help="N mutants of each area, in place of the list"
     )
     parser.add_argument("--seed", type=int, default=1, help="of the mutants' order")
+    parser.add_argument("--early", nargs="+", default=[], help="patterns of the tests to run first")
     parser.add_argument("--log", type=Path, required=True, help="JSON lines: every verdict; resumed from")
     parser.add_argument("--first", type=Path, help="log of the faults as first judged")
     parser.add_argument("--json", type=Path, help="result to write")
@@ -181,7 +186,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             orders = [mutants_of(clone, name, areas[name]["modules"], options.seed) for name in chosen]
             drawn = [list(islice(order, options.random)) for order in orders]
             listed = [fault for several in zip(*drawn, strict=True) for fault in several]
-        records = run(listed, areas, options.log, clone, far=options.random is None)
+        records = run(listed, areas, options.log, clone, far=options.random is None, early=options.early)
     first = _read(options.first) if options.first else ()
     found = summary(records, first, every=options.random is None)
     if options.json:
