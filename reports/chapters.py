@@ -43,7 +43,6 @@ CHAPTERS = (
         (
             "fault_matrix",
             "faults_by_hand",
-            "mutants_by_area",
             "mutation",
             "mutation_fresh",
             "mutation_judges",

@@ -37,7 +37,6 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "hypothesis": ("refimpl", "verification/properties"),
     "model_form": ("refimpl", "appendix_a"),
     "multilevel": ("refimpl", "verification/multilevel"),
-    "mutants_by_area": ("refimpl", "appendix_a", "verification", "reports", "tests"),
     "mutation": ("refimpl", "appendix_a", "tests"),
     "mutation_fresh": ("refimpl", "appendix_a", "tests"),
     "mutation_judges": ("verification", "tests"),

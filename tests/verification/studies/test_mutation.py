@@ -306,9 +306,6 @@ def test_a_campaigns_result_by_area() -> None:
     shown = exhibit("faults_by_hand", found)
     assert shown.tables[0].rows[0] == ("all", 4, 50.0, 9.8, 75.0)
     assert shown.tables[1].rows[1] == ("x", "a.py", "fault 1", "unnoticed", "noticed")
-    drawn = exhibit("mutants_by_area", {**found, "seed": 46})
-    assert (drawn.title, drawn.tables) == ("Mutants of every area", shown.tables)
-    assert "seed 46" in drawn.paragraphs[0]
     assert [one["breaks"] for one in campaign.summary(now, first, every=False)["list"]] == [
         "fault 1",
         "fault 2",
