@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from reports.exhibit import Document, Exhibit, Table
+from reports.exhibit import Cell, Document, Exhibit, Table
 
-HEAD = ("area", "faults", "noticed at first", "lower bound", "noticed now")
+HEAD = ("area", "faults", "judged at first", "noticed at first", "lower bound", "noticed now")
 
 
 def build(document: Document) -> Exhibit:
@@ -20,8 +20,8 @@ def build(document: Document) -> Exhibit:
             "drawn up from the source before the tests were looked at. Each is judged by the doctests of its "
             "module, the tests that import it and those of its area; tests of other areas, which may notice "
             "it as well, are not run. Lower bounds are Clopper and Pearson's, at 95 %.",
-            "At first means by the tests as they were; now, after tests of the same kind were written for "
-            "every area.",
+            "At first means by the tests as they were; now, after tests of the same kind were written. A fault "
+            "that was not judged at first counts now alone.",
         ),
         [
             Table("Noticed by area (per cent).", HEAD, rows),
@@ -30,7 +30,7 @@ def build(document: Document) -> Exhibit:
     )
 
 
-def _row(name: str, part: Document) -> tuple[str | float | int, ...]:
+def _row(name: str, part: Document) -> tuple[Cell, ...]:
     """Shares in per cent."""
-    shares = (round(100 * part[key], 1) for key in ("first", "first_lower_bound", "now"))
-    return (name, part["faults"], *shares)
+    shares = (part[key] for key in ("first", "first_lower_bound", "now"))
+    return (name, part["faults"], part["judged"], *(s if s is None else round(100 * s, 1) for s in shares))

@@ -138,7 +138,7 @@ def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: b
     ``every`` lists noticed faults as well.
     """
     before = {record["breaks"]: record["outcome"] for record in first or records}
-    listed = [r for r in records if every or "unnoticed" in (r["outcome"], before[r["breaks"]])]
+    listed = [r for r in records if every or "unnoticed" in (r["outcome"], before.get(r["breaks"]))]
     return {
         "all": _counts(records, before),
         "areas": [
@@ -147,19 +147,25 @@ def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: b
         ],
         "list": [
             {name: record[name] for name in ("area", "file", "breaks", "outcome", "test")}
-            | {"first": before[record["breaks"]]}
+            | {"first": before.get(record["breaks"], "not judged")}
             for record in listed
         ],
     }
 
 
 def _counts(records: Sequence[Record], before: Mapping[str, str]) -> Record:
-    """Number of faults, noticed shares as first judged and now, and the first's lower bound (95 %)."""
-    first = sum(before[record["breaks"]] == "noticed" for record in records)
-    now = sum(record["outcome"] == "noticed" for record in records)
-    n = len(records)
-    shares = {"first": first / n, "first_lower_bound": lower_bound(first, n), "now": now / n}
-    return {"faults": n, **{name: round(share, 4) for name, share in shares.items()}}
+    """Number of faults and of those judged at first; noticed shares at first and now; the lower bound (95 %)
+    of the first.
+    """
+    judged = [before[record["breaks"]] for record in records if record["breaks"] in before]
+    first, now = judged.count("noticed"), sum(record["outcome"] == "noticed" for record in records)
+    return {
+        "faults": len(records),
+        "judged": len(judged),
+        "first": round(first / len(judged), 4) if judged else None,
+        "first_lower_bound": round(lower_bound(first, len(judged)), 4) if judged else None,
+        "now": round(now / len(records), 4),
+    }
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -298,13 +298,13 @@ def test_a_campaigns_result_by_area() -> None:
     now = outcomes("noticed", "noticed", "unnoticed", "noticed")
     found = campaign.summary(now, first)
     # one-sided at 95 %: 2 of 4 and more with 5 %, so p^4 + 4 p^3 (1 - p) + 6 p^2 (1 - p)^2 = 0.05
-    assert found["all"] == {"faults": 4, "first": 0.5, "first_lower_bound": 0.0976, "now": 0.75}
+    assert found["all"] == {"faults": 4, "judged": 4, "first": 0.5, "first_lower_bound": 0.0976, "now": 0.75}
     assert [(area["area"], area["first"], area["now"]) for area in found["areas"]] == [
         ("x", 0.3333, 0.6667), ("y", 1.0, 1.0)
     ]  # fmt: skip
     assert [(one["first"], one["outcome"]) for one in found["list"]][1] == ("unnoticed", "noticed")
     shown = exhibit("faults_by_hand", found)
-    assert shown.tables[0].rows[0] == ("all", 4, 50.0, 9.8, 75.0)
+    assert shown.tables[0].rows[0] == ("all", 4, 4, 50.0, 9.8, 75.0)
     assert shown.tables[1].rows[1] == ("x", "a.py", "fault 1", "unnoticed", "noticed")
     assert [one["breaks"] for one in campaign.summary(now, first, every=False)["list"]] == [
         "fault 1",
