@@ -20,8 +20,8 @@ def build(document: Document) -> Exhibit:
             "drawn up from the source before the tests were looked at. Each is judged by the doctests of its "
             "module, the tests that import it and those of its area; tests of other areas, which may notice "
             "it as well, are not run. Lower bounds are Clopper and Pearson's, at 95 %.",
-            "At first means by the tests as they were; now, after tests of the same kind were written. A fault "
-            "that was not judged at first counts now alone.",
+            "At first means by the tests as they were; now, after tests of the same kind were written. Some "
+            "faults were not judged at first: they count now alone.",
         ),
         [
             Table("Noticed by area (per cent).", HEAD, rows),
