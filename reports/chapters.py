@@ -41,7 +41,15 @@ CHAPTERS = (
             "golden",
             "bounds",
         ),
-        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "hypothesis", "random_order"),
+        (
+            "fault_matrix",
+            "faults_by_hand",
+            "mutation",
+            "mutation_fresh",
+            "mutation_judges",
+            "hypothesis",
+            "random_order",
+        ),
     ),
     Chapter(
         "solvers",

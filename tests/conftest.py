@@ -9,10 +9,12 @@ shuffles as well, but in every run where it is installed, and it leaves derandom
 from __future__ import annotations
 
 import hashlib
+import importlib
 import json
 import random
 import time
 from collections import defaultdict
+from contextlib import suppress
 from pathlib import Path
 
 import hypothesis
@@ -27,6 +29,8 @@ from verification.framework.provenance import provenance
 hypothesis.settings.register_profile("unhurried", hypothesis.settings(), deadline=None)
 hypothesis.settings.load_profile("unhurried")
 
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("random order")
@@ -35,6 +39,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    config.pluginmanager.register(ImportedOnce(config.rootpath))
     if config.getoption("--order-log"):
         config.pluginmanager.register(Log(config))
 
@@ -61,6 +66,24 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def order_seed(request: pytest.FixtureRequest) -> int | None:
     """The run's ``--order-seed``, for searches that are not declared with ``given``."""
     return request.config.getoption("--order-seed")
+
+
+class ImportedOnce:
+    """Imports a module by its name before its doctests are collected.
+
+    pytest would import its package first, which may import the module, and then the module again: two classes
+    of one name, and tests of the one fail on the other. A plugin of its own, as hooks of this file are for
+    ``tests/`` alone.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+
+    def pytest_collect_file(self, file_path: Path) -> None:
+        inside = file_path.relative_to(self.root) if file_path.is_relative_to(self.root) else Path()
+        if inside.suffix == ".py" and inside.parts[0] in PACKAGES and inside.name != "__main__.py":
+            with suppress(Exception):  # the import for the doctests reports it
+                importlib.import_module(".".join(inside.with_suffix("").parts).removesuffix(".__init__"))
 
 
 class Log:

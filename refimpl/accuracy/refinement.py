@@ -157,7 +157,7 @@ def remains(part: str, results: Sequence[GridFeatures], accuracy: float, quantit
 def forecast(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:
     """Return the elements a side that an accuracy takes if bars go on to fall as over the last two grids.
 
-    The size of the last grid where that cannot be said: before a third grid, or from bars longer than the number.
+    The size of the last grid where that cannot be said: before a third grid, or from bars beyond the number.
     """
     size = size_of(results[-1])
     if len(results) <= len(FIRST_GRIDS):

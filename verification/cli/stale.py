@@ -32,6 +32,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "extremes": ("refimpl", "appendix_a", "verification/extremes"),
     "extremes_drawn": ("refimpl", "verification/extremes"),
     "fault_matrix": ("refimpl", "appendix_a", "verification/cases", "verification/matrix"),
+    "faults_by_hand": ("refimpl", "appendix_a", "verification", "tests"),
     "fuzz": ("refimpl", "verification/fuzz", "verification/sweep"),
     "hypothesis": ("refimpl", "verification/properties"),
     "model_form": ("refimpl", "appendix_a"),

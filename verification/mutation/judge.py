@@ -44,18 +44,30 @@ class Suite:
 
         Raises RuntimeError when it fails: nothing could be judged by it.
         """
-        collected = self._forked(None, "", limit=None, more=("--collect-only",))
-        for name in collected.get("foreign", ()):
-            importlib.import_module(name)
+        collected = self.import_foreign()
         found = self._forked(None, "", limit=None)
         if collected["status"] or found["status"]:
             killers = (collected["killer"], found["killer"])
             raise RuntimeError(f"{self.tests[0]}: its suite fails without a mutant: {killers}")
         return float(found["seconds"])
 
+    def import_foreign(self) -> dict[str, Any]:
+        """Collect the suite, import from outside the tree what that needs, and return the child's report."""
+        collected = self._forked(None, "", limit=None, more=("--collect-only",))
+        for name in collected.get("foreign", ()):
+            importlib.import_module(name)
+        return collected
+
     def verdict(self, module: str, source: str, limit: int) -> Verdict:
         """Try ``module`` (a path in the tree) with another source, within ``limit`` processor seconds."""
-        found = self._forked(module, source, limit)
+        return self._judged(self._forked(module, source, limit))
+
+    def verdict_of_tree(self, limit: int) -> Verdict:
+        """Try the tree as it stands, within ``limit`` processor seconds."""
+        return self._judged(self._forked(None, "", limit))
+
+    @staticmethod
+    def _judged(found: dict[str, Any]) -> Verdict:
         outcome = "timeout" if found["status"] is None else "killed" if found["status"] else "survived"
         return Verdict(outcome, found["killer"], round(found["seconds"], 2))
 
@@ -91,6 +103,7 @@ class Suite:
         os.dup2(quiet, 2)
         os.chdir(self.root)
         sys.path.insert(0, str(self.root))
+        os.environ["PYTHONPATH"] = str(self.root)
         _forget_the_tree()
         if module is not None:
             _serve(self.root / module, compile(source, module, "exec"))

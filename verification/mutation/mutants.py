@@ -1,4 +1,4 @@
-"""All mutants of a module: cosmic-ray's operators, and removed statements.
+"""All mutants of a module: cosmic-ray's operators, exchanges, and removed statements.
 
 Excluded, since such mutants never survive or never differ: bit operations on floats and dropped decorators
 (the import already fails), and changes in annotations and docstrings.
@@ -14,6 +14,7 @@ from itertools import islice, permutations
 from typing import Any
 
 from verification.framework.case import Unavailable
+from verification.mutation import exchanges
 
 ARITHMETIC = ("Add", "Sub", "Mul", "Div", "FloorDiv", "Mod", "Pow")
 NEW_ARITHMETIC = ("Add", "Sub", "Mul", "Div", "Pow")
@@ -81,6 +82,11 @@ def candidates(module: str, source: str) -> list[Candidate]:
         for occurrence in range(sum(len(list(operator_named(name).mutation_positions(n))) for n in nodes))
     ]
     removed = len(list(without_statements(source)))
+    found += [
+        Candidate(module, exchanges.STRATUM, name, occurrence)
+        for name in exchanges.OPERATORS
+        for occurrence in range(len(list(exchanges.exchanged(source, name))))
+    ]
     return found + [Candidate(module, "statement", REMOVED, occurrence) for occurrence in range(removed)]
 
 
@@ -88,6 +94,8 @@ def mutant(candidate: Candidate, source: str) -> Mutant | None:
     """The candidate applied to its module's source; None when no Python comes of it, or no other meaning."""
     if candidate.operator == REMOVED:
         changed = next(islice(without_statements(source), candidate.occurrence, None))
+    elif candidate.operator in exchanges.OPERATORS:
+        changed = next(islice(exchanges.exchanged(source, candidate.operator), candidate.occurrence, None))
     else:
         *_, operator_named, mutate_code = cosmic_ray()
         changed = mutate_code(source, operator_named(candidate.operator), candidate.occurrence)

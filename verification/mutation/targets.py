@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,6 +35,35 @@ class Target(NamedTuple):
     def suite(self) -> tuple[str, ...]:
         """Arguments for pytest."""
         return (self.module, *self.tests)
+
+
+def near_first(root: Path, file: str, folders: Sequence[str], *, far: bool) -> tuple[str, ...]:
+    """Return the tests of a file, nearest first: the mirror test, those of its folders that import it, with
+    ``far`` all others that do, and the rest of the folders.
+    """
+    module = file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    area = sorted(path for folder in folders for path in (root / folder).rglob("test_*.py"))
+    every = sorted((root / "tests").rglob("test_*.py")) if far else area
+    importing = [path for path in every if module in imported(path.read_text(encoding="utf-8"))]
+    mirrors = [path for path in area if path.name == f"test_{Path(file).stem}.py"]
+    near = [path for path in importing if path in area]
+    ordered = dict.fromkeys((*mirrors, *near, *importing, *area))
+    return tuple(str(path.relative_to(root)) for path in ordered)
+
+
+def imported(source: str) -> set[str]:
+    """Return the names of modules that a source imports, and of what it imports from packages.
+
+    >>> sorted(imported("import a.b\\nfrom c import d"))
+    ['a.b', 'c', 'c.d']
+    """
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {name.name for name in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module, *(f"{node.module}.{name.name}" for name in node.names)}
+    return found
 
 
 def _read(name: str) -> tuple[Target, ...]:

@@ -22,14 +22,12 @@ from verification.multilevel.ensemble import (
     FEWEST,
     PILOT,
     QUANTITIES,
-    Ensemble,
     _checked,
     _numbers,
     _Term,
     _values,
     ensemble,
 )
-from verification.multilevel.estimator import Estimate
 from verification.sweep import engine
 from verification.sweep.study import MAX_RUNS, Study
 from verification.sweep.study_file import study_from_dict
@@ -192,29 +190,3 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "cost over plain sampling" in capsys.readouterr().out
     assert json.loads(out.read_text())["met"] is True
     assert main([*command, "--target-error", "8%", "--csv", str(tmp_path / "x.csv")]) == 2
-
-
-def test_coverage_is_counted() -> None:
-    def made(mean: float) -> Ensemble:
-        part = Estimate(mean, 0.1, 0.2, 9.0)
-        names = ("friction_coefficient", "contact_area")
-        return Ensemble(
-            (1, 2),
-            dict.fromkeys(names, part),
-            (4, 4),
-            (1.0, 1.0),
-            dict.fromkeys(names, 80.0),
-            dict.fromkeys(names, (mean, mean + 1)),
-            True,
-            {},
-            0.0,
-            2.0,
-        )
-
-    found = document([made(1.0), made(1.0), made(1.0), made(2.0)], 0.1)
-    assert found["quantities"]["contact_area"]["covered"] == 0
-    assert document([made(1.0), made(1.1)], 0.1)["quantities"]["contact_area"]["covered"] == 2
-    # 8 s for a standard error of 0.1, for which plain solves of 2 s and that scatter are needed
-    variance = np.var([1, 2, 1, 2, 1, 2, 2, 3], ddof=1)
-    share = found["quantities"]["contact_area"]["cost over plain"]
-    assert share == pytest.approx(8 / (2 * variance / 0.1**2))

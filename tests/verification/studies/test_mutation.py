@@ -12,8 +12,10 @@ from typing import Any
 import pytest
 
 from reports.studies import exhibit
-from verification.mutation import mutants, score, session
+from verification.mutation import campaign, mutants, score, session
 from verification.mutation.__main__ import main
+from verification.mutation.campaign import Fault, read_faults
+from verification.mutation.exchanges import exchanged
 from verification.mutation.mutants import Candidate, mutant, without_statements
 from verification.mutation.targets import JUDGES, TARGETS
 
@@ -219,3 +221,92 @@ def test_verdicts_are_kept_and_survivors_tried_again_when_tests_change(
     (tmp_path / "m.py").write_text("x = 2\n")
     session.run(tmp_path, [target], chosen, log)
     assert tried == [[0, 1, 2], [1], [0, 1, 2]]
+
+
+@pytest.mark.parametrize(
+    ("operator", "source", "expected"),
+    [
+        ("ExchangeArguments", "f(a, b, c=1, d=2)", ["f(b, a, c=1, d=2)", "f(a, b, c=2, d=1)"]),
+        ("ExchangeArguments", "f(*a, b)", []),
+        ("ExchangeColumns", "x, y = [a, b, b]", ["x, y = [b, a, b]"]),
+        ("ExchangeKeys", "{'é': 1, 'F': f(2), **g}", ["{'é': f(2), 'F': 1, **g}"]),
+        ("ChangeUnit", "2 * 1e-3 + A / 1e6 + 1e6", ["2 * 1.0 + A / 1e6 + 1e6", "2 * 1e-3 + A / 1e9 + 1e6"]),
+    ],
+)  # fmt: skip
+def test_exchanges(operator: str, source: str, expected: list[str]) -> None:
+    found = [changed.replace("1000000000.0", "1e9") for changed in exchanged(source, operator)]
+    assert sorted(found) == sorted(expected)
+
+
+def test_every_listed_fault_changes_its_file() -> None:
+    faults, areas = read_faults()
+    assert len(faults) >= 100
+    assert len({fault.breaks for fault in faults}) == len(faults)
+    for fault in faults:
+        source = (ROOT / fault.file).read_text(encoding="utf-8")
+        compile(fault.applied(source), fault.file, "exec")
+        assert any(fault.file.startswith(f"{folder}/") for folder in areas[fault.area]["modules"])
+    assert {fault.area for fault in faults} == set(areas)
+
+
+CAMPAIGN = """
+import json, sys
+from pathlib import Path
+from verification.mutation.campaign import Fault, run
+faults = [Fault("x", "half.py", b, o, n) for b, o, n in json.loads(sys.argv[2])]
+areas = {"x": {"modules": ["."], "tests": ["tests"]}}
+found = run(faults, areas, Path(sys.argv[1]) / "log", Path(sys.argv[1]), far=True)
+print(json.dumps([[record["outcome"], record["test"], record["failing"]] for record in found]))
+"""
+
+
+def test_a_campaign_on_a_small_tree(tmp_path: Path) -> None:
+    """A test that fails anyway does not count, and the file is restored; known verdicts are kept."""
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "half.py").write_text("def half(x):\n    return x / 2\n")
+    test = "from half import half\ndef test_broken(): assert False\ndef test_four(): assert half(4) == 2\n"
+    (tmp_path / "tests" / "test_half.py").write_text(test)
+    faults = [["same", "x / 2", "0.5 * x"], ["wrong", "x / 2", "x / 3"]]
+    asked = [sys.executable, "-c", CAMPAIGN, str(tmp_path), json.dumps(faults)]
+    for _ in range(2):
+        done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+        assert json.loads(done.stdout) == [
+            ["unnoticed", None, ["tests/test_half.py::test_broken"]],
+            ["noticed", "tests/test_half.py::test_four", ["tests/test_half.py::test_broken"]],
+        ]
+        assert len((tmp_path / "log").read_text().splitlines()) == 2
+    assert (tmp_path / "half.py").read_text().endswith("x / 2\n")
+
+
+def test_a_fault_that_does_not_fit_is_refused() -> None:
+    with pytest.raises(ValueError, match="2 times"):
+        Fault("x", "a.py", "y", "b", "c").applied("b + b")
+
+
+def test_a_campaigns_result_by_area() -> None:
+    """Four faults, of which two were noticed at first and three now."""
+
+    def outcomes(*several: str) -> list[dict[str, Any]]:
+        base = {"file": "a.py", "test": None}
+        areas = ("x", "x", "x", "y")
+        return [
+            {**base, "area": area, "breaks": f"fault {k}", "outcome": outcome}
+            for k, (area, outcome) in enumerate(zip(areas, several, strict=True))
+        ]
+
+    first = outcomes("noticed", "unnoticed", "unnoticed", "noticed")
+    now = outcomes("noticed", "noticed", "unnoticed", "noticed")
+    found = campaign.summary(now, first)
+    # one-sided at 95 %: 2 of 4 and more with 5 %, so p^4 + 4 p^3 (1 - p) + 6 p^2 (1 - p)^2 = 0.05
+    assert found["all"] == {"faults": 4, "judged": 4, "first": 0.5, "first_lower_bound": 0.0976, "now": 0.75}
+    assert [(area["area"], area["first"], area["now"]) for area in found["areas"]] == [
+        ("x", 0.3333, 0.6667), ("y", 1.0, 1.0)
+    ]  # fmt: skip
+    assert [(one["first"], one["outcome"]) for one in found["list"]][1] == ("unnoticed", "noticed")
+    shown = exhibit("faults_by_hand", found)
+    assert shown.tables[0].rows[0] == ("all", 4, 4, 50.0, 9.8, 75.0)
+    assert shown.tables[1].rows[1] == ("x", "a.py", "fault 1", "unnoticed", "noticed")
+    assert [one["breaks"] for one in campaign.summary(now, first, every=False)["list"]] == [
+        "fault 1",
+        "fault 2",
+    ]

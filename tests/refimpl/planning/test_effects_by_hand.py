@@ -1,0 +1,129 @@
+"""Estimates from a contact of a few elements, with every sum worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.model.materials import Pair
+from refimpl.planning.expected_contact import ExpectedContact, expected_contact, solved_contact
+from refimpl.planning.term_effects import Effect, Scales, effects_in, neglected_parts
+from refimpl.planning.terms import RequestedTerms, choose
+from refimpl.scene.discretise import discretise
+
+PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1))
+CONTACT = ExpectedContact(
+    elements=50, patches=4.0, mean_pressure=10e6, pressure=16e6, approach=2e-6, slope_squared=4e-4,
+    least_slope=0.01, least_mean_slope=0.002, border=0.1, extent=0.2, symmetric=False, mirrored=False, window=(7, 9),
+)  # fmt: skip
+SCENE = rf.Scene(
+    upper=rf.Body(PAIR.upper, rf.Sphere(0.05)),
+    lower=rf.Body(PAIR.lower, rf.GaussianRoughness(1e-6, 3e-4, seed=2)),
+    friction=rf.Friction(tau=1e6, beta=0.2),
+    load=8.0,
+    side=2e-3,
+)
+
+
+def test_a_solved_contact_is_weighted_by_its_pressure() -> None:
+    """Pressures of 1 and 3 MPa: 2 in the mean, (1 + 9) / 4 = 2.5 weighted by themselves."""
+    problem = discretise(SCENE, SCENE.grid(6))
+    pressure = np.zeros((6, 6))
+    pressure[2, 2], pressure[2, 3] = 1e6, 3e6
+    found = solved_contact(problem, pressure, CONTACT)
+    assert (found.mean_pressure, found.pressure) == (2e6, 2.5e6)
+    assert (found.elements, found.patches, found.border) == (2, 1.0, 0.0)
+    gradients = [np.gradient(z, 2e-3 / 6) for z in problem.heights]
+    along = [float(x[2, 2] + 3 * x[2, 3]) / 4 for x, _ in gradients]
+    assert found.least_mean_slope == pytest.approx(min(map(abs, along)))
+    squares = [math.sqrt((x[2, 2] ** 2 + 3 * x[2, 3] ** 2) / 4) for x, _ in gradients]
+    assert found.least_slope == pytest.approx(min(squares))
+    before = (found.approach, found.symmetric, found.mirrored, found.window)
+    assert before == (CONTACT.approach, CONTACT.symmetric, CONTACT.mirrored, CONTACT.window)
+
+
+def test_the_window_holds_gaps_below_twice_the_approach() -> None:
+    """A ball's gap r^2 / 2R is below 2 delta within r = 2 sqrt(R delta): 0.4 mm."""
+    ball = replace(SCENE, upper=rf.Body(PAIR.upper, rf.Sphere(0.04)), lower=rf.Body(PAIR.lower, rf.Flat()))
+    found = expected_contact(discretise(ball, ball.grid(40), approach=1e-6))
+    # 0.8 mm are 16 elements of 50 um, and one more on either side
+    assert found.window == (18, 18)
+
+
+def test_slope_terms_by_hand() -> None:
+    """mu = 0.2 + 1 MPa / 10 MPa; tilts pi c 1.4 (0.2 * 16 MPa + 1 MPa), pi c = (1 + nu)(1 - 2 nu) / (2 E)."""
+    lower, upper = ((1 + nu) * (1 - 2 * nu) / 2 / E * 1.4 * 4.2e6 for E, nu in ((2e9, 0.25), (8e9, 0.1)))
+    scales = Scales(CONTACT, PAIR, SCENE.friction)
+    assert scales.tilts == pytest.approx((lower, upper))
+    slope = lower + 4e-4 + 1.5 * 0.002 + 0.4 * 0.01 + 2.0 * 0.1 * 0.02
+    local = 0.3 * slope + 4e-4
+    area = local + 2 * math.sqrt(local / 50)
+    found = effects_of("oblique", scales)
+    assert found.area == pytest.approx(area)
+    assert found.friction == pytest.approx(((1 + 0.09) * slope + 0.1 * area) / 0.3)
+
+
+def test_coupling_by_hand() -> None:
+    """c / a with lower minus upper; four patches halve the change of the area."""
+    c = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
+    a = [(1 - nu**2) / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
+    strength = (c[0] - c[1]) / sum(a) * 0.3
+    local = 0.35 * strength
+    area = 2.0 * strength**2 + local / 2 + 2 * math.sqrt(local / 50)
+    tilt = 0.5 * (c[0] - c[1]) * 1.4 * 4.2e6
+    found = effects_of("coupled", Scales(CONTACT, PAIR, SCENE.friction))
+    assert found.area == pytest.approx(area)
+    assert found.friction == pytest.approx((tilt + local * 0.01 + 0.1 * area) / 0.3)
+
+
+def test_elements_of_a_symmetric_scene_come_four_at_a_time() -> None:
+    symmetric = replace(CONTACT, symmetric=True)
+    alone, bunched = (Scales(c, PAIR, rf.Friction()).effect(0.0, 0.01, 0.02) for c in (CONTACT, symmetric))
+    assert alone.area == pytest.approx(0.01 + 2 * math.sqrt(0.02 / 50))
+    assert bunched.area == pytest.approx(0.01 + 2 * math.sqrt(4 * 0.02 / 50))
+    assert effects_of("oblique", Scales(symmetric, PAIR, rf.Friction())) == Effect(0.0, 4e-4)
+
+
+def effects_of(name: str, scales: Scales) -> Effect:
+    from refimpl.planning.term_effects import ESTIMATES
+
+    return ESTIMATES[name](scales)
+
+
+def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
+    """Of 36 elements two touch, so of 900 fifty; a coarser request changes nothing."""
+    problem = discretise(SCENE, SCENE.grid(6))
+    pressure = np.zeros((6, 6))
+    pressure[2, 2:4] = 2e6
+    contact = solved_contact(problem, pressure, CONTACT)
+    for elements, expected in ((900, 50), (18, 2), (None, 2)):
+        found = effects_in(("oblique",), problem, pressure, CONTACT, elements)
+        scales = Scales(replace(contact, elements=expected), problem.pair, problem.friction)
+        assert found == {"oblique": effects_of("oblique", scales)}
+
+
+def test_effects_are_parts_in_each_numbers_unit() -> None:
+    """Changes of 1 % and 2 % of local friction, 0.3, and bare 0.001: 0.01 of mu, on 8 N 0.08 N."""
+    effects = {"coupled": Effect(0.01, 0.1, bare=0.001), "oblique": Effect(0.02, 0.3)}
+    found = neglected_parts(effects, 0.3, 8.0, {"contact_area": -2e-6, "max_pressure": 5e7})
+    assert {name: part["neglected"] for name, part in found.items()} == pytest.approx(
+        {
+            "contact_area": 0.8e-6,
+            "max_pressure": 2e7,
+            "friction_coefficient": 0.01,
+            "friction_force": 0.08,
+            "binormal_force": 0.08,
+        }
+    )
+
+
+@pytest.mark.parametrize(("mean", "included"), [(29e6, False), (31e6, True)])
+def test_the_cap_enters_where_three_mean_pressures_reach_the_hardness(mean: float, included: bool) -> None:
+    problem = discretise(SCENE, SCENE.grid(6))
+    terms = choose(problem, replace(CONTACT, mean_pressure=mean), RequestedTerms(), 1e-8)
+    (cap,) = (term for term in terms if term.name == "plastic")
+    assert cap.included is included

@@ -1,0 +1,86 @@
+"""The domain of several measured surfaces, offsets along the sliding direction, the roughness that counts."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.grid import Grid
+from refimpl.scene.discretise import discretise
+from refimpl.scene.parameters import moving, parameters
+from refimpl.scene.resolution import resolution
+
+STEEL = rf.Material(200e9, 0.3)
+
+
+def measured(path: Path, shape: tuple[int, int]) -> rf.Body:
+    np.save(path, np.random.default_rng(1).normal(size=shape))
+    return rf.Body(STEEL, rf.MeasuredSurface(path, unit="um", pixel_size=1e-5))
+
+
+def test_the_domain_is_what_all_measured_surfaces_cover(tmp_path: Path) -> None:
+    """0.3 x 0.1 mm and 0.2 x 0.2 mm: 0.2 x 0.1 mm."""
+    upper, lower = (measured(tmp_path / f"{n}.npy", shape) for n, shape in (("a", (30, 10)), ("b", (20, 20))))
+    scene = rf.Scene(upper, lower, rf.Friction(), 1.0)
+    assert scene.lengths == pytest.approx((2e-4, 1e-4))
+    # the lower one moves by 20 um along y, which leaves 160 um of its 200, and of the upper's 100 all
+    moved = rf.Scene(upper, lower, rf.Friction(), 1.0, sliding_offset=4e-5, sliding_direction=math.pi / 2)
+    assert moved.lengths == pytest.approx((2e-4, 1e-4))
+    far = rf.Scene(upper, lower, rf.Friction(), 1.0, sliding_offset=4e-5, sliding_direction=0.0)
+    assert far.lengths == pytest.approx((1.2e-4, 1e-4))
+
+
+def test_the_lower_surface_moves_along_the_sliding_direction() -> None:
+    """By 0.3 mm at 30 degrees: the ball's lowest point is at x + 0.26, y + 0.15 mm."""
+    lower = rf.Body(STEEL, rf.Sphere(-0.1))
+    scene = rf.Scene(
+        rf.Body(STEEL, rf.Flat()), lower, rf.Friction(), 1.0, 2e-3,
+        sliding_direction=math.pi / 6, sliding_offset=3e-4,
+    )  # fmt: skip
+    z, _ = scene.heights(Grid.square(2e-3, 200))
+    top = np.unravel_index(np.argmax(z), z.shape)
+    centre = [(k + 0.5) * 1e-5 - 1e-3 for k in top]
+    assert centre == pytest.approx([-3e-4 * math.cos(math.pi / 6), -3e-4 * 0.5], abs=0.51e-5)
+
+
+def test_a_periodic_approach_counts_from_the_mean_planes() -> None:
+    """0.2 um below the mean planes: the highest points overlap by the mean gap less that."""
+    rough = rf.Body(STEEL, rf.GaussianRoughness(1e-6, 2e-4, seed=3))
+    scene = rf.Scene(rf.Body(STEEL, rf.Flat()), rough, rf.Friction(), 1.0, 1e-3, periodic=True)
+    problem = discretise(scene, scene.grid(24), approach=-2e-7)
+    assert problem.datum == pytest.approx(problem.gap.mean())
+    assert problem.approach == pytest.approx(problem.gap.mean() - 2e-7)
+
+
+def test_the_roughness_that_is_resolved_worst_counts() -> None:
+    """Elements per length over those required: not the fewest elements."""
+    gaussian = rf.GaussianRoughness(1e-6, 6e-5, seed=1)
+    waves = rf.SelfAffineRoughness(
+        hurst=0.8, rms=1e-7, roll_off=2e-4, long_cut=4e-4, short_cut=5.4e-5, seed=2
+    )
+    grid = Grid((100, 50), (1e-3, 1e-3))  # elements of 10 x 20 um: the longer edge counts
+
+    def of(*parts: rf.Surface) -> tuple[float, float]:
+        lower = rf.Body(STEEL, sum(parts[1:], start=parts[0]))
+        scene = rf.Scene(rf.Body(STEEL, rf.Flat()), lower, rf.Friction(), 1.0, 1e-3)
+        found = resolution(scene, grid, 1e-3)
+        assert found is not None
+        return found.elements, found.required
+
+    alone = [of(gaussian), of(waves)]
+    assert [elements for elements, _ in alone] == pytest.approx([3.0, 2.7])
+    assert alone[0][1] == pytest.approx(math.sqrt(math.log(10) / 1e-3), rel=1e-2)
+    worst = min(alone, key=lambda pair: pair[0] / pair[1])
+    assert worst == alone[0] != min(alone)
+    assert of(gaussian, waves) == of(waves, gaussian) == worst
+
+
+def test_parameters_that_are_zero_do_not_move() -> None:
+    lower = rf.Body(STEEL, rf.GaussianRoughness(1e-6, (1e-4, 2e-4), seed=3))
+    scene = rf.Scene(rf.Body(STEEL, rf.Sphere(0.1)), lower, rf.Friction(tau=0.0, beta=0.2), 7.0, 1e-3)
+    still = {"friction.tau", "lower.surface[0].lay", "lower.surface[0].seed"}
+    assert set(parameters(scene)) - set(moving(scene)) == still

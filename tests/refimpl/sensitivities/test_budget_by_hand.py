@@ -1,0 +1,104 @@
+"""A budget from derivatives made up by hand, of either sign, and what is kept of the linear solves."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from dataclasses import replace
+
+import pytest
+
+import refimpl as rf
+from refimpl.sensitivities.budget import budget
+from refimpl.sensitivities.fixed_contact import FixedContact, Response
+from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity
+
+# by its module's name: the package has a function of the same name
+module = importlib.import_module("refimpl.sensitivities.budget")
+SCENE = rf.Scene(
+    upper=rf.Body(rf.Material(7e9, 0.2), rf.Sphere(0.05)),
+    lower=rf.Body(rf.Material(2e9, 0.35, hardness=6e6), rf.Flat()),
+    friction=rf.Friction(tau=1e6, beta=0.2),
+    load=5.0,
+    side=4e-3,
+)
+
+
+@pytest.fixture(scope="module")
+def solution() -> rf.Solution:
+    return rf.solve(SCENE, 24, plastic=False)
+
+
+def made_up(scene: rf.Scene, solution: rf.Solution) -> Sensitivity:
+    """Derivatives -2 / p and 3 / p by the moduli, -0.5 by the load, of each number."""
+    values = {"upper.material.E": 7e9, "lower.material.E": 2e9, "load": 5.0, "friction.tau": 1e6}
+    slopes = {
+        "upper.material.E": -2 / 7e9, "lower.material.E": 3 / 2e9, "load": -0.5, "friction.tau": 4e-6
+    }  # fmt: skip
+    found = {number: float(getattr(solution, number)) for number in NUMBERS}
+    every = {number: dict(slopes) for number in NUMBERS}
+    return Sensitivity(found, values, every, {number: dict.fromkeys(slopes, 0.0) for number in NUMBERS}, 0.0)
+
+
+def test_no_source_shortens_the_total(solution: rf.Solution, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tolerances of 10 % of E and of tau: |-2| 0.1, 4 0.1; moduli wrong by 3 %: |3 - 2| 0.03."""
+    monkeypatch.setattr(module, "sensitivity", made_up)
+    bars = {name: {"iteration": 0.25, "discretisation": 0.5} for name in NUMBERS}
+    given = replace(
+        solution, uncertainty=bars, slope_error=replace(solution.slope_error, at_rms=0.03)
+    )  # fmt: skip
+    found = budget(SCENE, given, {"upper.material.E": 0.1, "friction.tau": 0.1}, {"contact_area": 2.0})
+    assert set(found.numbers) == set(NUMBERS)
+    for number, part in found.numbers.items():
+        assert part.inputs == pytest.approx({"upper.material.E": 0.2, "friction.tau": 0.4})
+        assert part.input == pytest.approx(math.sqrt(0.2))
+        assert part.numerical == pytest.approx(0.75)
+        assert part.sources["coefficients"] == pytest.approx(0.03)
+        assert min(part.sources.values()) >= 0
+        assert part.sampling == (2.0 if number == "contact_area" else None)
+        sampled = 4.0 if number == "contact_area" else 0.0
+        model = sum(part.sources.values())
+        assert part.total == pytest.approx(model + math.sqrt(0.75**2 + 0.2 + sampled))
+    assert {name: part.value for name, part in found.numbers.items()} == {
+        name: getattr(solution, name) for name in NUMBERS
+    }
+
+
+def test_slopes_beyond_the_table_have_no_bound(
+    solution: rf.Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "sensitivity", made_up)
+    steep = replace(solution, slope_error=replace(solution.slope_error, at_rms=None))
+    for part in budget(SCENE, steep).numbers.values():
+        assert part.sources["coefficients"] == math.inf == part.total
+
+
+@pytest.mark.parametrize("status", list(rf.Status))
+def test_a_capped_solve_that_fails_bounds_nothing(
+    solution: rf.Solution, monkeypatch: pytest.MonkeyPatch, status: rf.Status
+) -> None:
+    """The peak of 10 MPa exceeds the hardness, 6 MPa: the capped solution's difference counts."""
+    assert solution.max_pressure > 6e6
+    capped = replace(solution, status=status, contact_area=solution.contact_area + 3e-7, max_pressure=6e6)
+    monkeypatch.setattr(module, "sensitivity", made_up)
+    monkeypatch.setattr(module, "solved_again", lambda *_, **__: capped)
+    parts = {name: part.sources["plasticity"] for name, part in budget(SCENE, solution).numbers.items()}
+    if status in (rf.Status.CONVERGED, rf.Status.CYCLED):
+        assert parts["contact_area"] == pytest.approx(3e-7)
+        assert parts["max_pressure"] == pytest.approx(solution.max_pressure - 6e6)
+    else:
+        assert set(parts.values()) == {math.inf}
+
+
+def test_the_worst_of_the_linear_solves_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    respond, left = FixedContact.response, [1e-9, 3e-8, 2e-8, 5e-9]
+
+    def answered(self: FixedContact, change: object) -> Response:
+        used.append(left[len(used) % 4])
+        return respond(self, change)._replace(residual=used[-1])  # type: ignore[arg-type]  # an array
+
+    used: list[float] = []
+    monkeypatch.setattr(FixedContact, "response", answered)
+    found = sensitivity(SCENE, rf.solve(SCENE, 16, plastic=False))
+    assert len(used) >= 4
+    assert found.residual == 3e-8

@@ -1,0 +1,158 @@
+"""Small maps whose readings, centres and parameters are worked out by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.grid import Grid
+from refimpl.surfaces.areal_parameters import Spectrum, nayak
+from refimpl.surfaces.crop import Crop
+from refimpl.surfaces.detrending import fit_form
+from refimpl.surfaces.inspection import Inspection
+from refimpl.surfaces.missing_points import MAX_ELIMINATED, fill
+from refimpl.surfaces.orientation import oriented
+from refimpl.surfaces.preparation import prepare
+from refimpl.surfaces.readers import read
+from refimpl.surfaces.reading import Reading
+
+
+@pytest.mark.parametrize("suffix", ["npy", "txt", "csv"])
+def test_infinite_entries_of_a_file_are_missing(tmp_path: Path, suffix: str) -> None:
+    """Four rows along x, one entry infinite either way, one not a number."""
+    z = np.arange(24.0).reshape(4, 6) - 5
+    z[1, 2], z[2, 4], z[3, 5] = np.inf, -np.inf, np.nan
+    path = tmp_path / f"map.{suffix}"
+    if suffix == "npy":
+        np.save(path, z)
+    else:
+        np.savetxt(path, z, delimiter="," if suffix == "csv" else " ")
+    found = read(path, unit="um", pixel_size=(2e-6, 3e-6))
+    assert np.isnan(found.heights).sum() == 3
+    kept = np.isfinite(z)
+    assert np.allclose(found.heights[kept], z[kept] * 1e-6, rtol=1e-12, atol=0)
+
+
+def test_entries_that_a_line_lacks_at_its_end_are_missing(tmp_path: Path) -> None:
+    path = tmp_path / "map.txt"
+    path.write_text("1.5\t2.5\t3.5\t4.5\n5.5\t6.5\t7.5\n8.5\t9.5\t1.5\t2.5\n3.5\t4.5\t5.5\t6.5\n")
+    found = read(path, unit="m", pixel_size=(1.0, 1.0))
+    assert np.isnan(found.heights[1, 3])
+    assert np.isnan(found.heights).sum() == 1
+    assert found.heights[3].tolist() == [3.5, 4.5, 5.5, 6.5]
+
+
+def test_the_pitch_of_points_is_their_span_over_whole_steps(tmp_path: Path) -> None:
+    """Most steps are 2 or 3 % too long, the last is shorter: pitches 1 and 2."""
+    x, y = np.array([0, 1.02, 2.04, 3.06, 4]), np.array([0, 2.06, 4.12, 6])
+    points = [(a, b, 10 * i + j) for i, a in enumerate(x) for j, b in enumerate(y)]
+    path = tmp_path / "points.xyz"
+    np.savetxt(path, points)
+    found = read(path, unit="m")
+    assert found.pixel == pytest.approx((1.0, 2.0), rel=1e-12)
+    assert found.heights[3, 2] == 32
+
+
+@pytest.mark.parametrize(
+    ("degrees", "centre", "pixel"),
+    [(90, (70.0, 10.0), (3.0, 2.0)), (180, (50.0, 70.0), (2.0, 3.0)), (270, (20.0, 50.0), (3.0, 2.0))],
+)
+def test_the_centre_turns_with_the_map(
+    degrees: int, centre: tuple[float, float], pixel: tuple[float, float]
+) -> None:
+    """(10, 20) m of 60 x 90 m, anticlockwise."""
+    reading = Reading(np.arange(900.0).reshape(30, 30), (2.0, 3.0), "map", "by hand")
+    words = {"replica": False, "mirror": None, "turned_over": False, "centre": (10.0, 20.0)}
+    found = oriented(reading, rotate_deg=degrees, **words)  # type: ignore[arg-type]  # as named
+    assert found.centre == centre
+    assert found.reading.pixel == pixel
+    # the pixel at the centre is the same one
+    i, j = (int(at / edge) for at, edge in zip(found.centre, found.reading.pixel, strict=True))
+    assert abs(found.reading.heights[min(i, 29), min(j, 29)] - reading.heights[5, 6]) <= 31
+
+
+@pytest.mark.parametrize(("lost", "refused"), [(5, False), (6, True)])
+def test_exactly_the_allowed_share_may_be_missing(tmp_path: Path, lost: int, refused: bool) -> None:
+    z = np.random.default_rng(2).normal(size=(10, 10))
+    z[0, :lost] = np.nan
+    np.save(tmp_path / "map.npy", z)
+    surface = rf.MeasuredSurface(tmp_path / "map.npy", unit="um", pixel_size=1e-6, max_missing=0.05)
+    if refused:
+        with pytest.raises(rf.InputError, match="6 of 100 points"):
+            surface.sample(Grid.square(1e-5, 10))
+    else:
+        assert np.isfinite(surface.sample(Grid.square(1e-5, 10))).all()
+
+
+@pytest.mark.parametrize("pixel", [(1.0, 1.0), (1.0, 3.0), (2.0, 0.5)])
+@pytest.mark.parametrize("size", [20, 70])
+def test_holes_are_filled_by_the_saddle_around_them(pixel: tuple[float, float], size: int) -> None:
+    """x^2 - y^2 + 0.3 x y is harmonic, discretely as well; small holes by elimination, large ones by CG."""
+    n = size + 10
+    x, y = pixel[0] * np.arange(n)[:, None], pixel[1] * np.arange(n)[None, :]
+    z = x**2 - y**2 + 0.3 * x * y + 7.0
+    holed = z.copy()
+    holed[4 : 4 + size, 5 : 5 + size] = np.nan
+    assert (size**2 > MAX_ELIMINATED) == (size == 70)
+    assert np.abs(fill(holed, pixel) - z).max() < 1e-7 * np.ptp(z)
+
+
+def test_missing_points_do_not_lower_the_spectrum() -> None:
+    """White noise of variance 4 on pixels of 2 x 3 m has C = 24 m^4, with a third of it missing."""
+    z = np.random.default_rng(4).normal(scale=2.0, size=(200, 200))
+    z[np.random.default_rng(5).uniform(size=z.shape) < 1 / 3] = np.nan
+    found = Spectrum.of(z, (2.0, 3.0))
+    assert np.average(found.C, weights=found.count) == pytest.approx(24.0, rel=0.03)
+
+
+def test_nayaks_parameter_of_one_wave() -> None:
+    """Of sin(qx + qy): m0 = 1/2, m2 = q^2 / 2, m4 = q^4 / 2: 1, but for differences on 64 points a wave."""
+    q = 2 * np.pi / 64
+    x = np.arange(256.0)
+    assert nayak(np.sin(q * (x[:, None] + x[None, :])), (1.0, 1.0)) == pytest.approx(1.0, rel=2e-2)
+
+
+def test_the_hurst_exponent_of_a_map_of_that_exponent() -> None:
+    surface = rf.SelfAffineRoughness(
+        hurst=0.6, rms=1e-6, roll_off=4e-4, long_cut=1e-3, short_cut=6e-6, seed=1
+    )
+    grid = Grid.square(1e-3, 512)
+    z = surface.sample(grid)
+    found = Inspection(None, z, grid.spacings, (0.0, 0.0), None).parameters  # type: ignore[arg-type]
+    assert found["psd_slope"] == pytest.approx(-3.2, abs=0.3)
+    assert found["hurst"] == pytest.approx(0.6, abs=0.15)
+
+
+@pytest.mark.parametrize("radius", [0.04, -0.09])
+def test_a_removed_sphere_has_its_radius_and_sign(radius: float) -> None:
+    """A bump of 40 mm, and a hollow of 90 mm, on 2 x 3 mm."""
+    x, y = np.arange(41.0), np.arange(61.0)
+    squared = ((x[:, None] - 20) * 5e-5) ** 2 + ((y[None, :] - 30) * 5e-5) ** 2
+    z = -np.sign(radius) * (abs(radius) - np.sqrt(radius**2 - squared))
+    form = fit_form(x, y, z, "sphere", (5e-5, 5e-5))
+    assert form.radius == pytest.approx(radius, rel=1e-6)
+    assert np.abs(form(x, y) - z).max() < 1e-12
+
+
+def test_a_high_pass_takes_the_plane_and_a_low_pass_leaves_it() -> None:
+    x, y = np.arange(50.0), np.arange(40.0)
+    plane = 3.0 + 0.2 * x[:, None] - 0.1 * y[None, :]
+    reading = Reading(plane, (1.0, 1.0), "map", "by hand")
+    assert np.allclose(prepare(reading, low_pass=8.0).heights, plane, rtol=0, atol=1e-9)
+    assert np.allclose(prepare(reading, high_pass=8.0).heights, 0.0, rtol=0, atol=1e-9)
+
+
+def test_a_window_is_splined_with_what_lies_around_it() -> None:
+    """The points beside the window enter: its border is no end of the spline."""
+    z = np.cos(np.arange(60.0)[:, None] / 3) * np.sin(np.arange(50.0)[None, :] / 4)
+    crop = Crop(Reading(z, (1.0, 1.0), "map", "by hand"), (20.0, 16.0))
+    flat = fit_form(np.arange(2.0), np.arange(2.0), np.zeros((2, 2)), "none")
+    heights, (i, j) = crop.filled(flat)
+    inner_i, inner_j = crop.points
+    assert (inner_i.stop - inner_i.start, inner_j.stop - inner_j.start) == (20, 16)
+    assert i.start < inner_i.start - 5
+    assert j.stop > inner_j.stop + 5
+    assert np.array_equal(heights, z[i, j][: heights.shape[0], : heights.shape[1]])

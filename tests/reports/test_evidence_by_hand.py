@@ -1,0 +1,124 @@
+"""Evidence that must not vanish or be flattered: unjudged cases, long cases, verdicts, columns of a CSV."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from reports.comparison import compared
+from reports.drawing import Figure, lines
+from reports.evidence import gathered
+from reports.exhibit import as_csv
+from reports.results import ResultFileError, check, worst
+from reports.summary import groups
+from reports.traceability import Item, Traced, paper, traced
+from tests.reports.sample import ERRATUM, case, results
+
+
+def dated(date: str, *cases: dict[str, Any], **other: Any) -> dict[str, Any]:
+    made = results(*cases, **other)
+    made["provenance"]["date"] = date
+    return made
+
+
+@pytest.mark.parametrize("status", ["error", "unavailable"])
+def test_committed_cases_that_were_not_judged_are_shown_as_such(status: str) -> None:
+    """In all runs but one it was not judged; the newest of these stands where no run judged it."""
+    older = dated("2001-01-01", case("a/1", status, note="older"), case("b/1", status))
+    newer = dated("2002-01-01", case("a/1", status, note="newer"))
+    found = gathered(results(case("c/1")), {"older": older, "newer": newer})
+    assert {c["id"]: (c["status"], c["note"]) for c in found.cases} == {
+        "a/1": (status, "newer"),
+        "b/1": (status, ""),
+        "c/1": ("pass", ""),
+    }
+    (group,) = groups(found)
+    assert [c["id"] for c in group.not_passed] == ["a/1", "b/1"]
+    assert group.counts == {"pass": 1, "fail": 0, "error": 0, "unavailable": 0} | {status: 2}
+
+
+def test_the_origin_of_a_committed_case() -> None:
+    found = gathered(results(case("c/1")), {"long": dated("2002-01-01", case("a/1"))})
+    assert [c["origin"] for c in found.cases] == [
+        None,
+        {
+            "file": "long.json",
+            "date": "2002-01-01",
+            "commit": "0123456789abcdef",
+            "command": "rough-friction verify --tier quick",
+        },
+    ]
+
+
+def test_runs_of_other_solvers_are_no_evidence() -> None:
+    theirs = dated("2009-01-01", case("a/1", value=1.05), contestant={"name": "x"})
+    ours = dated("2001-01-01", case("a/1", value=1.02))
+    found = gathered(results(case("c/1")), {"theirs": theirs, "ours": ours})
+    assert [c["value"] for c in found.cases if c["id"] == "a/1"] == [1.02]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "kinds"),
+    [
+        # a thousandth of the tolerance of 0.1 of the reference: 0.02 of 200
+        ({"value": 201.0, "reference": 200.0}, {"value": 201.019, "reference": 200.0}, []),
+        ({"value": 201.0, "reference": 200.0}, {"value": 201.021, "reference": 200.0}, ["value"]),
+        # the larger of both uncertainties
+        ({"value": 1.0, "reference_uncertainty": 0.05}, {"value": 1.04}, []),
+        ({"value": 1.0}, {"value": 1.04, "reference_uncertainty": 0.05}, []),
+        ({"value": 1.0}, {"value": 1.06, "reference_uncertainty": 0.05}, ["value"]),
+    ],
+)
+def test_a_change_is_one_beyond_the_larger_uncertainty(old: Any, new: Any, kinds: list[str]) -> None:
+    found = compared(results(case("a/1", **old)), results(case("a/1", **new)))
+    assert [change.kind for change in found] == kinds
+
+
+@pytest.mark.parametrize("status", ["pass", "fail", "error", "unavailable"])
+def test_only_a_long_case_that_passed_stands_for_its_quick_one(status: str) -> None:
+    pattern = next(p for item in paper() for p in item.evidence if "*" not in p)
+    made = [case(pattern), case(f"{pattern}-full", status)]
+    found = {c["id"] for one in traced([{**c, "origin": None} for c in made], []) for c in one.cases}
+    assert (pattern in found) is (status != "pass")
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "errata", "expected"),
+    [
+        (["confirmed", "confirmed with conditions", "refuted"], 0, "refuted"),
+        (["confirmed", "confirmed with conditions"], 0, "confirmed with conditions"),
+        (["confirmed", None], 0, "confirmed"),
+        ([None], 0, "verified"),
+        ([None], 1, "corrected"),
+        (["confirmed", "refuted"], 1, "refuted; print corrected"),
+    ],
+)
+def test_the_least_favourable_verdict_counts(verdicts: list[Any], errata: int, expected: str) -> None:
+    made = [case(f"a/{k}", data={} if v is None else {"verdict": v}) for k, v in enumerate(verdicts)]
+    assert Traced(Item("x", "y", ("a/*",)), made, errata * [ERRATUM]).verdict == expected
+    failed = [*made, case("a/z", "fail")]
+    assert Traced(Item("x", "y", ("a/*",)), failed, []).verdict == "not established"
+
+
+def test_what_decides_about_several_cases() -> None:
+    order = ["error", "fail", "unavailable", "pass"]
+    for k in range(4):
+        assert worst([case(f"a/{j}", order[j]) for j in range(k, 4)]) == order[k]
+
+
+@pytest.mark.parametrize(("uncertainty", "refused"), [(19.9, False), (20.1, True)])
+def test_a_reference_is_as_certain_as_the_tolerance(uncertainty: float, refused: bool) -> None:
+    """A tenth of 200."""
+    made = results(case("a/1", value=201.0, reference=200.0, reference_uncertainty=uncertainty))
+    if refused:
+        with pytest.raises(ResultFileError, match="not that of its value"):
+            check(made)
+    else:
+        check(made)
+
+
+def test_a_csv_has_the_rows_of_its_longest_column() -> None:
+    figure = Figure("*", ("h", "error", "more"), lines("h", {"error": "e"}, xlabel="", ylabel=""), "")
+    found = as_csv(figure, {"h": [1, 2, 3], "error": [0.5], "more": {"a": 7, "b": [8, 9]}})
+    assert found.splitlines() == ["h,error", "1,0.5", "2,", "3,", "more", "a,7", "b,8,9"]

@@ -1,0 +1,282 @@
+"""Round trips with all fields set: nothing that is saved comes back otherwise, or as its default."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import pickle
+import tomllib
+from dataclasses import asdict, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import refimpl as rf
+from appendix_a.fem.coefficient_map import CoefficientMap
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.grid import Grid
+from refimpl.planning.plan import Plan, make_plan
+from refimpl.planning.terms import RequestedTerms
+from refimpl.scene.discretise import discretise
+from refimpl.scene.scene_file import scene_from_dict, scene_to_dict, scene_to_toml
+from refimpl.surfaces import surface_from_dict
+from refimpl.surfaces.from_table import KINDS
+from reports.results import check
+from tests.generated import instances, plain
+from verification.coverage.store import Rung, climb, rungs
+from verification.framework.case import Case, Measured, Metric, Result, Tier
+from verification.framework.runner import Run as CasesRun
+from verification.sweep.export import to_csv
+from verification.sweep.run import COORDINATES, OUTCOMES, Run
+from verification.sweep.store import open_store
+from verification.sweep.study import Study
+from verification.sweep.study_file import study_from_dict
+
+LENGTHS = st.floats(1e-6, 1e-3)
+SHARES = st.floats(0.01, 0.49)
+KNOWN = {
+    ("Sphere", "radius"): st.floats(0.01, 1.0),
+    ("GaussianRoughness", "rms"): LENGTHS,
+    ("GaussianRoughness", "correlation_length"): st.one_of(LENGTHS, st.tuples(LENGTHS, LENGTHS)),
+    ("GaussianRoughness", "acf_level"): SHARES,
+    ("SelfAffineRoughness", "hurst"): SHARES,
+    ("SelfAffineRoughness", "short_cut"): st.floats(1e-6, 2e-6),
+    ("SelfAffineRoughness", "roll_off"): st.floats(3e-6, 9e-6),
+    ("SelfAffineRoughness", "long_cut"): st.floats(1e-5, 1e-4),
+    ("SelfAffineRoughness", "rms"): LENGTHS,
+    ("SelfAffineRoughness", "rms_gradient"): st.none(),  # one of both: the other has a test of its own
+    ("SelfAffineRoughness", "anisotropy"): st.floats(2.0, 9.0),
+    ("MeasuredSurface", "path"): st.just(Path("/nowhere/map.npy")),
+    ("MeasuredSurface", "unit"): st.sampled_from(["m", "mm", "um", "nm"]),
+    ("MeasuredSurface", "pixel_size"): st.tuples(LENGTHS, LENGTHS),
+    ("MeasuredSurface", "outliers"): st.floats(3.0, 9.0),
+    ("MeasuredSurface", "low_pass"): st.floats(1e-6, 2e-6),
+    ("MeasuredSurface", "high_pass"): st.floats(3e-6, 9e-6),
+    ("MeasuredSurface", "level"): st.sampled_from(["none", "mean"]),
+    ("MeasuredSurface", "missing"): st.just("refuse"),
+    ("MeasuredSurface", "max_missing"): SHARES.filter(lambda share: share != 0.05),
+    ("MeasuredSurface", "mirror"): st.sampled_from(["x", "y"]),
+    ("MeasuredSurface", "rotate_deg"): st.sampled_from([90, 180, 270]),
+    ("MeasuredSurface", "centre"): st.tuples(LENGTHS, LENGTHS),
+    ("Material", "E"): st.floats(1e6, 1e12),
+    ("Material", "nu"): SHARES,
+    ("Material", "hardness"): st.floats(1e6, 1e10),
+    ("Friction", "tau"): st.floats(1.0, 1e9),
+    ("Friction", "beta"): SHARES,
+    ("Scene", "load"): st.floats(1e-3, 1e3),
+    ("Scene", "side"): st.none(),  # size is given
+    ("Scene", "sliding_offset"): st.floats(-1e-3, 1e-3),
+    ("Scene", "size"): st.tuples(st.floats(1e-3, 9e-3), st.floats(1e-3, 9e-3)),
+    ("Grid", "shape"): st.tuples(st.integers(1, 99), st.integers(1, 99)),
+    ("Grid", "lengths"): st.tuples(LENGTHS, LENGTHS),
+}
+ANY_SURFACE = st.one_of(*(instances(kind, KNOWN) for kind in KINDS.values()))
+KNOWN |= {
+    ("Body", "surface"): st.lists(ANY_SURFACE, min_size=1, max_size=3).map(lambda p: sum(p[1:], start=p[0])),
+}
+FEW = settings(max_examples=25, derandomize=True, database=None)
+
+
+@FEW
+@given(instances(rf.Scene, KNOWN))
+def test_scenes(scene: rf.Scene) -> None:
+    for table in (tomllib.loads(scene_to_toml(scene)), json.loads(json.dumps(scene_to_dict(scene)))):
+        again = scene_from_dict(table, Path("/elsewhere"))
+        assert plain(again) == plain(scene)
+
+
+def test_a_square_scene_keeps_its_side_and_a_rigid_body_its_name() -> None:
+    rigid = rf.Body(rf.Material(np.inf, 0.2), rf.Flat())
+    scene = rf.Scene(rigid, rf.Body(rf.Material(1e9, 0.3), rf.Flat()), rf.Friction(), 2.0, side=3e-3)
+    assert "rigid" in scene_to_toml(scene)
+    assert plain(scene_from_dict(tomllib.loads(scene_to_toml(scene)), Path())) == plain(scene)
+
+
+@FEW
+@given(ANY_SURFACE)
+def test_surfaces(surface: Any) -> None:
+    table = json.loads(json.dumps(surface.to_dict()))
+    assert plain(surface_from_dict(table, Path("/elsewhere"))) == plain(surface)
+    assert plain(pickle.loads(pickle.dumps(surface))) == plain(surface)
+
+
+def test_a_surface_given_by_its_gradient_comes_back_by_its_gradient() -> None:
+    sizes = {"hurst": 0.7, "roll_off": 2e-5, "long_cut": 4e-5, "short_cut": 3e-6, "seed": 5}
+    surface = rf.SelfAffineRoughness(**sizes, rms_gradient=0.13)
+    again = surface_from_dict(json.loads(json.dumps(surface.to_dict())))
+    assert plain(again) == plain(surface)
+    assert (again.given, again.rms_gradient) == ("rms_gradient", 0.13)  # type: ignore[attr-defined]
+
+
+@FEW
+@given(st.lists(instances(Rung, KNOWN), min_size=1, max_size=3, unique_by=lambda rung: (rung.seed, rung.M)))
+def test_rungs_of_a_store(tmp_path_factory: pytest.TempPathFactory, made: list[Rung]) -> None:
+    store = tmp_path_factory.mktemp("rungs") / "store.jsonl"
+    solved = {(rung.seed, rung.M): rung for rung in made}
+    for rung in made:
+        climb(store, [rung.seed], [rung.M], lambda seed, M: solved[seed, M])
+    assert [plain(rung) for rung in rungs(store)] == [plain(rung) for rung in made]
+
+
+def test_rows_of_a_sweep(tmp_path: Path) -> None:
+    """Every column a value of its own: one that stands in another's place is seen."""
+    coordinates = {name: 2.5 + k for k, name in enumerate(COORDINATES)}
+    outcomes = {name: -1.0 / (3 + k) for k, name in enumerate(OUTCOMES)} | {"status": "stagnated"}
+    run = Run(coordinates, {"grid": 8, "scene": {"load": 1.5}})
+    with open_store(tmp_path / "s.sqlite") as store:
+        store.add(run, outcomes, 12.25)
+    with open_store(tmp_path / "s.sqlite") as store:
+        (row,), (seconds,) = list(store.rows([run])), list(store.seconds([run]))
+    expected = {"key": run.key, **coordinates, **outcomes}
+    assert (row, seconds) == (expected, 12.25)
+    (read,) = csv.DictReader(io.StringIO(to_csv([row])))
+    assert read == {name: str(value) for name, value in expected.items()}
+
+
+def test_a_study_has_all_that_its_table_states() -> None:
+    vary = {"grid": [8, 16], "load": [3.0, 4.0], "upper_rms": [1e-7], "lower_rms": [2e-7]}
+    vary |= {"correlation_length": [2e-4], "sliding_direction": [0.3], "sliding_offset": [1e-5]}
+    vary |= {"tau": [5e6], "beta": [0.07], "lower.surface[0].lay": [0.4]}
+    table = {"scene": "table1-rough", "realisations": 3, "first_seed": 7, "normalise": True, "vary": vary}
+    study = study_from_dict(table | {"solve": {"method": "dense", "oblique": False, "tolerance": 1e-6}})
+    scene = rf.read_scene("table1-rough")
+    expected = {
+        "scene": scene_to_dict(scene),
+        "realisations": 3,
+        "first_seed": 7,
+        "normalise": True,
+        "vary": {name: tuple(values) for name, values in vary.items()},
+        "settings": {"method": "dense", "oblique": False, "tolerance": 1e-6},
+        "files": (Path("table1-rough"),),
+        "notes": (),
+    }
+    assert set(expected) == {field.name for field in fields(Study)}
+    assert {name: getattr(study, name) for name in expected} == expected
+    run = list(study.runs())[-1]  # of the third realisation
+    assert dict(run.coordinates) == {
+        "realisation": 2,
+        "grid": 16,
+        "load": 4.0,
+        "upper_rms": 1e-7,
+        "lower_rms": 2e-7,
+        "correlation_length": 2e-4,
+        "sliding_direction": 0.3,
+        "sliding_offset": 1e-5,
+        "tau": 5e6,
+        "beta": 0.07,
+        "parameters": '{"lower.surface[0].lay": 0.4}',
+    }
+    solved = scene_from_dict(run.inputs["scene"], Path())
+    assert (solved.load, solved.sliding_direction, solved.sliding_offset) == (4.0, 0.3, 1e-5)
+    assert solved.friction == rf.Friction(tau=5e6, beta=0.07)
+    upper, lower = solved.upper.surface.parts[-1], solved.lower.surface.parts[0]
+    assert upper == rf.GaussianRoughness(1e-7, 2e-4, seed=11, normalise=True)
+    assert lower == rf.GaussianRoughness(2e-7, 2e-4, seed=12, normalise=True, lay=0.4)
+    assert run.inputs["solve"] == expected["settings"]
+
+
+def test_a_case_keeps_its_numbers_to_the_report() -> None:
+    """From a case's declaration and its measurement to the result file, by JSON, as a report reads it."""
+    measured = Measured(2.5, 2.0, 0.125, "N", {"h": [1.0, np.nan]}, "a note")
+    case = Case(
+        "subject/slug", "Title", "Claim", "Source", Metric.RELATIVE, 0.5, "Reason", lambda: measured,
+        Tier.FULL, ("tag",),
+    )  # fmt: skip
+    result = case.run()
+    document = json.loads(json.dumps(CasesRun(Tier.FULL, ("*",), (result,), 3.25).document()))
+    (found,) = check(document)["cases"]
+    expected = {
+        "id": "subject/slug",
+        "title": "Title",
+        "claim": "Claim",
+        "source": "Source",
+        "metric": "relative",
+        "value": 2.5,
+        "reference": 2.0,
+        "reference_uncertainty": 0.125,
+        "error": 0.25,
+        "tolerance": 0.5,
+        "tolerance_reason": "Reason",
+        "status": "pass",
+        "seconds": result.seconds,
+        "unit": "N",
+        "note": "a note",
+        "tier": "full",
+        "tags": ["tag"],
+        "data": {"h": [1.0, None]},
+    }
+    assert set(expected) == {field.name for field in fields(Result)}
+    assert found == expected
+    assert (document["tier"], document["only"], document["seconds"]) == ("full", ["*"], 3.25)
+    assert document["counts"] == {"pass": 1, "fail": 0, "error": 0, "unavailable": 0}
+
+
+def test_plans() -> None:
+    scene = rf.read_scene("table1-rough")
+    requested = RequestedTerms(coupled=True, tilted=False, plastic=False)
+    found = make_plan(discretise(scene, scene.grid(24)), "dense", requested, demand=0.03)
+    assert plain(pickle.loads(pickle.dumps(found))) == plain(found)
+    other = scene.grid((20, 28))
+    # 8 bytes in each of 6 matrices between 560 elements
+    assert plain(found.on(other)) == plain(replace(found, grid=other, memory=8 * 6 * 560**2))
+    assert {field.name for field in fields(Plan)} > {"method", "requested", "demand", "budget", "contact"}
+    assert (found.method, found.requested, found.demand, found.budget) == ("dense", requested, 0.03, 0.015)
+    assert found.decided_on == 24 * 24
+
+
+def test_solutions() -> None:
+    """The JSON of a solution holds each of its numbers, and its parts of uncertainty."""
+    steel = rf.Material(200e9, 0.3, hardness=2e9)
+    lower = rf.Body(rf.Material(118e9, 0.28), rf.Sphere(-0.2) + rf.GaussianRoughness(2e-7, 2e-4, seed=2))
+    scene = rf.Scene(rf.Body(steel, rf.Flat()), lower, rf.Friction(15e6, 0.08), 70.0, size=(1.7e-3, 1.2e-3))
+    solution = rf.solve(scene, (34, 20), tolerance=1e-7)
+    found = json.loads(json.dumps(solution.summary()))
+    names = ("approach", "normal_force", "friction_force", "binormal_force", "friction_coefficient")
+    names += ("contact_area", "contact_area_corrected", "plastic_area", "max_pressure", "plastic_share")
+    assert {name: found[name] for name in names} == {name: getattr(solution, name) for name in names}
+    assert len({found[name] for name in names} - {0.0}) >= 8  # no two of them alike
+    assert (found["grid"], found["size"], found["tolerance"]) == ([34, 20], [1.7e-3, 1.2e-3], 1e-7)
+    assert found["certificate"] == asdict(solution.certificate)
+    assert found["uncertainty"] == {name: dict(parts) for name, parts in solution.uncertainty.items()}
+    assert [term["effect"] for term in found["plan"]] == [asdict(t.effect) for t in solution.plan.terms]
+    assert found["neglected"] == {name: asdict(one) for name, one in solution.neglected.items()}
+    assert len(found["warnings"]) == len(solution.warnings) > 0
+    again = pickle.loads(pickle.dumps(solution))
+    for field in fields(rf.Solution):
+        one, other = getattr(solution, field.name), getattr(again, field.name)
+        same = np.array_equal(one, other) if isinstance(one, np.ndarray) else repr(one) == repr(other)
+        assert same, field.name
+
+
+@FEW
+@given(instances(GridFeatures, KNOWN), instances(Grid, KNOWN))
+def test_features_change_no_field_beside_the_one_that_is_replaced(features: GridFeatures, grid: Grid) -> None:
+    changed = plain(replace(features, grid=grid))
+    assert isinstance(changed, dict)
+    assert changed == {**plain(features), "grid": plain(grid)}  # type: ignore[dict-item]  # a table
+
+
+def test_the_map_of_coefficients(tmp_path: Path) -> None:
+    """Seven digits of every number, along each axis."""
+    shape = (2, 3, 4, 5)
+    numbers = (np.arange(120).reshape(shape) + 1) * 1.1234567
+    table = CoefficientMap(
+        slope_deg=(1.0, 2.5),
+        wavelength=(4.0, 8.0, 20.0),
+        position=(0.0, 0.1, 0.2, 0.5),
+        offset=(-3.0, -1.0, 0.5, 2.0, 4.0),
+        kappa_part=np.round(numbers, 7),
+        constant_part=np.round(-numbers / 3, 7),
+        error_percentage_points=np.round(numbers[..., 0] / 7, 7),
+    )
+    table.write(tmp_path / "map.json")
+    again = CoefficientMap.read(tmp_path / "map.json")
+    for field in fields(CoefficientMap):
+        assert np.array_equal(getattr(again, field.name), getattr(table, field.name)), field.name
+    stated = json.loads((tmp_path / "map.json").read_text())["stated_error_percentage_points"]
+    assert stated == pytest.approx(116 * 1.1234567 / 7)  # the largest

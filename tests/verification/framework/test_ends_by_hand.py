@@ -1,0 +1,119 @@
+"""Both ends of what the framework judges by: uncertainties, counts, orders, and the mode of files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
+from verification.framework.files import write_text
+from verification.framework.rates import extrapolate
+from verification.framework.registry import select
+from verification.framework.runner import Run
+from verification.framework.verdict import Verdict, judged
+
+
+def case(id: str = "a/b", *, metric: Metric = Metric.RELATIVE, measured: Measured | None = None) -> Case:
+    found = measured or Measured(205.0, 200.0)
+    return Case(id, "t", "c", "s", metric, 0.05, "r", lambda: found)
+
+
+@pytest.mark.parametrize(("uncertainty", "status"), [(9.9, "pass"), (10.1, "error")])
+def test_a_relative_tolerance_holds_relative_uncertainties(uncertainty: float, status: str) -> None:
+    """5 % of the reference, 200."""
+    assert case(measured=Measured(205.0, 200.0, uncertainty)).run().status == status
+
+
+def test_no_error_measure_is_negative_but_a_figure_of_merit_may_be() -> None:
+    assert case(metric=Metric.AT_MOST, measured=Measured(-1e-9)).run().status == "error"
+    assert case(metric=Metric.AT_LEAST, measured=Measured(-1e-9)).run().status == "fail"
+
+
+def result(status: Status) -> Result:
+    return case().result(status, "", 0.5)
+
+
+@pytest.mark.parametrize(
+    ("statuses", "expected"),
+    [
+        ([Status.PASS, Status.UNAVAILABLE], 0),
+        ([Status.PASS, Status.FAIL], 1),
+        ([Status.PASS, Status.ERROR], 1),
+        ([Status.UNAVAILABLE], 1),
+        ([], 1),
+    ],
+)
+def test_a_run_succeeds_where_something_passed_and_nothing_failed_or_broke(
+    statuses: list[Status], expected: int
+) -> None:
+    run = Run(Tier.QUICK, (), tuple(map(result, statuses)), 1.5)
+    assert run.exit_status == expected
+    assert run.counts == {status.value: statuses.count(status) for status in Status}
+
+
+def test_one_glob_that_matches_nothing_is_refused_beside_another() -> None:
+    cases = [case("a/b"), case("a/c")]
+    assert select(cases, Tier.QUICK, ["a/b"]) == (cases[0],)
+    with pytest.raises(LookupError, match="z/"):
+        select(cases, Tier.QUICK, ["a/b", "z/*"])
+
+
+def test_a_verdict_keeps_its_numbers() -> None:
+    found = judged(
+        Verdict.REFUTED, "so", 2.5, data={"h": [1]}, reference=2.0, reference_uncertainty=0.125, unit="N"
+    )
+    assert found == Measured(2.5, 2.0, 0.125, "N", {"verdict": "refuted", "h": [1]}, "refuted: so")
+
+
+def test_an_exact_series_has_the_uncertainty_of_its_last_step() -> None:
+    """1 + h^2 at h = 0.4, 0.2, 0.1: 1.25 times 0.01."""
+    found = extrapolate([0.4, 0.2, 0.1], [1.16, 1.04, 1.01], 2.0)
+    assert found.uncertainty == pytest.approx(0.0125)
+    assert found.credible
+
+
+def test_a_misfit_counts_as_uncertainty() -> None:
+    """1 + h + noise of -e, 2e, -e, 0: a fit of order 1 leaves what is not on its line."""
+    h, e = [0.8, 0.4, 0.2, 0.1], 1e-3
+    values = [1 + a + s * e for a, s in zip(h, (0, 0, 4, -4), strict=True)]
+    found = extrapolate(h, values, 1.0)
+    assert found.credible
+    limit, slope = found.extrapolated, (1.1 - 4 * e - found.extrapolated)
+    assert found.uncertainty > 1.25 * abs(slope)
+    assert abs(limit - 1.0) < found.uncertainty
+
+
+def test_an_order_higher_than_expected_does_not_shorten_the_uncertainty() -> None:
+    """Order 2.4 where 2 is expected: the correction of the best fit of order 2 is larger."""
+    h = [0.4, 0.2, 0.1]
+    found = extrapolate(h, [1 + a**2.4 for a in h], 2.0)
+    assert found.credible
+    assert found.order == pytest.approx(2.4)
+    exact = 0.1**2.4
+    assert found.uncertainty > 1.5 * 1.25 * exact
+
+
+def test_local_orders_far_off_are_not_credible() -> None:
+    """Orders of about 1.3 and 3 fit 2 in the mean; the range of the values, 0.9, times 3 is left."""
+    h = [0.8, 0.4, 0.2, 0.1]
+    values = [1.0, 0.35, 0.12, 0.1]
+    found = extrapolate(h, values, 2.0)
+    assert any(abs(p - 2.0) > 0.5 for p in found.local)
+    assert not found.credible
+    assert found.uncertainty == pytest.approx(3 * 0.9)
+
+
+def test_a_replaced_file_keeps_its_mode(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    write_text("old", path)
+    os.chmod(path, 0o640)
+    write_text("new", path)
+    assert (path.read_text(), path.stat().st_mode & 0o777) == ("new", 0o640)
+    before = os.umask(0o027)
+    try:
+        write_text("fresh", tmp_path / "fresh")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "fresh").stat().st_mode & 0o777 == 0o640

@@ -1,0 +1,217 @@
+"""``python -m verification.mutation.campaign --log FILE --json FILE``: meaningful faults that tests notice.
+
+The faults of ``faults.toml`` were invented by reading the source: a sign, a column, a lost row, a wrong unit.
+With ``--random N`` they are N mutants of each area instead, of all its modules. Each fault is written into a
+clone of the committed tree and judged there: by the doctests of its module, the tests that import it and the
+tests of its area, until one fails. A verdict is kept in the log and counts as long as the module stands as it
+was; an unnoticed fault is tried again when its tests have changed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import subprocess
+import tempfile
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatch
+from itertools import islice
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from verification.framework.files import Progress, write_result
+from verification.framework.provenance import provenance
+from verification.mutation.judge import Suite
+from verification.mutation.mutants import candidates, mutant
+from verification.mutation.score import lower_bound
+from verification.mutation.session import in_fair_order
+from verification.mutation.targets import near_first
+
+ROOT = Path(__file__).resolve().parents[2]
+TABLE = Path(__file__).with_name("faults.toml")
+GOAL = 0.90  # share of the faults that tests notice
+LIMIT = 600  # processor seconds of one trial: more than the tests of any area take
+
+Record = dict[str, Any]
+Areas = Mapping[str, Mapping[str, Sequence[str]]]
+
+
+class Fault(NamedTuple):
+    """A wrong text ``new`` for ``old``, which stands once in ``file``; ``breaks`` names the effect."""
+
+    area: str
+    file: str
+    breaks: str
+    old: str
+    new: str
+
+    def applied(self, source: str) -> str:
+        """Return the source with the fault; raises ValueError unless the old text stands there once."""
+        if source.count(self.old) != 1:
+            raise ValueError(f"{self.file}: {self.old!r} stands there {source.count(self.old)} times")
+        return source.replace(self.old, self.new)
+
+
+def read_faults(path: Path = TABLE) -> tuple[list[Fault], Areas]:
+    """Return the faults of a table, and the areas: their ``modules`` and ``tests``, by folder."""
+    table = tomllib.loads(path.read_text(encoding="utf-8"))
+    return [Fault(**row) for row in table["fault"]], table["areas"]
+
+
+def mutants_of(root: Path, name: str, folders: Sequence[str], seed: int) -> Iterable[Fault]:
+    """Mutants of all modules of an area in a fair order, each as a fault of its whole file."""
+    files = [path for folder in folders for path in sorted((root / folder).rglob("*.py"))]
+    files = [path for path in files if path.name not in ("__init__.py", "__main__.py")]
+    sources = {str(path.relative_to(root)): path.read_text(encoding="utf-8") for path in files}
+    found = [one for file, source in sources.items() for one in candidates(file, source)]
+    for candidate in in_fair_order(found, seed):
+        source = sources[candidate.module]
+        changed = mutant(candidate, source)
+        if changed is not None:
+            line = f"{candidate.operator}, line {changed.line}: {changed.before} -> {changed.after}"
+            yield Fault(name, candidate.module, line, source, changed.source)
+
+
+def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record:
+    """Write a fault into the tree at ``root``, run the tests, and restore the file.
+
+    ``moment`` (s) dates the file: bytecode of another trial is not taken for its own. A test that fails
+    without the fault as well counts for nothing, and the trial is repeated without it.
+    """
+    path, failing, seconds = root / fault.file, list[str](), 0.0
+    source = path.read_text(encoding="utf-8")
+    while True:
+        try:
+            path.write_text(fault.applied(source), encoding="utf-8")
+            os.utime(path, (moment, moment))
+            without = [f"--deselect={test}" for test in failing]
+            verdict = Suite(root, [*tests, *without]).verdict_of_tree(LIMIT)
+        finally:
+            path.write_text(source, encoding="utf-8")
+            os.utime(path, (moment + 1, moment + 1))
+        seconds += verdict.seconds
+        if verdict.outcome != "killed" or not verdict.killer or verdict.killer in failing:
+            break
+        if Suite(root, [verdict.killer]).verdict_of_tree(LIMIT).outcome == "survived":
+            break
+        failing.append(verdict.killer)
+    outcome = "unnoticed" if verdict.outcome == "survived" else "noticed"
+    return {"outcome": outcome, "test": verdict.killer, "seconds": round(seconds, 2), "failing": failing}
+
+
+def run(
+    faults: Sequence[Fault], areas: Areas, log: Path, clone: Path, *, far: bool, early: Sequence[str] = ()
+) -> list[Record]:
+    """Try the faults that the log (JSON lines) does not hold; return the records of all, in their order.
+
+    ``far`` has tests of other areas that import the module run as well; tests whose path matches a pattern of
+    ``early`` come first.
+    """
+    known = {record["key"]: record for record in _read(log)}
+    records, progress = [], Progress(len(faults))
+    Suite(clone, ["tests"]).import_foreign()
+    for number, fault in enumerate(faults):
+        near = near_first(clone, fault.file, areas[fault.area]["tests"], far=far)
+        tests = sorted((fault.file, *near), key=lambda test: not any(fnmatch(test, one) for one in early))
+        key = _digest([*fault, (clone / fault.file).read_text(encoding="utf-8")])
+        suite = _digest((clone / test).read_text(encoding="utf-8") for test in tests)
+        record = known.get(key)
+        if record is None or (record["outcome"] == "unnoticed" and record["suite"] != suite):
+            found = tried(clone, fault, tests, 10**9 + 2 * number)
+            record = {"key": key, "suite": suite, "area": fault.area, "file": fault.file}
+            record |= {"breaks": fault.breaks, **found}
+            with log.open("a", encoding="utf-8") as lines:
+                lines.write(json.dumps(record, ensure_ascii=False) + "\n")
+        records.append(record)
+        progress.tick(f"{record['outcome']} {fault.file}: {fault.breaks}")
+    progress.close()
+    return records
+
+
+def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: bool = True) -> Record:
+    """Return the result: noticed shares, by area as well, and the faults with their outcomes.
+
+    ``first`` are the records of the faults as first judged, before any test was written for one of them.
+    ``every`` lists noticed faults as well.
+    """
+    before = {record["breaks"]: record["outcome"] for record in first or records}
+    listed = [r for r in records if every or "unnoticed" in (r["outcome"], before.get(r["breaks"]))]
+    return {
+        "all": _counts(records, before),
+        "areas": [
+            {"area": area, **_counts([r for r in records if r["area"] == area], before)}
+            for area in dict.fromkeys(record["area"] for record in records)
+        ],
+        "list": [
+            {name: record[name] for name in ("area", "file", "breaks", "outcome", "test")}
+            | {"first": before.get(record["breaks"], "not judged")}
+            for record in listed
+        ],
+    }
+
+
+def _counts(records: Sequence[Record], before: Mapping[str, str]) -> Record:
+    """Number of faults and of those judged at first; noticed shares at first and now; the lower bound (95 %)
+    of the first.
+    """
+    judged = [before[record["breaks"]] for record in records if record["breaks"] in before]
+    first, now = judged.count("noticed"), sum(record["outcome"] == "noticed" for record in records)
+    return {
+        "faults": len(records),
+        "judged": len(judged),
+        "first": round(first / len(judged), 4) if judged else None,
+        "first_lower_bound": round(lower_bound(first, len(judged)), 4) if judged else None,
+        "now": round(now / len(records), 4),
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Exit status 0 when the goal is met, else 1."""
+    parser = argparse.ArgumentParser(prog="python -m verification.mutation.campaign", description=__doc__)
+    parser.add_argument("--only", nargs="+", default=["*"], help="patterns of the areas to try now")
+    parser.add_argument(
+        "--random", type=int, metavar="N", help="N mutants of each area, in place of the list"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="of the mutants' order")
+    parser.add_argument("--early", nargs="+", default=[], help="patterns of the tests to run first")
+    parser.add_argument("--log", type=Path, required=True, help="JSON lines: every verdict; resumed from")
+    parser.add_argument("--first", type=Path, help="log of the faults as first judged")
+    parser.add_argument("--json", type=Path, help="result to write")
+    options = parser.parse_args(arguments)
+    faults, areas = read_faults()
+    chosen = [name for name in areas if any(fnmatch(name, pattern) for pattern in options.only)]
+    with tempfile.TemporaryDirectory() as folder:
+        clone = Path(folder) / "clone"
+        subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
+        if options.random is None:
+            listed = [fault for fault in faults if fault.area in chosen]
+        else:
+            orders = [mutants_of(clone, name, areas[name]["modules"], options.seed) for name in chosen]
+            drawn = [list(islice(order, options.random)) for order in orders]
+            listed = [fault for several in zip(*drawn, strict=True) for fault in several]
+        records = run(listed, areas, options.log, clone, far=options.random is None, early=options.early)
+    first = _read(options.first) if options.first else ()
+    found = summary(records, first, every=options.random is None)
+    if options.json:
+        seed = {} if options.random is None else {"seed": options.seed}
+        write_result({**found, **seed, "provenance": provenance()}, options.json)
+    print(found["all"])
+    return 0 if found["all"]["now"] >= GOAL else 1
+
+
+def _read(log: Path) -> list[Record]:
+    if not log.exists():
+        return []
+    return [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+
+
+def _digest(texts: Iterable[str]) -> str:
+    """Fingerprint of texts."""
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:12]
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
