@@ -18,7 +18,8 @@ from refimpl.scene.discretise import discretise
 PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1))
 CONTACT = ExpectedContact(
     elements=50, patches=4.0, mean_pressure=10e6, pressure=16e6, approach=2e-6, slope_squared=4e-4,
-    least_slope=0.01, least_mean_slope=0.002, border=0.1, extent=0.2, symmetric=False, mirrored=False, window=(7, 9),
+    least_slope=0.01, least_mean_slope=0.002, border=0.1, extent=0.2, symmetric=False, mirrored=False,
+    window=(7, 9),
 )  # fmt: skip
 SCENE = rf.Scene(
     upper=rf.Body(PAIR.upper, rf.Sphere(0.05)),
