@@ -33,6 +33,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "extremes_drawn": ("refimpl", "verification/extremes"),
     "fault_matrix": ("refimpl", "appendix_a", "verification/cases", "verification/matrix"),
     "fuzz": ("refimpl", "verification/fuzz", "verification/sweep"),
+    "identification": ("refimpl", "verification/coverage"),
     "hypothesis": ("refimpl", "verification/properties"),
     "model_form": ("refimpl", "appendix_a"),
     "multilevel": ("refimpl", "verification/multilevel"),
