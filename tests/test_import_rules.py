@@ -101,6 +101,7 @@ FLOORS = (
     {"solution"},
     {"driver"},
     {"sensitivities"},
+    {"identification"},
 )
 FLOOR = {name: level for level, rooms in enumerate(FLOORS) for name in rooms}
 REFIMPL = [name for name in modules("refimpl") if name != "refimpl"]

@@ -20,7 +20,7 @@ load, a shape or a roughness stands how far the fixed set's answer is from that 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -83,11 +83,12 @@ class Sensitivity:
         return derivative * self.parameters[parameter] / found
 
 
-def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
+def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
     """Derivatives of mu, A, f_max and Q with respect to every parameter of `moving(scene)`.
 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, and two
-    solves on the solution's grid for the load and for each number of a surface. Raises `InputError`
+    solves on the solution's grid for the load and for each number of a surface. ``names`` restricts the
+    parameters to these and the load. Raises `InputError`
     for a solution that is not in contact, not certified or another scene's, `ArithmeticError` where a
     linear or full solve does not converge.
     """
@@ -96,6 +97,8 @@ def sensitivity(scene: Scene, solution: Solution) -> Sensitivity:
     active = solution.contact & ~solution.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
     values, yields = moving(scene), bool(fixed.capped.any())
+    if names is not None:
+        values = {name: value for name, value in values.items() if name in ("load", *names)}
     answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
     solved = {
         name: _differenced(scene, solution, name, value)
@@ -291,3 +294,25 @@ def _gathered(
         scatter=scatter,
         residual=max(answer.residual for answer in answers.values()),
     )
+
+
+def friction_slopes(scene: Scene, solution: Solution) -> tuple[float, float]:
+    """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` at the solution's contact set.
+
+    Two GMRES solves and no solve of the scene. The motion of the contact's edge is neglected: `sensitivity`
+    includes it. Where all contact is at the hardness, pressures are fixed and the slopes are sums.
+    Both parameters must be positive. Raises as `sensitivity` does.
+    """
+    base = solution.problem.with_terms(_terms(solution))
+    active = solution.contact & ~solution.excluded
+    if solution.contact.any() and solution.plastic_area == solution.contact_area:
+        along = solution.slopes.cos_x * solution.slopes.cos_y * solution.grid.element_area / scene.load
+        return float(np.sum(active * along)), float(np.sum(solution.pressure * along))
+    _check(scene, solution)
+    fixed = FixedContact(base, solution.pressure, active, solution.slopes)
+    found = parameters(scene)
+    adhesive, pressed = (
+        _answer(scene, base, fixed, name, found[name]).friction / scene.load
+        for name in ("friction.tau", "friction.beta")
+    )
+    return adhesive, pressed

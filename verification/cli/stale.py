@@ -34,6 +34,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "fault_matrix": ("refimpl", "appendix_a", "verification/cases", "verification/matrix"),
     "faults_by_hand": ("refimpl", "appendix_a", "verification", "tests"),
     "fuzz": ("refimpl", "verification/fuzz", "verification/sweep"),
+    "identification": ("refimpl", "verification/coverage"),
     "hypothesis": ("refimpl", "verification/properties"),
     "model_form": ("refimpl", "appendix_a"),
     "multilevel": ("refimpl", "verification/multilevel"),

@@ -1,0 +1,172 @@
+"""Measured friction as a table: rows of load, mu or friction force, and its standard uncertainty."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from refimpl.errors import InputError
+from refimpl.scene.scene import Body, Scene
+from refimpl.surfaces import SurfaceSum
+from refimpl.surfaces.measured import MeasuredSurface
+
+MAX_ROWS, MAX_BYTES = 1000, 1_000_000
+MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN
+MIXED_LOADS = 300.0  # ratio of neighbouring loads, the same: no loading series leaves such a gap
+_FRICTION = {"mu": "u_mu", "friction_force": "u_friction_force"}
+_FRAME, _FILES = ("sliding_direction", "sliding_offset"), ("upper_file", "lower_file")
+_UNITS = {
+    "load": "N",
+    "friction_force": "N",
+    "u_friction_force": "N",
+    "sliding_direction": "rad",
+    "sliding_offset": "m",
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measurement: ``load`` (N), ``mu``, its standard uncertainty ``u_mu``, and overrides of the scene.
+
+    sliding_direction : rad; sliding_offset : m; upper_file, lower_file : paths of measured surfaces. None
+    keeps what the scene states.
+    """
+
+    load: float
+    mu: float
+    u_mu: float
+    sliding_direction: float | None = None
+    sliding_offset: float | None = None
+    upper_file: str | None = None
+    lower_file: str | None = None
+
+    def of(self, scene: Scene) -> Scene:
+        """Return the scene of this row. Raises `InputError` for a file where no surface is measured."""
+        frame: dict[str, Any] = {name: value for name in _FRAME if (value := getattr(self, name)) is not None}
+        changed = replace(scene, load=self.load, **frame)
+        for name in _FILES:
+            if (path := getattr(self, name)) is not None:
+                body = name.removesuffix("_file")
+                files: dict[str, Any] = {body: _from_file(getattr(scene, body), name, path)}
+                changed = replace(changed, **files)
+        return changed
+
+
+def _from_file(body: Body, name: str, path: str) -> Body:
+    parts: list[Any] = list(body.surface.parts)
+    measured = [k for k, part in enumerate(parts) if isinstance(part, MeasuredSurface)]
+    if len(measured) != 1:
+        raise InputError(name, path, f"none: the scene's body has {len(measured)} measured surfaces, not one")
+    parts[measured[0]] = replace(parts[measured[0]], path=path)
+    return Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
+
+
+def read_rows(path: str | Path) -> tuple[Row, ...]:
+    """Return the rows of a CSV file with the columns ``load,mu,u_mu`` or
+    ``load,friction_force,u_friction_force``.
+
+    SI units; ``u`` is a standard uncertainty (68 %). Optional columns: ``sliding_direction`` (rad),
+    ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Lines that begin with
+    "#" are comments. Raises `InputError`, which names the line, for anything else.
+    """
+    path = Path(path)
+    try:
+        if os.path.isfile(path) and path.stat().st_size > MAX_BYTES:
+            raise InputError("data", str(path), f"a table of at most {MAX_BYTES} bytes")
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as refused:
+        raise InputError("data", str(path), f"a file that can be read ({refused.strerror})") from refused
+    except UnicodeDecodeError as alien:
+        raise InputError("data", str(path), "a CSV file in UTF-8") from alien
+    lines = [
+        (k, line)
+        for k, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if len(lines) > MAX_ROWS + 1:
+        raise InputError("data", f"{len(lines) - 1} rows", f"at most {MAX_ROWS}")
+    try:
+        cells = [(k, [cell.strip() for cell in next(csv.reader([line], strict=True))]) for k, line in lines]
+    except csv.Error as alien:
+        raise InputError("data", str(path), f"a CSV file ({alien})") from alien
+    if not cells:
+        raise InputError("data", str(path), "a header line and rows: the file is empty")
+    header = cells[0][1]
+    quantity = _check_header(header)
+    rows = tuple(_row(header, quantity, k, line, path.parent) for k, line in cells[1:])
+    return check_rows(rows)
+
+
+def _check_header(header: Sequence[str]) -> str:
+    """The quantity measured, "mu" or "friction_force"."""
+    shown = ",".join(header)
+    known = {"load", *_FRICTION, *_FRICTION.values(), *_FRAME, *_FILES}
+    if unknown := [name for name in header if name not in known]:
+        allowed = "columns load,mu,u_mu or load,friction_force,u_friction_force, in SI units"
+        raise InputError("data column", unknown[0], allowed)
+    if len(set(header)) < len(header):
+        raise InputError("data columns", shown, "each column once")
+    given = [name for name in _FRICTION if name in header]
+    if "load" not in header or len(given) != 1:
+        raise InputError("data columns", shown, "load (N) and one of mu and friction_force (N)")
+    if _FRICTION[given[0]] not in header:
+        allowed = f"{_FRICTION[given[0]]}, the standard uncertainty of {given[0]}, as well"
+        raise InputError("data columns", shown, allowed)
+    return given[0]
+
+
+def _row(header: Sequence[str], quantity: str, k: int, cells: Sequence[str], folder: Path) -> Row:
+    if len(cells) != len(header):
+        raise InputError(f"data line {k}", ",".join(cells), f"{len(header)} cells, as many as columns")
+    found = dict(zip(header, cells, strict=True))
+    numbers = {
+        name: _number(k, name, text)
+        for name, text in found.items()
+        if name not in _FILES and (text or name not in _FRAME)
+    }
+    load, value, spread = (numbers[name] for name in ("load", quantity, _FRICTION[quantity]))
+    for name, number in (("load", load), (_FRICTION[quantity], spread)):
+        if not number > 0:
+            raise InputError(f"data line {k}: {name}", number, "a positive number")
+    if value < 0:
+        raise InputError(f"data line {k}: {quantity}", value, "a number that is not negative")
+    scale = 1.0 if quantity == "mu" else load
+    files = {name: str(folder / text) for name in _FILES if (text := found.get(name))}
+    frame = {name: numbers[name] for name in _FRAME if name in numbers}
+    return Row(load, value / scale, spread / scale, **frame, **files)  # type: ignore[arg-type]
+
+
+def _number(k: int, name: str, text: str) -> float:
+    unit = f" in {_UNITS[name]}, without its unit" if name in _UNITS else ""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number) or "_" in text:
+        raise InputError(f"data line {k}: {name}", text, f"a finite number{unit}")
+    return number
+
+
+def check_rows(rows: Sequence[Row]) -> tuple[Row, ...]:
+    """Return the rows; raises `InputError` where two parameters cannot be found from them.
+
+    At least two loads, or two scenes, are required. Rows whose mu or whose loads lie so far apart that N and
+    kN are mixed are refused.
+    """
+    cases = {replace(row, mu=0.0, u_mu=0.0) for row in rows}
+    if len(cases) < 2:
+        raise InputError("data", f"{len(rows)} rows at {len(cases)} load", "at least two different loads")
+    loads = sorted(row.load for row in rows)
+    jump = max(high / low for low, high in itertools.pairwise(loads))
+    if jump > MIXED_LOADS:
+        raise InputError("data: load", f"neighbouring loads {jump:.0f} apart", "loads in N alone (kN mixed?)")
+    mus = sorted(row.mu for row in rows if row.mu > 0)
+    if mus and mus[-1] > MIXED_FRICTION * mus[0]:
+        raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "forces in N alone (N and kN mixed?)")
+    return tuple(rows)

@@ -1,0 +1,161 @@
+"""Friction of one row by the model: mu at given parameters, its slopes, its bars and its contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, MutableMapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from refimpl.driver.solve import solve
+from refimpl.grid import Array
+from refimpl.scene.parameters import with_parameter
+from refimpl.scene.scene import Scene
+from refimpl.sensitivities.sensitivity import friction_slopes, sensitivity
+from refimpl.solution.solution import Solution
+
+COVERAGE = 1.959963984540054  # half-width of 95 % over the standard uncertainty, normal distribution
+NAMES = ("friction.tau", "friction.beta")
+_FLOOR = 1e-4  # share of the friction below which a parameter is not solved for: slopes extrapolate to zero
+_QUANTILES = 64  # pressures that stand for a contact in other laws: mu to 1e-3
+_TAU_SOLVES = 2  # solves that a derivative by the load, and by each number of a surface, takes
+
+
+@dataclass(frozen=True)
+class Response:
+    """Model of one row, linear about the parameters ``at`` (Pa, 1).
+
+    mu : friction coefficient; slopes : ``d mu / d tau`` (1/Pa) and ``d mu / d beta``
+    numerical, contact_edge : 95 % half-widths of mu: error bar, and choice at contact edges
+    inputs : 95 % half-widths of mu by toleranced parameter, with the sign of the derivative
+    area_per_load : A / P (m^2/N); border, plastic : shares of the contact on the border, at the hardness
+    pressures, weights : pressures (Pa) and ``cos cos dA / P`` (1/Pa) that stand for the contact
+    solves : solves of the scene; warnings : the solution's
+    """
+
+    at: tuple[float, float]
+    mu: float
+    slopes: tuple[float, float]
+    numerical: float
+    contact_edge: float
+    inputs: Mapping[str, float]
+    area_per_load: float
+    border: float
+    plastic: float
+    pressures: tuple[float, ...]
+    weights: tuple[float, ...]
+    solves: int
+    warnings: tuple[str, ...]
+
+    def predict(self, theta: Array) -> float:
+        """Return mu at other parameters, by the slopes."""
+        return self.mu + float(np.dot(self.slopes, np.subtract(theta, self.at)))
+
+
+Memory = MutableMapping[str, Mapping[str, Any]]
+Key = Callable[[Scene, Any], str]
+
+
+class Forward:
+    """Responses of scenes on one grid; ``memory`` keeps them by ``key``, for a fit that goes on later."""
+
+    def __init__(
+        self,
+        grid: int | tuple[int, int],
+        memory: Memory | None = None,
+        key: Key | None = None,
+        report: Callable[[str], None] | None = None,
+    ) -> None:
+        self.grid, self.solves = grid, 0
+        self._memory, self._key, self._report = memory, key, report
+
+    def respond(self, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None) -> Response:
+        """Return the response of a scene at parameters ``(tau, beta)``.
+
+        Raises `InputError` as `refimpl.solve` does, `ArithmeticError` where the solve does not converge.
+        """
+        if self._report is not None:
+            self._report(f"solve {self.solves + 1}: {scene.load:.4g} N")
+        at = tuple(max(float(value), floor) for value, floor in zip(theta, floors(scene), strict=True))
+        for name, value in zip(NAMES, at, strict=True):
+            scene = with_parameter(scene, name, value)
+        tolerances = dict(tolerances or {})
+        settings = {"grid": self.grid, "tolerances": tolerances}
+        if self._memory is None or self._key is None:
+            found = _response(scene, self.grid, at, tolerances)
+        else:
+            key = self._key(scene, settings)
+            if (stored := self._memory.get(key)) is not None:
+                return restored(stored)
+            found = _response(scene, self.grid, at, tolerances)
+            self._memory[key] = asdict(found)
+        self.solves += found.solves
+        return found
+
+
+def restored(stored: Mapping[str, Any]) -> Response:
+    """Return a response from its fields, as JSON keeps them."""
+    tuples = {name: tuple(value) for name, value in stored.items() if isinstance(value, list | tuple)}
+    return Response(**{**stored, **tuples})
+
+
+def floors(scene: Scene) -> tuple[float, float]:
+    """Least parameters that are solved for (Pa, 1): too small to matter, large enough to differentiate."""
+    return _FLOOR * 1e-4 * scene.materials.reduced_modulus, _FLOOR * 1e-2
+
+
+def _response(scene: Scene, grid: Any, at: tuple[float, ...], tolerances: Mapping[str, float]) -> Response:
+    solution = solve(scene, grid)
+    if not solution.converged or not solution.contact.any():
+        raise ArithmeticError(f"the solve at {scene.load:.4g} N ended as {solution.status.value}")
+    inputs, solves = _inputs(scene, solution, tolerances)
+    parts = dict(solution.uncertainty["friction_coefficient"])
+    edge = parts.pop("active set", 0.0)
+    pressures, weights = _condensed(solution, scene.load)
+    contact = solution.contact
+    on_border = float(contact.sum() - contact[1:-1, 1:-1].sum()) / float(contact.sum())
+    return Response(
+        at=(at[0], at[1]),
+        mu=solution.friction_coefficient,
+        slopes=friction_slopes(scene, solution),
+        numerical=min(math.fsum(parts.values()), 10 * abs(solution.friction_coefficient)),
+        contact_edge=edge,
+        inputs=inputs,
+        area_per_load=solution.contact_area / scene.load,
+        border=on_border * solution.problem.counts_from_first_contact,
+        plastic=solution.plastic_area / solution.contact_area,
+        pressures=pressures,
+        weights=weights,
+        solves=1 + solves,
+        warnings=tuple(str(text) for text in solution.warnings if getattr(text, "number", None) is not None),
+    )
+
+
+def _inputs(
+    scene: Scene, solution: Solution, tolerances: Mapping[str, float]
+) -> tuple[dict[str, float], int]:
+    """Changes of mu at the tolerances (95 %), and the solves that they take."""
+    if not tolerances:
+        return {}, 0
+    found = sensitivity(scene, solution, tuple(tolerances))
+    derivatives = found.derivatives["friction_coefficient"]
+    differenced = sum(name == "load" or ".surface" in name for name in found.parameters)
+    if solution.plastic_area > 0:
+        differenced = len(found.parameters)
+    inputs = {name: derivatives[name] * found.parameters[name] * tol for name, tol in tolerances.items()}
+    return inputs, _TAU_SOLVES * differenced
+
+
+def _condensed(solution: Solution, load: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Mean pressures of groups of elements, ordered by pressure, and the groups' weights."""
+    active = solution.contact & ~solution.excluded
+    slopes = solution.slopes
+    along = (slopes.cos_x * slopes.cos_y + solution.grid.zeros)[active] * solution.grid.element_area / load
+    pressure = solution.pressure[active]
+    order = np.argsort(pressure)
+    groups = [group for group in np.array_split(order, _QUANTILES) if len(group)]
+    weights = tuple(float(along[group].sum()) for group in groups)
+    means = tuple(float(np.average(pressure[group], weights=along[group])) for group in groups)
+    return means, weights

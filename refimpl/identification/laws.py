@@ -1,0 +1,93 @@
+"""Nested friction laws compared by information criteria (AICc: Hurvich and Tsai 1989; BIC: Schwarz 1978).
+
+``r = tau + beta f`` holds Coulomb's law (tau = 0) and constant shear (beta = 0), and is held by
+``r = min(tau + beta f, r_max)``. The limited law is computed at the pressures of the fitted law.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares, nnls
+
+from refimpl.grid import Array
+from refimpl.identification.data_table import Row
+from refimpl.identification.fit import Fit
+
+DECISIVE = 6.0  # difference of AICc from which the worse law has little support
+
+
+@dataclass(frozen=True)
+class Law:
+    """A fitted law: parameters by name (Pa; beta 1), chi-square, AICc and BIC.
+
+    AICc is infinite where the rows are too few for it.
+    """
+
+    name: str
+    parameters: Mapping[str, float]
+    chi_square: float
+    aicc: float
+    bic: float
+
+
+def compare(rows: Sequence[Row], fitted: Fit) -> tuple[Law, ...]:
+    """Return the laws, ordered by AICc, and by BIC where AICc is infinite."""
+    measured = np.array([row.mu for row in rows])
+    slopes = np.array([response.slopes for response in fitted.responses])
+    at_zero = fitted.predicted - slopes @ fitted.theta
+    root = np.asarray(np.linalg.cholesky(fitted.weights).T)
+    scale = np.max(np.abs(slopes), axis=0)
+    wanted = root @ (measured - at_zero)
+
+    laws = [_law("tau + beta f", {"tau": fitted.theta[0], "beta": fitted.theta[1]}, fitted.chi_square, rows)]
+    for k, (name, parameter) in enumerate((("constant shear", "tau"), ("Coulomb", "beta"))):
+        x, misfit = nnls((root @ slopes[:, [k]]) / scale[k], wanted)
+        laws.append(_law(name, {parameter: float(x[0] / scale[k])}, misfit**2, rows))
+    if len(rows) > 3:
+        laws.append(_limited(rows, fitted, root, measured))
+    return tuple(sorted(laws, key=lambda law: (law.aicc, law.bic)))
+
+
+def _limited(rows: Sequence[Row], fitted: Fit, root: Array, measured: Array) -> Law:
+    """The law with a limit, from several starts: the least of them."""
+    pressures = [np.array(response.pressures) for response in fitted.responses]
+    weights = [np.array(response.weights) for response in fitted.responses]
+    tau, beta = fitted.theta
+    peak = max(float(p.max()) for p in pressures)
+    top = tau + beta * peak
+    scales = np.array([max(tau, 1e-3 * top), max(beta, 1e-3 * top / peak), top])
+
+    def friction(t: float, b: float, limit: float) -> Array:
+        return np.array(
+            [float(np.sum(w * np.minimum(t + b * p, limit))) for p, w in zip(pressures, weights, strict=True)]
+        )
+
+    base = friction(tau, beta, math.inf)
+
+    def misfit(x: Array) -> Array:
+        predicted = fitted.predicted + friction(*(x * scales)) - base
+        return np.asarray(root @ (measured - predicted))
+
+    starts = ([tau / scales[0], beta / scales[1], share] for share in (0.3, 0.6, 1.0))
+    found = [least_squares(misfit, np.maximum(start, 1e-9), bounds=(0, np.inf)) for start in starts]
+    best = min(found, key=lambda one: one.cost)
+    chi_square = min(2 * float(best.cost), fitted.chi_square)
+    x = best.x * scales if 2 * best.cost <= fitted.chi_square else np.array([tau, beta, top])
+    return _law(
+        "min(tau + beta f, r_max)",
+        dict(zip(("tau", "beta", "r_max"), map(float, x), strict=True)),
+        chi_square,
+        rows,
+    )
+
+
+def _law(name: str, parameters: Mapping[str, float], chi_square: float, rows: Sequence[Row]) -> Law:
+    n, k = len(rows), len(parameters)
+    few = n - k - 1 <= 0
+    aicc = math.inf if few else chi_square + 2 * k + 2 * k * (k + 1) / (n - k - 1)
+    values = {key: float(value) for key, value in parameters.items()}
+    return Law(name, values, float(chi_square), aicc, float(chi_square + k * math.log(n)))

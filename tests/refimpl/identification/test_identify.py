@@ -1,0 +1,155 @@
+"""Identification against known friction, closed forms of the likelihood, and what goes wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.errors import InputError
+from refimpl.identification import Row, identify
+from refimpl.identification.profile import Profile
+from refimpl.scene.parameters import with_parameter
+from refimpl.scene.scene_file import read_scene
+from refimpl.sensitivities.sensitivity import friction_slopes
+
+LOADS = 5.0, 10.0, 20.0, 40.0, 80.0
+M = 48
+
+
+def _rows(scene: rf.Scene, relative: float, loads: tuple[float, ...] = LOADS, grid: int = M) -> list[Row]:
+    """Friction of the model without noise."""
+    found = []
+    for load in loads:
+        mu = rf.solve(replace(scene, load=load), grid).friction_coefficient
+        found.append(Row(load, mu, relative * mu))
+    return found
+
+
+def _blind(scene: rf.Scene) -> rf.Scene:
+    return replace(scene, friction=rf.Friction())
+
+
+@pytest.fixture(scope="module")
+def smooth() -> rf.Scene:
+    return read_scene("table1-smooth")  # tau = 15 MPa, beta = 0.08
+
+
+@pytest.fixture(scope="module")
+def planes() -> rf.Scene:
+    return read_scene("rough-planes")
+
+
+def test_exact_data_give_the_parameters_back(smooth: rf.Scene) -> None:
+    found = identify(_blind(smooth), _rows(smooth, 0.001), M)
+    assert found.values["tau"].value == pytest.approx(15e6, rel=1e-3)
+    assert found.values["beta"].value == pytest.approx(0.08, rel=1e-2)
+    assert found.chi_square < 0.01
+    assert found.solves <= 7 * len(LOADS)
+
+
+def test_slopes_are_those_of_finite_differences(smooth: rf.Scene) -> None:
+    scene = replace(smooth, sliding_direction=0.3)
+    solution = rf.solve(scene, M, tolerance=1e-11)
+    for name, step, slope in zip(
+        ("friction.tau", "friction.beta"), (1e3, 1e-5), friction_slopes(scene, solution), strict=True
+    ):
+        value = {"friction.tau": 15e6, "friction.beta": 0.08}[name]
+        ends = [
+            rf.solve(with_parameter(scene, name, value + s * step), M, tolerance=1e-11).friction_coefficient
+            for s in (-1, 1)
+        ]
+        assert slope == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-3)
+
+
+def test_the_interval_of_an_inner_optimum_is_the_ellipse() -> None:
+    profile = Profile(np.array([10.0, 20.0]), np.array([[1.0, -1.0], [-1.0, 4.0]]))
+    assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((10 - 1.96, 10 + 1.96), abs=1e-3)
+    assert profile.interval(np.array([0.0, 1.0])) == pytest.approx((20 - 3.92, 20 + 3.92), abs=1e-3)
+    # variance of the sum: 1 + 4 - 2 = 3
+    assert profile.interval(np.array([1.0, 1.0])) == pytest.approx((30 - 3.3948, 30 + 3.3948), abs=1e-3)
+    assert not profile.is_bounded
+
+
+def test_the_interval_at_a_bound_is_the_profile() -> None:
+    """Independent parameters, tau's optimum at -1: least misfit 1 at zero, so the end is sqrt(4.84) - 1."""
+    profile = Profile(np.array([-1.0, 20.0]), np.eye(2))
+    assert profile.optimum == pytest.approx([0.0, 20.0])
+    assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((0.0, 4.841459**0.5 - 1), abs=1e-5)
+    assert profile.is_bounded
+
+
+def test_flat_rough_planes_determine_a_combination(planes: rf.Scene) -> None:
+    found = identify(planes, _rows(planes, 0.02, (4.0, 8.0, 16.0), 128), 128)
+    assert not found.is_identified
+    assert "not determined apart from beta" in found.warnings[0]
+    assert "measure at" in found.warnings[0]
+    assert found.combination.relative < 0.1 < found.values["tau"].relative
+    truth = found.factor * 15e6 + 0.08
+    assert found.combination.low < truth < found.combination.high
+
+
+def test_the_proposed_loads_narrow_the_interval(smooth: rf.Scene) -> None:
+    rows = _rows(smooth, 0.03, (20.0, 26.0, 34.0))
+    before = identify(smooth, rows, M)
+    assert before.proposal is not None
+    more = _rows(smooth, 0.03, before.proposal.loads)
+    after = identify(smooth, [*rows, *more], M)
+    assert after.values["tau"].relative < 0.5 * before.values["tau"].relative
+    assert after.values["tau"].relative == pytest.approx(before.proposal.widths[0], rel=0.3)
+
+
+def test_an_outlier_is_named(smooth: rf.Scene) -> None:
+    rows = _rows(smooth, 0.02)
+    rows[2] = replace(rows[2], mu=1.3 * rows[2].mu)
+    found = identify(smooth, rows, M)
+    assert int(np.argmax(np.abs(found.residuals))) == 2
+    assert any(text.startswith("row 3 (20 N) is off by +") for text in found.warnings)
+    assert any(text.startswith("chi-square") for text in found.warnings)
+
+
+def test_a_tolerance_adds_to_the_uncertainty(smooth: rf.Scene) -> None:
+    """Hertz: A ~ E^(-2/3), so tau found from tau A is off by 2/3 of E's share of the pair's compliance."""
+    rows = _rows(smooth, 0.01, grid=160)  # areas are counted: 48 elements a side err by a tenth
+    found = identify(smooth, rows, 160, tolerances={"lower.material.E": 0.1})
+    alone = 0.1 / 1.96 * 2 / 3 * (1 / 118) / (1 / 118 + 1 / 200)
+    assert found.shares["input lower.material.E"][0] / 15e6 == pytest.approx(alone, rel=0.1)
+
+
+def test_realisations_add_to_the_uncertainty(planes: rf.Scene) -> None:
+    rows = _rows(planes, 0.02, (4.0, 16.0))
+    found = identify(planes, rows, M, realisations=3, design=False)
+    assert found.shares["realisations"][0] > 0
+    with pytest.raises(InputError, match="3 to 100"):
+        identify(planes, rows, M, realisations=2)
+
+
+def test_coulomb_data_prefer_coulombs_law(smooth: rf.Scene) -> None:
+    scene = replace(smooth, friction=rf.Friction(tau=0.0, beta=0.2))
+    found = identify(_blind(smooth), _rows(scene, 0.01), M)
+    assert found.laws[0].name == "Coulomb"
+    assert found.laws[0].parameters["beta"] == pytest.approx(0.2, rel=1e-3)
+    assert found.values["tau"].low == 0.0
+    assert found.method == "profile likelihood"
+
+
+def test_solves_are_kept(smooth: rf.Scene) -> None:
+    memory: dict[str, object] = {}
+
+    def key(scene: rf.Scene, settings: object) -> str:
+        return f"{scene.load} {scene.friction} {settings}"
+
+    rows = _rows(smooth, 0.02)
+    first = identify(smooth, rows, M, memory=memory, key=key)  # type: ignore[arg-type]
+    again = identify(smooth, rows, M, memory=memory, key=key)  # type: ignore[arg-type]
+    assert (first.solves > 0, again.solves) == (True, 0)
+    assert again.values == first.values
+
+
+def test_friction_has_no_tolerance(smooth: rf.Scene) -> None:
+    with pytest.raises(InputError, match=r"friction\.tau"):
+        identify(smooth, _rows(smooth, 0.02), M, tolerances={"friction.tau": 0.1})
+    with pytest.raises(InputError, match="realisations"):
+        identify(smooth, _rows(smooth, 0.02), M, realisations=5)

@@ -1,0 +1,195 @@
+"""`rough-friction identify`: tau and beta from measured friction, with their uncertainty in parts."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from verification.cli.output import (
+    Parsers,
+    StatusLine,
+    add_json,
+    check_outputs,
+    columns,
+    emit,
+    files_of,
+    output_file,
+    wrapped,
+)
+
+if TYPE_CHECKING:
+    from refimpl.identification import Identification, Interval
+
+MEGA = 1e6
+EPILOG = """examples:
+  rough-friction identify pair.toml friction.csv
+  rough-friction identify pair.toml friction.csv --loads 5,80 --plot fit.png --json fit.json
+  rough-friction identify pair.toml friction.csv --store fit.json
+
+DATA.csv has the columns load,mu,u_mu or load,friction_force,u_friction_force: N, and standard
+uncertainties (68 %). Optional columns: sliding_direction (rad), sliding_offset (m), upper_file,
+lower_file (measured surfaces, relative to the table). The scene's friction is the first guess, its
+load is not used, its [tolerances] add to the uncertainty. With --store a stopped fit goes on.
+"""
+
+
+def add_parser(commands: Parsers) -> None:
+    """Declare the subcommand."""
+    parser = commands.add_parser(
+        "identify",
+        help="find tau and beta from friction measured at several loads",
+        description="Find tau and beta, with 95 % intervals, from friction measured at several loads.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add = parser.add_argument
+    add("scene", metavar="SCENE", help="a TOML file, or the name of a shipped scene")
+    add("data", metavar="DATA.csv", type=Path, help="the measured friction")
+    add("--grid", metavar="M", type=int, default=256, help="elements along the longer side (default 256)")
+    add("--loads", metavar="P,P,...", type=_numbers, default=(), help="loads (N) at which mu is predicted")
+    add("--realisations", metavar="N", type=int, default=1, help="draws of random surfaces (default 1)")
+    add("--store", metavar="FILE.json", type=output_file, help="keep finished solves there, and go on")
+    add("--plot", metavar="FILE.png", type=output_file, help="draw data, fit, ellipse and residuals")
+    add_json(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read, fit and show. Raises InputError and ArithmeticError as `refimpl.identification.identify` does."""
+    from refimpl.identification import identify, read_rows
+    from refimpl.scene.scene_file import read_scene, read_tolerances
+    from verification.cli.identify_store import SolveStore, key
+    from verification.cli.plot import check_suffix
+    from verification.framework.provenance import provenance
+
+    check_suffix(options.plot)
+    scene, tolerances = read_scene(options.scene), read_tolerances(options.scene)
+    inputs = [Path(options.scene), options.data, *files_of(scene)]
+    check_outputs(inputs, store=options.store, plot=options.plot, json=options.json)
+    rows = read_rows(options.data)
+    store = None if options.store is None else SolveStore(options.store)
+    line = StatusLine()
+    try:
+        found = identify(
+            scene,
+            rows,
+            options.grid,
+            loads=options.loads,
+            tolerances=tolerances,
+            realisations=options.realisations,
+            memory=store,
+            key=key,
+            report=line.show,
+        )
+    finally:
+        line.close()
+    if options.plot is not None:
+        from verification.cli.plot_identify import draw
+
+        draw(found, options.plot)
+    emit(document(found) | {"provenance": provenance()}, options.json, table(found))
+    return 0
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    """Numbers from text.
+
+    >>> _numbers("5,80")
+    (5.0, 80.0)
+    """
+    try:
+        return tuple(float(item) for item in text.split(","))
+    except ValueError as alien:
+        raise argparse.ArgumentTypeError(f"{text!r} is no list of numbers like 5,80") from alien
+
+
+def document(found: Identification) -> dict[str, object]:
+    """SI units; intervals of 95 %, shares as standard uncertainties; None for what is unbounded."""
+    proposal = found.proposal
+    return {
+        "tau": _interval(found.values["tau"]),
+        "beta": _interval(found.values["beta"]),
+        "covariance": found.covariance.tolist(),
+        "identified": found.is_identified,
+        "method": found.method,
+        "shares": {name: {"tau": tau, "beta": beta} for name, (tau, beta) in found.shares.items()},
+        "combination": {"factor": found.factor, **_interval(found.combination)},
+        "predictions": [{"load": p.load, **_interval(p.mu)} for p in found.predictions],
+        "residuals": list(found.residuals),
+        "chi_square": found.chi_square,
+        "degrees_of_freedom": found.degrees,
+        "probability": found.probability,
+        "laws": [
+            {
+                "law": law.name,
+                "parameters": dict(law.parameters),
+                "chi_square": law.chi_square,
+                "aicc": _finite(law.aicc),
+                "bic": law.bic,
+            }
+            for law in found.laws
+        ],
+        "further_loads": None
+        if proposal is None
+        else {
+            "loads": list(proposal.loads),
+            "tau": _finite(proposal.widths[0]),
+            "beta": _finite(proposal.widths[1]),
+        },
+        "warnings": list(found.warnings),
+        "solves": found.solves,
+        "passes": found.passes,
+    }
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None
+
+
+def _interval(interval: Interval) -> dict[str, float]:
+    return {"value": interval.value, "low": interval.low, "high": interval.high}
+
+
+def table(found: Identification) -> str:
+    """Values, parts of their uncertainty, rows, laws and warnings."""
+    tau, beta, both = found.values["tau"], found.values["beta"], found.combination
+    values = [
+        ["", "value", "95 % interval"],
+        ["tau (MPa)", f"{tau.value / MEGA:.4g}", f"{tau.low / MEGA:.4g} to {tau.high / MEGA:.4g}"],
+        ["beta", f"{beta.value:.4g}", f"{beta.low:.4g} to {beta.high:.4g}"],
+        [
+            f"{found.factor * MEGA:.3g} tau/MPa + beta",
+            f"{both.value:.4g}",
+            f"{both.low:.4g} to {both.high:.4g}",
+        ],
+    ]
+    parts = [
+        ["standard uncertainty", "tau (MPa)", "beta"],
+        *([name, f"{t / MEGA:.2g}", f"{b:.2g}"] for name, (t, b) in found.shares.items()),
+    ]
+    rows = [["load (N)", "mu measured", "mu of the model", "95 % interval", "residual / u"]]
+    for k, prediction in enumerate(found.predictions):
+        mu = prediction.mu
+        measured, residual = (
+            (f"{found.rows[k].mu:.4g}", f"{found.residuals[k]:+.1f}") if k < len(found.rows) else ("-", "-")
+        )
+        rows.append(
+            [
+                f"{prediction.load:.4g}",
+                measured,
+                f"{mu.value:.4g}",
+                f"{mu.low:.4g} to {mu.high:.4g}",
+                residual,
+            ]
+        )
+    laws = [["law", "chi-square", "AICc", "BIC"]]
+    laws += [[one.name, f"{one.chi_square:.3g}", f"{one.aicc:.3g}", f"{one.bic:.3g}"] for one in found.laws]
+    ended = (
+        f"chi-square {found.chi_square:.3g} of {found.degrees} degrees of freedom "
+        f"(probability {found.probability:.2g}); intervals by {found.method}; "
+        f"{found.solves} solves, {found.passes} passes"
+    )
+    blocks = [columns(values), columns(parts), columns(rows), wrapped(ended, "  "), columns(laws)]
+    return "\n\n".join(blocks + [wrapped(text, "warning: ") for text in found.warnings])

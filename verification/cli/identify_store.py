@@ -1,0 +1,73 @@
+"""Finished solves of `rough-friction identify` in a JSON file, so that a stopped fit goes on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterator, Mapping, MutableMapping
+from pathlib import Path
+from typing import Any
+
+from refimpl.errors import InputError
+from refimpl.identification.forward import restored
+from refimpl.scene.scene import Scene
+from refimpl.scene.scene_file import scene_to_dict
+from verification.cli.output import files_of
+from verification.framework.files import to_json, write_text
+from verification.sweep.run import code_digest, file_digest
+
+FORMAT = "rough-friction identify 1"
+
+
+class SolveStore(MutableMapping[str, Mapping[str, Any]]):
+    """Responses by key; the file is rewritten in one step after each solve.
+
+    Raises InputError for a file that is none of these, or is damaged.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._solves = path, _read(path) if os.path.exists(path) else {}
+
+    def __getitem__(self, key: str) -> Mapping[str, Any]:
+        found: Mapping[str, Any] = self._solves[key]
+        return found
+
+    def __setitem__(self, key: str, value: Mapping[str, Any]) -> None:
+        self._solves[key] = json.loads(json.dumps(value))
+        write_text(to_json({"format": FORMAT, "solves": self._solves}), self._path)
+
+    def __delitem__(self, key: str) -> None:
+        del self._solves[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._solves)
+
+    def __len__(self) -> int:
+        return len(self._solves)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    allowed = "a store of 'identify', or a new file"
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(document, dict) or document.get("format") != FORMAT:
+            raise InputError("store", str(path), allowed)
+        solves: dict[str, Any] = document["solves"]
+        for stored in solves.values():
+            restored(stored)
+    except InputError:
+        raise
+    except OSError as refused:
+        raise InputError("store", str(path), f"a file that can be read ({refused.strerror})") from refused
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as damaged:
+        raise InputError("store", str(path), f"{allowed}: this one is damaged") from damaged
+    return solves
+
+
+def key(scene: Scene, settings: Mapping[str, Any]) -> str:
+    """Return the digest of a scene, its files, the settings and the code."""
+    files = [file_digest(path) for path in files_of(scene)]
+    inputs = {"scene": scene_to_dict(scene), "settings": settings, "files": files, "code": code_digest()}
+    text = json.dumps(inputs, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
