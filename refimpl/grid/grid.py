@@ -136,7 +136,7 @@ class Grid:
         A free body's datum is at will; a periodic one's displacements have no mean on its mean plane.
         """
         if self.periodic or not weights.any():
-            return heights - heights.mean()
+            return heights - float(heights.mean())
         return heights - float(np.sum(weights * heights) / np.sum(weights))
 
     def gradient(self, heights: Array) -> tuple[Array, Array]:

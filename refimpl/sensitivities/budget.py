@@ -141,7 +141,7 @@ def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[
 def _half_space(
     scene: Scene, solution: Solution, sources: Mapping[str, Mapping[str, float]]
 ) -> dict[str, float]:
-    """What the undeformed surfaces' stated error exceeds "coefficients" by; infinite where no solve converges.
+    """Return the excess of the undeformed surfaces' error over "coefficients"; infinite where a solve fails.
 
     Both describe one cause, from the surfaces between contacts and from those in contact: the larger counts.
     """

@@ -16,13 +16,17 @@ import numpy as np
 
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
+from refimpl.model.problem import Problem
 from refimpl.scene.discretise import discretise
 from refimpl.scene.scene import Body, Scene
 from refimpl.solution.boundary_perturbation import gap_changes
+from refimpl.solution.influence_error_3d import element_error, steepest_tabulated
 from refimpl.solution.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import ArraySurface
 
+ACCEPTED = 0.02  # relative: the paper's "less than 2 %"
+_NODES = 61  # slopes from 0 to 30 degrees, half a degree apart
 UNDER_LOAD = ("approach", "friction_coefficient", "contact_area", "max_pressure", "binormal_force")
 
 
@@ -104,3 +108,54 @@ def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solutio
     if not found.converged:
         raise ArithmeticError(f"the solve with the surfaces' recession ended as {found.status.value}")
     return found
+
+
+def local_error(problem: Problem) -> Array:
+    """Return the coefficient error at every element's undeformed slopes, the grid's shape.
+
+    The larger of both neighbours in line, of the element itself and of those across, for each body at its own
+    slope, weighted by the bodies' compliances; infinite beyond the table's slopes. Raises `InputError` for a
+    negative Poisson's ratio, which the table of square elements does not have.
+    """
+    found = problem.grid.zeros
+    shares = 1 - problem.pair.upper_share, problem.pair.upper_share
+    bodies = problem.pair.lower, problem.pair.upper
+    angles = np.linspace(0.0, steepest_tabulated(), _NODES)
+    for share, body, heights in zip(shares, bodies, problem.heights, strict=True):
+        if share == 0:
+            continue
+        along_x, along_y = problem.grid.gradient(heights)
+        slope = np.arctan(np.hypot(along_x, along_y))
+        errors = [element_error(angle, body) for angle in angles]
+        largest = [max(e.self_coefficient, e.in_line, e.across) for e in errors]
+        found += share * np.interp(slope, angles, largest, right=np.inf)
+    return found
+
+
+def advice(error: HalfSpaceError, solution: Solution) -> str:
+    """Return what to do about the half-space's error: nothing, correct to first order, or finite elements.
+
+    The rule rests on 56 plane contacts solved by finite elements (docs/half-space-limits.md).
+    """
+    size = {
+        name: abs(getattr(solution, name))
+        for name in ("friction_coefficient", "contact_area", "max_pressure")
+    }
+    size["approach"] = abs(solution.approach + solution.problem.datum)
+    size["normal_force"] = abs(solution.normal_force)
+    stated = {name: error.stated(name) / value for name, value in size.items() if value}
+    rest = {
+        name: (error.second_order[name] + error.finite_strain[name]) / value
+        for name, value in size.items()
+        if value
+    }
+    worst = max(stated, key=lambda name: stated[name])
+    left = max(rest.values())
+    if stated[worst] <= ACCEPTED:
+        return f"keep the half-space: no number is off by more than {stated[worst]:.1%}"
+    shown = f"{worst.replace('_', ' ')} may be off by {stated[worst]:.1%}"
+    if left <= ACCEPTED:
+        return (
+            f"{shown}: take the corrected numbers, which leave {left:.1%}; slope_correction is no substitute"
+        )
+    return f"{shown}, and {left:.1%} is left by the first-order correction: use finite elements"

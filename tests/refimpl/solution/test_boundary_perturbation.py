@@ -38,7 +38,7 @@ def contact(grid: Grid, height: Array, pressure: Array, traction: Array | None =
 def test_a_wave_pressed_flat_recedes_as_bettis_theorem_wants() -> None:
     # full contact of a cos(kx) under p0 + p1 cos(kx), H flat: material points see C (<eta f> + eta <f>).
     # At the places of the deformed surface div(f u_s) adds, with u_s = -(C p1 / k) sin(kx) and
-    # f u_s = -(C / k)(p0 p1 sin + p1^2 / 2 sin 2kx): its displacement is the half-plane's 2 (1 - nu^2) / (E k)
+    # f u_s = -(C / k)(p0 p1 sin + p1^2 / 2 sin 2kx): the half-plane moves by 2 (1 - nu^2) / (E k)
     # times -C (p0 p1 cos kx + p1^2 / 2 cos 2kx), the second wave having twice the wavenumber.
     a, p0, p1, k = 1e-3, 5e6, 2e6, 2 * math.pi
     cos, twice = np.cos(k * WAVE.x), np.cos(2 * k * WAVE.x)

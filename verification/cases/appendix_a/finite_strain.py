@@ -43,7 +43,8 @@ class _Material:
         lam, mu = lame(self.nu)
         unit = _unit(gradient)
         if not self.finite:
-            return lam * trace(gradient) * unit + mu * (gradient + _turned(gradient))
+            linear: Array = lam * trace(gradient) * unit + mu * (gradient + _turned(gradient))
+            return linear
         inverse, J = _inverse(gradient + unit)
         found: Array = mu * (gradient + unit - _turned(inverse)) + lam * np.log(J) * _turned(inverse)
         return found
@@ -139,11 +140,11 @@ def pressed(amplitude: float, nu: float, approach: float, *, finite: bool) -> tu
     below first contact. Raises ArithmeticError where Newton's method does not end."""
     wave, body = _wave(amplitude), _Material(nu, finite)
 
-    @BilinearForm  # type: ignore[untyped-decorator]  # scikit-fem has no types
-    def tangent(u, v, w):  # type: ignore[no-untyped-def]  # as above
+    @BilinearForm
+    def tangent(u, v, w):  # type: ignore[no-untyped-def]  # scikit-fem calls it with its own untyped fields
         return ddot(body.change(w["now"].grad, grad(u)), grad(v))
 
-    @LinearForm  # type: ignore[untyped-decorator]  # as above
+    @LinearForm
     def force(v, w):  # type: ignore[no-untyped-def]  # as above
         return ddot(body.stress(w["now"].grad), grad(v))
 

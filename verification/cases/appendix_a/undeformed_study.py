@@ -106,7 +106,8 @@ def _draw(random: np.random.Generator, kind: str) -> Profiles:
     ratio = float(random.choice([1.0, 1.7, 5.0, 1e6]))
     lower, upper = Material(1.0, float(nus[0])), Material(ratio, float(nus[1]))
     low = high = steep
-    shift, harmonics = 0.0, ()
+    shift = 0.0
+    harmonics: Harmonics = ()
     if kind == "crest on flat":
         high = 0.0
     if kind == "flank":
