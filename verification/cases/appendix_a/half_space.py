@@ -136,6 +136,29 @@ def solid() -> Measured:
     return Measured(1 - min(holds for holds, _ in rates.values()), data=data)
 
 
+@case(
+    "model-form/half-space-correction",
+    title="The first order of the undeformed surfaces as a correction",
+    claim="In the median of the plane contacts it leaves less than a quarter of the error of N",
+    source=SOURCE,
+    metric="at_most",
+    tolerance=0.25,
+    tolerance_reason="what is of second order, at slopes of 10 degrees in the mean",
+    tier="full",
+    tags=TAGS,
+)
+def correction() -> Measured:
+    contacts = _plane()
+    data: dict[str, object] = {}
+    for name in ("approach", "normal_force", "friction_coefficient", "contact_area", "max_pressure"):
+        pairs = [(abs(c.true[name]), abs(c.left[name])) for c in contacts if name in c.true]
+        true, left = np.array(pairs).T
+        data[f"{name}: median as printed, left (%)"] = [100 * float(np.median(v)) for v in (true, left)]
+        data[f"{name}: better in"] = float(np.mean(left < true))
+    printed, left = np.array([(abs(c.true["normal_force"]), abs(c.left["normal_force"])) for c in contacts]).T
+    return Measured(float(np.median(left) / np.median(printed)), data=data)
+
+
 def elastic_wave(slope_deg: float) -> Profiles:
     """An elastic wave (nu = 0) under a rigid plane, mean pressure 0.3 p*."""
     return Profiles(

@@ -174,13 +174,17 @@ def numbers(profiles: Profiles, solution: rf.Solution) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Judged:
-    """One contact: true and stated relative errors by quantity, the finite elements' own, and the warning."""
+    """One contact: relative errors by quantity, true, stated, the finite elements' own, left by first order.
+
+    ``quick`` is what the solution itself states for N; ``warned``: it warns of the half-space.
+    """
 
     kind: str
     slope_deg: float
     true: dict[str, float]
     stated: dict[str, float]
     fem: dict[str, float]
+    left: dict[str, float]
     quick: float
     warned: bool
 
@@ -222,9 +226,10 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
             true[name] = by_fem[1][name] / value - 1
             change[name] = receded[name] / value - 1
             fem[name] = abs(by_fem[1][name] - by_fem[0][name]) / abs(value)
+    left = {q: (1 + t) / (1 + change[q]) - 1 for q, t in true.items()}
     steep = steepness(solution.problem, solution.contact)
     stated = {q: (1 + FINITE_STRAIN) * abs(c) + SECOND_ORDER[q] * steep for q, c in change.items()}
     warned = any(getattr(w, "limit", None) == "half-space" for w in solution.warnings)
     slope = math.degrees(math.atan(max(profiles.slopes)))
     quick = solution.model_form.normal_force
-    return Judged(profiles.kind, slope, true, stated, fem, quick, warned)
+    return Judged(profiles.kind, slope, true, stated, fem, left, quick, warned)
