@@ -1,6 +1,7 @@
 """Errors in the printed Appendix A: each equation, a number against it, the correction, a number for it.
 
-``evidence()`` measures the printed form, ``check()`` the corrected one by the same measure: zero is right.
+Each has its `Kind`. ``evidence()`` measures the printed form, ``check()`` the corrected one by the same
+measure: zero is right.
 (A1), given its angles, (A4) and (A6) stand as printed.
 """
 
@@ -8,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
@@ -17,11 +19,20 @@ from appendix_a.strip.superposition import Theta, applied, printed, pseudo_tract
 from appendix_a.wedge import printed as wedge_printed
 
 
+class Kind(StrEnum):
+    """Likely origin of a fault: the text of the paper here was recovered from print by machine."""
+
+    CONVERSION = "likely conversion, undecidable without a scan of the print"
+    NOTATION = "notation: right as meant, wrong as it stands"
+    PAPER = "the paper's own"
+
+
 @dataclass(frozen=True)
 class Erratum:
     """One fault; ``measure`` says what ``evidence`` and ``check`` compute, ``tolerance`` bounds ``check``."""
 
     equation: str
+    kind: Kind
     printed: str
     corrected: str
     measure: str
@@ -95,6 +106,7 @@ def _branch(principal: bool) -> float:
 ERRATA: tuple[Erratum, ...] = (
     Erratum(
         equation="A1",
+        kind=Kind.NOTATION,
         printed="tan theta_1,2 = y / (x -+ a)",
         corrected="theta_1,2 the angles in [0, pi] with that tangent (not the principal arctan)",
         measure="|sigma_y + p| in the middle of the loaded boundary, over p",
@@ -105,6 +117,7 @@ ERRATA: tuple[Erratum, ...] = (
     ),
     Erratum(
         equation="A3 (theta)",
+        kind=Kind.PAPER,
         printed="theta is the slope of the boundary",
         corrected="theta is the direction angle of the outward normal: "
         "n = (cos theta, sin theta) = (sin s, -cos s) for the slope s",
@@ -116,6 +129,7 @@ ERRATA: tuple[Erratum, ...] = (
     ),
     Erratum(
         equation="A3 (load)",
+        kind=Kind.NOTATION,
         printed="X = -(...), Y = -(...) on the whole boundary",
         corrected="the applied traction -p n is added under the strip; (A3) alone cancels the load itself",
         measure="pseudo traction under the centre of a strip on a flat boundary, over p",
@@ -126,6 +140,7 @@ ERRATA: tuple[Erratum, ...] = (
     ),
     Erratum(
         equation="A3 (displacement)",
+        kind=Kind.PAPER,
         printed="the wavy surface's displacement is the flat one plus what the pseudo forces cause",
         corrected="plus, under the strip, the strain -(1+nu)(1-2nu) p/E times the depth of the wavy line",
         measure="relative error of the first-order change at x = a/2, crest, lambda = 20 a, 0.01 degrees",
@@ -136,6 +151,7 @@ ERRATA: tuple[Erratum, ...] = (
     ),
     Erratum(
         equation="A5",
+        kind=Kind.CONVERSION,
         printed="+ pi cos(gamma) cos(theta) / (pi - 2 gamma + sin 2 gamma)",
         corrected="- pi cos(gamma) cos(theta) / (pi - 2 gamma + sin 2 gamma)",
         measure="force across the arc r = 7 a against the load 2 a p cos(gamma), gamma = 0.3",
@@ -146,6 +162,7 @@ ERRATA: tuple[Erratum, ...] = (
     ),
     Erratum(
         equation="A7-A9",
+        kind=Kind.NOTATION,
         printed="cosh(pi/2 - gamma + theta) xi, sinh(pi - 2 gamma) xi, ...",
         corrected="cosh{(pi/2 - gamma + theta) xi}, sinh{(pi - 2 gamma) xi}, ...",
         measure="P(50) / P(1) at gamma = 0.3, theta = 0.5; read literally xi cancels and (A4)-(A6) diverge",

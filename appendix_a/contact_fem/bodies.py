@@ -24,6 +24,7 @@ from appendix_a.fem.mesh import Source, graded_mesh
 
 Array = NDArray[np.float64]
 Profile = Callable[[Array], Array]
+Harmonics = tuple[tuple[int, float, float], ...]  # (order, amplitude over the first one's, phase in rad)
 FINER = 8  # cells at the contact's ends against those between
 
 
@@ -70,25 +71,30 @@ def wavy_surface(
     *,
     upper: bool,
     straight: bool = False,
+    harmonics: Harmonics = (),
 ) -> Surface:
     """Surface of a body with a sinusoidal profile whose asperity has its top at x = `crest`.
+
+    `harmonics` add shorter waves: `amplitude share cos(order k (x - crest) + phase)` each.
 
     The lower body's z is -y of the body's own frame (y into the body), the `upper` one's is y.  `straight`:
     the compliance of a flat body instead, as influence coefficients have it, under the same wavy surface.
     """
-    unit = _unit_surface(amplitude, crest, material.nu, plan, straight)
+    unit = _unit_surface(amplitude, crest, material.nu, plan, straight, harmonics)
     sign = np.array([1.0, 1.0 if upper else -1.0])
     flip = np.repeat(sign, unit.at.shape[1])
     return Surface(sign[:, None] * unit.at, unit.edges, unit.compliance * np.outer(flip, flip) / material.E)
 
 
 @lru_cache(maxsize=8)
-def _unit_surface(amplitude: float, crest: float, nu: float, plan: MeshPlan, straight: bool) -> Surface:
+def _unit_surface(
+    amplitude: float, crest: float, nu: float, plan: MeshPlan, straight: bool, harmonics: Harmonics
+) -> Surface:
     """The surface for E = 1 in the body's own frame."""
     reference = plan.reference()
 
     def profile(x: Array) -> Array:
-        return -amplitude * np.cos(WAVENUMBER * (x - crest))
+        return -wave_height(x - crest, amplitude, harmonics)
 
     body = PlaneStrain.on(reference, _bent(reference, profile, plan.depth), order=2)
     elastic = body
@@ -101,6 +107,15 @@ def _unit_surface(amplitude: float, crest: float, nu: float, plan: MeshPlan, str
     rank = np.empty(body.basis.N, dtype=np.int64)
     rank[nodes] = np.arange(len(nodes))
     return Surface(body.basis.doflocs[:, nodes], rank[columns], _compliance(elastic, nodes, nu, plan.depth))
+
+
+def wave_height(x: Array, amplitude: float, harmonics: Harmonics = ()) -> Array:
+    """Height above the mean plane, out of the body, at distances x from the crest (wavelengths)."""
+    waves = np.cos(WAVENUMBER * x)
+    for order, share, phase in harmonics:
+        waves = waves + share * np.cos(order * WAVENUMBER * x + phase)
+    height: Array = amplitude * waves
+    return height
 
 
 def _bent(reference: MeshTri, profile: Profile, depth: float) -> MeshTri2:

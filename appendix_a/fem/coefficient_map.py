@@ -25,6 +25,7 @@ from appendix_a.leading_order import coupling
 
 Array = NDArray[np.float64]
 VERSION = 1
+CUBIC = 4  # nodes that a cubic spline needs
 COMMAND = "rough-friction appendix-a map"
 AXES = ("slope_deg", "wavelength", "position", "offset")
 ARRAYS = ("kappa_part", "constant_part", "error_percentage_points")
@@ -51,8 +52,9 @@ class CoefficientMap:
         """Rough minus flat u(x) - u(0) (m,) at the table's offsets, one body, in units of p a / E.
 
         slope_deg: 0 to the largest tabulated; wavelength: at least the smallest (beyond the largest the
-        rest is taken from there); position: any.  Raises InputError.
+        rest is taken from there); position: any.  Raises InputError, also for axes too short to interpolate.
         """
+        self._check_axes()
         if not 0.0 <= real(slope_deg) <= self.slope_deg[-1]:
             raise InputError("slope_deg", slope_deg, f"0 to {self.slope_deg[-1]:g} degrees")
         if not real(wavelength) >= self.wavelength[0]:
@@ -68,6 +70,15 @@ class CoefficientMap:
         rest = tangent**2 * (1.0 + nu) * ((3.0 - 4.0 * nu) * rest_a + rest_b)
         climb = height_change(slope_deg, wavelength, position, np.array(self.offset))
         return rest - coupling(nu) * climb
+
+    def _check_axes(self) -> None:
+        """Raise InputError unless cubic splines and the positions' harmonics have what they need."""
+        for name in ("slope_deg", "wavelength"):
+            if len(getattr(self, name)) < CUBIC:
+                raise InputError(name, getattr(self, name), f"{CUBIC} values at least, to interpolate")
+        count = len(self.position)
+        if count < 2 or not np.allclose(self.position, np.linspace(0.0, 0.5, count), rtol=0, atol=1e-12):
+            raise InputError("position", self.position, "equal steps from 0 (crest) to 0.5 (valley)")
 
     def _rest(self, part: Array, where: tuple[float, float], position: float) -> Array:
         """Splines over slope and wavelength, then the trigonometric polynomial through the positions (m,)."""

@@ -123,6 +123,22 @@ class Grid:
         """Return the bounding box of the marked elements with a margin; the whole grid if it is periodic."""
         return self.window if self.periodic else Window.around(where, margin)
 
+    @property
+    def transform_shape(self) -> tuple[int, int]:
+        """Shape of a Fourier transform of this grid's fields: a free grid has an empty margin of its own
+        size."""
+        scale = 1 if self.periodic else 2
+        return scale * self.shape[0], scale * self.shape[1]
+
+    def about_datum(self, heights: Array, weights: Array) -> Array:
+        """Return heights about their mean plane on a periodic grid, about their weighted mean on a free one.
+
+        A free body's datum is at will; a periodic one's displacements have no mean on its mean plane.
+        """
+        if self.periodic or not weights.any():
+            return heights - float(heights.mean())
+        return heights - float(np.sum(weights * heights) / np.sum(weights))
+
     def gradient(self, heights: Array) -> tuple[Array, Array]:
         """Return ``(dz/dx, dz/dy)`` by central differences, one-sided at a free border.
 

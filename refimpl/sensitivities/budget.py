@@ -8,9 +8,10 @@ Every entry is a half-width in the number's unit that holds with 95 %.
   derivatives of `refimpl.sensitivity` (V&V 20, section 3-2).
 - sampling: of a mean over realisations of roughness; of one realisation there is none to state.
 - model form: what is known of the model's own error. V&V 20 leaves it to comparison with experiment;
-  three of its sources can be found from within. "coefficients": a flat half-space's influence coefficients on
+  four of its sources can be found from within. "coefficients": a flat half-space's influence coefficients on
   a slope (`refimpl.solution.influence_error`), taken as if all of them were wrong by as much as the worst
-  neighbour at the contact's rms gradient, which is a change of both moduli by that share. "cosines": the
+  neighbour at the contact's rms gradient, which is a change of both moduli by that share. "half-space": what
+  the undeformed surfaces' own error (`refimpl.sensitivities.half_space`) exceeds that by. "cosines": the
   printed cosines of Eqs (2) and (3) against the exact tractions of a facet. "plasticity": of an elastic
   solution whose pressures exceed a given hardness, the difference to the capped solution.
 
@@ -28,6 +29,7 @@ from refimpl.errors import InputError, require_number
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Scene
+from refimpl.sensitivities.half_space import half_space_error
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity, solved_again
 from refimpl.solution.solution import Solution
 
@@ -94,6 +96,8 @@ def budget(
         require_number(f"sampling.{number!r}", half_width, "a half-width, not negative", at_least=0)
     derivatives = sensitivity(scene, solution)
     sources = _model_form(solution, derivatives)
+    for number, more in _half_space(scene, solution, sources).items():
+        sources[number]["half-space"] = more
     for number, change in _plasticity(scene, solution).items():
         sources[number]["plasticity"] = change
     numbers = {
@@ -120,7 +124,8 @@ def _mapping(name: str, given: Mapping[str, float] | None) -> dict[str, float]:
 
 def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[str, float]]:
     """Both sources for each number; infinite where the slope is beyond Appendix A's table."""
-    wrong = solution.slope_error.at_rms
+    at = solution.slope_error
+    wrong = None if at.at_rms is None else max(at.at_rms, at.across_at_rms or 0.0)
     cosines = _cosines(solution, derivatives)
     moduli = [name for name in derivatives.parameters if name.endswith(".E")]
     found = {}
@@ -131,6 +136,20 @@ def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[
         coefficients = math.inf if wrong is None else abs(stiffness) * wrong
         found[number] = {"coefficients": coefficients, "cosines": cosines[number]}
     return found
+
+
+def _half_space(
+    scene: Scene, solution: Solution, sources: Mapping[str, Mapping[str, float]]
+) -> dict[str, float]:
+    """Return the excess of the undeformed surfaces' error over "coefficients"; infinite where a solve fails.
+
+    Both describe one cause, from the surfaces between contacts and from those in contact: the larger counts.
+    """
+    try:
+        error = half_space_error(scene, solution)
+    except ArithmeticError:
+        return dict.fromkeys(NUMBERS, math.inf)
+    return {number: max(0.0, error.stated(number) - sources[number]["coefficients"]) for number in NUMBERS}
 
 
 def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:

@@ -22,8 +22,10 @@ from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.model.materials import Material, Pair
 from refimpl.model.slopes import Slopes
+from refimpl.solution.influence_error_3d import element_error, steepest_tabulated
 
 _VERSION = 1
+_AXES = ("slope_deg", "wavelength", "position", "offset")
 _NEIGHBOUR = 2.0  # offset of the next element in half-widths
 
 
@@ -32,12 +34,17 @@ class SlopeError:
     """Slopes of a contact and the coefficient error at each; None beyond the table.
 
     rms_gradient, max_slope : angles (rad) whose tangents are the rms and the largest of |grad z|
+    at_rms, at_max : error of the neighbours in line with the slope
+    across_at_rms, across_at_max : of the element itself and of its neighbours across, the larger; None for
+        surfaces that are constant along a direction, for a plane displacement has no datum
     """
 
     rms_gradient: float
     max_slope: float
     at_rms: float | None
     at_max: float | None
+    across_at_rms: float | None = None
+    across_at_max: float | None = None
 
 
 def coefficient_error(
@@ -80,22 +87,42 @@ def coefficient_error(
     return float(_errors(np.array([slope]), wavelength, positions, lower, upper)[0])
 
 
-def slope_error(slopes: Slopes, pressure: Array, pair: Pair) -> SlopeError:
-    """Return the error at a contact's rms gradient, weighted by pressure, and at its steepest element."""
+def slope_error(slopes: Slopes, pressure: Array, pair: Pair, *, plane: bool = False) -> SlopeError:
+    """Return the error at a contact's rms gradient, weighted by pressure, and at its steepest element.
+
+    In three dimensions by the table of square elements (`influence_error_3d`); by the table of strips where
+    the surfaces are ``plane``, constant along a direction, and for Poisson's ratios below zero.
+    """
     loaded = pressure > 0
     squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2
     if not squared.any():
         return SlopeError(0.0, 0.0, 0.0, 0.0)
     rms = math.atan(math.sqrt(slopes.mean_square(np.maximum(pressure, 0.0))))
     steepest = math.atan(math.sqrt(float(squared.max())))
+    if plane or min(pair.lower.nu, pair.upper.nu) < 0:
+        return SlopeError(rms, steepest, *_plane_errors(np.array([rms, steepest]), pair))
+    at = [
+        element_error(angle, pair.lower, pair.upper) if angle <= steepest_tabulated() else None
+        for angle in (rms, steepest)
+    ]
+    in_line = [None if one is None else one.in_line for one in at]
+    across = [None if one is None else max(one.self_coefficient, one.across) for one in at]
+    return SlopeError(rms, steepest, *in_line, *across)
+
+
+def constant_along_an_axis(*heights: Array) -> bool:
+    """Return whether all surfaces are constant along x, or all along y, on more than one element."""
+    return any(
+        all(z.shape[axis] > 1 and not np.any(np.diff(z, axis=axis)) for z in heights) for axis in (0, 1)
+    )
+
+
+def _plane_errors(angles: Array, pair: Pair) -> list[float | None]:
     table = _table()
     top = math.radians(table["slope_deg"][-1])
-    angles, positions = np.array([rms, steepest]), np.array(table["position"])
+    positions = np.array(table["position"])
     found = _errors(np.minimum(angles, top), table["wavelength"][-1], positions, pair.lower, pair.upper)
-    at_rms, at_max = (
-        float(error) if angle <= top else None for angle, error in zip(angles, found, strict=True)
-    )
-    return SlopeError(rms, steepest, at_rms, at_max)
+    return [float(error) if angle <= top else None for angle, error in zip(angles, found, strict=True)]
 
 
 def _errors(
@@ -152,10 +179,27 @@ def _flat(nu: float) -> float:
 
 
 def read_table(text: str) -> dict[str, Any]:
-    """Return the table of a JSON text, ``coefficient_error.json``; raise `InputError` for another version."""
+    """Return the table of a JSON text, ``coefficient_error.json``.
+
+    Raises `InputError` for another version, for axes that do not rise, hold fewer than two values or do not
+    span half a period of positions, for missing neighbours, and for parts of another shape.
+    """
     table: dict[str, Any] = json.loads(text)
-    if table["version"] != _VERSION:
-        raise InputError("coefficient_error.json", table["version"], f"version {_VERSION}")
+    if table.get("version") != _VERSION:
+        raise InputError("coefficient_error.json", table.get("version"), f"version {_VERSION}")
+    for name in _AXES:
+        values = table.get(name)
+        if not isinstance(values, list) or len(values) < 2 or not np.all(np.diff(values) > 0):
+            raise InputError(name, values, "two rising values at least")
+    if (table["position"][0], table["position"][-1]) != (0.0, 0.5):
+        raise InputError("position", table["position"], "positions from 0 (crest) to 0.5 (valley)")
+    if not {-_NEIGHBOUR, _NEIGHBOUR} <= set(table["offset"]):
+        raise InputError("offset", table["offset"], "both neighbours, -2 and 2, among the offsets")
+    shape = tuple(len(table[name]) for name in _AXES)
+    for part in ("kappa_part", "constant_part"):
+        found = np.shape(table.get(part, ()))
+        if found != shape:
+            raise InputError(part, found, f"the shape of its axes, {shape}")
     return table
 
 

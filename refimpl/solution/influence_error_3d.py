@@ -66,6 +66,11 @@ def element_error(slope: float, lower: Material, upper: Material | None = None) 
     return ElementError(float(worst[0]), float(worst[1:7].max()), float(worst[7:].max()))
 
 
+def steepest_tabulated() -> float:
+    """The table's largest slope (rad)."""
+    return math.radians(float(_table()[0][-1]))
+
+
 def _error(slope: float, nu: float, slopes: Array, ratios: Array, errors: Array) -> Array:
     """(10,) from ``errors`` (ratios, slopes, 10): linear over the slope's tangent, quadratic in nu.
 

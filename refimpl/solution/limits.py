@@ -20,7 +20,8 @@ from refimpl.planning.term_effects import Effect
 from refimpl.planning.terms import LABELS
 from refimpl.scene.resolution import resolution
 from refimpl.scene.scene import Body, Scene
-from refimpl.solution.influence_error import SlopeError, slope_error
+from refimpl.solution.half_space_warning import ALLOWED, half_space_excess
+from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.crop import ROUNDING
 from refimpl.surfaces.statistics import rms_slopes
@@ -37,6 +38,7 @@ class Limit(StrEnum):
     HARDNESS = "peak pressure"
     RMS_GRADIENT = "rms gradient"
     MAX_SLOPE = "maximum slope"
+    HALF_SPACE = "half-space"
     BORDER = "border"
     CORRELATION = "correlation length"
     SHORT_CUT = "shortest wave"
@@ -118,6 +120,7 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
         _plasticity(evidence),
         _hardness(evidence),
         *_slopes(evidence),
+        _half_space(evidence),
         _border(evidence),
         _correlation(evidence),
         _data(evidence),
@@ -201,8 +204,8 @@ def _area_missing(evidence: Evidence, hardness: float) -> str:
 def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
     error = _error_at_slopes(evidence)
     return [
-        _slope(Limit.RMS_GRADIENT, error.rms_gradient, error.at_rms),
-        _slope(Limit.MAX_SLOPE, error.max_slope, error.at_max),
+        _slope(Limit.RMS_GRADIENT, error.rms_gradient, error.at_rms, error.across_at_rms),
+        _slope(Limit.MAX_SLOPE, error.max_slope, error.at_max, error.across_at_max),
     ]
 
 
@@ -216,15 +219,26 @@ def _error_at_slopes(evidence: Evidence) -> SlopeError:
     moved = 0.5 * (state.displacement_upper - state.displacement_lower)
     surface = (problem.mean_surface + moved)[near]
     slopes = Slopes.of_surface(surface, problem.grid, 0.0)
-    return slope_error(slopes, state.pressure[near], problem.pair)
+    plane = constant_along_an_axis(problem.gap, problem.mean_surface)
+    return slope_error(slopes, state.pressure[near], problem.pair, plane=plane)
 
 
-def _slope(limit: Limit, slope: float, error: float | None) -> ModelWarning | None:
-    if error is not None and error <= _COEFFICIENT_ERROR:
+def _slope(limit: Limit, slope: float, in_line: float | None, across: float | None) -> ModelWarning | None:
+    """``across`` is None for plane problems."""
+    largest = math.inf if in_line is None else max(in_line, across or 0.0)
+    if largest <= _COEFFICIENT_ERROR:
         return None
-    size = "beyond Appendix A's table" if error is None else f"by {error:.1%}, above 2 %, by Appendix A"
+    size = "beyond Appendix A's table"
+    if in_line is not None:
+        both = "" if across is None else f" in line and {across:.1%} across"
+        size = f"by {in_line:.1%}{both}, above 2 %, by Appendix A"
     text = f"{limit.value} {math.degrees(slope):.3g} degrees: influence coefficients of a flat are off {size}"
-    return ModelWarning(limit, math.inf if error is None else error, _COEFFICIENT_ERROR, text)
+    return ModelWarning(limit, largest, _COEFFICIENT_ERROR, text)
+
+
+def _half_space(evidence: Evidence) -> ModelWarning | None:
+    found = half_space_excess(evidence.problem, evidence.state)
+    return None if found is None else ModelWarning(Limit.HALF_SPACE, found[0], ALLOWED, found[1])
 
 
 def _border(evidence: Evidence) -> ModelWarning | None:

@@ -32,8 +32,9 @@ from refimpl.planning.term_effects import Effect, effects_in, neglected_parts
 from refimpl.scene.scene import Scene
 from refimpl.solution.bounds import Bounds, proven_bounds
 from refimpl.solution.data_error import data_error
-from refimpl.solution.influence_error import SlopeError, slope_error
+from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.solution.limits import Evidence, ModelWarning, Notice, model_warnings, plain_warning
+from refimpl.solution.model_form import ModelForm, model_form
 
 REPORTED = NUMBERS
 """The numbers of a solution, each with an error bar."""
@@ -178,6 +179,14 @@ class Solution:
     def bounds(self) -> Bounds:
         """Proven bounds at the state's slopes and active set of tau; computed when first used."""
         return proven_bounds(self.problem, self.pressure, self.traction, self.slopes)
+
+    @cached_property
+    def model_form(self) -> ModelForm:
+        """Stated relative errors of the half-space in approach and N; computed when first used."""
+        lower, upper = self.problem.heights
+        approach = self.approach + self.problem.datum
+        moved = lower - self.surface_lower, self.surface_upper - upper + approach
+        return model_form(self.problem, self.pressure, self.traction, moved, approach)
 
     def summary(self) -> dict[str, Any]:
         """Return everything but the arrays, as plain values for JSON."""
@@ -334,7 +343,8 @@ def assemble(
     surface_lower -= state.displacement_lower
     surface_upper += state.displacement_upper
     surface_upper -= state.approach
-    error = slope_error(state.slopes, state.pressure, problem.pair)
+    plane = constant_along_an_axis(problem.gap, problem.mean_surface)
+    error = slope_error(state.slopes, state.pressure, problem.pair, plane=plane)
     evidence = Evidence(scene, problem, solved.plan, state, result.excluded, error, solved.neglected)
     return Solution(
         status=_short_of_accuracy(solved) if shortfall else solved.status,

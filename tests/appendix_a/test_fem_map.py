@@ -110,3 +110,21 @@ def test_outside_the_table_is_refused():
     for arguments in ((31.0, 20.0), (-1.0, 20.0), (5.0, 7.0), (5.0, float("nan"))):
         with pytest.raises(InputError):
             invented().departure(*arguments, 0.25, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("field", "changed"),
+    [
+        ("slope_deg", {"slope_deg": (2.5, 6.5)}),
+        ("wavelength", {"wavelength": (50.0,)}),
+        ("position", {"position": (0.0, 0.25)}),
+    ],
+)
+def test_a_map_too_short_to_interpolate_is_refused(field: str, changed: dict[str, tuple[float, ...]]) -> None:
+    axes = {"slope_deg": (1.0, 2.0, 3.0, 4.0), "wavelength": (8.0, 16.0, 32.0, 64.0), "position": (0.0, 0.5)}
+    axes |= {"offset": (-2.0, 2.0)} | changed
+    shape = tuple(len(values) for values in axes.values())
+    table = CoefficientMap(**axes, **dict.fromkeys(("kappa_part", "constant_part"), np.zeros(shape)),
+                           error_percentage_points=np.zeros(shape[:3]))  # fmt: skip
+    with pytest.raises(InputError, match=field):
+        table.percent(2.0, 20.0, 0.1, 0.3)

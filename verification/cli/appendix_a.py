@@ -28,6 +28,7 @@ EXAMPLES = {
     "strip": WAVE,
     "wedge": "--gamma-deg 10 --r 0.25,0.5,2 --theta-deg 0,30 --json -",
     "fem": WAVE,
+    "surface": "table1-rough --grid 64",
     "map": "--slopes-deg 2.5,6.5 --wavelengths 50 --positions 0 --json map.json",
 }
 
@@ -46,6 +47,7 @@ def add_parser(commands: Parsers) -> None:
     _add_wedge(problems)
     _add_fem(problems)
     _add_map(problems)
+    _add_surface(problems)
 
 
 def numbers(text: str) -> list[float]:
@@ -89,6 +91,15 @@ def _add_map(problems: Parsers) -> None:
     add("--wavelengths", type=numbers, help="in half-widths of the strip")
     add("--positions", type=numbers, help="of the strip's centre: crest 0 to valley 0.5")
     add("--jobs", metavar="N", type=int, default=2, help="worker processes (default 2)")
+
+
+def _add_surface(problems: Parsers) -> None:
+    text = "how far a half-space may be trusted on a scene's surfaces; three solves"
+    parser = _problem(problems, "surface", surface, text)
+    add = parser.add_argument
+    add("scene", metavar="SCENE", help="a scene file, or the name of a shipped scene")
+    add("--grid", type=int, default=128, help="elements along the longer side (default 128)")
+    add("--plot", metavar="PNG", type=Path, help="write a map of the local coefficient error")
 
 
 def _wavy_options(parser: argparse.ArgumentParser) -> None:
@@ -203,6 +214,13 @@ def coefficient_map(options: argparse.Namespace) -> int:
     error = f"stated error, percentage points: {found.error_percentage_points.max():.2g}"
     emit(document, options.json, f"{columns(rows, indent='')}\n{error}")
     return 0
+
+
+def surface(options: argparse.Namespace) -> int:
+    """The half-space's error on a scene's surfaces."""
+    from verification.cli import half_space
+
+    return half_space.surface(options)
 
 
 def _wave(options: argparse.Namespace) -> tuple[float, float, float, float]:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
+from refimpl.solution.half_space_warning import ALLOWED, expected_error
 from verification.cli.output import columns
 
 if TYPE_CHECKING:
@@ -88,4 +91,8 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
     refined = options.grid is None
     if (resolved := _resolution(options, plan)) is not None:
         rows.append([f"elements per {resolved.detail.name}", _resolved(resolved, refined=refined)])
+    slope, error = expected_error(discretise(options.scene, grid))
+    if error > ALLOWED:
+        told = f"slopes of {math.degrees(slope):.2g} degrees: N at a given approach may be off by {error:.0%}"
+        rows.append(["half-space", told])
     return rows if refined else [*rows, ["memory", f"{plan.memory / 1e6:.3g} MB"]]

@@ -13,7 +13,14 @@ import pytest
 import refimpl as rf
 from refimpl.model.materials import Pair
 from refimpl.model.slopes import Slopes
-from refimpl.solution.influence_error import SlopeError, coefficient_error, read_table, slope_error
+from refimpl.solution.influence_error import (
+    SlopeError,
+    coefficient_error,
+    constant_along_an_axis,
+    read_table,
+    slope_error,
+)
+from refimpl.solution.influence_error_3d import element_error
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 PAIR = Pair(lower=COPPER, upper=STEEL)
@@ -190,18 +197,42 @@ def test_a_solution_quotes_its_slopes() -> None:
     loaded = solution.contact
     steepest = np.hypot(np.tan(solution.theta_x), np.tan(solution.theta_y))[loaded].max()
     assert quoted.max_slope == pytest.approx(math.atan(steepest), rel=1e-12)
-    assert quoted.at_max == coefficient_error(quoted.max_slope, COPPER, STEEL)
+    in_space = element_error(quoted.max_slope, COPPER, STEEL)
+    assert quoted.at_max == in_space.in_line > coefficient_error(quoted.max_slope, COPPER, STEEL)
+    assert quoted.across_at_max == max(in_space.self_coefficient, in_space.across)
     assert quoted.rms_gradient <= quoted.max_slope
 
 
 def test_slopes_are_weighted_by_pressure_where_it_is() -> None:
     # squares of the tangents 0.25 and 0.01, weighted 1 : 3, make (0.25 + 0.03) / 4 = 0.07; the rest is free
     tan_x, tan_y = np.array([[0.3, 0.06], [9.0, 0.0]]), np.array([[-0.4, 0.08], [0.0, 9.0]])
-    found = slope_error(Slopes(tan_x, tan_y), np.array([[1e6, 3e6], [0.0, -1e6]]), PAIR)
+    found = slope_error(Slopes(tan_x, tan_y), np.array([[1e6, 3e6], [0.0, -1e6]]), PAIR, plane=True)
     assert found.rms_gradient == pytest.approx(math.atan(math.sqrt(0.07)), rel=1e-15)
     assert found.max_slope == pytest.approx(math.atan(0.5), rel=1e-15)
     assert found.at_rms == coefficient_error(found.rms_gradient, COPPER, STEEL)
     assert found.at_max == coefficient_error(found.max_slope, COPPER, STEEL)
+
+
+@pytest.mark.parametrize(
+    ("changed", "field"),
+    [
+        ({"position": [0.0, 0.25]}, "position"),
+        ({"wavelength": [50.0]}, "wavelength"),
+        ({"slope_deg": [2.5, 2.5]}, "slope_deg"),
+        ({"offset": [-1.0, 1.0]}, "offset"),
+        ({"kappa_part": [0.0]}, "kappa_part"),
+        ({"constant_part": None}, "constant_part"),
+    ],
+)
+def test_incomplete_axes_are_refused(changed: dict[str, object], field: str) -> None:
+    with pytest.raises(rf.InputError, match=f"^{field} = "):
+        read_table(json.dumps(TABLE | changed))
+
+
+def test_a_surface_constant_along_an_axis_is_plane() -> None:
+    ridge = np.repeat(np.array([[0.0], [1.0]]), 3, axis=1)
+    assert constant_along_an_axis(ridge, 0 * ridge)
+    assert not constant_along_an_axis(ridge, ridge.T[:2].repeat(2, axis=1)[:, :3] + np.eye(2, 3))
 
 
 def test_what_was_quoted_never_changes() -> None:

@@ -64,3 +64,20 @@ def test_finite_elements_say_on_a_terminal_how_far_they_are(
     wave = ["--slope-deg", "1", "--wavelength", "8", "--position", "0", "--nu", "0.3", "--offsets=2"]
     assert main(["appendix-a", "fem", *wave]) == 0
     assert ("[5/5] finite elements" in capsys.readouterr().err) is terminal
+
+
+def test_surface_states_every_numbers_error_and_advises(tmp_path: Path, capsys: Capture) -> None:
+    picture = tmp_path / "map.png"
+    command = ["appendix-a", "surface", "table1-rough", "--grid", "32"]
+    assert main([*command, "--plot", str(picture), "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["share_above_2_percent"] == 0.0
+    assert found["advice"].startswith("keep the half-space")
+    assert set(found["numbers"]) == {
+        "friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force",
+    }  # fmt: skip
+    for row in found["numbers"].values():
+        assert abs(row["corrected"] - row["value"]) <= row["stated"]
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert main(command) == 0
+    assert "stated error" in capsys.readouterr().out

@@ -66,3 +66,34 @@ def test_json_holds_the_estimates(tmp_path: Path, capsys: Capture) -> None:
 def test_bad_input_is_refused_as_in_a_solve(capsys: Capture) -> None:
     assert main(["solve", "hertz", "--grid", "0", "--explain"]) == 2
     assert "grid = 0" in capsys.readouterr().err
+
+
+STEEP = """
+load = 0.5
+side = 1.0e-3
+[upper.material]
+E = "rigid"
+nu = 0.3
+[[upper.surface]]
+kind = "flat"
+[lower.material]
+E = 1e9
+nu = 0.0
+[[lower.surface]]
+kind = "gaussian"
+rms = 10e-6
+correlation_length = 100e-6
+seed = 1
+[friction]
+beta = 0.1
+"""
+
+
+def test_steep_surfaces_are_told_before_anything_is_solved(tmp_path: Path, capsys: Capture) -> None:
+    scene = tmp_path / "steep.toml"
+    scene.write_text(STEEP, encoding="utf-8")
+    assert main(["solve", str(scene), "--grid", "32", "--explain"]) == 0
+    row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("  half-space"))
+    # 0.7 tan(slope) for nu = 0 on a rigid flat
+    assert "slopes of 19 degrees" in row
+    assert row.endswith("N at a given approach may be off by 24%")

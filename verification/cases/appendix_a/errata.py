@@ -28,6 +28,7 @@ def declare(erratum: Erratum, slug: str) -> None:
             raise ArithmeticError(f"the printed form misses by {against:.3g} only: no erratum")
         data = {
             "equation": erratum.equation,
+            "kind": erratum.kind.value,
             "printed": erratum.printed,
             "corrected": erratum.corrected,
             "measure": erratum.measure,

@@ -1,0 +1,161 @@
+"""Error of the half-space in a solution's numbers: the scene solved again with its surfaces' recession.
+
+The undeformed surfaces change the displacements at first order in their slopes
+(`refimpl.solution.boundary_perturbation`). That change, taken at the solved tractions, is a change of the
+heights: the scene is solved again with it, under the load and at the approach. What is left is of second
+order, and bounded by a factor times the mean square slope, fitted to finite elements. Finite strain adds a
+share of the first order, from neo-Hookean bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from refimpl.driver.solve import solve
+from refimpl.grid import Array
+from refimpl.model.problem import Problem
+from refimpl.scene.discretise import discretise
+from refimpl.scene.scene import Body, Scene
+from refimpl.solution.boundary_perturbation import gap_changes
+from refimpl.solution.influence_error_3d import element_error, steepest_tabulated
+from refimpl.solution.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
+from refimpl.solution.solution import Solution
+from refimpl.surfaces import ArraySurface
+
+ACCEPTED = 0.02  # relative: the paper's "less than 2 %"
+_NODES = 61  # slopes from 0 to 30 degrees, half a degree apart
+UNDER_LOAD = ("approach", "friction_coefficient", "contact_area", "max_pressure", "binormal_force")
+
+
+@dataclass(frozen=True)
+class HalfSpaceError:
+    """Model-form error of the half-space in each number, in the number's unit.
+
+    first_order : signed change of the number once the surfaces' own shape enters; the normal force's is at
+        the solution's approach, all others' under its load (or at its approach, where that is prescribed)
+    second_order, finite_strain : bounds on what the first order leaves, not negative
+    gap_change : how far the surfaces recede, both together (m), the grid's shape
+    corrected : the scene solved with it
+    """
+
+    first_order: Mapping[str, float]
+    second_order: Mapping[str, float]
+    finite_strain: Mapping[str, float]
+    gap_change: Array
+    corrected: Solution
+
+    def stated(self, number: str) -> float:
+        """Return the stated model-form error of a number: all three parts."""
+        return abs(self.first_order[number]) + self.second_order[number] + self.finite_strain[number]
+
+
+def half_space_error(scene: Scene, solution: Solution) -> HalfSpaceError:
+    """Estimate what the half-space costs approach, N, mu, A, p_max and Q of a solution.
+
+    Costs two solves on the solution's grid. Raises `ArithmeticError` where one does not converge.
+    """
+    problem = solution.problem
+    z_lower, z_upper = problem.heights
+    first = solution.approach + problem.datum  # from the first contact of the scene as given
+    moved = z_lower - solution.surface_lower, solution.surface_upper - z_upper + first
+    lower, upper = gap_changes(contact_of(problem, solution.pressure, solution.traction, moved))
+    receded = replace(
+        scene,
+        lower=Body(scene.lower.material, _surface(z_lower - lower, solution)),
+        upper=Body(scene.upper.material, _surface(z_upper + upper, solution)),
+    )
+    gap = z_upper - z_lower + lower + upper
+    shifted = discretise(receded, solution.grid)
+    datum = shifted.datum + float(gap.min())  # approach of the changed scene
+    corrected = _solved(receded, solution, None if problem.approach is None else first - datum)
+    sunk = corrected.approach + datum
+    change = {
+        name: getattr(corrected, name) - getattr(solution, name) for name in UNDER_LOAD if name != "approach"
+    }
+    change["approach"] = sunk - first
+    if problem.approach is None:
+        there = _solved(receded, solution, first - datum)
+        change["normal_force"] = there.normal_force - solution.normal_force
+    else:
+        change["normal_force"] = corrected.normal_force - solution.normal_force
+    size = {name: abs(getattr(solution, name)) for name in change} | {"approach": abs(first)}
+    size["binormal_force"] = abs(solution.friction_force)
+    second = {name: SECOND_ORDER[name] * steepness(problem, solution.contact) * size[name] for name in change}
+    finite = {name: FINITE_STRAIN * abs(change[name]) for name in change}
+    return HalfSpaceError(change, second, finite, lower + upper, corrected)
+
+
+def _surface(heights: Array, solution: Solution) -> ArraySurface:
+    return ArraySurface(np.ascontiguousarray(heights), pixel=solution.grid.spacings)
+
+
+def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solution:
+    terms = solution.problem.terms
+    found = solve(
+        scene,
+        solution.grid.shape,
+        approach=approach,
+        oblique=terms.oblique,
+        slope_correction=terms.slope_correction,
+        coupled=None if terms.slope_correction else terms.coupled,
+        tilted=terms.tilted,
+        plastic=terms.plastic,
+        tolerance=solution.tolerance,
+    )
+    if not found.converged:
+        raise ArithmeticError(f"the solve with the surfaces' recession ended as {found.status.value}")
+    return found
+
+
+def local_error(problem: Problem) -> Array:
+    """Return the coefficient error at every element's undeformed slopes, the grid's shape.
+
+    The larger of both neighbours in line, of the element itself and of those across, for each body at its own
+    slope, weighted by the bodies' compliances; infinite beyond the table's slopes. Raises `InputError` for a
+    negative Poisson's ratio, which the table of square elements does not have.
+    """
+    found = problem.grid.zeros
+    shares = 1 - problem.pair.upper_share, problem.pair.upper_share
+    bodies = problem.pair.lower, problem.pair.upper
+    angles = np.linspace(0.0, steepest_tabulated(), _NODES)
+    for share, body, heights in zip(shares, bodies, problem.heights, strict=True):
+        if share == 0:
+            continue
+        along_x, along_y = problem.grid.gradient(heights)
+        slope = np.arctan(np.hypot(along_x, along_y))
+        errors = [element_error(angle, body) for angle in angles]
+        largest = [max(e.self_coefficient, e.in_line, e.across) for e in errors]
+        found += share * np.interp(slope, angles, largest, right=np.inf)
+    return found
+
+
+def advice(error: HalfSpaceError, solution: Solution) -> str:
+    """Return what to do about the half-space's error: nothing, correct to first order, or finite elements.
+
+    The rule rests on 56 plane contacts solved by finite elements (docs/half-space-limits.md).
+    """
+    size = {
+        name: abs(getattr(solution, name))
+        for name in ("friction_coefficient", "contact_area", "max_pressure")
+    }
+    size["approach"] = abs(solution.approach + solution.problem.datum)
+    size["normal_force"] = abs(solution.normal_force)
+    stated = {name: error.stated(name) / value for name, value in size.items() if value}
+    rest = {
+        name: (error.second_order[name] + error.finite_strain[name]) / value
+        for name, value in size.items()
+        if value
+    }
+    worst = max(stated, key=lambda name: stated[name])
+    left = max(rest.values())
+    if stated[worst] <= ACCEPTED:
+        return f"keep the half-space: no number is off by more than {stated[worst]:.1%}"
+    shown = f"{worst.replace('_', ' ')} may be off by {stated[worst]:.1%}"
+    if left <= ACCEPTED:
+        return (
+            f"{shown}: take the corrected numbers, which leave {left:.1%}; slope_correction is no substitute"
+        )
+    return f"{shown}, and {left:.1%} is left by the first-order correction: use finite elements"
