@@ -156,6 +156,12 @@ def correction() -> Measured:
         data[f"{name}: median as printed, left (%)"] = [100 * float(np.median(v)) for v in (true, left)]
         data[f"{name}: better in"] = float(np.mean(left < true))
     printed, left = np.array([(abs(c.true["normal_force"]), abs(c.left["normal_force"])) for c in contacts]).T
+    facets = np.array([abs(c.by_facets) for c in contacts])
+    data["normal_force: left by slope_correction, median and largest (%)"] = [
+        100 * float(np.median(facets)),
+        100 * float(facets.max()),
+    ]
+    data["normal_force: slope_correction better in"] = float(np.mean(facets < printed))
     return Measured(float(np.median(left) / np.median(printed)), data=data)
 
 

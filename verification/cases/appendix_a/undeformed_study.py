@@ -176,6 +176,7 @@ def numbers(profiles: Profiles, solution: rf.Solution) -> dict[str, float]:
 class Judged:
     """One contact: relative errors by quantity, true, stated, the finite elements' own, left by first order.
 
+    ``by_facets`` is what ``slope_correction`` leaves of N's error;
     ``quick`` is what the solution itself states for N; ``warned``: it warns of the half-space.
     """
 
@@ -185,6 +186,7 @@ class Judged:
     stated: dict[str, float]
     fem: dict[str, float]
     left: dict[str, float]
+    by_facets: float
     quick: float
     warned: bool
 
@@ -202,6 +204,9 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
     datum = solution.problem.datum
     first = solution.approach + datum
     at = rf.solve(scene, grid=(M, ACROSS), tolerance=TOLERANCE, approach=fine.approach - datum)
+    facets = rf.solve(
+        scene, grid=(M, ACROSS), tolerance=TOLERANCE, approach=fine.approach - datum, slope_correction=True
+    )
     true = {
         "approach": fine.approach / first - 1,
         "normal_force": scene.load / at.normal_force - 1,
@@ -232,4 +237,5 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
     warned = any(getattr(w, "limit", None) == "half-space" for w in solution.warnings)
     slope = math.degrees(math.atan(max(profiles.slopes)))
     quick = solution.model_form.normal_force
-    return Judged(profiles.kind, slope, true, stated, fem, left, quick, warned)
+    by_facets = scene.load / facets.normal_force - 1
+    return Judged(profiles.kind, slope, true, stated, fem, left, by_facets, quick, warned)
