@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from refimpl.grid.fields import Mask
+from refimpl.grid.fields import Array, Mask
 
 
 def patch_sizes(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
@@ -18,14 +20,47 @@ def patch_sizes(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
     >>> patch_sizes(corners).tolist(), patch_sizes(corners, periodic=True).tolist()
     ([1, 1], [2])
     """
+    sizes: NDArray[np.intp] = np.bincount(patch_labels(contact, periodic=periodic)[contact])
+    return sizes[sizes > 0]
+
+
+def patch_labels(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
+    """Return the patch of each element, numbered from 1 in the order of the array; 0 without contact.
+
+    >>> patch_labels(np.array([[True, False, True]])).tolist()
+    [[1, 0, 2]]
+    """
     labels, count = ndimage.label(contact, np.ones((3, 3)))
     if periodic:
         pairs = np.concatenate([_across(labels), _across(labels.T)], axis=1)
         touching = coo_array((np.ones(pairs.shape[1]), (pairs[0], pairs[1])), (count + 1, count + 1))
         _, patches = connected_components(touching, directed=False)
         labels = patches[labels]
-    sizes: NDArray[np.intp] = np.bincount(labels[contact])
-    return sizes[sizes > 0]
+    found, numbered = np.unique(labels[contact], return_inverse=True)
+    order = np.empty(len(found), dtype=np.intp)
+    first = np.full(len(found), numbered.size)
+    np.minimum.at(first, numbered, np.arange(numbered.size))
+    order[np.argsort(first)] = np.arange(1, len(found) + 1)
+    result = np.zeros(contact.shape, dtype=np.intp)
+    result[contact] = order[numbered]
+    return result
+
+
+def patch_centres(labels: NDArray[np.intp], f: Array, along: Array, length: float, periodic: bool) -> Array:
+    """Return the mean place of each patch along one axis (m), weighted by ``f``; all arrays are flat.
+
+    A patch that spans the whole period has no centre along it; the mean of its angles is returned.
+    """
+    total = np.bincount(labels, f)[1:]
+    if not periodic:
+        mean: Array = np.bincount(labels, f * along)[1:] / total
+        return mean
+    angle = 2 * math.pi / length * along
+    middle = np.arctan2(np.bincount(labels, f * np.sin(angle)), np.bincount(labels, f * np.cos(angle)))
+    off = (along - middle[labels] * length / (2 * math.pi) + length / 2) % length - length / 2
+    corrected = np.bincount(labels, f * off)[1:] / total
+    result: Array = (middle[1:] * length / (2 * math.pi) + corrected) % length
+    return result
 
 
 def _across(labels: NDArray[np.integer]) -> NDArray[np.integer]:

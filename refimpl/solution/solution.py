@@ -21,6 +21,7 @@ from refimpl.accuracy.iteration_error import (
     merged,
     reported_numbers,
 )
+from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.certificate import Certificate, State
 from refimpl.model.friction import FrictionLaw, friction_per_area
@@ -30,11 +31,14 @@ from refimpl.model.state import SolverResult, Status
 from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect, effects_in, neglected_parts
 from refimpl.scene.scene import Scene
+from refimpl.solution import display
+from refimpl.solution.arrays import UNITS, as_dataset
 from refimpl.solution.bounds import Bounds, proven_bounds
 from refimpl.solution.data_error import data_error
 from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.solution.limits import Evidence, ModelWarning, Notice, model_warnings, plain_warning
 from refimpl.solution.model_form import ModelForm, model_form
+from refimpl.solution.patches import Patch, patches_of
 
 REPORTED = NUMBERS
 """The numbers of a solution, each with an error bar."""
@@ -67,7 +71,7 @@ def _added(first: Mapping[str, int], second: Mapping[str, int]) -> dict[str, int
     return {key: first.get(key, 0) + second.get(key, 0) for key in {**first, **second}}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """A solved scene. Forces in N, lengths in m, areas in m^2, pressures in Pa, arrays in the grid's shape.
 
@@ -188,6 +192,57 @@ class Solution:
         moved = lower - self.surface_lower, self.surface_upper - upper + approach
         return model_form(self.problem, self.pressure, self.traction, moved, approach)
 
+    @property
+    def contact_area_share(self) -> float:
+        """Real over nominal contact area, A/A0; A0 is the whole domain."""
+        return self.contact_area / math.prod(self.grid.lengths)
+
+    @property
+    def mean_pressure(self) -> float:
+        """Mean pressure of the elements in contact (Pa); 0 without contact."""
+        return float(self.pressure[self.contact].mean()) if self.contact_area else 0.0
+
+    @property
+    def mean_gap(self) -> float:
+        """Mean gap between the deformed surfaces over the domain (m)."""
+        return float(self.gap.mean())
+
+    @property
+    def plastic(self) -> Mask:
+        """Elements at the hardness."""
+        return self.pressure >= self.problem.cap
+
+    def error(self, name: str) -> float:
+        """Return the error bar of a number: the sum of its parts, in its unit; inf where unbounded.
+
+        A/A0 has that of A; a number without any part has 0. Raises `InputError` for an unknown name.
+        """
+        if name == "contact_area_share":
+            return self.error("contact_area") / math.prod(self.grid.lengths)
+        if name not in UNITS:
+            raise InputError("error", name, f"one of {', '.join(UNITS)}")
+        return math.fsum(self.uncertainty.get(name, {}).values())
+
+    def patches(self) -> tuple[Patch, ...]:
+        """Return the contact patches in the order of the array: a row each, SI units."""
+        return patches_of(self.pressure, self.plastic, self.grid)
+
+    def to_xarray(self) -> Any:
+        """Return an `xarray.Dataset` of the fields: coordinates in m, units and numbers as attributes.
+
+        Raises `InputError` where xarray is not installed.
+        """
+        return as_dataset(self)
+
+    def __str__(self) -> str:
+        return display.table(self)
+
+    def __repr__(self) -> str:
+        return display.line(self)
+
+    def _repr_html_(self) -> str:
+        return display.html(self)
+
     def summary(self) -> dict[str, Any]:
         """Return everything but the arrays, as plain values for JSON."""
         numbers = {name: getattr(self, name) for name in REPORTED}
@@ -195,6 +250,9 @@ class Solution:
             "status": self.status.value,
             **numbers,
             "plastic_share": self.plastic_share,
+            "contact_area_share": self.contact_area_share,
+            "mean_pressure": self.mean_pressure,
+            "mean_gap": self.mean_gap,
             **_dimensions(self.grid),
             "tolerance": self.tolerance,
             "certificate": asdict(self.certificate),

@@ -19,14 +19,15 @@ BLUE, ORANGE, BLACK = (
 )  # Okabe and Ito 2008, safe for colour-blind readers
 MEGA, MILLI = 1e6, 1e-3
 SLENDER = 4.0
+FORMATS = (".png", ".svg", ".pdf")
 
 
 def check_suffix(path: Path | None) -> None:
-    """Refuse, before any work, a picture that is not PNG. Raises InputError."""
+    """Refuse, before any work, a picture of another format. Raises InputError."""
     from refimpl.errors import InputError
 
-    if path is not None and path.suffix != ".png":
-        raise InputError("--plot", str(path), "a file name that ends in .png")
+    if path is not None and path.suffix not in FORMATS:
+        raise InputError("--plot", str(path), f"a file name that ends in {', '.join(FORMATS)}")
 
 
 def draw(solution: Solution, scene: Scene, path: Path) -> None:

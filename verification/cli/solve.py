@@ -42,6 +42,7 @@ Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
 DEFAULT_GRID = 256
+FILES = ("plot", "vtk", "npz", "netcdf", "patches")
 # Options of refimpl, which --help does not wait for.
 METHODS = ("fft", "dense", "paper")
 ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
@@ -136,8 +137,11 @@ def add_parser(commands: Parsers) -> None:
         action="store_true",
         help="uncertainty budget and derivatives (under a load, a file with [tolerances] has it in any case)",
     )
-    add("--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture")
+    add("--plot", metavar="FILE", type=output_file, help="maps and profiles (.png, .svg or .pdf)")
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
+    add("--npz", metavar="FILE.npz", type=output_file, help="fields with coordinates and units, for numpy")
+    add("--netcdf", metavar="FILE.nc", type=output_file, help="the same as NetCDF, for xarray")
+    add("--patches", metavar="FILE.csv", type=output_file, help="table of contact patches as CSV")
     add_json(parser)
     parser.set_defaults(run=run)
 
@@ -183,17 +187,19 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.errors import InputError
     from refimpl.planning.terms import RequestedTerms
     from refimpl.scene.scene_file import read_tolerances
+    from verification.cli import arrays, explain, plot, vtk
     from verification.cli import budget as budget_lines
-    from verification.cli import explain, plot, vtk
 
     _refuse_ignored(options)
     plot.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
+    arrays.check(options.npz, options.netcdf)
     scene = refimpl.read_scene(options.scene)
     if options.size is not None:
         scene = replace(scene, side=None, size=options.size)
     inputs = [Path(options.scene), *files_of(scene)]
-    check_outputs(inputs, json=options.json, plot=options.plot, vtk=options.vtk)
+    outputs = {name: getattr(options, name) for name in ("json", *FILES)}
+    check_outputs(inputs, **outputs)
     if options.grid is None and options.accuracy is None:
         options.grid = DEFAULT_GRID
     keywords = {name: getattr(options, name) for name in PASSED_ON}
@@ -218,6 +224,12 @@ def run(options: argparse.Namespace) -> int:
         plot.draw(solution, scene, options.plot)
     if options.vtk is not None:
         vtk.write(solution, options.vtk)
+    if options.npz is not None:
+        arrays.write_npz(solution, options.npz)
+    if options.netcdf is not None:
+        arrays.write_netcdf(solution, options.netcdf)
+    if options.patches is not None:
+        arrays.write_patches(solution, options.patches)
     found, text = document(solution, options.scene), table(solution, options.scene)
     if tolerances or options.budget:
         found["budget"] = None
@@ -238,7 +250,7 @@ def _refuse_ignored(options: argparse.Namespace) -> None:
 
     if options.quantity is not None and options.accuracy is None:
         raise InputError("--quantity", options.quantity, "none without --accuracy, which it is about")
-    for name in ("plot", "vtk", "budget") if options.explain else ():
+    for name in (*FILES, "budget") if options.explain else ():
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
             raise InputError(f"--{name}", shown, "none with --explain, which solves nothing")

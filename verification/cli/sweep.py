@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,17 +17,22 @@ from verification.cli.output import (
     emit,
     output_file,
     output_text,
+    wrapped,
 )
 
 if TYPE_CHECKING:
     from verification.sweep.engine import Progress, Sweep
+    from verification.sweep.run import Row
+    from verification.sweep.study import Study
 
+NAMES = {"friction_coefficient": "mu", "contact_area": "A"}
 SUFFIXES = {"store": ".sqlite", "csv": ".csv", "parquet": ".parquet", "json": ".json"}
 
 EPILOG = """examples:
   rough-friction sweep table3 --store table3.sqlite --workers 4 --csv table3.csv
   rough-friction sweep study.toml --parquet study.parquet
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
+  rough-friction sweep study.toml --plot mu.svg --x load --by lower_rms
   rough-friction sweep ensemble.toml --target-error 0.5%
 
 A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on
@@ -39,10 +45,12 @@ message is shown, or did not converge: then its row says so by its status.
   normalise = true            # scale each realisation to its rms (default: as the scene says)
   [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
   grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and by full name
-                              #   numbers of surfaces and hardnesses; grid is needed
+                              #   numbers of surfaces and materials; grid is needed
+                              #   unless [solve] has an accuracy; one value needs no list
   lower_rms = [0.504e-6, 1.68e-6]
   "lower.surface[0].lay" = [0.0, 0.7854]
-  [solve]                     # optional: method, oblique, slope_correction, tolerance
+  [solve]                     # optional: method, oblique, slope_correction, tolerance,
+                              #   accuracy and quantity (chosen grids; then no grid in [vary])
 
 With --target-error the study is an ensemble that varies the grid alone, each grid twice the one
 before, and states no realisations: they are as many as it takes. By multilevel Monte Carlo it finds
@@ -77,6 +85,10 @@ def add_parser(commands: Parsers) -> None:
     )
     add("--csv", metavar="FILE", type=output_text, help="export the study's rows as CSV ('-': to stdout)")
     add("--parquet", metavar="FILE", type=output_file, help="export the study's rows as Parquet")
+    add("--plot", metavar="FILE", type=output_file, help="curves as a picture (.png, .svg or .pdf)")
+    add("--x", metavar="COLUMN", help="with --plot: the column along x (default: what varies)")
+    add("--y", metavar="COLUMN", help="with --plot: the column along y (default friction_coefficient)")
+    add("--by", metavar="COLUMN", help="with --plot: the column that tells curves apart")
     add(
         "--target-error",
         metavar="SHARE",
@@ -100,7 +112,8 @@ def run(options: argparse.Namespace) -> int:
         export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")
     study = read_study(options.study)
-    written = {name: getattr(options, name) for name in ("csv", "parquet", "json")}
+    check_plot(options, study)
+    written = {name: getattr(options, name) for name in ("csv", "parquet", "json", "plot")}
     check_outputs(study.files, store=files_of(store), **written)
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
@@ -113,6 +126,10 @@ def run(options: argparse.Namespace) -> int:
             found = ensemble.found(options, study, store, **where, tick=line.show)
         else:
             done = engine.sweep(study, store, **where, tick=line.show)
+    except KeyboardInterrupt:
+        line.close()
+        print(f"rough-friction sweep: {line.interrupted(store)}", file=sys.stderr)
+        raise
     except engine.WorkersLost as lost:
         print(f"rough-friction sweep: {lost}", file=sys.stderr)
         return 1
@@ -122,6 +139,28 @@ def run(options: argparse.Namespace) -> int:
         return ensemble.told(options, found)
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
+
+
+def check_plot(options: argparse.Namespace, study: Study) -> None:
+    """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
+    from refimpl.errors import InputError
+    from verification.cli.plot import check_suffix
+    from verification.sweep.run import COORDINATES, OUTCOMES
+
+    check_suffix(options.plot)
+    given = {name: getattr(options, name) for name in ("x", "y", "by") if getattr(options, name)}
+    if options.plot is None or options.target_error is not None:
+        for name, value in (given | ({"plot": str(options.plot)} if options.plot else {})).items():
+            raise InputError(f"--{name}", value, "none without --plot, or with --target-error")
+        return
+    known = (*COORDINATES, *OUTCOMES, *study.own_axes)
+    for name, value in given.items():
+        if value not in known:
+            raise InputError(f"--{name}", value, f"one of {', '.join(known)}")
+    several = [axis for axis, values in study.vary.items() if len(values) > 1]
+    options.y = options.y or "friction_coefficient"
+    options.x = options.x or next((axis for axis in several if axis != options.by), "realisation")
+    options.by = options.by or next((axis for axis in several if axis != options.x), None)
 
 
 def _check_suffixes(**written: Path | None) -> None:
@@ -143,11 +182,17 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
     if options.csv == Path("-"):
         if done.failures or done.unconverged:
             print(table, file=sys.stderr)
-        table = export.to_csv(done.rows).rstrip("\n")
+        table = export.to_csv(done.table()).rstrip("\n")
     elif options.csv is not None:
-        export.write_csv(done.rows, options.csv)
+        export.write_csv(done.table(), options.csv)
     if options.parquet is not None:
-        export.write_parquet(done.rows, options.parquet)
+        export.write_parquet(done.table(), options.parquet)
+    if options.plot is not None and done.rows:
+        from verification.cli import plot_sweep
+        from verification.sweep.curves import curves
+
+        found = curves(done.rows, options.x, options.y, options.by)
+        plot_sweep.draw(found, options.x, options.y, options.by, options.plot)
     emit(_document(done, store), options.json, table)
 
 
@@ -174,7 +219,7 @@ def _document(done: Sweep, store: Path) -> dict[str, object]:
         "failures": done.failures,
         "statuses": done.statuses,
         "seconds": round(done.seconds, 3),
-        "rows": plain(done.rows),
+        "rows": plain(done.table()),
         "provenance": provenance(),
     }
 
@@ -189,7 +234,33 @@ def _table(done: Sweep, store: Path) -> str:
     messages = [f"failed: {text}" for text in sorted(set(done.failures.values()))]
     if bad := done.unconverged:
         messages.append(f"{len(bad)} of {len(done.rows)} runs did not converge: their rows are no solutions")
-    return "\n\n".join([f"{store}, {done.seconds:.0f} s", columns(rows), *messages])
+    return "\n\n".join([f"{store}, {done.seconds:.0f} s", columns(rows), *messages, *_quality(done.rows)])
+
+
+def _quality(rows: list[Row]) -> list[str]:
+    """Error bars against the scatter, and the warnings with their numbers of runs."""
+    from verification.sweep.quality import quality_of, warnings_of
+
+    table = [
+        [
+            NAMES[found.name],
+            "error bar unbounded" if math.isinf(found.error) else f"error bar {found.error:.2g}",
+            "" if found.scatter is None else f"scatter {found.scatter:.2g}",
+        ]
+        for found in quality_of(rows)
+    ]
+    parts = [f"relative, median over the study:\n{columns(table)}"] if table else []
+    for found in quality_of(rows):
+        if found.is_biased:
+            text = (
+                "the error bar exceeds the scatter of realisations: use a finer grid, or accuracy in [solve]"
+            )
+            parts.append(wrapped(text, f"warning ({NAMES[found.name]}): "))
+    with_any = sum(1 for row in rows if row["warnings"])
+    if with_any:
+        counted = ", ".join(f"{name} in {number}" for name, number in warnings_of(rows).items())
+        parts.append(wrapped(counted, f"{with_any} of {len(rows)} runs with warnings: "))
+    return parts
 
 
 class _Line:
@@ -197,14 +268,26 @@ class _Line:
 
     def __init__(self) -> None:
         self._shown = sys.stderr.isatty()
+        self._last: Progress | None = None
 
     def show(self, progress: Progress) -> None:
         """Rewrite the line."""
+        self._last = progress
         if self._shown:
             failed = f", {progress.failed} failed" if progress.failed else ""
             text = f"[{progress.done}/{progress.total}]{failed} {time_left(progress.seconds_left)}"
             sys.stderr.write(f"\r\x1b[K{text}")
             sys.stderr.flush()
+
+    def interrupted(self, store: Path) -> str:
+        """Return what is done and how it goes on."""
+        if self._last is None:
+            return "interrupted before the first run; the same command starts again"
+        left = time_left(self._last.seconds_left)
+        return (
+            f"interrupted: {self._last.done} of {self._last.total} runs are kept in {store}; "
+            f"the same command resumes{f', {left}' if left else ''}"
+        )
 
     def close(self) -> None:
         """Clear the line."""

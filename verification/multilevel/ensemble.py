@@ -270,7 +270,7 @@ def _gathered(
 
 
 def _checked(study: Study, target: float) -> list[int]:
-    grids = [int(M) for M in study.vary["grid"]]
+    grids = [int(M) for M in study.vary.get("grid", ())]
     if set(study.vary) != {"grid"}:
         extra = ", ".join(sorted(set(study.vary) - {"grid"}))
         raise InputError("vary", extra, "the grid alone, for an ensemble to a target error")

@@ -77,6 +77,19 @@ class Sweep:
         """The rows whose numbers are no solution; they are kept: solved again, they would end the same."""
         return [row for row in self.rows if row["status"] not in CERTIFIED]
 
+    def table(self) -> list[Row]:
+        """Return the rows with the processor seconds that each took."""
+        return [row | {"seconds": took} for row, took in zip(self.rows, self.solve_seconds, strict=True)]
+
+    def to_dataframe(self) -> Any:
+        """Return the table as a `pandas.DataFrame`, a column for each parameter varied by its full name too.
+
+        Units are in ``attrs["units"]``. Raises `InputError` where pandas is not installed.
+        """
+        from verification.sweep.export import to_dataframe
+
+        return to_dataframe(self.table())
+
 
 class WorkersLost(RuntimeError):
     """Workers or the cluster died; what was finished is kept, and the same sweep goes on from there."""

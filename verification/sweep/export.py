@@ -1,16 +1,82 @@
-"""Rows as CSV and Parquet. Numbers are written so that they read back exactly."""
+"""Rows as CSV, Parquet and a DataFrame, with units. Numbers are written so that they read back exactly."""
 
 from __future__ import annotations
 
 import csv
 import io
+import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from refimpl.errors import InputError
 from verification.framework.files import replacing, write_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
+
+UNITS = {
+    "load": "N",
+    "upper_rms": "m",
+    "lower_rms": "m",
+    "correlation_length": "m",
+    "sliding_direction": "rad",
+    "sliding_offset": "m",
+    "tau": "Pa",
+    "contact_area": "m^2",
+    "contact_area_corrected": "m^2",
+    "plastic_area": "m^2",
+    "max_pressure": "Pa",
+    "mean_pressure": "Pa",
+    "approach": "m",
+    "mean_gap": "m",
+    "normal_force": "N",
+    "friction_force": "N",
+    "elastic_friction": "N",
+    "binormal_force": "N",
+    "seconds": "s",
+}
+"""Units of the columns; those of an error or a cycle are its number's, all others have none."""
+EXPORTED = (*COLUMNS, "seconds")
+
+
+def unit_of(name: str) -> str:
+    """Return a column's unit, empty without one.
+
+    >>> unit_of("contact_area_error"), unit_of("load"), unit_of("status")
+    ('m^2', 'N', '')
+    """
+    return UNITS.get(name.removesuffix("_error").removesuffix("_cycle"), "")
+
+
+def header(name: str) -> str:
+    """Return a column's header with its unit.
+
+    >>> header("load"), header("key")
+    ('load [N]', 'key')
+    """
+    unit = unit_of(name)
+    return f"{name} [{unit}]" if unit else name
+
+
+def to_dataframe(rows: Sequence[Row]) -> Any:
+    """Return a `pandas.DataFrame`; parameters varied by their full names are columns of their own.
+
+    Raises InputError where pandas is not installed.
+    """
+    try:
+        import pandas
+    except ModuleNotFoundError as missing:
+        allowed = "pandas installed (pip install 'rough-friction[arrays]')"
+        raise InputError("to_dataframe", "pandas", allowed) from missing
+    frame = pandas.DataFrame([row | named(row) for row in rows])
+    frame.attrs["units"] = {name: unit_of(name) for name in frame.columns}
+    return frame
+
+
+def named(row: Row) -> Row:
+    """Return the numbers of a row that the study varies by their full names."""
+    found: Row = json.loads(row.get("parameters") or "{}")
+    return found
 
 
 def to_csv(rows: Sequence[Row]) -> str:
@@ -21,8 +87,8 @@ def to_csv(rows: Sequence[Row]) -> str:
     """
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows([row[name] for name in COLUMNS] for row in rows)
+    writer.writerow(map(header, EXPORTED))
+    writer.writerows([row.get(name) for name in EXPORTED] for row in rows)
     return buffer.getvalue()
 
 
@@ -37,7 +103,7 @@ def write_parquet(rows: Sequence[Row], path: Path) -> None:
     import pyarrow
     import pyarrow.parquet
 
-    table = pyarrow.table({name: [row[name] for row in rows] for name in COLUMNS})
+    table = pyarrow.table({header(name): [row.get(name) for row in rows] for name in EXPORTED})
     with replacing(path) as temporary:
         pyarrow.parquet.write_table(table, temporary)
 

@@ -37,13 +37,13 @@ def check(study: Study) -> None:
         scene = scene_from_dict(run.inputs["scene"], Path())
         Options(scene=scene, grid=run.inputs["grid"], requested=requested, **options)
     for scene in _closest(study):
-        scene.sampled(scene.grid(min(FINEST, int(max(study.vary["grid"])))))
+        scene.sampled(scene.grid(min(FINEST, study.finest)))
 
 
 def check_memory(study: Study) -> None:
     """Raise InputError where the finest grid does not fit into this machine's free memory."""
     scene = next(_closest(study))
-    memory_of(study.settings.get("method", "fft"), scene.grid(int(max(study.vary["grid"]))))
+    memory_of(study.settings.get("method", "fft"), scene.grid(study.finest))
 
 
 def covered_size(study: Study) -> tuple[float, float]:

@@ -17,25 +17,34 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.scene.scene_file import scene_from_dict
+from refimpl.solution.limits import ModelWarning, roughness_slope
+from refimpl.solution.solution import REPORTED
 from verification.framework.threads import limited_to_one_thread
 
 COORDINATES = (
     "realisation", "grid", "load", "upper_rms", "lower_rms", "correlation_length",
     "sliding_direction", "sliding_offset", "tau", "beta", "parameters",
 )  # fmt: skip
-"""What tells the runs of one study apart; SI units and rad, None where a scene has no such thing.
-``parameters`` is the JSON text of the hardnesses and the numbers of surfaces that the study varies by their
-full names.
+"""What tells the runs of one study apart; SI units and rad, None where a scene has no such thing, and for the
+grid where an accuracy is requested. ``parameters`` is the JSON text of the numbers of materials and surfaces
+that the study varies by their full names.
 """
 
 OUTCOMES = (
     "status", "friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure",
     "approach", "normal_force", "friction_force", "elastic_friction", "binormal_force", "residual",
     "friction_coefficient_cycle", "contact_area_cycle", "border_elements",
+    "friction_coefficient_error", "contact_area_error", "contact_area_corrected_error", "max_pressure_error",
+    "approach_error", "normal_force_error", "friction_force_error", "binormal_force_error",
+    "plastic_area", "plastic_area_error", "plastic_share", "plasticity_index",
+    "contact_area_share", "mean_pressure", "mean_gap", "elements_x", "elements_y", "warnings",
 )  # fmt: skip
 """What a run gives. ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
 that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` what an alternating contact
-edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border.
+edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border;
+``..._error`` a number's error bar (inf where unbounded); ``plasticity_index`` Eq. (12)'s, of the sampled
+slopes, None without a hardness; ``elements_x``, ``elements_y`` the grid solved on; ``warnings`` the names of
+the limits exceeded, separated by "; ".
 """
 
 LIBRARIES = ("numpy", "scipy", "ducc0")
@@ -43,6 +52,9 @@ LIBRARIES = ("numpy", "scipy", "ducc0")
 
 CERTIFIED = (rf.Status.CONVERGED.value, rf.Status.CYCLED.value)
 """Statuses of rows whose numbers are solutions, as `refimpl.Solution.converged` has it."""
+
+UNKNOWN_GRID = 256
+"""Elements a side that runs with a requested accuracy count as."""
 
 Row = dict[str, Any]
 
@@ -71,7 +83,7 @@ class Run:
     @property
     def weight(self) -> float:
         """Expected work relative to other runs, for the time left: elements times their logarithm."""
-        M = int(self.inputs["grid"])
+        M = int(self.inputs["grid"] or UNKNOWN_GRID)
         return float(M * M * max(np.log2(M), 1.0))  # one element has no logarithm, but is work
 
 
@@ -107,12 +119,13 @@ def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
     started = time.process_time()
     settings = inputs["solve"]
     with limited_to_one_thread():
-        solution = rf.solve(scene_from_dict(inputs["scene"], Path()), inputs["grid"], **settings)
-    return outcome(solution), time.process_time() - started
+        scene = scene_from_dict(inputs["scene"], Path())
+        solution = rf.solve(scene, inputs["grid"], **settings)
+    return outcome(solution, scene), time.process_time() - started
 
 
-def outcome(solution: rf.Solution) -> Row:
-    """The row of a solution."""
+def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
+    """The row of a solution of a scene."""
     slopes, contact = solution.slopes, solution.contact
     elastic = float(np.sum(solution.pressure * slopes.sin_x * slopes.cos_y)) * solution.grid.element_area
     spread = solution.uncertainty
@@ -135,4 +148,23 @@ def outcome(solution: rf.Solution) -> Row:
         "friction_coefficient_cycle": cycle("friction_coefficient"),
         "contact_area_cycle": cycle("contact_area"),
         "border_elements": int(contact.sum() - contact[1:-1, 1:-1].sum()),
+        **{f"{name}_error": solution.error(name) for name in REPORTED},
+        "plastic_area": solution.plastic_area,
+        "plastic_share": solution.plastic_share,
+        "plasticity_index": _plasticity_index(solution, scene),
+        "contact_area_share": solution.contact_area_share,
+        "mean_pressure": solution.mean_pressure,
+        "mean_gap": solution.mean_gap,
+        "elements_x": solution.grid.shape[0],
+        "elements_y": solution.grid.shape[1],
+        "warnings": "; ".join(
+            dict.fromkeys(text.limit.value for text in solution.warnings if isinstance(text, ModelWarning))
+        ),
     }
+
+
+def _plasticity_index(solution: rf.Solution, scene: rf.Scene) -> float | None:
+    pair = solution.problem.pair
+    if pair.softer_hardness is None:
+        return None
+    return pair.reduced_modulus / pair.softer_hardness * roughness_slope(scene, solution.grid)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
-from verification.sweep.run import COORDINATES, Run, code_digest, file_digest
+from verification.sweep.run import COORDINATES, UNKNOWN_GRID, Run, code_digest, file_digest
 
 SCENE_AXES = ("load", "sliding_direction", "sliding_offset")
 FRICTION_AXES = ("tau", "beta")
@@ -30,7 +30,7 @@ class Study:
     directions are compared on the same surfaces.
 
     ``vary`` maps names of `AXES`, and of `refimpl.scene.parameters` of surfaces (``lower.surface[0].hurst``,
-    counted in the base scene) and hardnesses (``lower.material.hardness``), to their values (SI, rad); an rms
+    counted in the base scene) and materials (``lower.material.E``), to their values (SI, rad); an rms
     of 0 leaves that body's roughness out.
     Realisations are of random roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
@@ -58,8 +58,13 @@ class Study:
 
     @property
     def own_axes(self) -> tuple[str, ...]:
-        """The varied hardnesses and numbers of surfaces, by their full names."""
+        """The varied numbers of materials and surfaces, by their full names."""
         return tuple(axis for axis in self.vary if axis not in AXES)
+
+    @property
+    def finest(self) -> int:
+        """Elements along the longer side of the finest grid; a usual one with an accuracy."""
+        return int(max(self.vary.get("grid", (UNKNOWN_GRID,))))
 
     @property
     def is_rough(self) -> bool:
@@ -88,9 +93,10 @@ class Study:
         scene["friction"] = self.scene["friction"] | friction
         for side, name in enumerate(("upper", "lower")):
             scene[name] = self._body(name, self.first_seed + 2 * k + side, point)
+        grid = None if point["grid"] is None else int(point["grid"])
         coordinates = {
             "realisation": k,
-            "grid": int(point["grid"]),
+            "grid": grid,
             "load": scene["load"],
             "upper_rms": _random(scene["upper"]).get("rms", 0.0),
             "lower_rms": _random(scene["lower"]).get("rms", 0.0),
@@ -103,7 +109,7 @@ class Study:
         }
         inputs = {
             "scene": scene,
-            "grid": int(point["grid"]),
+            "grid": grid,
             "solve": dict(self.settings),
             "code": code_digest(),
             "files": dict(files),
@@ -126,8 +132,9 @@ class Study:
                     change |= {} if length is None else {"correlation_length": float(length)}
                     change |= {} if self.normalise is None else {"normalise": self.normalise}
                 parts.append(part | change)
-        hardness = point.get(f"{name}.material.hardness")
-        material = body["material"] | ({} if hardness is None else {"hardness": hardness})
+        head = f"{name}.material."
+        own = {axis.removeprefix(head): point[axis] for axis in self.own_axes if axis.startswith(head)}
+        material = body["material"] | own
         return body | {"material": material, "surface": parts or [{"kind": "flat"}]}
 
 

@@ -20,7 +20,7 @@ from verification.sweep import posable
 from verification.sweep.study import AXES, MAX_RUNS, RANDOM, Study, measured_files
 
 KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
-SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance")
+SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", "quantity")
 
 
 def read_study(path: str | Path) -> Study:
@@ -67,7 +67,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     own = tuple(
         name
         for name in parameters(base)
-        if (".surface[" in name and not name.endswith(".seed")) or name.endswith(".hardness")
+        if (".surface[" in name and not name.endswith(".seed")) or ".material." in name
     )
     _refuse_unknown("vary", vary, (*AXES, *own))
     scene = scene_to_dict(base)
@@ -91,8 +91,12 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
 
 
 def _check(study: Study) -> None:
-    if "grid" not in study.vary:
-        raise InputError("vary.grid", None, "a list of elements per side")
+    if "accuracy" in study.settings and "grid" in study.vary:
+        raise InputError(
+            "vary.grid", study.vary["grid"], "none beside solve.accuracy, which chooses the grid"
+        )
+    if "accuracy" not in study.settings and "grid" not in study.vary:
+        raise InputError("vary.grid", None, "elements per side, or an accuracy in [solve]")
     runs = math.prod([study.realisations, *map(len, study.vary.values())])
     if runs > MAX_RUNS:
         raise InputError("vary", f"{runs} runs", f"at most {MAX_RUNS} runs")
@@ -108,7 +112,7 @@ def _check(study: Study) -> None:
         lengths = study.vary["correlation_length"]
         allowed = "a scene with a Gaussian surface of one correlation length"
         raise InputError("vary.correlation_length", lengths, allowed)
-    for M in study.vary["grid"]:
+    for M in study.vary.get("grid", ()):
         _whole("vary.grid", M, at_least=1)
     if study.scene["periodic"] and study.settings.get("method") == "paper":
         raise InputError("solve.method", "paper", "dense or fft for a periodic scene")
@@ -126,11 +130,17 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
             raise InputError(f"solve.{name}", settings[name], "true or false")
     if "tolerance" in settings:
         require_number("solve.tolerance", settings["tolerance"], "a number between 0 and 1", above=0, below=1)
+    if "accuracy" in settings:
+        require_number("solve.accuracy", settings["accuracy"], "a number between 0 and 1", above=0, below=1)
+    elif "quantity" in settings:
+        raise InputError("solve.quantity", settings["quantity"], "none without an accuracy")
     RequestedTerms(oblique=settings.get("oblique"), slope_correction=settings.get("slope_correction", False))
 
 
 def _values(axis: str, values: object) -> tuple[float, ...]:
-    allowed = "a list of different finite numbers"
+    allowed = "a finite number, or a list of different ones"
+    if isinstance(values, int | float) and not isinstance(values, bool):
+        values = [values]
     if not isinstance(values, list) or not values:
         raise InputError(f"vary.{axis}", values, allowed)
     for value in values:

@@ -50,6 +50,7 @@ def test_an_interrupted_sweep_keeps_what_it_finished_and_goes_on(tmp_path: Path)
     _, err = child.communicate(timeout=60)
     assert child.returncode == 130
     assert "Traceback" not in err
+    assert "runs are kept in s.sqlite; the same command resumes" in err
     kept = rows(tmp_path / "s.sqlite")
     assert 2 <= kept < 80
     assert not (tmp_path / "s.csv").exists()

@@ -245,7 +245,12 @@ def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> Non
     assert again.stderr == b""  # no progress line where stderr is no terminal
     assert json.loads((tmp_path / "s.json").read_text())["found"] == kept
     undisturbed = engine.sweep(study_from_toml(tmp_path), tmp_path / "other.sqlite", workers=0)
-    assert (tmp_path / "s.csv").read_text() == to_csv(undisturbed.rows)
+    assert numbers((tmp_path / "s.csv").read_text()) == numbers(to_csv(undisturbed.rows))
+
+
+def numbers(table: str) -> list[str]:
+    """Lines of a CSV without its last column, the seconds: all else is the same however often it is run."""
+    return [line.rpartition(",")[0] for line in table.splitlines()]
 
 
 def study_from_toml(folder: Path) -> Study:
@@ -277,7 +282,7 @@ def test_cluster_gives_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFixt
         files = ["--store", str(tmp_path / "c.sqlite"), "--csv", str(tmp_path / "c.csv")]
         assert main(["sweep", str(tmp_path / "study.toml"), *address, *files]) == 0
     here = engine.sweep(study_from_toml(tmp_path), tmp_path / "h.sqlite", workers=0)
-    assert (tmp_path / "c.csv").read_text() == to_csv(here.rows)
+    assert numbers((tmp_path / "c.csv").read_text()) == numbers(to_csv(here.rows))
     assert "finished now        8" in capsys.readouterr().out
 
 

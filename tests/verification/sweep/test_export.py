@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.errors import InputError
-from verification.sweep.export import require_parquet, to_csv, write_csv, write_parquet
+from verification.sweep.export import require_parquet, to_csv, to_dataframe, write_csv, write_parquet
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 
@@ -27,9 +27,9 @@ def rows() -> list[Row]:
 def test_csv_reads_back_exactly_and_in_order(tmp_path: Path) -> None:
     write_csv(rows(), tmp_path / "t.csv")
     found = list(csv.DictReader(io.StringIO((tmp_path / "t.csv").read_text())))
-    assert list(found[0]) == list(COLUMNS)
-    assert [(r["key"], float(r["contact_area"])) for r in found] == [("b", 1 / 3), ("a", 1e-300)]
-    assert [r["correlation_length"] for r in found] == ["", "2.0"]
+    assert [name.partition(" [")[0] for name in found[0]] == [*COLUMNS, "seconds"]
+    assert [(r["key"], float(r["contact_area [m^2]"])) for r in found] == [("b", 1 / 3), ("a", 1e-300)]
+    assert [r["correlation_length [m]"] for r in found] == ["", "2.0"]
     assert to_csv(rows()[::-1]) != to_csv(rows())
 
 
@@ -38,7 +38,8 @@ def test_parquet_reads_back_exactly(tmp_path: Path) -> None:
 
     write_parquet(rows(), tmp_path / "t.parquet")
     found = parquet.read_table(tmp_path / "t.parquet").to_pylist()
-    assert found == rows()
+    plain = [{name.partition(" [")[0]: value for name, value in row.items()} for row in found]
+    assert plain == [row | {"seconds": None} for row in rows()]
 
 
 def test_without_pyarrow_parquet_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -46,3 +47,12 @@ def test_without_pyarrow_parquet_is_refused_by_name(monkeypatch: pytest.MonkeyPa
     monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
     with pytest.raises(InputError, match="--csv instead"):
         require_parquet(Path("t.parquet"))
+
+
+def test_a_frame_has_units_and_named_parameters_as_columns() -> None:
+    pytest.importorskip("pandas")
+    (first, second) = rows()
+    frame = to_dataframe([first | {"parameters": '{"lower.material.E": 2e9}'}, second])
+    assert frame["lower.material.E"][0] == 2e9
+    assert frame["contact_area"].tolist() == [1 / 3, 1e-300]
+    assert frame.attrs["units"]["contact_area_error"] == "m^2"

@@ -126,7 +126,10 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("vary.grid", {"vary": {}}),
     ("vary.grid", {"vary": {"grid": [16.5]}}),
     ("vary.grid", {"vary": {"grid": [16, 16]}}),
-    ("vary.grid", {"vary": {"grid": 16}}),
+    ("vary.grid", {"vary": {"grid": True}}),
+    ("vary.grid", {"solve": {"accuracy": 0.1}}),
+    ("solve.accuracy", {"vary": {}, "solve": {"accuracy": 2}}),
+    ("solve.quantity", {"solve": {"quantity": "contact_area"}}),
     ("vary.colour", {"vary": {"grid": [16], "colour": [1]}}),
     ("load", {"vary": {"grid": [16], "load": [-1]}}),
     ("vary.load", {"vary": {"grid": [16], "load": [float("nan")]}}),
@@ -320,3 +323,20 @@ def test_bad_numbers_of_surfaces_are_refused(
     with pytest.raises(InputError) as refused:
         study_from_dict({"scene": "scene.toml", "vary": {"grid": [32], axis: values}}, tmp_path)
     assert refused.value.field == field
+
+
+def test_a_material_varies_and_one_value_needs_no_list() -> None:
+    varied_E = {"grid": 16, "lower.material.E": [1e9, 2e9], "lower.material.nu": 0.4}
+    runs = list(study_from_dict(BASE | {"realisations": 1, "vary": varied_E}).runs())
+    assert [run.inputs["scene"]["lower"]["material"]["E"] for run in runs] == [1e9, 2e9]
+    assert [run.inputs["scene"]["lower"]["material"]["nu"] for run in runs] == [0.4, 0.4]
+    assert [run.coordinates["grid"] for run in runs] == [16, 16]
+
+
+def test_a_requested_accuracy_chooses_the_grid_and_is_met() -> None:
+    table = {"scene": "hertz", "vary": {"load": 50.0}, "solve": {"accuracy": 0.1, "quantity": "contact_area"}}
+    (run,) = study_from_dict(table).runs()
+    assert run.coordinates["grid"] is None
+    row, _ = execute(run.inputs)
+    assert row["contact_area_error"] <= 0.1 * row["contact_area"]
+    assert row["elements_x"] == row["elements_y"] > 1

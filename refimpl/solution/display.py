@@ -1,0 +1,120 @@
+"""A solution at a prompt: one line, a short table, and HTML with a small map."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+
+import numpy as np
+
+from refimpl.grid import Array
+from refimpl.solution.reported import Reported
+
+# attribute of Solution, name in the table, factor from SI to the unit shown, that unit
+SHOWN = (
+    ("friction_coefficient", "friction coefficient mu", 1.0, ""),
+    ("contact_area", "contact area A", 1e6, "mm^2"),
+    ("contact_area_share", "A/A0", 1.0, ""),
+    ("plastic_area", "plastic area", 1e6, "mm^2"),
+    ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
+    ("mean_pressure", "mean contact pressure", 1e-6, "MPa"),
+    ("mean_gap", "mean gap", 1e6, "um"),
+    ("approach", "approach", 1e6, "um"),
+    ("normal_force", "normal force N", 1.0, "N"),
+    ("friction_force", "friction force F", 1.0, "N"),
+    ("binormal_force", "binormal force Q", 1.0, "N"),
+)
+_CELLS = 32  # cells along the longer side of the map
+_INK = "#0072B2"  # Okabe and Ito 2008
+
+
+def line(solution: Reported) -> str:
+    """Return one line: status, grid, mu with its error, A."""
+    mu = with_error(solution.friction_coefficient, solution.error("friction_coefficient"))
+    area = with_error(solution.contact_area * 1e6, solution.error("contact_area") * 1e6)
+    return f"<Solution {solution.status.value}, {solution.grid}: mu = {mu}, A = {area} mm^2>"
+
+
+def table(solution: Reported) -> str:
+    """Return the numbers with their errors, and the warnings."""
+    rows = _rows(solution)
+    width, number = (max(len(row[k]) for row in rows) for k in (0, 1))
+    head = f"status {solution.status.value}, {solution.grid} elements, method {solution.plan.method}"
+    body = [f"  {name:{width}}  {value:{number}}  {unit}".rstrip() for name, value, unit in rows]
+    return "\n".join([head, *body, *(f"warning: {text}" for text in solution.warnings)])
+
+
+def html(solution: Reported) -> str:
+    """Return the short table with a map of pressure: an image made of squares, without any library."""
+    rows = "".join(
+        f"<tr><td>{escape(name)}</td><td>{escape(value)}</td><td>{escape(unit)}</td></tr>"
+        for name, value, unit in _rows(solution)
+    )
+    notes = "".join(f"<li>{escape(text)}</li>" for text in solution.warnings)
+    head = f"status {escape(solution.status.value)}, {escape(str(solution.grid))} elements"
+    return (
+        f"<div><p>{head}</p><div style='display:flex;gap:1em'><table>{rows}</table>{_map(solution)}</div>"
+        + (f"<ul>{notes}</ul>" if notes else "")
+        + "</div>"
+    )
+
+
+def with_error(value: float, error: float) -> str:
+    """Return a number with the digits that its error leaves.
+
+    >>> with_error(0.112913, 0.00213), with_error(1234.4, 30.0), with_error(2.0, 0.0)
+    ('0.113 +- 0.002', '1230 +- 30', '2')
+    >>> with_error(0.112913, 0.2), with_error(0.1, math.inf)
+    ('0.11 +- 0.2 (not usable)', '0.1 (error unbounded)')
+    """
+    if not math.isfinite(value):
+        return "n/a"
+    if math.isinf(error):
+        return f"{value:.3g} (error unbounded)"
+    if error == 0 or error < 1e-6 * abs(value):
+        return f"{value:.6g}"
+    if error >= abs(value):
+        return f"{value:.2g} +- {error:.1g} (not usable)"
+    places = -math.floor(math.log10(float(f"{error:.0e}")))
+    shown, bar = round(value, places), round(error, places)
+    digits = max(places, 0)
+    return f"{shown:.{digits}f} +- {bar:.{digits}f}"
+
+
+def _rows(solution: Reported) -> list[tuple[str, str, str]]:
+    left = set() if solution.plastic_area else {"plastic_area"}
+    return [
+        (name, with_error(getattr(solution, attribute) * factor, solution.error(attribute) * factor), unit)
+        for attribute, name, factor, unit in SHOWN
+        if attribute not in left
+    ]
+
+
+def _map(solution: Reported) -> str:
+    """Squares shaded by the pressure's maximum in each, x to the right and y up."""
+    coarse = _coarse(solution.pressure)
+    top = coarse.max()
+    columns, rows = coarse.shape
+    squares = "".join(
+        f"<rect x='{i}' y='{rows - 1 - j}' width='1' height='1' fill='{_INK}' "
+        f"fill-opacity='{0.2 + 0.8 * coarse[i, j] / top:.2f}'/>"
+        for i in range(columns)
+        for j in range(rows)
+        if coarse[i, j] > 0
+    )
+    wide = 160 * columns / max(coarse.shape)
+    return (
+        f"<svg width='{wide:.0f}' viewBox='0 0 {columns} {rows}' role='img'><title>pressure</title>"
+        f"<rect width='{columns}' height='{rows}' fill='none' stroke='black' stroke-width='0.2'/>"
+        f"{squares}</svg>"
+    )
+
+
+def _coarse(pressure: Array) -> Array:
+    """Maximum pressure in each cell of at most `_CELLS` along the longer side."""
+    step = max(1, math.ceil(max(pressure.shape) / _CELLS))
+    rest = [(0, -count % step) for count in pressure.shape]
+    padded = np.pad(pressure, rest)
+    i, j = (count // step for count in padded.shape)
+    coarse: Array = padded.reshape(i, step, j, step).max(axis=(1, 3))
+    return coarse

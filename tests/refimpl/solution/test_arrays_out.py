@@ -1,0 +1,124 @@
+"""What a solution hands over: errors by name, patches, arrays, texts at a prompt."""
+
+from __future__ import annotations
+
+import math
+import sys
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.errors import InputError
+from refimpl.grid import Grid
+from refimpl.grid.contact_patches import patch_labels
+from refimpl.solution.arrays import UNITS, fields_of
+from refimpl.solution.patches import patches_of
+
+
+@pytest.fixture(scope="module")
+def rough() -> rf.Solution:
+    return rf.solve(rf.read_scene("table1-rough"), grid=48)
+
+
+@pytest.fixture(scope="module")
+def yielded() -> rf.Solution:
+    return rf.solve(rf.read_scene("metal-polymer"), grid=32)
+
+
+def test_error_is_the_sum_of_the_parts(rough: rf.Solution) -> None:
+    parts = rough.uncertainty["contact_area"]
+    assert rough.error("contact_area") == math.fsum(parts.values()) > 0
+    side = rough.grid.lengths[0]
+    assert rough.error("contact_area_share") == pytest.approx(rough.error("contact_area") / side**2)
+    assert all(rough.error(name) >= 0 for name in UNITS)
+    with pytest.raises(InputError, match="friction_coefficient"):
+        rough.error("mu")
+
+
+def test_ratios_follow_from_the_arrays(rough: rf.Solution) -> None:
+    touching = rough.pressure > 0
+    assert rough.contact_area_share == pytest.approx(np.count_nonzero(touching) / 48**2, rel=1e-14)
+    assert rough.mean_pressure * rough.contact_area == pytest.approx(
+        rough.pressure.sum() * rough.grid.element_area, rel=1e-12
+    )
+    assert rough.mean_gap > 0
+
+
+def test_patches_by_hand() -> None:
+    f = np.zeros((4, 4))
+    f[0, 0], f[1, 1], f[3, 2] = 1.0, 3.0, 5.0
+    first, second = patches_of(f, f >= 5, Grid((4, 4), (4.0, 8.0)))
+    # elements of 1 x 2; corners touch; centres (0.5, 1) and (1.5, 3), weighted 1 to 3
+    assert (first.elements, first.area, first.load) == (2, 4.0, 8.0)
+    assert (first.mean_pressure, first.max_pressure) == (2.0, 3.0)
+    assert (first.x, first.y) == pytest.approx((1.25, 2.5))
+    assert (second.label, second.x, second.y, second.plastic_share) == (2, 3.5, 5.0, 1.0)
+    assert first.plastic_share == 0
+
+
+def test_a_patch_across_a_period_has_its_centre_at_the_border() -> None:
+    f = np.zeros((8, 8))
+    f[[0, 7], 4] = 1.0
+    (patch,) = patches_of(f, f > 1, Grid((8, 8), (8.0, 8.0), periodic=True))
+    assert patch.elements == 2
+    assert min(patch.x, 8 - patch.x) == pytest.approx(0, abs=1e-12)
+    assert patch.y == pytest.approx(4.5)
+
+
+def test_labels_of_a_periodic_contact_are_numbered_without_holes() -> None:
+    contact = np.zeros((6, 6), dtype=bool)
+    contact[0, 1] = contact[2, 3] = contact[5, 1] = contact[4, 5] = True
+    assert np.unique(patch_labels(contact, periodic=True)).tolist() == [0, 1, 2, 3]
+    assert patch_labels(contact, periodic=True)[5, 1] == 1
+
+
+def test_patches_add_up_to_the_solution(yielded: rf.Solution) -> None:
+    found = yielded.patches()
+    assert math.fsum(patch.area for patch in found) == pytest.approx(yielded.contact_area, rel=1e-12)
+    plastic = math.fsum(patch.area * patch.plastic_share for patch in found)
+    assert plastic == pytest.approx(yielded.plastic_area, rel=1e-12)
+
+
+def test_every_field_has_the_shape_of_the_grid(rough: rf.Solution) -> None:
+    for name, field in fields_of(rough).items():
+        assert field.values.shape == rough.grid.shape, name
+        assert field.description
+
+
+def test_a_dataset_has_coordinates_units_and_numbers(rough: rf.Solution) -> None:
+    pytest.importorskip("xarray")
+    data = rough.to_xarray()
+    assert data.pressure.attrs["units"] == "Pa"
+    assert np.array_equal(data.pressure.values, rough.pressure)
+    assert np.array_equal(data.x.values, rough.grid.x)
+    assert data.attrs["contact_area_error"] == rough.error("contact_area")
+    i, j = np.unravel_index(rough.pressure.argmax(), rough.grid.shape)
+    peak = data.pressure.sel(x=rough.grid.x[i], y=rough.grid.y[j])
+    assert float(peak) == rough.max_pressure
+
+
+def test_without_xarray_the_extra_is_named(rough: rf.Solution, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(InputError, match=r"rough-friction\[arrays\]"):
+        rough.to_xarray()
+
+
+def test_repr_is_one_line_and_str_a_short_table(rough: rf.Solution) -> None:
+    assert "\n" not in repr(rough)
+    assert repr(rough).startswith("<Solution converged, 48 x 48: mu = 0.1")
+    text = str(rough)
+    assert 8 < text.count("\n") < 20
+    assert all(name in text for name in ("friction coefficient mu", "A/A0", "warning: "))
+
+
+def test_html_escapes_and_draws_a_small_map(rough: rf.Solution) -> None:
+    text = rough._repr_html_()
+    assert len(text) < 20_000
+    assert 0 < text.count("<rect") <= 1 + 32 * 32
+    assert "<table>" in text
+
+
+def test_yield_has_its_row(yielded: rf.Solution, rough: rf.Solution) -> None:
+    assert ("plastic area" in str(yielded)) == bool(yielded.plastic_area)
+    assert "plastic area" not in str(rough)

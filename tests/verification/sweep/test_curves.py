@@ -1,0 +1,69 @@
+"""Curves by hand, and the picture's options: columns named, formats, refusals before any run."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from refimpl.errors import InputError
+from tests.verification.sweep.test_quality import row
+from verification.cli import main
+from verification.sweep.curves import Point, curves
+
+STUDY = """scene = "table1-rough"
+realisations = 2
+[vary]
+grid = 16
+load = [7.0, 70.0]
+lower_rms = [0.5e-6, 1e-6]
+"""
+
+
+def test_points_by_hand() -> None:
+    rows = [
+        row(0, 0.1, 1.0) | {"load": 1.0},
+        row(1, 0.3, 3.0) | {"load": 1.0},
+        row(0, 0.2, 1.0) | {"load": 2.0},
+    ]
+    first, second = curves(rows, "load", "friction_coefficient")[None]
+    assert (first.x, first.realisations, second.realisations) == (1.0, 2, 1)
+    assert (first.mean, first.scatter, first.error) == pytest.approx((0.2, math.sqrt(0.02), 0.01))
+    assert second == Point(2.0, 0.2, 0.0, 0.01, 1)
+    assert curves(rows, "load", "contact_area")[None][0].error == math.inf
+    with pytest.raises(InputError, match="--x"):
+        curves(rows, "status", "contact_area")
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+def test_a_sweep_is_drawn(suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(STUDY)
+    picture = Path(f"mu{suffix}")
+    columns = ["--x", "load", "--by", "lower_rms"]
+    assert main(["sweep", "study.toml", "--workers", "1", "--plot", str(picture), *columns]) == 0
+    assert picture.stat().st_size > 3_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["--plot", "mu.jpg"], ".svg"),
+        (["--plot", "mu.png", "--x", "rms"], "--x"),
+        (["--x", "load"], "--x"),
+        (["--plot", "mu.png", "--target-error", "5%"], "--plot"),
+    ],
+)
+def test_a_wrong_picture_is_refused_before_any_run(
+    arguments: list[str],
+    named: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(STUDY)
+    assert main(["sweep", "study.toml", *arguments]) == 2
+    assert named in capsys.readouterr().err
+    assert not Path("study.sqlite").exists()

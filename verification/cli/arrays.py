@@ -1,0 +1,76 @@
+"""A solution's arrays as NPZ or NetCDF, and its contact patches as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from refimpl import Solution
+
+PATCH_UNITS = {"area": "m^2", "load": "N", "mean_pressure": "Pa", "max_pressure": "Pa", "x": "m", "y": "m"}
+"""Units of the columns of a table of patches; the others have none."""
+
+
+def check(npz: Path | None, netcdf: Path | None) -> None:
+    """Refuse, before any work, a file of another suffix, or NetCDF without its library. Raises InputError."""
+    from refimpl.errors import InputError
+
+    for option, path, suffix in (("--npz", npz, ".npz"), ("--netcdf", netcdf, ".nc")):
+        if path is not None and path.suffix != suffix:
+            raise InputError(option, str(path), f"a file name that ends in {suffix}")
+    if netcdf is not None:
+        try:
+            import h5netcdf  # noqa: F401  # only whether it is there
+            import xarray  # noqa: F401
+        except ModuleNotFoundError as missing:
+            allowed = "xarray and h5netcdf installed (pip install 'rough-friction[arrays]'), or --npz instead"
+            raise InputError("--netcdf", str(netcdf), allowed) from missing
+
+
+def write_npz(solution: Solution, path: Path) -> None:
+    """Write the fields, ``x`` and ``y`` (m), and ``attributes``: units, numbers and provenance as JSON."""
+    import numpy as np
+
+    from refimpl.solution.arrays import attributes_of, fields_of
+    from verification.framework.files import replacing, to_json
+
+    fields = fields_of(solution)
+    attributes = {**attributes_of(solution, _provenance()), "units": {n: f.unit for n, f in fields.items()}}
+    arrays: dict[str, Any] = {name: field.values for name, field in fields.items()}
+    with replacing(path) as temporary, temporary.open("wb") as file:
+        np.savez_compressed(
+            file, x=solution.grid.x, y=solution.grid.y, attributes=np.array(to_json(attributes)), **arrays
+        )
+
+
+def write_netcdf(solution: Solution, path: Path) -> None:
+    """Write the `xarray.Dataset` of `Solution.to_xarray` with the provenance among its attributes."""
+    from refimpl.solution.arrays import as_dataset
+    from verification.framework.files import replacing
+
+    with replacing(path) as temporary:
+        as_dataset(solution, _provenance()).to_netcdf(temporary, engine="h5netcdf")
+
+
+def write_patches(solution: Solution, path: Path) -> None:
+    """Write a row for each contact patch, units in the headers."""
+    from dataclasses import astuple, fields
+
+    from refimpl.solution.patches import Patch
+    from verification.framework.files import write_text
+
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    names = [field.name for field in fields(Patch)]
+    writer.writerow(f"{name} [{PATCH_UNITS[name]}]" if name in PATCH_UNITS else name for name in names)
+    writer.writerows(map(astuple, solution.patches()))
+    write_text(buffer.getvalue(), path)
+
+
+def _provenance() -> dict[str, str]:
+    from verification.framework.provenance import provenance
+
+    return {f"provenance_{name}": str(value) for name, value in provenance().items()}
