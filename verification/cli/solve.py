@@ -36,7 +36,8 @@ EPILOG = """examples:
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
 exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge, certified too, and
-error bars include what that leaves open; 1 any other status; 2 bad input
+error bars include what that leaves open; 1 any other status, and with --strict a number whose error bar
+exceeds half of it ("not usable"; Q: of the tangential force); 2 bad input
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
@@ -136,6 +137,7 @@ def add_parser(commands: Parsers) -> None:
         action="store_true",
         help="uncertainty budget and derivatives (under a load, a file with [tolerances] has it in any case)",
     )
+    add("--strict", action="store_true", help="exit status 1 too where a number of the table is not usable")
     add("--plot", metavar="FILE.png", type=output_file, help="maps and profiles as a picture")
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
     add_json(parser)
@@ -229,6 +231,8 @@ def run(options: argparse.Namespace) -> int:
             found["budget"] = plain(budget_lines.document(budgets))
             text = f"\n{budget_lines.table(budgets)}"
     emit(found, options.json, text)
+    if options.strict and found["not_usable"]:
+        return 1
     return 0 if solution.converged else 1
 
 
@@ -238,7 +242,7 @@ def _refuse_ignored(options: argparse.Namespace) -> None:
 
     if options.quantity is not None and options.accuracy is None:
         raise InputError("--quantity", options.quantity, "none without --accuracy, which it is about")
-    for name in ("plot", "vtk", "budget") if options.explain else ():
+    for name in ("plot", "vtk", "budget", "strict") if options.explain else ():
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
             raise InputError(f"--{name}", shown, "none with --explain, which solves nothing")
@@ -249,24 +253,15 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
     from verification.framework.provenance import provenance
 
     summary = {key: plain(value) for key, value in solution.summary().items()}
-    return {"scene": scene, **summary, "provenance": provenance()}
+    return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
 
 
 def table(solution: Solution, scene: str) -> str:
     """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
-    found = [
-        [
-            name,
-            _shown(getattr(solution, attribute) * factor),
-            _bar(error_bar(solution, attribute) * factor),
-            unit,
-        ]
-        for attribute, name, factor, unit in QUANTITIES
-    ]
+    found = [_row(solution, *quantity) for quantity in QUANTITIES]
     if solution.plan.includes("plastic"):
-        area, bar = solution.plastic_area * 1e6, error_bar(solution, "plastic_area") * 1e6
         name = f"plastic area, {solution.plastic_share:.1%} of A"
-        found.insert(3, [name, _shown(area), _bar(bar), "mm^2"])
+        found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
     summary = solution.summary()
     certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
     not_modelled = [
@@ -290,6 +285,39 @@ def error_bar(solution: Solution, quantity: str) -> float:
     return math.fsum(solution.uncertainty.get(quantity, {}).values())
 
 
+def not_usable(solution: Solution) -> list[str]:
+    """Return the names of the numbers in the table whose bar exceeds half of their magnitude."""
+    shown = [attribute for attribute, *_ in QUANTITIES]
+    if solution.plan.includes("plastic"):
+        shown.append("plastic_area")
+    return [name for name in shown if _verdict(solution, name)]
+
+
+def _verdict(solution: Solution, quantity: str) -> str:
+    """Return "(not usable)" or nothing. Symmetry may make Q zero: its magnitude is that of the
+    tangential force, F and Q together. Without friction that of F and Q is N, and that of mu is 1.
+    """
+    from refimpl.accuracy.digits import verdict
+
+    value = getattr(solution, quantity)
+    if not math.isfinite(value):  # without contact
+        return ""
+    scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
+    if not solution.traction.any():  # frictionless
+        scale = dict.fromkeys(("friction_force", "binormal_force"), solution.normal_force)
+        scale["friction_coefficient"] = 1.0
+    return verdict(error_bar(solution, quantity), scale.get(quantity, value))
+
+
+def _row(solution: Solution, quantity: str, name: str, factor: float, unit: str) -> list[str]:
+    """Return a row of the table: value and bar with the digits that the bar leaves, and the verdict."""
+    from refimpl.accuracy.digits import bar_of, digits_of
+
+    error = error_bar(solution, quantity) * factor
+    value = digits_of(getattr(solution, quantity) * factor, error)
+    return [name, value, f"{bar_of(error)} {_verdict(solution, quantity)}".rstrip(), unit]
+
+
 def _change(effect: Mapping[str, float]) -> str:
     """Return the effect of neglecting a term, in words; nothing where it is exactly zero."""
     if not any(effect.values()):
@@ -299,18 +327,6 @@ def _change(effect: Mapping[str, float]) -> str:
 
 def _warned(warning: Mapping[str, object]) -> str:
     return wrapped(str(warning["text"]), f"warning ({warning['name']}): ")
-
-
-def _bar(value: float) -> str:
-    """Nothing for a number that is exact."""
-    if math.isinf(value):
-        return "unbounded"
-    return f"+- {value:.1g}" if value else ""
-
-
-def _shown(value: float) -> str:
-    """Six digits; what does not exist, like mu without contact, is "n/a"."""
-    return f"{value:.6g}" if math.isfinite(value) else "n/a"
 
 
 def plain(item: object) -> object:
