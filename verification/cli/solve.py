@@ -37,7 +37,8 @@ EPILOG = """examples:
 
 exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge, certified too, and
 error bars include what that leaves open; 1 any other status, and with --strict a number whose error bar
-exceeds half of it ("not usable"; Q: of the tangential force); 2 bad input
+exceeds half of it ("not usable"; Q: of the tangential force); 2 bad input; 130 interrupted, after
+the table of a refinement's last finished grid
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
@@ -214,6 +215,10 @@ def run(options: argparse.Namespace) -> int:
     line = StatusLine()
     try:
         solution = refimpl.solve(scene, **keywords, **switches, progress=line.show)
+    except KeyboardInterrupt as interrupt:
+        line.close()
+        show_finished(interrupt, options.scene)
+        raise
     finally:
         line.close()
     if options.plot is not None:
@@ -246,6 +251,16 @@ def _refuse_ignored(options: argparse.Namespace) -> None:
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
             raise InputError(f"--{name}", shown, "none with --explain, which solves nothing")
+
+
+def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
+    """Show the table of the last finished grid: the `Solution` that is the interrupt's argument, if any."""
+    from refimpl import Solution
+    from verification.cli.output import show
+
+    finished = [item for item in interrupt.args if isinstance(item, Solution)]
+    if finished:
+        show(f"interrupted; the last finished grid:\n\n{table(finished[0], scene)}")
 
 
 def document(solution: Solution, scene: str) -> dict[str, object]:

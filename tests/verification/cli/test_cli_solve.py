@@ -137,6 +137,24 @@ def test_a_bar_above_half_of_the_value_is_a_verdict(
         assert re.search(r"p_max +\d\d?0* +\+- 3e\+07 \(not usable\) +MPa", printed)
 
 
+@pytest.mark.parametrize("finished", [True, False])
+def test_an_interrupt_shows_the_last_finished_grid(
+    finished: bool, scene: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture, tmp_path: Path
+) -> None:
+    """Once a refinement of ten minutes printed nothing; the JSON file of an interrupted solve is not made."""
+    solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt(*([solution] if finished else []))
+
+    monkeypatch.setattr(refimpl, "solve", interrupted)
+    assert main(["solve", scene, "--accuracy", "0.01", "--json", str(tmp_path / "s.json")]) == 130
+    printed = capsys.readouterr().out
+    assert printed.startswith("interrupted; the last finished grid:") is finished
+    assert ("8 x 8 elements" in printed) is finished
+    assert not (tmp_path / "s.json").exists()
+
+
 def test_a_frictionless_scene_is_usable(capsys: Capture) -> None:
     assert main(["solve", "hertz", "--grid", "32", "--strict"]) == 0
     assert "not usable" not in capsys.readouterr().out
