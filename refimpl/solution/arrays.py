@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.errors import InputError
-from refimpl.grid import Array
 from refimpl.grid.contact_patches import patch_labels
 from refimpl.solution.reported import Reported
 
@@ -39,11 +38,6 @@ class Field(NamedTuple):
     description: str
 
 
-def gap_of(solution: Reported) -> Array:
-    """Return the deformed gap (m)."""
-    return solution.separation
-
-
 def fields_of(solution: Reported) -> dict[str, Field]:
     """Return the fields that array files hold, by name; all of the grid's shape, indexed along x, then y."""
     periodic = solution.grid.periodic
@@ -51,7 +45,7 @@ def fields_of(solution: Reported) -> dict[str, Field]:
     return {
         "pressure": Field(solution.pressure, "Pa", "local contact pressure f"),
         "traction": Field(solution.traction, "Pa", "local friction r"),
-        "gap": Field(gap_of(solution), "m", "gap between the deformed surfaces"),
+        "gap": Field(solution.gap, "m", "gap between the deformed surfaces, by Eq. (6)"),
         "surface_lower": Field(solution.surface_lower, "m", "deformed height of the lower surface"),
         "surface_upper": Field(solution.surface_upper, "m", "deformed height of the upper surface"),
         "theta_x": Field(solution.theta_x, "rad", "slope angle along the sliding direction, positive uphill"),

@@ -36,7 +36,9 @@ EPILOG = """examples:
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
 exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge, certified too, and
-error bars include what that leaves open; 1 any other status; 2 bad input
+error bars include what that leaves open; 1 any other status, and with --strict a number whose error bar
+exceeds half of it ("not usable"; Q: of the tangential force); 2 bad input; 130 interrupted, after
+the table of a refinement's last finished grid
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
@@ -49,13 +51,16 @@ ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "m
 
 # Options with the names of `refimpl.solve`, and the switches of terms among them.
 PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
+LIMITS = ("max_grid", "max_seconds", "max_memory")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
 # Advice after an end that is no success.
 NEXT = {
     "STAGNATED": "not converged: a residual below stays above the tolerance; check units first "
     "(E, tau, lengths), then try a looser --tolerance or a coarser --grid",
-    "ITERATION_LIMIT": "not converged within the limits: a looser --tolerance or --accuracy, or more memory",
+    "ITERATION_LIMIT": "not converged within the limits of iterations: a looser --tolerance or --accuracy",
+    "ACCURACY_NOT_REACHED": "the certificate holds, the accuracy was not reached: a larger --accuracy, or more of "
+    "--max-grid, --max-seconds, --max-memory",
     "NO_CONTACT": "nothing touches: prescribe a larger --approach, or leave it out to press with the load",
 }
 
@@ -90,6 +95,9 @@ def add_parser(commands: Parsers) -> None:
         type=elements,
         help=f"N elements along the longer side, or both numbers, 128x64 (default {DEFAULT_GRID})",
     )
+    add("--max-grid", metavar="N", type=int, help="with --accuracy: at most N elements along the longer side")
+    add("--max-seconds", metavar="S", type=float, help="with --accuracy: at most so many seconds in all")
+    add("--max-memory", metavar="GB", type=_gigabytes, help="with --accuracy: at most so many GB for a grid")
     size("--accuracy", metavar="A", type=float, help="refine until the error bar is this share of mu")
     add(
         "--quantity",
@@ -137,6 +145,7 @@ def add_parser(commands: Parsers) -> None:
         action="store_true",
         help="uncertainty budget and derivatives (under a load, a file with [tolerances] has it in any case)",
     )
+    add("--strict", action="store_true", help="exit status 1 too where a number of the table is not usable")
     add("--plot", metavar="FILE", type=output_file, help="maps and profiles (.png, .svg or .pdf)")
     add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
     add("--npz", metavar="FILE.npz", type=output_file, help="fields with coordinates and units, for numpy")
@@ -144,6 +153,15 @@ def add_parser(commands: Parsers) -> None:
     add("--patches", metavar="FILE.csv", type=output_file, help="table of contact patches as CSV")
     add_json(parser)
     parser.set_defaults(run=run)
+
+
+def _gigabytes(text: str) -> float:
+    """Argument type of a memory: GB, returned in bytes.
+
+    >>> _gigabytes("1.5")
+    1500000000.0
+    """
+    return 1e9 * float(text)
 
 
 def _on_or_off(text: str) -> bool:
@@ -183,6 +201,7 @@ def lengths(text: str) -> tuple[float, float]:
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
     import refimpl
+    from refimpl.driver.limits import Limits
     from refimpl.driver.options import Options
     from refimpl.errors import InputError
     from refimpl.planning.terms import RequestedTerms
@@ -204,7 +223,8 @@ def run(options: argparse.Namespace) -> int:
         options.grid = DEFAULT_GRID
     keywords = {name: getattr(options, name) for name in PASSED_ON}
     switches = {name: getattr(options, name) for name in SWITCHES}
-    checked = Options(scene=scene, requested=RequestedTerms(**switches), **keywords)
+    most = {name: getattr(options, name) for name in LIMITS}
+    checked = Options(scene=scene, requested=RequestedTerms(**switches), limits=Limits(**most), **keywords)
     if options.explain:
         plan = checked.plan()
         found = explain.document(checked, plan, options.scene)
@@ -217,7 +237,11 @@ def run(options: argparse.Namespace) -> int:
     tolerances = read_tolerances(options.scene)
     line = StatusLine()
     try:
-        solution = refimpl.solve(scene, **keywords, **switches, progress=line.show)
+        solution = refimpl.solve(scene, **keywords, **switches, **most, progress=line.show)
+    except KeyboardInterrupt as interrupt:
+        line.close()
+        show_finished(interrupt, options.scene)
+        raise
     finally:
         line.close()
     if options.plot is not None:
@@ -241,6 +265,8 @@ def run(options: argparse.Namespace) -> int:
             found["budget"] = plain(budget_lines.document(budgets))
             text = f"\n{budget_lines.table(budgets)}"
     emit(found, options.json, text)
+    if options.strict and found["not_usable"]:
+        return 1
     return 0 if solution.converged else 1
 
 
@@ -250,10 +276,20 @@ def _refuse_ignored(options: argparse.Namespace) -> None:
 
     if options.quantity is not None and options.accuracy is None:
         raise InputError("--quantity", options.quantity, "none without --accuracy, which it is about")
-    for name in (*FILES, "budget") if options.explain else ():
+    for name in (*FILES, "budget", "strict") if options.explain else ():
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
             raise InputError(f"--{name}", shown, "none with --explain, which solves nothing")
+
+
+def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
+    """Show the table of the last finished grid: the `Solution` that is the interrupt's argument, if any."""
+    from refimpl import Solution
+    from verification.cli.output import show
+
+    finished = [item for item in interrupt.args if isinstance(item, Solution)]
+    if finished:
+        show(f"interrupted; the last finished grid:\n\n{table(finished[0], scene)}")
 
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
@@ -261,24 +297,15 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
     from verification.framework.provenance import provenance
 
     summary = {key: plain(value) for key, value in solution.summary().items()}
-    return {"scene": scene, **summary, "provenance": provenance()}
+    return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
 
 
 def table(solution: Solution, scene: str) -> str:
     """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
-    found = [
-        [
-            name,
-            _shown(getattr(solution, attribute) * factor),
-            _bar(error_bar(solution, attribute) * factor),
-            unit,
-        ]
-        for attribute, name, factor, unit in QUANTITIES
-    ]
+    found = [_row(solution, *quantity) for quantity in QUANTITIES]
     if solution.plan.includes("plastic"):
-        area, bar = solution.plastic_area * 1e6, error_bar(solution, "plastic_area") * 1e6
         name = f"plastic area, {solution.plastic_share:.1%} of A"
-        found.insert(3, [name, _shown(area), _bar(bar), "mm^2"])
+        found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
     summary = solution.summary()
     certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
     not_modelled = [
@@ -302,6 +329,39 @@ def error_bar(solution: Solution, quantity: str) -> float:
     return math.fsum(solution.uncertainty.get(quantity, {}).values())
 
 
+def not_usable(solution: Solution) -> list[str]:
+    """Return the names of the numbers in the table whose bar exceeds half of their magnitude."""
+    shown = [attribute for attribute, *_ in QUANTITIES]
+    if solution.plan.includes("plastic"):
+        shown.append("plastic_area")
+    return [name for name in shown if _verdict(solution, name)]
+
+
+def _verdict(solution: Solution, quantity: str) -> str:
+    """Return "(not usable)" or nothing. Symmetry may make Q zero: its magnitude is that of the
+    tangential force, F and Q together. Without friction that of F and Q is N, and that of mu is 1.
+    """
+    from refimpl.accuracy.digits import verdict
+
+    value = getattr(solution, quantity)
+    if not math.isfinite(value):  # without contact
+        return ""
+    scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
+    if not solution.traction.any():  # frictionless
+        scale = dict.fromkeys(("friction_force", "binormal_force"), solution.normal_force)
+        scale["friction_coefficient"] = 1.0
+    return verdict(error_bar(solution, quantity), scale.get(quantity, value))
+
+
+def _row(solution: Solution, quantity: str, name: str, factor: float, unit: str) -> list[str]:
+    """Return a row of the table: value and bar with the digits that the bar leaves, and the verdict."""
+    from refimpl.accuracy.digits import bar_of, digits_of
+
+    error = error_bar(solution, quantity) * factor
+    value = digits_of(getattr(solution, quantity) * factor, error)
+    return [name, value, f"{bar_of(error)} {_verdict(solution, quantity)}".rstrip(), unit]
+
+
 def _change(effect: Mapping[str, float]) -> str:
     """Return the effect of neglecting a term, in words; nothing where it is exactly zero."""
     if not any(effect.values()):
@@ -311,18 +371,6 @@ def _change(effect: Mapping[str, float]) -> str:
 
 def _warned(warning: Mapping[str, object]) -> str:
     return wrapped(str(warning["text"]), f"warning ({warning['name']}): ")
-
-
-def _bar(value: float) -> str:
-    """Nothing for a number that is exact."""
-    if math.isinf(value):
-        return "unbounded"
-    return f"+- {value:.1g}" if value else ""
-
-
-def _shown(value: float) -> str:
-    """Six digits; what does not exist, like mu without contact, is "n/a"."""
-    return f"{value:.6g}" if math.isfinite(value) else "n/a"
 
 
 def plain(item: object) -> object:
