@@ -48,11 +48,17 @@ def write_npz(solution: Solution, path: Path) -> None:
 
 def write_netcdf(solution: Solution, path: Path) -> None:
     """Write the `xarray.Dataset` of `Solution.to_xarray` with the provenance among its attributes."""
+    from tempfile import TemporaryDirectory
+
     from refimpl.solution.arrays import as_dataset
     from verification.framework.files import replacing
 
-    with replacing(path) as temporary:
-        as_dataset(solution, _provenance()).to_netcdf(temporary, engine="h5netcdf")
+    # a folder of its own: HDF5 locks the file that it writes, and `replacing` holds a lock on its own
+    with TemporaryDirectory() as folder:
+        whole = Path(folder) / "solution.nc"
+        as_dataset(solution, _provenance()).to_netcdf(whole, engine="h5netcdf")
+        with replacing(path) as temporary:
+            temporary.write_bytes(whole.read_bytes())
 
 
 def write_patches(solution: Solution, path: Path) -> None:
