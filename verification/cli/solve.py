@@ -36,9 +36,9 @@ EPILOG = """examples:
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
 exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge, certified too, and
-error bars include what that leaves open; 1 any other status, and with --strict a number whose error bar
-exceeds half of it ("not usable"; Q: of the tangential force); 2 bad input; 130 interrupted, after
-the table of a refinement's last finished grid
+error bars include what that leaves open; 1 any other status, and with --strict a number that is not
+usable (its bar exceeds half of it, that of Q half of the tangential force); 2 bad input;
+130 interrupted, after the table of a refinement's last finished grid
 
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
