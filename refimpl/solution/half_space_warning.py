@@ -10,6 +10,7 @@ from refimpl.model.certificate import State
 from refimpl.model.problem import Problem
 from refimpl.solution.model_form import model_form, steepness
 
+_REST = 0.25  # N times tan^2: with 0.2, which is stated, the largest left by 24 finite-element contacts
 ALLOWED = 0.05  # stated error of N at a given approach
 _FIRST = 0.7  # N's error over the slope's tangent for nu = 0: 0.53 to 0.68 measured at 15 to 2.5 degrees
 GENTLE = 1e-3  # tan^2 of the steepest slopes (1.8 degrees), where N is off by 2.2 % at most
@@ -38,12 +39,13 @@ def half_space_excess(problem: Problem, state: State) -> tuple[float, str] | Non
         return None
     moved = state.displacement_lower, state.displacement_upper
     error = model_form(problem, state.pressure, state.traction, moved, state.approach)
-    if error.normal_force <= ALLOWED:
+    largest = error.normal_force + _REST * steep
+    if largest <= ALLOWED:
         return None
     degrees = math.degrees(math.atan(math.sqrt(steep)))
     text = (
         f"undeformed surfaces have slopes of {degrees:.2g} degrees: the half-space misstates N at a given "
-        f"approach by {error.normal_force:.1%}, above 5 %, and the approach under a load by "
+        f"approach by up to {largest:.1%}, above 5 %, and the approach under a load by "
         f"{error.approach:.1%}; see rough-friction appendix-a surface"
     )
-    return error.normal_force, text
+    return largest, text

@@ -113,7 +113,7 @@ def test_a_wave_under_a_rigid_plane_states_what_finite_elements_found(
     assert normal <= stated[1] <= 1.5 * normal
     assert normal <= solution.model_form.normal_force <= 2 * normal
     (warning,) = [w for w in solution.warnings if w.limit == "half-space"]
-    assert warning.number == pytest.approx(solution.model_form.normal_force, rel=1e-12)
+    assert solution.model_form.normal_force <= warning.number <= 1.2 * solution.model_form.normal_force
     assert (solution.slope_error.at_rms or 0.0) < 0.01
 
 
