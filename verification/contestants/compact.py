@@ -1,7 +1,8 @@
 """A compact solver with a seam for every fault: constrained conjugate gradients on tables or symbols.
 
 Independent of `refimpl.solvers`, so that a fault in one of its hooks is a fault in an operator,
-not in a problem posed otherwise. Method: Polonsky and Keer 1999; displacement by shear lags behind and is brought up to date.
+not in a problem posed otherwise. Method: Polonsky and Keer 1999; displacement by shear lags behind and is
+brought up to date.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from verification.properties.textbook import normal_offsets, shear_offsets
 Complex = NDArray[np.complex128]
 CLOSER = 0.1
 """Residual that is sought, over that required: a periodic mean is off by more than its energy shows."""
-ROUNDS = 200
+ROUNDS = 60
 """Most updates of the displacement by shear."""
 
 
@@ -97,7 +98,7 @@ class Compact:
                 : len(field_), : field_.shape[1]
             ]
 
-        limit = self.hooks.limit(posed, 20 * sum(posed.shape) + 2000)
+        limit = self.hooks.limit(posed, 900)
         f, moved, left, ok = _start(posed), np.zeros(posed.shape), limit, False
         for _ in range(ROUNDS if posed.coupling is not None else 1):
             f, used, ok = _frictionless(posed, lambda p: apply(normal, p), posed.gap + moved, f, left)
