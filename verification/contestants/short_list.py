@@ -1,4 +1,4 @@
-"""Where a fault is: a ranked short list of dimensions, from the failing problems of the covering design."""
+"""Ranked short list of the dimensions of a fault, from the failing problems of the covering design."""
 
 from __future__ import annotations
 
