@@ -72,7 +72,7 @@ def chosen(options: argparse.Namespace) -> bool:
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from refimpl.errors import InputError
-    from verification.contestants import isolated, suite
+    from verification.contestants import isolated, short_list, suite
     from verification.contestants.ending import Ended, unwinding
     from verification.framework.case import Tier, readable
     from verification.framework.files import Progress
@@ -109,6 +109,7 @@ def run(options: argparse.Namespace) -> int:
             "abilities": stated or None,
             "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
             "unseen_faults": unseen,
+            "short_list": short_list.of_results(results),
         }
     }
     emit(document, options.json, table(readable(name), done, unseen or []))
@@ -156,6 +157,10 @@ def table(name: str, done: Run, unseen: Sequence[str] = ()) -> str:
     reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
     parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
+    from verification.contestants.short_list import of_results
+
+    if listed := of_results(done.results):
+        parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
     if unseen:
         parts.append("looked for by none of these cases:\n" + wrapped(", ".join(unseen), "  "))
     return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])

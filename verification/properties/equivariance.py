@@ -11,7 +11,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.properties.registry import Solver, invariant
+from verification.properties.registry import Solver, invariant, require
 from verification.properties.samples import SIDE, Sample, array_body, heights, samples, with_heights
 from verification.properties.states import ENDED_WELL, RESIDUAL, from_first_contact, solved
 
@@ -20,14 +20,14 @@ FORCES = ("normal_force", "friction_force")
 
 def equal_states(moved: rf.Solution, pressure: Array, base: rf.Solution, sample: Sample, sign: float) -> None:
     """Moved pressures equal ``pressure``, forces and approach those of ``base``; Q times ``sign``."""
-    assert moved.status in ENDED_WELL
-    assert np.array_equal(moved.pressure > 0, pressure > 0)
-    assert np.abs(moved.pressure - pressure).max() <= RESIDUAL * base.max_pressure
+    require(moved.status in ENDED_WELL)
+    require(np.array_equal(moved.pressure > 0, pressure > 0))
+    require(np.abs(moved.pressure - pressure).max() <= RESIDUAL * base.max_pressure)
     load = sample.scene.load
     for name in FORCES:
-        assert abs(getattr(moved, name) - getattr(base, name)) <= RESIDUAL * load
-    assert abs(moved.binormal_force - sign * base.binormal_force) <= RESIDUAL * load
-    assert abs(moved.approach - base.approach) <= RESIDUAL * from_first_contact(sample, base)
+        require(abs(getattr(moved, name) - getattr(base, name)) <= RESIDUAL * load)
+    require(abs(moved.binormal_force - sign * base.binormal_force) <= RESIDUAL * load)
+    require(abs(moved.approach - base.approach) <= RESIDUAL * from_first_contact(sample, base))
 
 
 @invariant("the mirror image slides like the original", samples())
@@ -105,11 +105,11 @@ def translation(solver: Solver, sample: Sample) -> None:
             upper=array_body(scene.upper.material, upper, lengths),
         )
         state = solver(wide, (lower.shape[0], lower.shape[1]), oblique=False)
-        assert state.status in ENDED_WELL
+        require(state.status in ENDED_WELL)
         found.append(state.pressure[before[0] : before[0] + n, before[1] : before[1] + m])
     for other in found[1:]:
         # the moat's depth, half the side, costs the heights about five digits
-        assert np.abs(other - found[0]).max() <= 1e-8 * found[0].max()
+        require(np.abs(other - found[0]).max() <= 1e-8 * found[0].max())
 
 
 @invariant("turned upside down it is the same contact", samples())
@@ -152,10 +152,10 @@ def swapped_maps(solver: Solver, sample: Sample) -> None:
             sliding_direction=math.pi - scene.sliding_direction,
         )
         base, swapped = solver(here, sample.shape), solver(there, sample.shape)
-    assert base.status in ENDED_WELL
-    assert abs(swapped.contact_area - base.contact_area) <= RESIDUAL * base.contact_area
-    assert abs(swapped.max_pressure - base.max_pressure) <= RESIDUAL * base.max_pressure
-    assert abs(swapped.friction_coefficient - base.friction_coefficient) <= RESIDUAL
+    require(base.status in ENDED_WELL)
+    require(abs(swapped.contact_area - base.contact_area) <= RESIDUAL * base.contact_area)
+    require(abs(swapped.max_pressure - base.max_pressure) <= RESIDUAL * base.max_pressure)
+    require(abs(swapped.friction_coefficient - base.friction_coefficient) <= RESIDUAL)
     equal_states(swapped, base.pressure[:, ::-1], base, sample, -1.0)
 
 
@@ -181,9 +181,9 @@ def length_unit(solver: Solver, sample: Sample) -> None:
         load=factor**2 * scene.load,
     )
     moved = solver(large, sample.shape)
-    assert np.array_equal(moved.pressure, base.pressure)
-    assert moved.approach == factor * base.approach
-    assert moved.friction_coefficient == base.friction_coefficient
+    require(np.array_equal(moved.pressure, base.pressure))
+    require(moved.approach == factor * base.approach)
+    require(moved.friction_coefficient == base.friction_coefficient)
 
 
 @invariant("stresses in another unit", samples())
@@ -197,6 +197,6 @@ def stress_unit(solver: Solver, sample: Sample) -> None:
     friction = rf.Friction(tau=factor * scene.friction.tau, beta=scene.friction.beta)
     soft = replace(scene, friction=friction, load=factor * scene.load, lower=lower, upper=upper)
     moved = solver(soft, sample.shape)
-    assert np.array_equal(moved.pressure, factor * base.pressure)
-    assert moved.approach == base.approach
-    assert moved.friction_coefficient == base.friction_coefficient
+    require(np.array_equal(moved.pressure, factor * base.pressure))
+    require(moved.approach == base.approach)
+    require(moved.friction_coefficient == base.friction_coefficient)

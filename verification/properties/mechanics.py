@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import refimpl as rf
-from verification.properties.registry import Solver, invariant
+from verification.properties.registry import Solver, invariant, require
 from verification.properties.samples import Sample, samples
 from verification.properties.states import (
     ENDED_WELL,
@@ -48,7 +48,7 @@ def reciprocity(solver: Solver, sample: Sample) -> None:
     there = float(np.vdot(one.pressure, displacement(heavier(sample), two)))
     back = float(np.vdot(two.pressure, displacement(sample, one)))
     scale = float(np.vdot(two.pressure, np.abs(displacement(heavier(sample), two))))
-    assert abs(there - back) <= 1e-10 * scale
+    require(abs(there - back) <= 1e-10 * scale)
 
 
 @invariant("elastic energy is positive", samples(tau=False))
@@ -57,7 +57,7 @@ def positive_energy(solver: Solver, sample: Sample) -> None:
     solution = solved(solver, sample)
     if sample.periodic and np.ptp(solution.pressure) <= RESIDUAL * solution.max_pressure:
         return
-    assert float(np.vdot(solution.pressure, displacement(sample, solution))) > 0
+    require(float(np.vdot(solution.pressure, displacement(sample, solution))) > 0)
 
 
 @invariant("shear by beta f does no work on the pressure", samples(tau=False, periodic=False))
@@ -67,7 +67,7 @@ def skew_coupling(solver: Solver, sample: Sample) -> None:
     f = solution.pressure.ravel()
     a, _ = compliances(sample.scene)
     by_pressure = a * float(f @ normal_matrix(sample.grid) @ f)
-    assert abs(float(f @ displacement(sample, solution).ravel()) - by_pressure) <= 1e-10 * by_pressure
+    require(abs(float(f @ displacement(sample, solution).ravel()) - by_pressure) <= 1e-10 * by_pressure)
 
 
 @invariant("energy grows by the work of the load", samples(friction=False, periodic=False))
@@ -78,16 +78,16 @@ def energy_is_work(solver: Solver, sample: Sample) -> None:
     force = [float(s.pressure.sum()) for _, s in states]
     path = states[1][1].approach - states[0][1].approach
     gained, slack = energy[1] - energy[0], 1e-10 * energy[1]
-    assert force[0] * path - slack <= gained <= force[1] * path + slack
+    require(force[0] * path - slack <= gained <= force[1] * path + slack)
 
 
 @invariant("a larger load presses deeper and on no less area", samples(friction=False))
 def monotone_in_load(solver: Solver, sample: Sample) -> None:
     """Approach, contact set and pressure of every element grow with the load."""
     light, heavy = solved(solver, sample, oblique=False), solved(solver, heavier(sample), oblique=False)
-    assert from_first_contact(sample, heavy) >= from_first_contact(sample, light) * (1 - RESIDUAL)
-    assert not np.any(light.contact & ~heavy.contact)
-    assert np.all(heavy.pressure >= light.pressure - RESIDUAL * light.max_pressure)
+    require(from_first_contact(sample, heavy) >= from_first_contact(sample, light) * (1 - RESIDUAL))
+    require(not np.any(light.contact & ~heavy.contact))
+    require(np.all(heavy.pressure >= light.pressure - RESIDUAL * light.max_pressure))
 
 
 @invariant("a deeper approach takes a larger load", samples(friction=False, periodic=False))
@@ -95,9 +95,9 @@ def monotone_in_approach(solver: Solver, sample: Sample) -> None:
     """Load and contact set grow with a prescribed approach."""
     first = solved(solver, sample, oblique=False)
     deeper = solver(sample.scene, sample.shape, approach=1.25 * first.approach, oblique=False)
-    assert deeper.status in ENDED_WELL
-    assert deeper.normal_force > first.normal_force
-    assert not np.any(first.contact & ~deeper.contact)
+    require(deeper.status in ENDED_WELL)
+    require(deeper.normal_force > first.normal_force)
+    require(not np.any(first.contact & ~deeper.contact))
 
 
 @invariant(
@@ -112,12 +112,12 @@ def weak_friction(solver: Solver, sample: Sample) -> None:
     weak = replace(sample.scene, friction=rf.Friction(tau=SMALL * friction.tau, beta=SMALL * friction.beta))
     none = replace(sample.scene, friction=rf.Friction())
     faint, still = (solver(scene, sample.shape, oblique=True) for scene in (weak, none))
-    assert faint.status in ENDED_WELL
-    assert still.status in ENDED_WELL
+    require(faint.status in ENDED_WELL)
+    require(still.status in ENDED_WELL)
     # tau is at most 0.6 of the mean pressure, and c at most half of a: amplified at most by the grid's
     # condition number, which is below 100
-    assert np.abs(faint.pressure - still.pressure).max() <= (100 * SMALL + RESIDUAL) * still.max_pressure
-    assert abs(faint.friction_force - still.friction_force) <= 100 * SMALL * sample.scene.load + RESIDUAL
+    require(np.abs(faint.pressure - still.pressure).max() <= (100 * SMALL + RESIDUAL) * still.max_pressure)
+    require(abs(faint.friction_force - still.friction_force) <= 100 * SMALL * sample.scene.load + RESIDUAL)
 
 
 @invariant("identical materials do not couple", samples())
@@ -126,5 +126,5 @@ def identical_materials(solver: Solver, sample: Sample) -> None:
     alike = replace(sample, E=sample.E[:1] * 2, nu=sample.nu[:1] * 2)
     rubbed = solved(solver, alike, oblique=False)
     still = solved(solver, replace(alike, tau=0, beta=0), oblique=False)
-    assert np.array_equal(rubbed.contact, still.contact)
-    assert np.abs(rubbed.pressure - still.pressure).max() <= RESIDUAL * still.max_pressure
+    require(np.array_equal(rubbed.contact, still.contact))
+    require(np.abs(rubbed.pressure - still.pressure).max() <= RESIDUAL * still.max_pressure)

@@ -30,6 +30,12 @@ class Solver(Protocol):
 Check = Callable[[Solver, Sample], None]
 
 
+def require(holds: object, claim: str = "the invariant does not hold") -> None:
+    """Raise AssertionError unless the claim holds, also under ``python -O``, which drops ``assert``."""
+    if not holds:
+        raise AssertionError(claim)
+
+
 @dataclass(frozen=True)
 class Invariant:
     """``check`` raises AssertionError where ``claim`` does not hold for a sample of ``samples``.

@@ -8,7 +8,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.properties.registry import Solver, invariant
+from verification.properties.registry import Solver, invariant, require
 from verification.properties.samples import SIDE, Sample, samples
 from verification.properties.textbook import normal_matrix, shear_matrix
 
@@ -21,7 +21,7 @@ ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
 def solved(solver: Solver, sample: Sample, *, oblique: bool | None = None) -> rf.Solution:
     """The sample's solution; fails when the solver does not claim to have solved it."""
     solution = solver(sample.scene, sample.shape, oblique=oblique)
-    assert solution.status in ENDED_WELL, f"ended {solution.status.value}"
+    require(solution.status in ENDED_WELL, f"ended {solution.status.value}")
     return solution
 
 
@@ -66,8 +66,8 @@ def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array
 def positivity(solver: Solver, sample: Sample) -> None:
     """No adhesion: f >= 0."""
     pressure = solved(solver, sample).pressure
-    assert pressure.min() >= 0
-    assert pressure.max() > 0
+    require(pressure.min() >= 0)
+    require(pressure.max() > 0)
 
 
 @invariant("r = tau + beta f in contact and 0 outside, but for elements excluded from tau", samples())
@@ -87,8 +87,8 @@ def complementarity(solver: Solver, sample: Sample) -> None:
     v = displacement(sample, solution) * np.sqrt((1 + tan_x**2) * (1 + tan_y**2)) + sample.gap
     excess = v - from_first_contact(sample, solution)
     scale = np.abs(v).max()
-    assert excess.min() >= -RESIDUAL * scale
-    assert np.abs(excess[solution.pressure > 0]).max() <= RESIDUAL * scale
+    require(excess.min() >= -RESIDUAL * scale)
+    require(np.abs(excess[solution.pressure > 0]).max() <= RESIDUAL * scale)
 
 
 @invariant("N = P, recomputed term by term from Eq. (2); F and mu from Eq. (3); Q", samples())
@@ -104,9 +104,9 @@ def load_balance(solver: Solver, sample: Sample) -> None:
         "binormal_force": (f * np.cos(x) - r * np.sin(x)) * np.sin(y),
     }
     for name, term in terms.items():
-        assert abs(getattr(solution, name) - math.fsum(term) * dA) <= RESIDUAL * load
-    assert abs(solution.normal_force - load) <= RESIDUAL * load
-    assert abs(solution.friction_coefficient - solution.friction_force / load) <= RESIDUAL
+        require(abs(getattr(solution, name) - math.fsum(term) * dA) <= RESIDUAL * load)
+    require(abs(solution.normal_force - load) <= RESIDUAL * load)
+    require(abs(solution.friction_coefficient - solution.friction_force / load) <= RESIDUAL)
 
 
 @invariant("the surfaces are where Eq. (7) puts them", samples(periodic=False))
@@ -118,7 +118,7 @@ def displacements(solver: Solver, sample: Sample) -> None:
     u += c * shear_matrix(sample.grid, sample.scene.sliding_direction) @ solution.traction.ravel()
     found = displacement(sample, solution).ravel()
     # the surfaces also carry the heights' own rounding, which is 1e-16 of SIDE at most
-    assert np.abs(found - u).max() <= 1e-11 * np.abs(u).max() + 1e-16 * SIDE
+    require(np.abs(found - u).max() <= 1e-11 * np.abs(u).max() + 1e-16 * SIDE)
 
 
 @invariant("the contact area is the number of loaded elements; p_max is the pressures' maximum", samples())
@@ -126,18 +126,18 @@ def area_and_peak(solver: Solver, sample: Sample) -> None:
     """Counted one by one."""
     solution = solved(solver, sample)
     count = sum(1 for f in solution.pressure.ravel() if f > 0)
-    assert math.isclose(solution.contact_area, count * sample.grid.element_area, rel_tol=1e-14)
-    assert solution.max_pressure == max(solution.pressure.ravel())
-    assert solution.contact_area_corrected <= solution.contact_area
+    require(math.isclose(solution.contact_area, count * sample.grid.element_area, rel_tol=1e-14))
+    require(solution.max_pressure == max(solution.pressure.ravel()))
+    require(solution.contact_area_corrected <= solution.contact_area)
 
 
 @invariant("the same scene gives the same bits", samples())
 def determinism(solver: Solver, sample: Sample) -> None:
     """Nothing depends on the time, on memory or on what was solved before."""
     first, second = solved(solver, sample), solved(solver, sample)
-    assert first.pressure.tobytes() == second.pressure.tobytes()
-    assert first.traction.tobytes() == second.traction.tobytes()
-    assert (first.approach, first.friction_coefficient) == (second.approach, second.friction_coefficient)
+    require(first.pressure.tobytes() == second.pressure.tobytes())
+    require(first.traction.tobytes() == second.traction.tobytes())
+    require((first.approach, first.friction_coefficient) == (second.approach, second.friction_coefficient))
 
 
 ONE_SPOT = Sample(
@@ -164,9 +164,9 @@ def load_and_approach(solver: Solver, sample: Sample) -> None:
     if sample.periodic and by_load.contact.mean() > 0.9:
         return
     back = solver(sample.scene, sample.shape, approach=by_load.approach)
-    assert back.status in ENDED_WELL
+    require(back.status in ENDED_WELL)
     same_pressure(back, by_load, sample)
-    assert abs(back.normal_force - sample.scene.load) <= 1e-7 * sample.scene.load
+    require(abs(back.normal_force - sample.scene.load) <= 1e-7 * sample.scene.load)
 
 
 @invariant("dense reference and production solver agree", samples())
@@ -175,11 +175,11 @@ def agrees_with_the_dense_reference(solver: Solver, sample: Sample) -> None:
     reference = rf.solve(sample.scene, sample.shape, method="dense", tolerance=1e-12)
     solution = solved(solver, sample)
     same_pressure(solution, reference, sample)
-    assert np.array_equal(solution.excluded, reference.excluded)
+    require(np.array_equal(solution.excluded, reference.excluded))
 
 
 def same_pressure(one: rf.Solution, other: rf.Solution, sample: Sample) -> None:
     """Equal contact sets, pressures to `RESIDUAL` of the peak; approaches to it from first contact."""
-    assert np.array_equal(one.contact, other.contact)
-    assert np.abs(one.pressure - other.pressure).max() <= RESIDUAL * other.max_pressure
-    assert abs(one.approach - other.approach) <= RESIDUAL * abs(from_first_contact(sample, other))
+    require(np.array_equal(one.contact, other.contact))
+    require(np.abs(one.pressure - other.pressure).max() <= RESIDUAL * other.max_pressure)
+    require(abs(one.approach - other.approach) <= RESIDUAL * abs(from_first_contact(sample, other)))
