@@ -48,7 +48,7 @@ class Number:
 
     @property
     def within(self) -> bool:
-        """Whether E is within u."""
+        """True where E is within u."""
         return abs(self.difference) <= self.uncertainty
 
     @property

@@ -20,7 +20,7 @@ UNITS = {"Pa": ("MPa", 1e-6), "m": ("µm", 1e6)}
 
 @dataclass(frozen=True)
 class FrontPage:
-    """What the first page shows; tables are rows of texts."""
+    """Contents of the first page; tables are rows of texts."""
 
     verdicts: Mapping[str, Sequence[Judged]]
     table3: Sequence[Number]

@@ -43,7 +43,7 @@ PARTS = (
     Part(
         "Fig. 6",
         "Frictionless contact with all roughness on the flat and without slopes, 75 realisations on 256 x "
-        "256 elements; (d) one realisation. Greenwood and Tripp's model has the summits of Eq. (9); the "
+        "256 elements; (d) one realisation. Greenwood and Tripp's model has the statistics of Eq. (9); the "
         "textbook's curve has mu = 4. The printed curves are not known to us.",
         ("reproduction/fig6[abc]*", "reproduction/fig6d"),
     ),

@@ -15,7 +15,6 @@ from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from reports.result_files import read_result, read_results, result_paths, write_result
 from verification.cli.output import Parsers, add_json, columns, emit
@@ -37,8 +36,7 @@ _ROW = re.compile(r"^\| `(\w+)\.json` \| `([^`]*\bFILE\b[^`]*)`", flags=re.M)
 
 @dataclass(frozen=True)
 class Recipe:
-    """How a committed file is made: a command with FILE for its name, and seconds on one thread; None if "
-    "unknown."""
+    """Recipe of a committed file: a command with FILE for its name, and estimated seconds."""
 
     name: str
     command: str
@@ -204,14 +202,3 @@ def record(done: Sequence[Remade], folder: Path) -> None:
         stamp = datetime.now(UTC).isoformat(timespec="seconds")
         write_result({"study": "results made again", "date": stamp, "rows": list(rows.values())}, path)
         results_page.main()
-
-
-def main() -> Any:
-    """Entry of ``python -m verification.cli.remake``."""
-    from verification.cli import main as whole
-
-    return whole(["remake", *sys.argv[1:]])
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -22,7 +22,7 @@ GRID, SURFACES, FLAT_RMS, BALL_RMS = 128, 6, 1.680e-6, 0.084e-6
     source="paper section 9, Eqs (2) and (3)",
     metric="at_least",
     tolerance=1e-6,
-    tolerance_reason="rms of F / N without local friction, which is zero on flat tips: a hundred times the "
+    tolerance_reason="rms of F / N without local friction, which is zero without slopes: a hundred times the "
     "certificate's 1e-8 is no rounding",
     tags=("reproduction", "section9"),
 )
