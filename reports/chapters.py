@@ -1,8 +1,8 @@
-"""The chapters of the report: which subjects and studies belong to each, in the order of reading."""
+"""The chapters of the report after the reproduction: which subjects and studies belong to each, in order."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.evidence import Evidence
@@ -22,90 +22,73 @@ class Chapter:
     studies: tuple[str, ...] = ()
 
 
+REPRODUCED = ("reproduction", "errata")
+"""Subjects whose cases the chapter on the paper's figures and tables shows."""
+
 CHAPTERS = (
     Chapter(
         "code",
-        "Code verification",
-        "Kernels, operators, surfaces, force sums and solvers against analytic, high-precision and exactly "
-        "known answers, with observed orders; and how far the suite itself can be trusted: seeded faults, "
-        "mutants, random examples.",
-        (
-            "kernels",
-            "surfaces",
-            "manufactured",
-            "balance",
-            "capped",
-            "hertz",
-            "reference",
-            "sliding",
-            "golden",
-            "bounds",
-        ),
-        (
-            "fault_matrix",
-            "faults_by_hand",
-            "mutation",
-            "mutation_fresh",
-            "mutation_judges",
-            "hypothesis",
-            "random_order",
-        ),
-    ),
-    Chapter(
-        "solvers",
-        "Solvers against each other",
-        "The dense reference, the production solver, the paper's own scheme and energy minimisers on the "
-        "same problems.",
-        ("cross-check", "paper", "variational"),
+        "Code and solution verification",
+        "Each part of the code is compared with an answer that shares no code with it: kernels with 50-digit "
+        "values, surfaces with Eq. (9), solvers with exact solutions, manufactured states and each other. "
+        "Orders of convergence are fitted over at least four grids.",
+        ("kernels", "surfaces", "manufactured", "hertz", "reference", "balance", "sliding", "golden",
+         "bounds", "cross-check", "paper", "variational", "rectangles", "sweep"),
         ("table2",),
-    ),
-    Chapter(
-        "codes",
-        "Other codes, and yours",
-        "The suite that any contact solver can be run through, its results for published codes, and "
-        "tests of the suite with faulty solvers.",
-        ("contestant", "contestants"),
-        ("cross_code",),
     ),
     Chapter(
         "appendix",
         "Appendix A: influence coefficients on slopes",
-        "Strip, wedge and finite elements in the plane, asperities and waves in three dimensions: how wrong "
-        "coefficients of a flat half-space are on a slope, for one coefficient and for a whole contact.",
-        (
-            "appendix-strip",
-            "appendix-wedge",
-            "appendix-fem",
-            "appendix-figures",
-            "fem3d",
-            "appendix-correction",
-            "model-form",
-            "appendix-errata",
-        ),
+        "Error of coefficients of a flat half-space on a slope: strip and wedge theory, finite elements in "
+        "the plane and in three dimensions, for single coefficients and for whole contacts.",
+        ("appendix-strip", "appendix-wedge", "appendix-fem", "appendix-figures", "fem3d",
+         "appendix-correction", "model-form", "appendix-errata"),
     ),
     Chapter(
-        "reproduction",
-        "Reproduction of the paper",
-        "Every figure, table and quantitative sentence, run again; a verdict may refute the paper, and the "
-        "case passes when the verdict stands.",
-        ("reproduction", "errata", "sweep"),
+        "error-bars",
+        "Error bars",
+        "Numerical uncertainty of single solves: coverage of the error bars on random scenes against far "
+        "finer grids, sensitivities, and budgets after V&V 20.",
+        ("accuracy", "sensitivity"),
+        ("coverage", "coverage_fresh", "multilevel"),
     ),
     Chapter(
-        "speed",
-        "Speed for accuracy",
-        "What an error costs: error bars and whether they hold, benchmarks beside published codes, prices.",
-        ("accuracy", "sensitivity", "tradeoff", "multilevel", "benchmarks"),
-        ("benchmarks", "coverage", "coverage_fresh", "tradeoff", "multilevel"),
+        "yield",
+        "Pressures limited by the hardness",
+        "Contact beyond yield: pressures between 0 and the hardness of the softer body.",
+        ("capped",),
     ),
     Chapter(
-        "extremes",
-        "Extremes, and only what a scene requires",
-        "Every axis to the point of failure, inputs that are broken on purpose, and terms that are "
-        "neglected because they cannot matter.",
-        ("extremes", "planning", "validity"),
-        ("extremes", "extremes_drawn", "fuzz", "chaos", "planning"),
+        "limits",
+        "Limits",
+        "Where the model and this implementation stop being a reference, and what a solve neglects.",
+        ("planning", "validity"),
     ),
-)
+    Chapter(
+        "trust",
+        "Appendix I: verification of the verification",
+        "Seeded faults, mutants, random examples, extreme and damaged inputs: how far the checks can be "
+        "trusted.",
+        ("extremes",),
+        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "faults_by_hand", "hypothesis",
+         "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
+    ),
+    Chapter(
+        "codes",
+        "Appendix II: other codes, and yours",
+        "The suite that any contact solver can be run through, its results for published codes, and tests of "
+        "the suite with faulty solvers.",
+        ("contestant", "contestants"),
+        ("cross_code",),
+    ),
+    Chapter(
+        "costs",
+        "Appendix III: costs",
+        "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
+        ("tradeoff", "multilevel", "benchmarks"),
+        ("benchmarks", "tradeoff"),
+    ),
+)  # fmt: skip
 
 
 def subjects_of(chapter: Chapter, evidence: Evidence) -> dict[str, list[Case]]:
@@ -114,13 +97,21 @@ def subjects_of(chapter: Chapter, evidence: Evidence) -> dict[str, list[Case]]:
     return {subject: present[subject] for subject in chapter.subjects if subject in present}
 
 
-def unplaced(evidence: Evidence) -> dict[str, list[Case]]:
-    """Cases whose subject no chapter claims: they are shown all the same."""
-    claimed = {subject for chapter in CHAPTERS for subject in chapter.subjects}
-    present = by_subject(list(evidence.cases))
-    return {subject: cases for subject, cases in present.items() if subject not in claimed}
+def all_chapters(evidence: Evidence, extras: Mapping[str, Sequence[Exhibit]]) -> list[Chapter]:
+    """The chapters, those that extras alone fill, and one of the subjects that no chapter claims."""
+    known = {chapter.anchor for chapter in CHAPTERS}
+    new = [Chapter(name, name.replace("-", " ").capitalize(), "", ()) for name in extras if name not in known]
+    claimed = {subject for chapter in CHAPTERS for subject in chapter.subjects} | set(REPRODUCED)
+    left = tuple(s for s in by_subject(list(evidence.cases)) if s not in claimed)
+    main = [chapter for chapter in CHAPTERS if "Appendix I" not in chapter.title]
+    back = [chapter for chapter in CHAPTERS if "Appendix I" in chapter.title]
+    further = [Chapter("further", "Further checks", "", left)] if left else []
+    return [*main[:-1], *new, *further, *main[-1:], *back]
 
 
-def exhibits_of(chapter: Chapter, evidence: Evidence) -> Sequence[Exhibit]:
-    """The chapter's studies that are at hand."""
-    return [exhibit(name, evidence.studies[name]) for name in chapter.studies if name in evidence.studies]
+def exhibits_of(
+    chapter: Chapter, evidence: Evidence, extras: Mapping[str, Sequence[Exhibit]]
+) -> Sequence[Exhibit]:
+    """The chapter's studies that are at hand, and what other modules add to it."""
+    studies = [exhibit(name, evidence.studies[name]) for name in chapter.studies if name in evidence.studies]
+    return [*studies, *extras.get(chapter.anchor, ())]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,11 +14,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import NullLocator
 
+from reports.inline_svg import inline
+
 Data = Mapping[str, Any]
 Draw = Callable[[Canvas, Data], None]
 
-# Okabe and Ito 2008: distinguishable for colour-blind readers; black is left to the text.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+# Hues of Okabe and Ito 2008, of at least 3:1 against the light and the dark page; black is left to the text.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#A65A9E", "#1E8FA8", "#9A7B00")
 MARKERS = "os^Dv<"
 INK = "#010203"  # stands for the page's text colour until the export
 STYLE: dict[Any, Any] = {
@@ -25,9 +28,9 @@ STYLE: dict[Any, Any] = {
     "xtick.color": INK, "ytick.color": INK, "grid.color": "#808080", "grid.alpha": 0.35, "axes.grid": True,
     "legend.frameon": False, "legend.fontsize": 9, "font.size": 10, "lines.linewidth": 1.4,
     "lines.markersize": 5,
-    "svg.hashsalt": "rough-friction", "svg.fonttype": "path",
+    "svg.hashsalt": "rough-friction", "svg.fonttype": "none", "font.family": ["DejaVu Sans"],
+    "text.parse_math": True,
 }  # fmt: skip
-SCHEMES = "<style>svg{color:#1c1c1e}@media screen and (prefers-color-scheme:dark){svg{color:#ececf0}}</style>"
 _INSIDE = 6  # series up to which a legend finds room among them
 
 
@@ -46,8 +49,16 @@ class Figure:
         return all(data.get(name) not in (None, [], {}) for name in self.needs)
 
 
-def svg(figure: Figure, data: Data) -> str | None:
-    """The drawn figure as SVG text in the reader's colours; None when its series are not available."""
+@dataclass(frozen=True)
+class Drawn:
+    """A figure as SVG for a page in the reader's colours, and what it shows in words."""
+
+    svg: str
+    alt: str
+
+
+def drawn(figure: Figure, data: Data, name: str = "figure") -> Drawn | None:
+    """The drawn figure; its definitions carry ``name``, unique on the page. None without its series."""
     if not figure.available(data):
         return None
     with matplotlib.rc_context(STYLE):
@@ -56,9 +67,34 @@ def svg(figure: Figure, data: Data) -> str | None:
         buffer = io.StringIO()
         # No date: the same results give the same bytes.
         canvas.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-    text = buffer.getvalue().replace(INK, "currentColor")
-    head, mark, rest = text.partition("<defs>")
-    return head + SCHEMES + mark + rest
+        alt = words(canvas, figure.caption)
+    return Drawn(inline(buffer.getvalue().replace(INK, "currentColor"), name, alt), alt)
+
+
+def svg(figure: Figure, data: Data) -> str | None:
+    """The drawn figure alone; None when its series are not available."""
+    found = drawn(figure, data)
+    return None if found is None else found.svg
+
+
+def words(canvas: Canvas, caption: str) -> str:
+    """Alternative text: the caption, then axes and labelled series of every panel."""
+    said = [caption]
+    for axes in canvas.axes:
+        title, x, y = (_plain(text) for text in (axes.get_title(), axes.get_xlabel(), axes.get_ylabel()))
+        if not (x or y):
+            continue
+        panel = f"{title}: " if title else ""
+        said.append(f"{panel}{y or 'rows'} over {x or 'columns'}.")
+        labels = dict.fromkeys(_plain(text) for text in axes.get_legend_handles_labels()[1])
+        if labels:
+            said.append(f"Series: {'; '.join(labels)}.")
+    return " ".join(dict.fromkeys(said))
+
+
+def _plain(text: str) -> str:
+    """Text without the marks of mathematics."""
+    return re.sub(r"[$\\{}]", "", text).strip()
 
 
 def lines(

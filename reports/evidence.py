@@ -22,6 +22,8 @@ class Evidence:
     cases: tuple[Case, ...]
     errata: tuple[Mapping[str, Any], ...]
     studies: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    files: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """All committed files by name."""
 
     @property
     def solver(self) -> str | None:
@@ -52,7 +54,7 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
         for erratum in file["errata"]:
             errata.setdefault(erratum["equation"], erratum)
     studies = {name: file for name, file in committed.items() if name not in runs}
-    return Evidence(checked, tuple(cases.values()), tuple(errata.values()), studies)
+    return Evidence(checked, tuple(cases.values()), tuple(errata.values()), studies, committed)
 
 
 def _case(case: Case, origin: dict[str, Any] | None) -> Case:

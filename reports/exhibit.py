@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import base64
 import csv
 import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+from urllib.parse import quote
 
 from reports.drawing import Data, Figure
 
+_UNQUOTED = "!$&'()*+,-./:;=?@_~"
+"""Characters that need no quoting in a ``data:`` address in HTML."""
 Cell = str | float | int | bool | None
 Document = Mapping[str, Any]
 
@@ -39,7 +41,8 @@ Build = Callable[[Document], Exhibit]
 
 
 def as_csv(figure: Figure, data: Data) -> str:
-    """The figure's series as CSV: lists as columns, mappings as two columns, arrays row by row.
+    """All series of the data as CSV, the figure's own first: lists as columns, mappings as two columns,
+    arrays row by row; numbers to six digits.
 
     >>> from reports.drawing import lines
     >>> pair = Figure("*", ("h", "error"), lines("h", {"error": "e"}, xlabel="", ylabel=""), "")
@@ -51,20 +54,26 @@ def as_csv(figure: Figure, data: Data) -> str:
     """
     buffer = io.StringIO()
     write = csv.writer(buffer, lineterminator="\n").writerow
-    columns = {name: data[name] for name in figure.needs if _is_column(data[name])}
+    names = dict.fromkeys((*figure.needs, *(name for name, v in data.items() if not isinstance(v, str))))
+    columns = {name: data[name] for name in names if _is_column(data[name])}
     if columns:
         write(columns)
         for k in range(max(map(len, columns.values()))):
-            write([values[k] if k < len(values) else None for values in columns.values()])
-    for name in figure.needs:
+            write([_six(values[k]) if k < len(values) else None for values in columns.values()])
+    for name in names:
         if name not in columns:
             _write_block(write, name, data[name])
     return buffer.getvalue()
 
 
-def address(text: str, kind: str) -> str:
-    """The text as a ``data:`` address of the given media type."""
-    return f"data:{kind};base64,{base64.b64encode(text.encode()).decode()}"
+def _six(value: Any) -> Any:
+    """Six digits of a float, as many as a result is recorded with for figures."""
+    return f"{value:.6g}" if isinstance(value, float) else value
+
+
+def csv_address(text: str) -> str:
+    """The CSV as a ``data:`` address."""
+    return f"data:text/csv;charset=utf-8,{quote(text, safe=_UNQUOTED)}"
 
 
 def _is_column(values: object) -> bool:
@@ -76,9 +85,9 @@ def _write_block(write: Callable[[Sequence[Any]], Any], name: str, values: Any) 
     write([name])
     if isinstance(values, Mapping):
         for key, value in values.items():
-            write([key, *(value if isinstance(value, list) else [value])])
+            write([key, *map(_six, value if isinstance(value, list) else [value])])
     elif isinstance(values, list):
         for row in values:
-            write(row if isinstance(row, list) else [row])
+            write([*map(_six, row if isinstance(row, list) else [row])])
     else:
-        write([values])
+        write([_six(values)])

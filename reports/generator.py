@@ -1,4 +1,4 @@
-"""The validation report: one HTML page that needs nothing else, from result files alone."""
+"""The report: one HTML page that needs nothing else, from result files alone."""
 
 from __future__ import annotations
 
@@ -8,14 +8,21 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import contestant, drawing, figures
-from reports.chapters import CHAPTERS, exhibits_of, subjects_of, unplaced
+from reports import agreement, contestant, figures
+from reports.agreement_figure import AGREEMENT
+from reports.chapters import all_chapters, exhibits_of, subjects_of
+from reports.claims import judged
 from reports.comparison import compared
+from reports.drawing import Figure
 from reports.evidence import Evidence, gathered
-from reports.exhibit import address, as_csv
-from reports.results import Case, CaseDataError, ResultFileError, by, worst
+from reports.extras import extra_exhibits
+from reports.findings import by_claim
+from reports.front_page import NAMED, front_page
+from reports.parts import shown
+from reports.pictures import Album
+from reports.results import Case, CaseDataError, ResultFileError
 from reports.summary import groups
-from reports.traceability import traced
+from reports.text import cell, interval, judgement, number, symbols
 
 _OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """Exceptions of drawing where data are not of the shape that a figure needs."""
@@ -33,18 +40,21 @@ def render(
     Raises ResultFileError (a ValueError) for anything but result files.
     """
     evidence = gathered(results, committed or {})
+    album = Album()
 
     def case_pictures(case: Case) -> list[Mapping[str, Any]]:
         progress(case["id"])
         try:
-            return pictures(case, evidence)
+            return [
+                p for f in figures.figures_of(case["id"], case["data"]) if (p := album.add(f, case["data"]))
+            ]
         except _OTHER_SHAPE as broken:
             raise CaseDataError(f"data of case {case['id']!r}: {broken}", case["origin"]) from broken
 
-    def one_picture(figure: drawing.Figure, data: Mapping[str, Any]) -> Mapping[str, Any]:
+    def one_picture(figure: Figure, data: Mapping[str, Any]) -> Mapping[str, Any] | None:
         progress(figure.caption)
         try:
-            return picture(figure, data)
+            return album.add(figure, data)
         except _OTHER_SHAPE as broken:
             raise ResultFileError(f"data of the figure {figure.caption!r}: {broken}") from broken
 
@@ -55,35 +65,45 @@ def render(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(number=number, anchor=anchor)
-    return environment.get_template("report.html").render(
-        run=evidence.run,
-        evidence=evidence,
-        provenance=evidence.run["provenance"],
-        paper=traced(evidence.cases, evidence.errata),
-        claims=[(claim, group, worst(group)) for claim, group in by(list(evidence.cases), "claim").items()],
-        chapters=[(c, subjects_of(c, evidence), exhibits_of(c, evidence)) for c in CHAPTERS],
-        unplaced=unplaced(evidence),
-        leading=leading(evidence),
-        solver=evidence.solver,
-        groups=groups(evidence),
-        changes=None if against is None else compared(against, results),
-        judgement=judgement,
-        facts=facts,
-        rerun=lambda case: rerun(case, evidence),
-        pictures=case_pictures,
-        picture=one_picture,
-        cell=cell,
-    )
+    environment.filters.update(number=number, anchor=anchor, symbols=symbols, label=label)
+    shared = {
+        "run": evidence.run,
+        "evidence": evidence,
+        "provenance": evidence.run["provenance"],
+        "solver": evidence.solver,
+        "changes": None if against is None else compared(against, results),
+        "judgement": judgement,
+        "interval": interval,
+        "facts": facts,
+        "rerun": lambda case: rerun(case, evidence),
+        "pictures": case_pictures,
+        "picture": one_picture,
+        "cell": cell,
+        "groups": groups(evidence),
+    }
+    own = {} if evidence.solver is not None else _own(evidence, shared["picture"])
+    template = environment.get_template("solver.html" if evidence.solver is not None else "report.html")
+    page = template.render(**shared, **own)
+    return page.replace("/* figures */", album.styles)
 
 
-def number(value: float | None, digits: int = 4) -> str:
-    """A number for a table; what was not measured is "n/a", never 0.
-
-    >>> number(None), number(0.25), number(171.0512, 6)
-    ('n/a', '0.25', '171.051')
-    """
-    return "n/a" if value is None else f"{value:.{digits}g}"
+def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
+    """What a report on this project's own code shows beside its cases."""
+    claims = judged(evidence.cases, evidence.errata)
+    numbers = agreement.numbers(by_claim(evidence.cases))
+    extras = extra_exhibits(evidence)
+    return {
+        "front": front_page(evidence, claims, numbers),
+        "named": NAMED,
+        "claims": claims,
+        "numbers": numbers,
+        "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
+        "parts": shown(claims, numbers, evidence.cases),
+        "chapters": [
+            (chapter, subjects_of(chapter, evidence), exhibits_of(chapter, evidence, extras))
+            for chapter in all_chapters(evidence, extras)
+        ],
+    }
 
 
 def anchor(case_id: str) -> str:
@@ -96,13 +116,13 @@ def anchor(case_id: str) -> str:
     return "case-" + "".join(kept)
 
 
-def judgement(case: Case) -> str:
-    """Error against tolerance, as the verdict was found."""
-    if case["error"] is None:
-        return "not judged"
-    sign = "≥" if case["metric"] == "at_least" else "≤"
-    sign = sign if case["status"] == "pass" else {"≥": "<", "≤": ">"}[sign]
-    return f"{number(case['error'], 3)} {sign} {number(case['tolerance'], 3)}"
+def label(text: str) -> str:
+    """A fragment of letters, digits and hyphens.
+
+    >>> label("Fig. 6(a)")
+    'fig-6-a'
+    """
+    return "-".join("".join(c if c.isalnum() else " " for c in text.lower()).split())
 
 
 def facts(data: Mapping[str, Any], most: int = 12) -> list[tuple[str, str]]:
@@ -134,55 +154,3 @@ def rerun(case: Case, evidence: Evidence) -> str:
         return contestant.rerun(evidence.run["provenance"]["command"], case["id"])
     tier = " --tier full" if case["tier"] == "full" else ""
     return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"
-
-
-def cell(value: Any) -> str:
-    """A table's cell: numbers to four digits, whole numbers and texts as they are.
-
-    >>> cell(0.123456), cell(512), cell(True), cell(None)
-    ('0.1235', '512', 'yes', 'n/a')
-    """
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return number(value) if isinstance(value, float | None) else str(value)
-
-
-def picture(figure: drawing.Figure, data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A figure and its data as addresses, None where the data are missing, and the caption."""
-    svg = drawing.svg(figure, data)
-    return {
-        "caption": figure.caption,
-        "address": None if svg is None else address(svg, "image/svg+xml"),
-        "csv": None if svg is None else address(as_csv(figure, data), "text/csv"),
-    }
-
-
-def pictures(case: Case, evidence: Evidence) -> list[Mapping[str, Any]]:
-    """The case's figures; none where its long twin, which has the same ones with less scatter, passed."""
-    twin = f"{case['id']}-full"
-    if any(other["id"] == twin and other["status"] == "pass" for other in evidence.cases):
-        return []
-    return [picture(f, case["data"]) for f in figures.figures_of(case["id"], case["data"])]
-
-
-LEADING = (
-    ("reproduction/fig8-exponential-full", "reproduction/fig8-exponential"),
-    ("fem3d/error-map", "appendix-figures/fig12", "appendix-fem/map"),
-    ("hertz/peak-order",),
-)
-"""Cases whose first figure opens the report, each with its stand-ins."""
-
-
-def leading(evidence: Evidence) -> list[tuple[Case, Mapping[str, Any]]]:
-    """The figures of the first page, with their cases; none where another's solver was run: they are ours."""
-    if evidence.solver is not None:
-        return []
-    cases = {case["id"]: case for case in evidence.cases}
-    found = []
-    for ids in LEADING:
-        for case in (cases[id] for id in ids if id in cases):
-            drawn = [picture(f, case["data"]) for f in figures.figures_of(case["id"], case["data"])[:1]]
-            if drawn and drawn[0]["address"]:
-                found.append((case, drawn[0]))
-                break
-    return found

@@ -238,11 +238,14 @@ REPRODUCTION = (
         "Fig. 5: normal and tangential stress of the smooth sliding sphere, P = 70 N.",
         (8.6, 3.8),
     ),
-    Figure(
-        "reproduction/fig6[abc]*",
-        ("r/a0", "p/p0", "standard error", "Hertz p/p0", "Greenwood-Tripp p/p0", "mu = 4 p/p0"),
-        _fig6,
-        "Fig. 6(a-c): effective pressure of the frictionless rough contact.",
+    *(
+        Figure(
+            f"reproduction/fig6{panel}*",
+            ("r/a0", "p/p0", "standard error", "Hertz p/p0", "Greenwood-Tripp p/p0", "mu = 4 p/p0"),
+            _fig6,
+            f"Fig. 6({panel}): effective pressure of the frictionless rough contact, sigma_e = {rms} um.",
+        )
+        for panel, rms in (("a", "0.068"), ("b", "0.511"), ("c", "2.69"))
     ),
     Figure(
         "reproduction/fig6d",

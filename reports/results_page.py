@@ -5,17 +5,16 @@ The page is for readers of the repository. The validation report (`make report`)
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from reports.claims import VERDICTS, Judged, judged
 from reports.evidence import Evidence, gathered
 from reports.result_files import read_results
 from reports.results import FORMAT, STATUSES, Case
 from reports.studies.benchmarks import newest_rows
-from reports.traceability import VERDICTS, Traced, traced
+from reports.text import interval, percent, symbols
 
 FOLDER = Path(__file__).with_name("results")
 PAGE = Path(__file__).with_name("RESULTS.md")
@@ -94,7 +93,7 @@ def hertz(run: Mapping[str, Any]) -> str:
                     link(RUN),
                 )
             )
-    head = ("quantity", "unit", "computed", "exact", "error", "tolerance", "verdict", "file")
+    head = ("quantity", "unit", "computed", "exact", "error", "tolerance", "status", "file")
     text = (
         "Smooth ball under 70 N without friction. Errors of quantities are relative, errors of orders of "
         "convergence absolute."
@@ -103,47 +102,33 @@ def hertz(run: Mapping[str, Any]) -> str:
 
 
 def claims(evidence: Evidence) -> str:
-    """List the paper's refuted and conditional claims, and errata."""
-    items = traced(evidence.cases, evidence.errata)
-    judged: dict[str, tuple[Traced, Case]] = {}
-    for item in items:
-        for case in item.cases:
-            judged.setdefault(case["id"], (item, case))
-    rows: list[Row] = []
-    for verdict in VERDICTS[:2]:
-        for item, case in judged.values():
-            if case["data"].get("verdict") == verdict:
-                rows.append(
-                    (verdict, item.item.label, case["claim"], finding(case), f"`{case['id']}`", origin(case))
-                )
-    head = ("verdict", "where", "claim", "finding", "check", "file")
-    return "\n\n".join(
-        [
-            section("Claims of the paper: refuted, or true with conditions", _counted(items), head, rows),
-            errata(evidence),
-        ]
-    )
+    """List the paper's claims that do not hold or hold with conditions, and errata."""
+    found = judged(evidence.cases, evidence.errata)
+    rows: list[Row] = [
+        (
+            item.verdict,
+            item.claim.label,
+            f"“{symbols(item.claim.quote)}”",
+            symbols(item.finding),
+            ", ".join(f"`{case['id']}`" for case in item.cases[:2]),
+            origin(item.cases[0]),
+        )
+        for verdict in VERDICTS[:4]
+        for item in found
+        if item.verdict == verdict and item.cases
+    ]
+    head = ("verdict", "where", "as printed", "found", "evidence", "file")
+    return "\n\n".join([section("Claims of the paper", _counted(found), head, rows), errata(evidence)])
 
 
-def _counted(items: Sequence[Traced]) -> str:
-    counts: dict[str, int] = {}
-    for item in items:
-        counts[item.verdict] = counts.get(item.verdict, 0) + 1
-    listed = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
+def _counted(items: Sequence[Judged]) -> str:
+    counts = {verdict: sum(item.verdict == verdict for item in items) for verdict in VERDICTS}
+    listed = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
     return (
-        f"Of {len(items)} equations, tables, figures and sentences of the paper: {listed}. A check passes "
-        "when its verdict stands, also where the verdict refutes the paper."
+        f"Of {len(items)} statements of the paper (Karpenko and Akay 2001, text converted by machine): "
+        f"{listed}. "
+        "Confirmed ones, definitions and schematic drawings are in the report (`make report`)."
     )
-
-
-def finding(case: Case) -> str:
-    """The first statement of a case's note, without the verdict.
-
-    >>> finding({"data": {"verdict": "refuted"}, "note": "refuted: 1 (of 2; 3) here; more. And more"})
-    '1 (of 2; 3) here'
-    """
-    note: str = case["note"].removeprefix(case["data"]["verdict"]).removeprefix(":").strip()
-    return re.split(r"(?:;|\.) (?![^(]*\))", note)[0]
 
 
 def errata(evidence: Evidence) -> str:
@@ -152,9 +137,9 @@ def errata(evidence: Evidence) -> str:
     rows = [
         (
             erratum["equation"],
-            f"{erratum['printed']}",
-            f"{erratum['corrected']}",
-            erratum["measure"],
+            symbols(erratum["printed"]),
+            symbols(erratum["corrected"]),
+            symbols(erratum["measure"]),
             f"{erratum['printed_error']:.2g}",
             f"{erratum['corrected_error']:.2g}",
             origin(cases[erratum["case"]]),
@@ -175,13 +160,13 @@ def coverage(documents: Documents) -> str:
     }
     rows: list[Row] = []
     for name in ("coverage", "coverage_fresh"):
-        for judged in documents[name]["accuracies"]:
+        for entry in documents[name]["accuracies"]:
             for quantity, label in labels.items():
-                found = judged["numbers"][quantity]
+                found = entry["numbers"][quantity]
                 rows.append(
                     (
                         label,
-                        f"{judged['accuracy']:g}",
+                        f"{entry['accuracy']:g}",
                         found["scenes"],
                         percent(found["met"]),
                         percent(found["covered"]),
@@ -268,7 +253,7 @@ def accuracy_costs(tradeoff: Mapping[str, Any]) -> str:
 
 
 def checks(documents: Documents, evidence: Evidence) -> str:
-    """Counts of verdicts, by result file."""
+    """Counts of statuses, by result file."""
     rows: list[Row] = []
     for name, run in documents.items():
         if run.get("format") == FORMAT:
@@ -389,27 +374,6 @@ def _table(head: Sequence[str], rows: Sequence[Row]) -> Iterator[str]:
     yield "|" + "---|" * len(head)
     for row in rows:
         yield f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in row)} |"
-
-
-def interval(value: float, half_width: float) -> str:
-    """The value with the digits that its interval leaves; four where there is none.
-
-    >>> interval(0.10729513, 0.00042692), interval(5.1238826, 0.29116), interval(0.21550513, 0.0)
-    ('0.1073 ± 0.0004', '5.1 ± 0.3', '0.2155')
-    """
-    if half_width == 0:
-        return f"{value:.4g}"
-    decimals = max(0, -math.floor(math.log10(half_width)))
-    return f"{value:.{decimals}f} ± {half_width:.{decimals}f}"
-
-
-def percent(share: float) -> str:
-    """A share in per cent, to whole ones.
-
-    >>> percent(0.9776)
-    '98 %'
-    """
-    return f"{100 * share:.0f} %"
 
 
 def number(value: float | None, digits: str = ".2g") -> str:

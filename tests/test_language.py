@@ -35,8 +35,6 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("verification/benchmarks/summary.py", "seconds again"): KEY,
     ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
     ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
-    ("verification/cases/paper/contact.py", "summit"): SUMMITS,
-    ("verification/cases/paper/contact.py", "summits"): SUMMITS,
     ("verification/cases/solvers/extremes.py", "honest failure"): VERDICT,
     ("verification/cli/tradeoff.py", "left out"): KEY,
     ("verification/contestants/check.py", "left out"): FAULT,

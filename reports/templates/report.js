@@ -1,4 +1,4 @@
-// Tables sort by a click on a column's head; the filter hides the cases that do not hold its words.
+// Tables sort by a click on a column's head; the filter hides the checks that lack its words; a link opens its check.
 for (const table of document.querySelectorAll("table.sortable")) {
   const heads = [...table.tHead.rows[0].cells];
   heads.forEach((head, column) => {
@@ -21,14 +21,20 @@ for (const table of document.querySelectorAll("table.sortable")) {
     });
   });
 }
+const opened = () => {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  if (target && target.tagName === "DETAILS") target.open = true;
+};
+addEventListener("hashchange", opened);
+opened();
 const filter = document.getElementById("filter");
-filter.addEventListener("input", () => {
+if (filter) filter.addEventListener("input", () => {
   const words = filter.value.toLowerCase().split(/\s+/);
   let shown = 0;
-  for (const row of document.querySelectorAll("#case-table tbody tr")) {
-    const text = row.textContent.toLowerCase();
-    row.hidden = !words.every((word) => text.includes(word));
-    shown += !row.hidden;
+  for (const check of document.querySelectorAll("#checks > details")) {
+    const text = check.firstElementChild.textContent.toLowerCase();
+    check.hidden = !words.every((word) => text.includes(word));
+    shown += !check.hidden;
   }
   document.getElementById("shown").textContent = `${shown} shown`;
 });

@@ -72,7 +72,6 @@ def test_the_export_takes_the_readers_colours() -> None:
     assert text is not None
     assert INK not in text
     assert "currentColor" in text
-    assert "prefers-color-scheme:dark" in text
     assert not re.search(r"\d{4}-\d\d-\d\dT", text)
 
 

@@ -6,13 +6,17 @@ from fnmatch import fnmatchcase
 
 import pytest
 
+from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper
 from reports.comparison import compared
 from reports.evidence import gathered
+from reports.findings import fields
 from reports.generator import render
+from reports.parts import PARTS
+from reports.result_files import read_results
 from reports.results import ResultFileError
 from reports.studies import exhibit
 from reports.summary import groups
-from reports.traceability import paper, traced
+from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
 from verification.framework.registry import load
 
@@ -59,26 +63,43 @@ def test_a_broken_committed_run_is_refused() -> None:
 
 def test_every_pattern_of_the_paper_finds_a_case() -> None:
     known = [c.id for c in load()]
-    for item in paper():
-        for pattern in item.evidence:
-            assert any(fnmatchcase(id, pattern) for id in known), (item.label, pattern)
+    for claim in paper():
+        for pattern in claim.evidence:
+            assert any(fnmatchcase(id, pattern) for id in known), (claim.label, pattern)
+        for id, _ in fields(claim.finding):
+            assert id in known or f"{id}-full" in known, (claim.label, id)
 
 
-def test_no_item_passes_on_missing_or_failed_evidence() -> None:
-    rows = {row.item.label: row for row in traced([case("balance/normal-force", "fail")], [])}
-    assert rows["Eqs (2), (3)"].verdict == "not established"
-    assert rows["Table 3"].status == "unavailable"
-    assert rows["Table 3"].verdict == "not established"
+def test_no_claim_holds_on_missing_or_failed_evidence() -> None:
+    rows = {row.claim.label: row for row in judged([case("balance/normal-force", "fail")], [])}
+    assert rows["Eq. (5)"].verdict == NOT_ESTABLISHED
+    assert rows["Table 3: mu"].verdict == NOT_ESTABLISHED
+    assert rows["Figs 1 and 2"].verdict == "schematic"
 
 
 def test_the_least_favourable_verdict_counts_and_long_cases_replace_quick_ones() -> None:
-    quick = case("reproduction/eq11", data={"verdict": "confirmed"})
-    long = case("reproduction/eq11-full", data={"verdict": "refuted"})
-    row = next(
-        r for r in traced([quick, long], [{**ERRATUM, "equation": "(11)"}]) if r.item.label == "Eq. (11)"
-    )
-    assert [c["id"] for c in row.cases] == ["reproduction/eq11-full"]
-    assert row.verdict == "refuted; print corrected"
+    quick = case("reproduction/eq10", data={"verdict": "confirmed"})
+    long = case("reproduction/eq10-full", data={"verdict": "refuted"})
+    row = next(r for r in judged([quick, long], []) if r.claim.label == "Eq. (10)")
+    assert [c["id"] for c in row.cases] == ["reproduction/eq10-full"]
+    assert row.verdict == "not confirmed"
+
+
+def test_a_verdict_of_the_matrix_is_not_milder_than_its_cases() -> None:
+    documents = read_results(ROOT / "reports/results")
+    evidence = gathered(documents["quick"], {k: v for k, v in documents.items() if k != "quick"})
+    for row in judged(evidence.cases, evidence.errata):
+        assert row.verdict == row.claim.verdict, row.claim.label
+        assert "n/a" not in row.finding, row.claim.label
+        assert row.finding, row.claim.label
+
+
+def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
+    claims = paper()
+    assert {claim.verdict for claim in claims} <= set(VERDICTS[1:])
+    assert {claim.part for claim in claims} <= {part.name for part in PARTS} | {""}
+    labels = [claim.label for claim in claims]
+    assert len(labels) == len(set(labels))
 
 
 def test_changes_beyond_uncertainty_only() -> None:
@@ -97,20 +118,10 @@ def test_changes_beyond_uncertainty_only() -> None:
 
 def test_a_long_case_that_did_not_pass_stands_beside_the_quick_one() -> None:
     for status in ("fail", "error", "unavailable"):
-        found = traced([case("reproduction/eq11"), case("reproduction/eq11-full", status)], [])
-        row = next(row for row in found if row.item.label == "Eq. (11)")
-        assert [c["id"] for c in row.cases] == ["reproduction/eq11", "reproduction/eq11-full"]
-        assert row.status == status
-        assert row.verdict == "not established"
-
-
-def test_without_a_verdict_an_erratum_corrects_and_no_more() -> None:
-    (row,) = (
-        r
-        for r in traced([case("reproduction/eq11")], [{**ERRATUM, "equation": "(11)"}])
-        if r.item.label == "Eq. (11)"
-    )
-    assert row.verdict == "corrected"
+        found = judged([case("reproduction/eq10"), case("reproduction/eq10-full", status)], [])
+        row = next(row for row in found if row.claim.label == "Eq. (10)")
+        assert [c["id"] for c in row.cases] == ["reproduction/eq10", "reproduction/eq10-full"]
+        assert row.verdict == NOT_ESTABLISHED
 
 
 def test_an_unknown_study_is_shown_by_its_numbers() -> None:

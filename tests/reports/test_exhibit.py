@@ -19,4 +19,10 @@ from reports.exhibit import as_csv
 )
 def test_everything_that_a_figure_needs_is_in_the_file(data: dict[str, object], text: str) -> None:
     figure = Figure("*", ("a", "b"), lambda *_: None, "")
-    assert as_csv(figure, data | {"more": [9]}) == text
+    assert as_csv(figure, data) == text
+
+
+def test_the_file_holds_what_else_the_case_recorded_in_six_digits() -> None:
+    figure = Figure("*", ("a",), lambda *_: None, "")
+    data = {"b": [1 / 3], "a": [2], "verdict": "confirmed", "c": 0.5}
+    assert as_csv(figure, data) == "a,b\n2,0.333333\nc\n0.5\n"

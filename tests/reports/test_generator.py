@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import re
 from html.parser import HTMLParser
 
 import pytest
 
-from reports.drawing import Figure, lines
-from reports.evidence import gathered
-from reports.generator import LEADING, facts, judgement, leading, pictures, render
+from reports.generator import facts, render
 from reports.results import ResultFileError, check
+from reports.text import judgement
 from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
 
 VOID = {"meta", "input", "img", "br", "link", "hr"}
@@ -37,7 +35,7 @@ class Page(HTMLParser):
         self.tags.append(tag)
         self.ids += [v for k, v in attrs if k == "id" and v]
         self.links += [v for k, v in attrs if k in ("href", "src") and v]
-        if tag == "img":
+        if tag == "svg" and found.get("class") == "plot":
             self.images.append(found)
         if tag not in VOID:
             self._open.append(tag)
@@ -71,17 +69,6 @@ def test_every_case_is_on_the_page_with_all_that_a_reader_needs() -> None:
     assert {link.removeprefix("#") for link in page.links if link.startswith("#")} <= set(page.ids)
 
 
-def test_the_summary_counts_and_no_claim_passes_on_a_failure() -> None:
-    page = render(
-        results(case("a/1"), case("a/2", "fail"), case("b/1", claim="other"), case("c/1", "unavailable"))
-    )
-    assert re.search(r"<b>2</b> pass", page)
-    assert re.search(r"<b>1</b> fail", page)
-    assert re.search(r"<b>1</b> unavailable", page)
-    rows = re.findall(r'<span class="mark (\w+)">\w+</span></td><td>(Eq\. \(7\) holds|other)</td>', page)
-    assert rows == [("fail", "Eq. (7) holds"), ("pass", "other")]
-
-
 def summary_of(page: str) -> Page:
     """The summary alone."""
     found = re.search(r'<section id="summary">.*?</section>', page, flags=re.S)
@@ -102,24 +89,23 @@ def test_the_summary_lists_what_did_not_pass() -> None:
         *("Long and failed", "0.3 > 0.1"),
     ):
         assert text in page.text
-    assert page.links == [f"#case-{id}" for id in ("a.2", "a.3", "b.1", "c.1")]
+    assert [link for link in page.links if link.startswith("#case")] == [
+        f"#case-{id}" for id in ("a.2", "a.3", "b.1", "c.1")
+    ]
 
 
 def test_the_summary_lists_nothing_when_all_passed() -> None:
     page = summary_of(render(results(case("a/1"), case("a/2"))))
-    assert "table" not in page.tags
-    assert page.links == []
+    assert not [link for link in page.links if link.startswith("#case")]
+    assert "did not pass" not in page.text
 
 
 def test_no_request_leaves_the_page() -> None:
     page = Page(render(results(case("kernels/textbook-x-fails", data=TEXTBOOK))))
-    inside = ("#", "data:image/svg+xml;base64,", "data:text/csv;base64,")
-    assert all(link.startswith(inside) for link in page.links)
+    assert all(link.startswith(("#", "data:text/csv;charset=utf-8,")) for link in page.links)
     assert "link" not in page.tags
-    svg = base64.b64decode(str(page.images[0]["src"]).partition(",")[2]).decode()
-    assert not re.search(r'(href|src)="(?!#|data:)', svg)
-    assert "currentColor" in svg
-    assert page.images[0]["alt"]
+    assert page.images[0]["aria-label"]
+    assert page.images[0]["role"] == "img"
 
 
 @pytest.mark.parametrize("data", [{}, {**TEXTBOOK, "textbook": []}, {**TEXTBOOK, "production": None}])
@@ -135,25 +121,7 @@ def pictures_of(data: dict[str, object]) -> int:
 
 def test_a_new_case_gets_a_figure_by_its_series() -> None:
     assert pictures_of({"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}) == 1
-    assert pictures_of({"load": [1, 2, 3], "area": [1.0, None, 3.0], "law": [1.0, 2.0, 3.0]}) == 1
-    assert pictures_of({"load": [3, 2, 1], "area": [1e-9, 1e-6, 1e-3]}) == 1
-
-
-@pytest.mark.parametrize(
-    "data",
-    [
-        {"load": [1, 2, 3]},
-        {"load": [1, 3, 2], "area": [1, 2, 3]},
-        {"load": [1, 2, 3], "area": [1, 2]},
-        {"load": [1, 2, 3], "area": ["a", "b", "c"]},
-        {"load": [1, 2, 3], **{f"area {k}": [1, 2, 3] for k in range(7)}},
-        {"load": [1, 2, 3], "area": [1, 2, 3], "elements": [400, 500, 600]},
-        {"load": [1, 2, 3], "area": [1, 2, 3], "maps": [[1, 2], [3, 4], [5, 6]]},
-        {"load": [1, 2, 3], "area": [None, None, None]},
-    ],
-)
-def test_series_that_are_no_figure_make_none(data: dict[str, object]) -> None:
-    assert pictures_of(data) == 0
+    assert pictures_of({"load": [1, 2, 3], "area": [1.0, None, 3.0]}) == 0  # no caption would say what it is
 
 
 def test_unjudged_numbers_are_not_zero() -> None:
@@ -249,38 +217,11 @@ def test_what_is_not_a_result_file_is_refused(broken: object) -> None:
         check(broken)
 
 
-def test_a_quick_case_leaves_its_figure_to_its_long_twin() -> None:
+def test_a_figure_stands_on_the_page_once() -> None:
     data = {"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}
-    quick, long = case("new/1", data=data), case("new/1-full", data=data)
-    assert len(Page(render(results(quick, long))).images) == 1
-    assert len(Page(render(results(quick, case("new/1-full", "fail", data=data)))).images) == 2
-
-
-@pytest.mark.parametrize("other", ["new/0-full", "new/2-full", "new/1-fuller", "zzz/1-full"])
-def test_nobody_else_is_its_twin(other: str) -> None:
-    data = {"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}
-    quick = case("new/1", data=data)
-    assert len(pictures(quick, gathered(results(quick, case(other)), {}))) == 1
-
-
-def test_the_first_page_has_the_first_figure_of_the_best_case_that_has_one(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    first, second = (
-        Figure("*", ("M", name), lines("M", {name: name}, xlabel="M", ylabel=name), name)
-        for name in ("error", "time")
-    )
-    monkeypatch.setattr("reports.figures.figures_of", lambda *_: [first, second])
-    series = {"M": [32, 64, 128], "error": [4.0, 2.0, 1.0], "time": [1.0, 2.0, 3.0]}
-    (best, quick), (empty, stand_in, other), (last,) = LEADING
-    present = [case(id, data=series) for id in (other, stand_in, quick, last)]
-    present.append(case(empty, data={"M": []}))
-    shown = leading(gathered(results(*present), {}))
-    assert [(c["id"], picture["caption"]) for c, picture in shown] == [
-        (quick, "error"), (stand_in, "error"), (last, "error"),
-    ]  # fmt: skip
-    shown = leading(gathered(results(*present, case(best, data=series)), {}))
-    assert [c["id"] for c, _ in shown] == [best, stand_in, last]
+    other = {"M": [32, 64, 128], "error": [4.0, 2.0, 2.0]}
+    assert len(Page(render(results(case("new/1", data=data), case("new/2", data=dict(data))))).images) == 1
+    assert len(Page(render(results(case("new/1", data=data), case("new/2", data=other)))).images) == 2
 
 
 def test_progress_names_every_case_as_it_is_drawn() -> None:

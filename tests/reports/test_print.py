@@ -9,7 +9,10 @@ from reports.result_files import read_result
 from tests.documents import ROOT
 from tests.reports.sample import case, results
 
-TABLE = re.compile(r'<table class="sortable( wide)?">\s*<thead><tr>(.*?)</tr>', flags=re.S)
+TABLE = re.compile(
+    r'<table class="(?:sortable)?( wide)?">\s*<caption[^>]*>[^<]*</caption>\s*<thead><tr>(.*?)</tr>',
+    flags=re.S,
+)
 
 
 def test_tables_of_more_than_eight_columns_are_set_small() -> None:

@@ -32,7 +32,7 @@ def test_every_row_names_a_file_that_is_there() -> None:
 
 
 def test_a_refuted_claim_and_a_failed_check_are_named(documents: dict[str, Any]) -> None:
-    assert "| refuted | Eq. (11) |" in page(documents)
+    assert "| not confirmed | Eq. (11) |" in page(documents)
     run = documents["quick"]
     unjudged = dict.fromkeys(("value", "reference", "reference_uncertainty", "error"))
     broken = {**run["cases"][0], **unjudged, "status": "error"}

@@ -27,6 +27,7 @@ FLAGS = (
     "--no-first-run",
     "--disable-background-networking",
     "--no-pdf-header-footer",
+    "--generate-pdf-document-outline",
 )
 
 

@@ -13,7 +13,7 @@ class Verdict(StrEnum):
 
     CONFIRMED = "confirmed"
     CONDITIONAL = "confirmed with conditions"
-    REFUTED = "refuted"
+    REFUTED = "not confirmed"
 
 
 def judged(

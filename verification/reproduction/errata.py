@@ -120,8 +120,8 @@ ERRATA = (
     Erratum(
         "hertz",
         "Table 1, Fig. 6",
-        "R = 0.14 m with a0 = 0.452 mm, f0 = 163.9 MPa",
-        "R = 0.143 m, rounded in Table 1; R = 0.14 m gives 0.448 mm and 166.3 MPa",
+        "'0.14' (R in m, Table 1) beside 'a_0=0.452 mm' and 'f_0=163.9 MPa' (Fig. 6)",
+        "conjecture: R = 0.143 m, rounded in Table 1",
         "largest relative difference of the quoted radius and pressure from Hertz",
         lambda: _hertz_misfit(RADIUS),
         lambda: _hertz_misfit(ROUNDED_RADIUS),
@@ -131,8 +131,8 @@ ERRATA = (
     Erratum(
         "smooth-column",
         "Table 3, sigma = 0",
-        "A = 0.643 mm^2, mu = 0.218 with R = 0.14 m",
-        "R = 0.143 m, as for Fig. 6",
+        "'6.43' (A / 0.1 mm^2) and '2.18' (mu / 0.1) beside '0.14' (R in m, Table 1)",
+        "conjecture: R = 0.143 m, as for Fig. 6",
         "largest relative difference of A from pi a0^2 and of mu from Eq. (10)",
         lambda: _smooth_column_misfit(RADIUS),
         lambda: _smooth_column_misfit(ROUNDED_RADIUS),
@@ -143,9 +143,9 @@ ERRATA = (
     Erratum(
         "slopes",
         "section 6.1",
-        "sigma_theta_x = sigma_theta_y = 0.125 and 2.5 degrees",
-        "the mean magnitude of the gradient, sqrt(pi / 2) times the rms of a component, which is 0.0995 "
-        "and 1.99 degrees",
+        "'standard deviations of ... sigma_theta_x=sigma_theta_y=0.125 deg for its slope distributions', and "
+        "'between ... 0.125 and 2.50 deg'",
+        "conjecture: mean magnitudes of the gradient, sqrt(pi / 2) times the rms of a component",
         "largest relative difference of the quoted slopes from Eq. (9)'s",
         lambda: _slope_misfit(1.0),
         lambda: _slope_misfit(math.sqrt(math.pi / 2)),
@@ -155,8 +155,8 @@ ERRATA = (
     Erratum(
         "bracket",
         "(9)",
-        "exp(-2.3 [k/l]^2 + m/l]^2), read literally",
-        "exp(-2.3 ([k/l]^2 + [m/l]^2))",
+        "'sigma^2 e^{-2.3[k/l_x]^2 + m/l_y]^2}'",
+        "sigma^2 exp(-2.3 ([k/l_x]^2 + [m/l_y]^2)); the bracket may be lost in the conversion of the text",
         "|R at the correlation radius along y - 10 %|",
         lambda: abs(math.exp(1.0) - 0.1),
         lambda: abs(math.exp(-2.3) - 0.1),
@@ -166,8 +166,9 @@ ERRATA = (
     Erratum(
         "plasticity-length",
         "(12)",
-        "psi with epsilon = 3.15 um, 1 at sigma_e = 0.5 um",
-        "psi with the correlation length, 104 um",
+        "'psi ~ 2.2 E'/H (sigma_e/epsilon)' with 'epsilon=3.15 um'; 'psi reaches the threshold value of "
+        "unity at about sigma_e = 0.5 um'",
+        "conjecture: psi with the correlation length, 104 um, for epsilon",
         "|psi(0.5 um) - 1|",
         lambda: _plasticity_misfit(RESOLUTION),
         lambda: _plasticity_misfit(CORRELATION_LENGTH),
@@ -177,8 +178,8 @@ ERRATA = (
     Erratum(
         "lowest-friction",
         "(11)",
-        "mu does not fall below tau / H + beta = 0.1",
-        "no such limit in an elastic model: Eq. (10) at the pressure solved for, 2 H at 1.68 um",
+        "'the lowest value mu reaches is estimated as 0.1'",
+        "no such limit in an elastic model: Eq. (10) at the pressure solved for",
         "relative difference of Table 3's mu = 0.089 from the limit, or from Eq. (10)",
         lambda: _limit_misfit(elastic=False),
         lambda: _limit_misfit(elastic=True),
@@ -188,8 +189,8 @@ ERRATA = (
     Erratum(
         "table3-coarse",
         "Table 3, 128 x 128",
-        "mu = 0.101 and 0.094 beside A = 0.077 and 0.050 mm^2",
-        "mu = 0.097 and 0.091 for these A: coarse meshes obey Eq. (10) as well, in our solutions",
+        "'1.01' and '0.94' (mu / 0.1) beside '0.77' and '0.50' (A / 0.1 mm^2), mesh 128",
+        "conjecture: mu by Eq. (10) from the A beside it, which our solutions on coarse meshes obey",
         "largest relative difference of mu from Eq. (10) with the same mesh's A, 1.008 and 1.68 um",
         lambda: _coarse_misfit(printed=True),
         lambda: _coarse_misfit(printed=False),
@@ -199,8 +200,8 @@ ERRATA = (
     Erratum(
         "table2-case4",
         "Table 2, case 4",
-        "23715 initial contact points, fewer than the final 68951",
-        "a digit is missing, as in 237 150: four times case 3, as case 3 is of case 2",
+        "'23715' initial and '68951' final contact points",
+        "conjecture: a digit is lost, as in 237150, four times case 3",
         "relative difference of the initial points from four times those of the grid half as fine",
         lambda: _initial_points_misfit(TABLE2[3][1]),
         lambda: _initial_points_misfit(10 * TABLE2[3][1]),
@@ -210,12 +211,13 @@ ERRATA = (
     Erratum(
         "fig6-range",
         "Fig. 6",
-        "sigma_e within 0.119 to 1.682 um (section 6.1: 0.084 to 1.680 um on the flat, 0.084 um on the ball)",
-        "true of Table 3; Fig. 6 has 0.068 and 2.69 um",
+        "'vary between sigma(fs)=0.084 and 1.680 um' (section 6.1) beside 'sigma_e=0.068; 0.511 and 2.69 um' "
+        "(Fig. 6)",
+        "section 6.1's range, sigma_e of 0.119 to 1.682 um with 0.084 um on the ball, is that of Table 3",
         "how far equivalent roughnesses lie outside the range, relative to its ends: Fig. 6's, Table 3's",
         lambda: _outside(FIG6_RMS),
         lambda: _outside(column.equivalent_rms for column in TABLE3 if column.flat_rms > 0),
-        0.0,
-        "exact: the same sums of squares",
+        0.0003,
+        "half a unit of the last digit of 1.682 um",
     ),
 )

@@ -61,6 +61,11 @@ class Profile:
         square = np.sum(self.r * pressure**2) / np.sum(self.r)
         return float(np.sqrt(square)) / hertz().peak_pressure
 
+    def load_share(self, curve: Array) -> float:
+        """Load that a curve carries on the annuli, all of which lie in the domain, over the load."""
+        areas = np.pi * BIN**2 * (2 * np.arange(len(curve)) + 1)
+        return float(np.sum(areas * curve)) / SMOOTH.load
+
     def central(self, curve: Array) -> float:
         """Mean of a curve over the inner half of the Hertz circle, over that of Hertz' own pressure."""
         inner = self.r < hertz().contact_radius / 2

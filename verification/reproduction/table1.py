@@ -23,11 +23,13 @@ def rough(
     friction: rf.Friction | None = None,
     load: float = SMOOTH.load,
     sliding_direction: float = 0.0,
+    radius: float = RADIUS,
 ) -> rf.Scene:
     """Table 1 with roughness (m) on the flat and on the sphere; each realisation scaled to its rms."""
+    ball = rf.Body(SMOOTH.upper.material, rf.Sphere(radius))
 
     def body(name: str, rms: float, seed: int) -> rf.Body:
-        smooth: rf.Body = getattr(SMOOTH, name)
+        smooth = ball if name == "upper" else SMOOTH.lower
         if rms == 0:
             return smooth
         roughness = rf.GaussianRoughness(rms, CORRELATION_LENGTH, seed, normalise=True)

@@ -119,11 +119,11 @@ def _rms(along: Array, across: Array) -> float:
     title="Coupling can take contact out of kinematic interference",
     claim="Section 4's assumption fails where shear exceeds the pressure some four times",
     source="paper section 4, Eqs (6) and (7)",
-    metric="at_most",
-    tolerance=0.0,
-    tolerance_reason="least (approach - h) / approach at beta = 4, of two grids, plus one percent, floored "
-    "at 0: 0 says that there is contact without interference by more than rounding and grid. Without tau "
-    "states are unique at fixed slopes",
+    metric="at_least",
+    tolerance=0.04,
+    tolerance_reason="largest (h - approach) / approach on the contact at beta = 4, on the grid where it is "
+    "smaller: above 0 there is contact without interference. The two grids differ by 0.013, of which 0.04 "
+    "is three times. Without tau states are unique at fixed slopes",
     tags=TAGS,
 )
 def broken() -> Measured:
@@ -140,7 +140,7 @@ def broken() -> Measured:
     )
     data = {"beta": ratios, **{f"margin at {M} x {M}": found for M, found in margins.items()}}
     worst = max(found[3] for found in margins.values())
-    return judged(Verdict.CONDITIONAL, sentence, max(0.0, worst + 0.01), data=data)
+    return judged(Verdict.CONDITIONAL, sentence, -worst, data=data)
 
 
 @case(

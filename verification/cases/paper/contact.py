@@ -107,12 +107,13 @@ def _fig6_data(rms: float, tier: str) -> dict[str, object]:
     }
 
 
-FIG6_VERDICTS = {
-    0.068e-6: Verdict.CONDITIONAL,
-    0.511e-6: Verdict.CONDITIONAL,
-    2.69e-6: Verdict.CONFIRMED,
+FIG6_VERDICTS = {"a": Verdict.REFUTED, "b": Verdict.CONDITIONAL, "c": Verdict.CONDITIONAL}
+FIG6_METRIC = {"a": "at_least", "b": "at_most", "c": "at_most"}
+FIG6_TOLERANCE = {
+    "a": {"quick": 0.5, "full": 0.5},
+    "b": {"quick": 0.95, "full": 0.5},
+    "c": {"quick": 0.95, "full": 0.5},
 }
-FIG6_TOLERANCE = {"a": 0.95, "b": 0.45, "c": 0.30}  # misfit of 75 realisations
 
 
 def _declare_fig6(rms: float, panel: str) -> None:
@@ -121,13 +122,13 @@ def _declare_fig6(rms: float, panel: str) -> None:
         title=f"Fig. 6({panel}): effective pressure at sigma_e = {rms * 1e6:g} um",
         claim=f"Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {rms * 1e6:g} um",
         source="paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5",
-        metric="at_most",
-        tolerance={"quick": 0.95, "full": FIG6_TOLERANCE[panel]},
-        tolerance_reason="rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure: 1 "
-        "for a solver that sees no roughness. The summit model makes every summit yield alone; here the "
-        "Hertz circle holds 37 summits only, which touch as one: it is too soft by up to 20 % of p0 at the "
-        "least roughness, most of what roughness does there. Half of their pressure would not pass on 75 "
-        "realisations (in the data). The rest is sampling, 0.06 to 0.13 for these and up to 0.9 for 4",
+        metric=FIG6_METRIC[panel],
+        tolerance=FIG6_TOLERANCE[panel],
+        tolerance_reason="rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure "
+        "from theirs, the effect of roughness: 1 for a solver without roughness, 0 for theirs. A curve more "
+        "than half the effect away is nearer to Hertz: no agreement, (a); less, (b) and (c). Sampling leaves "
+        "0.06 to 0.13 with 75 realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) "
+        "by 0.95 only. Half of Greenwood and Tripp's pressure does not pass with 75 (in the data)",
         tags=("fig6",),
     )
     def agreement(tier: str) -> Measured:
@@ -141,7 +142,16 @@ def _declare_fig6(rms: float, panel: str) -> None:
             f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
             "load outside a0"
         )
-        return judged(FIG6_VERDICTS[rms], sentence, misfit / smooth, data=_fig6_data(rms, tier))
+        edge = len(found.r) * fig6.BIN / hertz().contact_radius
+        half_side = SMOOTH.lengths[0] / 2 / hertz().contact_radius
+        carried, predicted = found.load_share(found.pressure), found.load_share(found.greenwood_tripp)
+        sentence += (
+            f"; to {edge:.2f} a0 (the domain ends at {half_side:.2f}) ours carries {carried:.1%} of the "
+            f"load, Greenwood-Tripp {predicted:.1%}"
+        )
+        data = _fig6_data(rms, tier)
+        data |= {"largest r/a0": edge, "load share": carried, "load share, Greenwood-Tripp": predicted}
+        return judged(FIG6_VERDICTS[panel], sentence, misfit / smooth, data=data)
 
 
 @case(
@@ -198,6 +208,9 @@ def section(tier: str) -> Measured:
         "ball deformed (um)": found.deformed[1] * 1e6,
         "flat deformed, frictionless (um)": found.frictionless * 1e6,
         "mean plane (um)": found.mean_plane * 1e6,
+        "mean displacement in contact / rms height": ratio,
+        "change of A by friction": found.area_change,
+        "largest change (nm)": found.difference * 1e9,
     }
     return judged(Verdict.CONFIRMED, sentence, change, data=data)
 

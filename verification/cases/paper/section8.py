@@ -10,7 +10,7 @@ from verification.framework.case import Measured
 from verification.framework.verdict import Verdict, judged
 from verification.reproduction import fig8, table3
 from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
-from verification.reproduction.printed import LOADS, RESOLUTION, TABLE3
+from verification.reproduction.printed import CRITICAL_RMS, LOADS, RESOLUTION, TABLE3
 from verification.reproduction.tiers import in_both_tiers
 from verification.sweep.run import Row
 from verification.sweep.study_file import read_study
@@ -40,13 +40,14 @@ def _series(curves: tuple[fig8.Curve, ...]) -> dict[str, object]:
 
 @in_both_tiers(
     "reproduction/fig8-exponential",
-    title="Fig. 8(a): friction falls exponentially with roughness",
-    claim="Fig. 8(a): mu falls with sigma_e, exponentially, at 14, 42 and 70 N",
+    title="Fig. 8(a): does friction fall exponentially with roughness?",
+    claim="Fig. 8(a): mu falls exponentially with sigma_e, at 14, 42 and 70 N",
     source="paper Fig. 8(a), section 8",
-    metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="rms misfit over the fall of mu; a plot shows no less. A hyperbola with as many "
-    "parameters misses by 3.4 % (75 realisations) and 4.2 % (three)",
+    metric="at_least",
+    tolerance=1.5,
+    tolerance_reason="least ratio, over the loads, of the exponential's rms misfit to that of 1 / (1 + "
+    "(sigma_e / s)^1.5) with as many parameters: 1 or less for an exponential law. Measured "
+    "2.2 with three realisations, 2.4 with 25",
     tags=("fig8",),
 )
 def exponential(tier: str) -> Measured:
@@ -56,19 +57,21 @@ def exponential(tier: str) -> Measured:
         raise ArithmeticError("mu does not fall everywhere")
     worst = max(fit.exponential for fit in fits)
     beyond = [c.friction[-1] - f.limit for c, f in zip(curves, fits, strict=True)]
+    farthest = max(f.standard_errors for f in fits)
     sentence = (
-        f"rms misfit {worst:.1%} of the fall (hyperbola {max(f.hyperbolic for f in fits):.1%}), decay over "
-        f"{min(f.scale for f in fits) * 1e6:.2f} to {max(f.scale for f in fits) * 1e6:.2f} um by load: as an "
-        "exponential to what a plot shows. The ensembles know better: means lie up to "
-        f"{max(f.standard_errors for f in fits):.0f} standard errors from it, mu ends "
-        f"{', '.join(f'{b:+.4f}' for b in beyond)} from its limits ({LOADS_IN_WORDS}), and "
-        "1 / (1 + (sigma / s)^1.5), with as many parameters, misses by "
+        f"mu falls, and an exponential fits it to plotting accuracy (rms misfit {worst:.1%} of the fall), "
+        f"but not within sampling: means lie up to {farthest:.0f} standard errors from the fit, mu ends "
+        f"{', '.join(f'{b:+.4f}' for b in beyond)} from the fitted limits ({LOADS_IN_WORDS}), and "
+        "1 / (1 + (sigma_e / s)^1.5), with as many parameters, misses by "
         f"{max(f.algebraic for f in fits):.1%}"
     )
     data = _series(curves) | {"decay (um)": [f.scale * 1e6 for f in fits]}
     data |= {"exponential's limit": [f.limit for f in fits], "misfit": [f.exponential for f in fits]}
     data |= {"misfit of 1 / (1 + (sigma / s)^1.5)": [f.algebraic for f in fits]}
-    return judged(Verdict.CONDITIONAL, sentence, worst, data=data)
+    data |= {"misfit of a hyperbola": [f.hyperbolic for f in fits], "least mu less limit": beyond}
+    data |= {"standard errors from the exponential": [f.standard_errors for f in fits]}
+    ratio = min(fit.exponential / fit.algebraic for fit in fits)
+    return judged(Verdict.REFUTED, sentence, ratio, data=data)
 
 
 @in_both_tiers(
@@ -85,14 +88,19 @@ def exponential(tier: str) -> Measured:
 def rates(tier: str) -> Measured:
     curves = _curves(tier)
     worst = max(float(np.abs(c.rate(c.friction) - c.rate(c.area)).max()) for c in curves)
-    sentence = f"largest difference of the two rates, each over its first: {worst:.4f}"
-    return judged(Verdict.CONFIRMED, sentence, worst, data=_series(curves))
+    highest = {f"{c.load:g} N": float(c.rate(c.friction).max()) for c in curves}
+    sentence = (
+        f"largest difference of the two rates, each over its first: {worst:.4f}, as Eq. (10) implies. The "
+        f"rates rise before they fall, to {', '.join(f'{r:.2f} at {at}' for at, r in highest.items())}: no "
+        "exponential's rate rises"
+    )
+    return judged(Verdict.CONFIRMED, sentence, worst, data=_series(curves) | {"highest rate": highest})
 
 
 @in_both_tiers(
     "reproduction/fig8-threshold",
     title="Fig. 8: is the critical roughness that of the plasticity index?",
-    claim="Section 8: friction levels off beyond sigma_e = 0.5 um, where psi reaches 1",
+    claim="Section 8: friction levels off at the roughness where psi reaches 1, about 0.5 um",
     source="paper Fig. 8, Eq. (12), section 8",
     metric="at_least",
     tolerance=1.3,
@@ -103,15 +111,17 @@ def rates(tier: str) -> Measured:
 def threshold(tier: str) -> Measured:
     curves = _curves(tier)
     critical = [_levelled(c) for c in curves]
+    printed = float(fig8.plasticity(np.array([CRITICAL_RMS]), RESOLUTION)[0])
     later = float(np.interp(1.0e-6, curves[-1].middle, curves[-1].rate(curves[-1].friction)))
     sentence = (
         "the rate of mu falls to a tenth of its first at sigma_e = "
         + ", ".join(f"{s * 1e6:.2f} um at {c.load:g} N" for s, c in zip(critical, curves, strict=True))
-        + f", and goes on falling ({later:.1%} at 1 um, 70 N): levelling near 0.5 um holds for the larger "
-        "loads, but psi, which knows no load, does not explain it"
+        + f", and goes on falling ({later:.1%} at 1 um, 70 N). psi does not depend on the load; with the "
+        f"printed epsilon = 3.15 um it is {printed:.3g} at 0.5 um"
     )
     data = _series(curves) | {"critical sigma_e (um)": [s * 1e6 for s in critical]}
-    return judged(Verdict.CONDITIONAL, sentence, critical[-1] / critical[0], data=data)
+    data |= {"psi at 0.5 um as printed": printed}
+    return judged(Verdict.REFUTED, sentence, critical[-1] / critical[0], data=data)
 
 
 def _levelled(curve: fig8.Curve) -> float:

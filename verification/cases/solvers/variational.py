@@ -158,8 +158,8 @@ def transform_work() -> Measured:
     source="paper Table 2",
     metric="at_least",
     tolerance=13.3,
-    tolerance_reason="the lower of the printed ratios, 96 h / 7.21 h; measured 115 at 64 x 64 and 961 "
-    "at 100 x 100, so that a busy machine does not decide",
+    tolerance_reason="the lower of the printed ratios, 96 h / 7.21 h. Ours grows with the grid and depends "
+    "on machine and BLAS; on 64 x 64 it is several times that, so that a busy machine does not decide",
     tier="full",
     tags=("table2", "cost"),
 )
@@ -175,22 +175,31 @@ def table2_rerun() -> Measured:
 @case(
     "variational/table2-growth",
     title="Growth of computing time with the number of elements",
-    claim="Exponent of a solver with matrix (NNLS) less that of the paper's scheme; printed 2.43 - 1.96",
-    source="paper Table 2",
+    claim="The time of a solver with matrix (NNLS) grows faster with the elements than that of the scheme",
+    source="paper Table 2; operation counts",
     metric="at_least",
-    tolerance=0.46,
-    tolerance_reason="the difference of the printed columns' own exponents; measured in the committed run",
+    tolerance=1.0,
+    tolerance_reason="difference of exponents in the number of elements n: a factorisation takes n^3, "
+    "products by FFT n log n times some sqrt(n) iterations, a difference of 1.5; the active set of the least "
+    "grids takes 0.5 of that. The committed run is judged",
     tier="full",
     tags=("table2", "cost"),
 )
 def table2_growth() -> Measured:
     found = read_result(COMMITTED)
-    growths, data = found["growth"], {}
+    growths = found["growth"]
+    data: dict[str, object] = {}
     for name in growths:
         rows = [row for row in found["rows"] if row["method"] == name]
         data[f"{name}: M"] = [row["M"] for row in rows]
         data[f"{name}: s"] = [min(row["cpu"]) for row in rows]
         data[f"{name}: exponent"] = growths[name]
     scheme = [row for row in found["rows"] if row["method"] == "paper" and row["M"] >= 64]
+    hours, grids = found["printed"]["hours"], found["printed"]["M"]
+    shared = [k for k, other in enumerate(hours["variational"]) if other is not None]
+    for name in ("paper", "variational"):
+        data[f"printed {name}: exponent on the shared grids"] = growth(
+            [grids[k] for k in shared], [hours[name][k] for k in shared]
+        )
     again = growth([row["M"] for row in scheme], [min(row["cpu"]) for row in scheme])
     return Measured(growths["NNLS"] - again, data=data, note=f"commit {found['provenance']['commit']}")

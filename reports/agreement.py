@@ -1,0 +1,180 @@
+"""Every number that the paper prints and we compute: both, the difference E, and its uncertainty u.
+
+In terms of ASME V&V 20, E is the comparison error of a replication; no experiment enters. u, at 95 %, holds
+the sampling of two ensembles and the rounding of the print.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reports.findings import number
+from reports.results import Case
+
+Cases = Mapping[str, Case]
+_BROKEN = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+
+
+@dataclass(frozen=True)
+class Number:
+    """A printed number and ours, both in ``unit``; ``half_width`` is our mean's 95 % interval, ``rounding``
+    half a unit of the last printed digit. ``sampled`` numbers are means of two ensembles.
+    """
+
+    part: str
+    quantity: str
+    label: str
+    unit: str
+    printed: float
+    computed: float
+    half_width: float
+    rounding: float
+    sampled: bool = False
+
+    @property
+    def difference(self) -> float:
+        """E: computed less printed."""
+        return self.computed - self.printed
+
+    @property
+    def uncertainty(self) -> float:
+        """u, 95 %."""
+        return math.hypot(self.half_width * (math.sqrt(2) if self.sampled else 1.0), self.rounding)
+
+    @property
+    def within(self) -> bool:
+        """True where E is within u."""
+        return abs(self.difference) <= self.uncertainty
+
+    @property
+    def ratio(self) -> float:
+        """Computed over printed."""
+        return self.computed / self.printed
+
+
+TABLE3 = (  # case, quantity, factor to the unit, unit, half a unit of the last digit
+    ("table3-mu", "μ, Table 3", 1.0, "", 0.0005),
+    ("table3-area", "A, Table 3", 1e6, "mm²", 0.0005),
+    ("table3-peak", "p_max, Table 3", 1e-9, "GPa", 0.005),
+)
+FINEST = 512  # elements per side of the paper's fine mesh
+
+SINGLE = (  # part, quantity, label, unit, printed, half a unit, case, key, factor
+    ("Table 1", "Hertz, R = 0.14 m", "contact radius a0", "mm", 0.452, 5e-4, "hertz/radius-corrected", "value", 1e3),  # noqa: E501
+    ("Table 1", "Hertz, R = 0.14 m", "peak pressure", "MPa", 163.9, 0.05, "hertz/peak-pressure", "value", 1e-6),  # noqa: E501
+    ("Fig. 4", "correlation radius", "autocorrelation 10 %", "µm", 104.0, 0.5, "reproduction/fig4-correlation", "radius (um)", 1.0),  # noqa: E501
+    ("Fig. 4", "rms slope", "0.084 µm", "deg", 0.125, 5e-4, "reproduction/fig4-slopes", "rms of a component (deg)#0", 1.0),  # noqa: E501
+    ("Fig. 4", "rms slope", "1.68 µm", "deg", 2.5, 5e-3, "reproduction/fig4-slopes", "rms of a component (deg)#1", 1.0),  # noqa: E501
+    ("Fig. 4", "largest slope", "1.68 µm, mean of the largest", "deg", 6.5, 0.05, "reproduction/largest-slope", "largest gradient (deg)", 1.0),  # noqa: E501
+    ("Fig. 8", "lowest μ, Eq. (11)", "1.68 µm, 70 N", "", 0.1, 0.005, "reproduction/eq11", "mu#2", 1.0),
+    ("Fig. 8", "critical σ_e", "14 N", "µm", 0.5, 0.05, "reproduction/fig8-threshold", "critical sigma_e (um)#0", 1.0),  # noqa: E501
+    ("Fig. 8", "critical σ_e", "42 N", "µm", 0.5, 0.05, "reproduction/fig8-threshold", "critical sigma_e (um)#1", 1.0),  # noqa: E501
+    ("Fig. 8", "critical σ_e", "70 N", "µm", 0.5, 0.05, "reproduction/fig8-threshold", "critical sigma_e (um)#2", 1.0),  # noqa: E501
+    ("Fig. 8", "ψ(0.5 µm), Eq. (12)", "ε = 3.15 µm as printed", "", 1.0, 0.1, "reproduction/fig8-threshold", "psi at 0.5 um as printed", 1.0),  # noqa: E501
+    *(
+        ("Section 8: scatter", quantity, f"{rms} µm", "%", printed, 0.05, f"reproduction/{case}", f"{key}#{k}", 100.0)  # noqa: E501
+        for quantity, printed, case, key in (
+            ("scatter of A", 7.5, "section8-scatter", "scatter of A"),
+            ("scatter of μ", 1.0, "section8-scatter", "scatter of mu"),
+            ("scatter of μ, β = 0", 7.5, "section8-beta0", "scatter of mu"),
+        )
+        for k, rms in enumerate(("0.504", "1.008", "1.680"))
+    ),
+)  # fmt: skip
+SURFACES = 75  # realisations behind a scatter, ours; its relative 95 % half width is 2 / sqrt(2 (n - 1))
+
+
+def numbers(cases: Cases) -> list[Number]:
+    """All of them that the cases hold, in the paper's order of parts."""
+    found = [*_single(cases)]
+    for name, quantity, factor, unit, rounding in TABLE3:
+        try:
+            found += _table3(cases[f"reproduction/{name}"]["data"], quantity, factor, unit, rounding)
+        except _BROKEN:
+            continue
+    return [n for n in found if n.printed > 0 and math.isfinite(n.computed) and n.computed > 0]
+
+
+def _single(cases: Cases) -> Iterator[Number]:
+    for part, quantity, label, unit, printed, rounding, case, key, factor in SINGLE:
+        value = number(cases[case], key) if case in cases else None
+        if value is not None:
+            share = 2 / math.sqrt(2 * (SURFACES - 1)) if quantity.startswith("scatter") else 0.0
+            computed = value * factor
+            yield Number(part, quantity, label, unit, printed, computed, share * computed, rounding)
+
+
+def _table3(
+    data: Mapping[str, Any], quantity: str, factor: float, unit: str, rounding: float
+) -> list[Number]:
+    rows = zip(
+        data["sigma_e (um)"],
+        data["mesh"],
+        data["printed"],
+        data["ours"],
+        data["half width 95 %"],
+        strict=True,
+    )
+    return [
+        Number(
+            "Table 3",
+            quantity,
+            f"σ_e {sigma:.3g} µm, {mesh:.0f}²",
+            unit,
+            factor * printed,
+            factor * ours,
+            factor * half,
+            rounding,
+            sampled=sigma > 0,
+        )
+        for sigma, mesh, printed, ours, half in rows
+    ]
+
+
+def fine(found: Iterable[Number]) -> list[Number]:
+    """Table 3's numbers on the fine mesh."""
+    return [n for n in found if n.part == "Table 3" and n.label.endswith(f"{FINEST}²")]
+
+
+def compared(found: Iterable[Number]) -> list[Number]:
+    """All numbers, of Table 3 those on the fine mesh."""
+    return [n for n in found if n.part != "Table 3" or n.label.endswith(f"{FINEST}²")]
+
+
+def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
+    """Numbers by quantity, in order of first appearance; Table 3's on the fine mesh alone."""
+    groups: dict[str, list[Number]] = {}
+    for n in compared(found):
+        groups.setdefault(n.quantity, []).append(n)
+    return groups
+
+
+def bias_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
+    """Mean and standard deviation of ln(computed / printed); no deviation of one number.
+
+    >>> one, e = (Number("", "", "", "", 1.0, value, 0.0, 0.0) for value in (1.0, math.e))
+    >>> bias, scatter = bias_and_scatter([one, e])
+    >>> round(bias, 3), round(scatter, 3)
+    (0.5, 0.707)
+    """
+    logs = np.log([n.ratio for n in group])
+    return float(np.mean(logs)), float(np.std(logs, ddof=1)) if len(group) > 1 else None
+
+
+def series(found: Sequence[Number]) -> dict[str, list[Any]]:
+    """Columns of all numbers, for the figure and its CSV."""
+    return {
+        "part": [n.part for n in found],
+        "quantity": [n.quantity for n in found],
+        "label": [n.label for n in found],
+        "unit": [n.unit for n in found],
+        "printed": [n.printed for n in found],
+        "computed": [n.computed for n in found],
+        "uncertainty 95 %": [n.uncertainty for n in found],
+        "computed / printed": [n.ratio for n in found],
+    }

@@ -1,0 +1,120 @@
+"""The claims matrix: what the paper states (`paper.toml`), our verdict, what was found, and the evidence."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from importlib import resources
+from typing import Any
+
+from reports.findings import by_claim, filled
+from reports.results import Case, worst
+
+NOT_ESTABLISHED = "not established"
+VERDICTS = (
+    NOT_ESTABLISHED,
+    "not confirmed",
+    "erratum proposed",
+    "confirmed with conditions",
+    "confirmed",
+    "definition",
+    "schematic",
+)
+"""From the least to the most favourable; the last two judge nothing."""
+_EARLIER = {"refuted": "not confirmed"}
+"""Verdicts in files of earlier versions."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One statement of the paper; the fields are those of `paper.toml`."""
+
+    label: str
+    quote: str
+    verdict: str
+    evidence: tuple[str, ...]
+    corrected: tuple[str, ...] = ()
+    finding: str = ""
+    own: bool = False
+    part: str = ""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A claim with its verdict, its finding in numbers, the cases found for it, and errata."""
+
+    claim: Claim
+    verdict: str
+    finding: str
+    cases: Sequence[Case]
+    errata: Sequence[Mapping[str, Any]]
+
+
+def paper() -> list[Claim]:
+    """Every claim of the matrix, in the paper's order."""
+    text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
+    entries: list[dict[str, Any]] = tomllib.loads(text)["claim"]
+    lists = ("evidence", "corrected")
+    for entry in entries:
+        entry.update({name: tuple(entry.get(name, ())) for name in lists})
+    return [Claim(**entry) for entry in entries]
+
+
+def judged(cases: Iterable[Case], errata: Iterable[Mapping[str, Any]]) -> list[Judged]:
+    """Every claim with its evidence; a long case that passed stands for the quick one of its name."""
+    known = list(cases)
+    numbers = by_claim(known)
+    long = {case["id"] for case in known if case["id"].endswith("-full") and case["status"] == "pass"}
+    known = [case for case in known if f"{case['id']}-full" not in long]
+    corrections = {erratum["equation"]: erratum for erratum in errata}
+    return [_judged(claim, known, numbers, corrections) for claim in paper()]
+
+
+def _judged(
+    claim: Claim,
+    known: Sequence[Case],
+    numbers: Mapping[str, Case],
+    corrections: Mapping[str, Mapping[str, Any]],
+) -> Judged:
+    found = [c for c in known if any(fnmatchcase(c["id"], pattern) for pattern in claim.evidence)]
+    said = [c for c in found if recorded(c) is not None]
+    first = note(said[0]) if said else ""
+    finding = filled(claim.finding, numbers) if claim.finding else first
+    return Judged(
+        claim,
+        verdict(claim, found),
+        finding,
+        found,
+        [corrections[name] for name in claim.corrected if name in corrections],
+    )
+
+
+def verdict(claim: Claim, cases: Sequence[Case]) -> str:
+    """The claim's verdict, or a less favourable one that a case records; none without evidence that
+    passed."""
+    if claim.evidence and (not cases or worst(list(cases)) != "pass"):
+        return NOT_ESTABLISHED
+    if claim.own or claim.verdict in VERDICTS[-2:]:
+        return claim.verdict
+    said = [v for v in map(recorded, cases) if v is not None]
+    return min((claim.verdict, *said), key=VERDICTS.index)
+
+
+def recorded(case: Case) -> str | None:
+    """Verdict that a case records on the paper, in today's words; None where it judges our code alone."""
+    text = case["data"].get("verdict")
+    text = _EARLIER.get(text, text) if isinstance(text, str) else None
+    return text if text in VERDICTS else None
+
+
+def note(case: Case) -> str:
+    """The first statement of a case's note, without the verdict.
+
+    >>> note({"data": {"verdict": "refuted"}, "note": "refuted: 1 (of 2; 3) here; more. And more"})
+    '1 (of 2; 3) here'
+    """
+    text: str = case["note"].removeprefix(case["data"]["verdict"]).removeprefix(":").strip()
+    return re.split(r"(?:;|\.) (?![^(]*\))", text)[0]

@@ -1,0 +1,85 @@
+"""Sentences with numbers from cases: ``{case | key | format}`` in a text becomes the case's number.
+
+A key is "value", "error", or a name in the case's data; ``#`` goes one step into a list or table ("margin#2",
+"numbers#mu") or takes "max", the largest magnitude of a list.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from reports.results import Case
+
+MISSING = "n/a"
+LIMIT = 2.0  # per cent: the paper's "less than 2%"
+_FIELD = re.compile(r"\{([^|{}]+)\|([^|{}]+)\|([^|{}]*)\}")
+READINGS = ("self", "in line", "across")  # ends of the names of the readings of "less than 2%"
+
+
+def by_claim(cases: Iterable[Case]) -> dict[str, Case]:
+    """Cases by id without "-full": the long case where it passed, else the quick one."""
+    found: dict[str, Case] = {}
+    for case in cases:
+        name = str(case["id"]).removesuffix("-full")
+        long = name != case["id"]
+        if name not in found or (long and case["status"] == "pass"):
+            found[name] = case
+    return found
+
+
+def filled(text: str, cases: Mapping[str, Case]) -> str:
+    """Return the text with its numbers; ``n/a`` where the case or the number is missing.
+
+    >>> filled("{a/1 | value | .1%}, {a/1 | x#1 | d}", {"a/1": {"value": 0.0123, "data": {"x": [1, 2]}}})
+    '1.2%, 2'
+    """
+
+    def put(match: re.Match[str]) -> str:
+        case, key, form = (part.strip() for part in match.groups())
+        found = number(cases[case], key) if case in cases else None
+        if found is None:
+            return MISSING
+        return f"{round(found):d}" if form == "d" else format(found, form)
+
+    return _FIELD.sub(put, text)
+
+
+def fields(text: str) -> list[tuple[str, str]]:
+    """The cases and keys that a text names."""
+    return [(case.strip(), key.strip()) for case, key, _ in _FIELD.findall(text)]
+
+
+def number(case: Case, key: str) -> float | None:
+    """The number of a case under a key; None where it is missing or no number."""
+    if key in ("value", "error"):
+        found: Any = case[key]
+    elif key in ("#below 2", "#readings"):
+        found = _readings(case["data"], below=key == "#below 2")
+    else:
+        found = _step_by_step(case["data"], key.split("#"))
+    return float(found) if isinstance(found, int | float) and not isinstance(found, bool) else None
+
+
+def _step_by_step(data: Any, steps: list[str]) -> Any:
+    for step in steps:
+        if isinstance(data, Mapping):
+            data = data.get(step)
+        elif isinstance(data, list) and step == "max":
+            sizes = [abs(v) for v in data if isinstance(v, int | float)]
+            data = max(sizes) if sizes else None
+        elif isinstance(data, list) and step.isdigit() and int(step) < len(data):
+            data = data[int(step)]
+        else:
+            return None
+    return data
+
+
+def _readings(data: Mapping[str, Any], *, below: bool) -> int | None:
+    """How many readings of "less than 2%" there are, or hold (per cent)."""
+    values = [
+        v for name, row in data.items() if name.endswith(READINGS) and isinstance(row, list) for v in row
+    ]
+    sizes = [v for v in values if isinstance(v, int | float)]
+    return sum(abs(v) < LIMIT for v in sizes) if below else len(sizes)

@@ -1,0 +1,153 @@
+"""The first page: what was checked, what holds, what does not, how sure we are, and how to run it again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from reports.agreement import Number, bias_and_scatter, by_quantity, fine
+from reports.claims import NOT_ESTABLISHED, VERDICTS, Judged
+from reports.evidence import Evidence
+from reports.results import FORMAT, Case
+from reports.text import number
+
+HERTZ = ("hertz/peak-pressure", "hertz/approach", "hertz/radius-corrected")
+NAMED = (NOT_ESTABLISHED, "not confirmed", "erratum proposed", "confirmed with conditions", "confirmed")
+UNITS = {"Pa": ("MPa", 1e-6), "m": ("µm", 1e6)}
+
+
+@dataclass(frozen=True)
+class FrontPage:
+    """Contents of the first page; tables are rows of texts."""
+
+    verdicts: Mapping[str, Sequence[Judged]]
+    table3: Sequence[Number]
+    beyond: int
+    beyond_sampling: int
+    hertz: Sequence[tuple[str, str, str, str]]
+    quantities: Sequence[tuple[str, int, str, str, int]]
+    coverage: Sequence[Sequence[str]]
+    trust: Sequence[str]
+    revisions: Sequence[tuple[str, str, str]]
+
+    @property
+    def table3_rows(self) -> Mapping[str, Sequence[Number]]:
+        """Table 3 on the fine mesh by quantity, the roughnesses in order."""
+        rows: dict[str, list[Number]] = {}
+        for n in self.table3:
+            name = n.quantity.removesuffix(", Table 3")
+            rows.setdefault(f"{name} ({n.unit})" if n.unit else name, []).append(n)
+        return rows
+
+    @property
+    def roughness(self) -> Sequence[str]:
+        """The columns' equivalent roughness."""
+        labels = (n.label.partition(",")[0].removeprefix("σ_e ") for n in self.table3)
+        return list(dict.fromkeys(labels))
+
+
+def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[Number]) -> FrontPage:
+    """Collect the page from the evidence; what is missing leaves its rows out."""
+    table3 = fine(numbers)
+    return FrontPage(
+        verdicts={v: [c for c in claims if c.verdict == v] for v in VERDICTS},
+        table3=table3,
+        beyond=sum(not n.within for n in table3),
+        beyond_sampling=sum(abs(n.difference) > math.sqrt(2) * n.half_width for n in table3),
+        hertz=[row for row in map(_hertz, evidence.cases) if row],
+        quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
+        coverage=_coverage(evidence.studies),
+        trust=_trust(evidence.studies),
+        revisions=revisions(evidence),
+    )
+
+
+def _hertz(case: Case) -> tuple[str, str, str, str] | None:
+    if case["id"] not in HERTZ or case["value"] is None or case["reference"] is None:
+        return None
+    unit, scale = UNITS.get(case["unit"], (case["unit"], 1.0))
+    value, reference = (f"{scale * case[key]:.7g} {unit}" for key in ("value", "reference"))
+    return case["title"], value, reference, f"{case['error']:.1e}"
+
+
+def _quantity(name: str, group: Sequence[Number]) -> tuple[str, int, str, str, int]:
+    bias, scatter = bias_and_scatter(group)
+    return (
+        name,
+        len(group),
+        f"{100 * bias:+.1f} %",
+        "" if scatter is None else f"{100 * scatter:.1f} %",
+        sum(n.within for n in group),
+    )
+
+
+def _coverage(studies: Mapping[str, Any]) -> list[Sequence[str]]:
+    """Coverage of error bars of mu, A and p_max at 1 % and 0.1 %, on both samples of random scenes."""
+    names = {"friction_coefficient": "μ", "contact_area": "A", "max_pressure": "p_max"}
+    rows: list[Sequence[str]] = []
+    for name, label in names.items():
+        row = [label]
+        for accuracy in (0.01, 0.001):
+            found = [
+                judged["numbers"][name]
+                for study in ("coverage", "coverage_fresh")
+                for judged in studies.get(study, {}).get("accuracies", ())
+                if judged["accuracy"] == accuracy
+            ]
+            row.append(" / ".join(f"{100 * f['covered']:.0f} %" for f in found) or "n/a")
+            row.append(" / ".join(number(f["median_bar_over_error"], 2) for f in found) or "n/a")
+        rows.append(row)
+    return rows if "coverage" in studies else []
+
+
+def _trust(studies: Mapping[str, Any]) -> list[str]:
+    """One sentence a study of the verification itself."""
+    said = []
+    if "fault_matrix" in studies:
+        faults = studies["fault_matrix"]["faults"]
+        seen = sum(bool(fault["caught_by"]) for fault in faults)
+        said.append(f"{seen} of {len(faults)} seeded faults are detected by quick checks")
+    if "mutation_fresh" in studies:
+        fresh = studies["mutation_fresh"]
+        said.append(
+            f"{100 * fresh['score']:.0f} % of {fresh['tried'] - fresh['equivalent']} sampled mutants of the "
+            f"code are detected by tests (95 % lower bound {100 * fresh['score_lower_bound']:.0f} %)"
+        )
+    if "extremes" in studies:
+        counts = studies["extremes"]["counts"]
+        said.append(
+            f"of {sum(counts.values())} extreme inputs {counts['wrong']} gave a wrong answer and "
+            f"{counts['crash']} a crash"
+        )
+    return said
+
+
+def revisions(evidence: Evidence) -> list[tuple[str, str, str]]:
+    """File, date and commit of every result file that the report is made of; the run first."""
+    rows = [("this run", *_made(evidence.run.get("provenance")))]
+    for name, file in sorted(evidence.files.items()):
+        provenance = file.get("provenance") if file.get("format") == FORMAT else newest(file)
+        rows.append((f"{name}.json", *_made(provenance)))
+    return rows
+
+
+def newest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """Provenance of a study's document, or of the newest run in its list."""
+    listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
+    records = [
+        item["provenance"]
+        for item in (document, *listed)
+        if isinstance(item, Mapping) and "provenance" in item
+    ]
+    return max(records, key=lambda record: str(record["date"]), default=None)
+
+
+def _made(provenance: Mapping[str, Any] | None) -> tuple[str, str]:
+    if provenance is None:
+        return "n/a", "n/a"
+    commit = str(provenance.get("commit") or "n/a")[:12]
+    return str(provenance.get("date"))[
+        :10
+    ], f"{commit}{' and uncommitted changes' if provenance.get('dirty') else ''}"

@@ -1,0 +1,87 @@
+"""Numbers and symbols as the report prints them."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from reports.results import Case
+
+_SYMBOLS = (
+    (re.compile(r"\bsigma_e\b"), "σ_e"),
+    (re.compile(r"\bmu\b"), "μ"),
+    (re.compile(r"\b(f_max|f_\{max\})\b"), "p_max"),
+    (re.compile(r"\btau\b"), "τ"),
+    (re.compile(r"\bbeta\b"), "β"),
+    (re.compile(r"\bpsi\b"), "ψ"),
+    (re.compile(r"(?<=[\d ])um\b"), "µm"),
+    (re.compile(r"\bmm\^2"), "mm²"),
+    (re.compile(r"\+-"), "±"),
+    (re.compile(r"(?<=[ (])>="), "≥"),
+    (re.compile(r"(?<=[ (])<="), "≤"),
+)
+
+
+def symbols(text: str) -> str:
+    """Return the text with Greek letters and units as symbols.
+
+    >>> symbols("mu = 0.11 +- 0.01 at 0.5 um")
+    'μ = 0.11 ± 0.01 at 0.5 µm'
+    """
+    for pattern, symbol in _SYMBOLS:
+        text = pattern.sub(symbol, text)
+    return text
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number for a table; what was not measured is "n/a", never 0.
+
+    >>> number(None), number(0.25), number(171.0512, 6)
+    ('n/a', '0.25', '171.051')
+    """
+    return "n/a" if value is None else f"{value:.{digits}g}"
+
+
+def interval(value: float, half_width: float) -> str:
+    """The value with the digits that its interval leaves; four where there is none.
+
+    >>> interval(0.10729513, 0.00042692), interval(5.1238826, 0.29116), interval(0.21550513, 0.0)
+    ('0.1073 ± 0.0004', '5.1 ± 0.3', '0.2155')
+    """
+    if half_width == 0:
+        return f"{value:.4g}"
+    decimals = max(0, -math.floor(math.log10(half_width)))
+    return f"{value:.{decimals}f} ± {half_width:.{decimals}f}"
+
+
+def percent(share: float) -> str:
+    """A share in per cent, to whole ones.
+
+    >>> percent(0.9776)
+    '98 %'
+    """
+    return f"{100 * share:.0f} %"
+
+
+def judgement(case: Case) -> str:
+    """Error against tolerance, as the status was found."""
+    if case["error"] is None:
+        return "not judged"
+    if case["error"] == 0 == case["tolerance"]:
+        return "no difference; none allowed"
+    sign = "≥" if case["metric"] == "at_least" else "≤"
+    sign = sign if case["status"] == "pass" else {"≥": "<", "≤": ">"}[sign]
+    return f"{number(case['error'], 3)} {sign} {number(case['tolerance'], 3)}"
+
+
+def cell(value: object) -> str:
+    """A table's cell: numbers to four digits, whole numbers and texts as they are.
+
+    >>> cell(0.123456), cell(512), cell(True), cell(None)
+    ('0.1235', '512', 'yes', 'n/a')
+    """
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if value is None:
+        return "n/a"
+    return number(value) if isinstance(value, float) else str(value)

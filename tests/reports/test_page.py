@@ -1,0 +1,55 @@
+"""The whole report from the committed results: size, links, ids, names, captions, and places of figures."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+import pytest
+
+from reports.generator import render
+from reports.result_files import read_results
+from tests.documents import ROOT
+from tests.reports.test_generator import Page
+
+
+@pytest.fixture(scope="module")
+def html() -> str:
+    documents = read_results(ROOT / "reports/results")
+    return render(documents["quick"], documents)
+
+
+@pytest.mark.slow
+def test_the_page_is_small_and_its_links_lead_somewhere(html: str) -> None:
+    assert len(html.encode()) <= 3_000_000
+    page = Page(html)
+    assert len(page.ids) == len(set(page.ids))
+    assert {link.removeprefix("#") for link in page.links if link.startswith("#")} <= set(page.ids)
+    assert all(link.startswith(("#", "data:text/csv", "data:image/png")) for link in page.links)
+
+
+@pytest.mark.slow
+def test_everything_has_a_name(html: str) -> None:
+    assert len(re.findall(r"<table\b", html)) == len(re.findall(r"<caption\b", html))
+    assert not re.search(r"<th[^>]*>\s*</th>", html)  # the script makes buttons of heads
+    assert all(image["aria-label"] for image in Page(html).images)
+    captions = re.findall(r"<figcaption>(.*?)<", html, flags=re.S)
+    assert "The series that the case recorded" not in html
+    assert len(captions) == len(set(captions))
+    levels = [int(level) for level in re.findall(r"<h(\d)\b", html)]
+    assert all(b <= a + 1 for a, b in pairwise(levels))
+
+
+@pytest.mark.slow
+def test_the_first_page_answers_five_questions_in_numbers(html: str) -> None:
+    first = html.partition('<section id="summary">')[2].partition("</section>")[0]
+    questions = re.findall(r"<h3>(.*?)</h3>", first)
+    assert questions == [
+        "What was checked",
+        "What holds",
+        "What does not hold",
+        "How sure we are",
+        "How to run it again",
+    ]
+    assert "n/a" not in first
+    assert "passed" not in first
