@@ -50,7 +50,7 @@ CHAPTERS = (
         "Numerical uncertainty of single solves: coverage of the error bars on random scenes against far "
         "finer grids, sensitivities, and budgets after V&V 20.",
         ("accuracy", "sensitivity"),
-        ("coverage", "coverage_fresh", "multilevel"),
+        ("coverage", "coverage_fresh", "coverage_classes", "multilevel"),
     ),
     Chapter(
         "yield",
@@ -86,7 +86,7 @@ CHAPTERS = (
         "Appendix III: costs",
         "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
         ("tradeoff", "multilevel", "benchmarks"),
-        ("benchmarks", "tradeoff"),
+        ("benchmarks", "tradeoff", "accuracy_costs", "large_grids", "sweeps"),
     ),
 )  # fmt: skip
 

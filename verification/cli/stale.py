@@ -18,6 +18,7 @@ from verification.framework.provenance import ROOT, SOURCES, sources
 State = Literal["current", "stale", "unknown"]
 
 JUDGED: Mapping[str, tuple[str, ...]] = {
+    "accuracy_costs": ("refimpl", "verification/benchmarks"),
     "appendix_a": ("appendix_a",),
     "appendix_a_3d": ("appendix_a/fem3d",),
     "appendix_a_fem3d": ("appendix_a",),
@@ -27,6 +28,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "chaos": ("refimpl", "verification/chaos", "verification/sweep"),
     "contestants": ("refimpl", "verification/contestants"),
     "coverage": ("refimpl", "verification/coverage"),
+    "coverage_classes": ("refimpl", "verification/coverage"),
     "coverage_fresh": ("refimpl", "verification/coverage"),
     "cross_code": ("verification/adapters", "verification/contestants"),
     "extremes": ("refimpl", "appendix_a", "verification/extremes"),
@@ -36,6 +38,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "fuzz": ("refimpl", "verification/fuzz", "verification/sweep"),
     "identification": ("refimpl", "verification/coverage"),
     "hypothesis": ("refimpl", "verification/properties"),
+    "large_grids": ("refimpl", "verification/benchmarks"),
     "model_form": ("refimpl", "appendix_a"),
     "multilevel": ("refimpl", "verification/multilevel"),
     "mutation": ("refimpl", "appendix_a", "tests"),
@@ -48,6 +51,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "random_order": ("refimpl", "appendix_a", "verification", "tests"),
     "reproduction": ("refimpl",),
     "sensitivity": ("refimpl",),
+    "sweeps": ("refimpl", "verification/benchmarks", "verification/sweep"),
     "table2": ("refimpl", "verification/variational"),
     "tau_shares": ("refimpl",),
     "tradeoff": ("refimpl", "verification/tradeoff"),
