@@ -12,8 +12,7 @@ from reports.evidence import gathered
 from reports.exhibit import as_csv
 from reports.results import ResultFileError, check, worst
 from reports.summary import groups
-from reports.traceability import Item, Traced, paper, traced
-from tests.reports.sample import ERRATUM, case, results
+from tests.reports.sample import case, results
 
 
 def dated(date: str, *cases: dict[str, Any], **other: Any) -> dict[str, Any]:
@@ -73,32 +72,6 @@ def test_runs_of_other_solvers_are_no_evidence() -> None:
 def test_a_change_is_one_beyond_the_larger_uncertainty(old: Any, new: Any, kinds: list[str]) -> None:
     found = compared(results(case("a/1", **old)), results(case("a/1", **new)))
     assert [change.kind for change in found] == kinds
-
-
-@pytest.mark.parametrize("status", ["pass", "fail", "error", "unavailable"])
-def test_only_a_long_case_that_passed_stands_for_its_quick_one(status: str) -> None:
-    pattern = next(p for item in paper() for p in item.evidence if "*" not in p)
-    made = [case(pattern), case(f"{pattern}-full", status)]
-    found = {c["id"] for one in traced([{**c, "origin": None} for c in made], []) for c in one.cases}
-    assert (pattern in found) is (status != "pass")
-
-
-@pytest.mark.parametrize(
-    ("verdicts", "errata", "expected"),
-    [
-        (["confirmed", "confirmed with conditions", "refuted"], 0, "refuted"),
-        (["confirmed", "confirmed with conditions"], 0, "confirmed with conditions"),
-        (["confirmed", None], 0, "confirmed"),
-        ([None], 0, "verified"),
-        ([None], 1, "corrected"),
-        (["confirmed", "refuted"], 1, "refuted; print corrected"),
-    ],
-)
-def test_the_least_favourable_verdict_counts(verdicts: list[Any], errata: int, expected: str) -> None:
-    made = [case(f"a/{k}", data={} if v is None else {"verdict": v}) for k, v in enumerate(verdicts)]
-    assert Traced(Item("x", "y", ("a/*",)), made, errata * [ERRATUM]).verdict == expected
-    failed = [*made, case("a/z", "fail")]
-    assert Traced(Item("x", "y", ("a/*",)), failed, []).verdict == "not established"
 
 
 def test_what_decides_about_several_cases() -> None:

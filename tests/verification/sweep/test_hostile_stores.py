@@ -60,7 +60,7 @@ ENDLESS = "with recursive t(x) as (select 1 union all select x from t) select x 
 DAMAGE: dict[str, Callable[[Path], object]] = {
     "garbled page": garbled,
     "cut": lambda path: os.truncate(path, path.stat().st_size - 4096),
-    "cut inside a page": lambda path: os.truncate(path, path.stat().st_size - 100),
+    "cut inside a page": lambda path: os.truncate(path, path.stat().st_size - 4000),
     "dropped table": by_sql("drop table runs"),
     "renamed column": by_sql("alter table runs rename column tau to tan"),
     "column more": by_sql("alter table runs add column more"),

@@ -15,7 +15,7 @@ from refimpl.errors import InputError
 from verification.cli import main
 from verification.sweep import engine, run
 from verification.sweep.engine import Progress, Sweep
-from verification.sweep.run import outcome
+from verification.sweep.run import COORDINATES, OUTCOMES, outcome
 from verification.sweep.store import checksum, open_store
 from verification.sweep.study_file import study_from_dict
 
@@ -77,16 +77,17 @@ def test_no_output_replaces_a_file_of_the_store(
 def test_each_outcome_of_a_row_by_hand() -> None:
     """Flats of 5 x 5 elements touch everywhere: 16 on the border. Slopes by their angles."""
     flats = rf.Scene(rf.Body(STEEL, rf.Flat()), rf.Body(STEEL, rf.Flat()), rf.Friction(), 2.0, 1e-3)
-    assert outcome(rf.solve(flats, 5))["border_elements"] == 16
+    assert outcome(rf.solve(flats, 5), flats)["border_elements"] == 16
     rough = rf.Body(rf.Material(1e7, 0.3), rf.GaussianRoughness(3e-5, 2e-4, seed=2))
-    s = rf.solve(replace(flats, lower=rough, friction=rf.Friction(tau=1e4, beta=0.2), load=0.2), 16)
+    scene = replace(flats, lower=rough, friction=rf.Friction(tau=1e4, beta=0.2), load=0.2)
+    s = rf.solve(scene, 16)
     parts = {
         "friction_coefficient": {"active set": 0.25, "iteration": 0.5},
         "contact_area": {"active set": 2.0},
     }
-    row = outcome(replace(s, uncertainty=parts, certificate=replace(s.certificate, gap=0.125)))
+    row = outcome(replace(s, uncertainty=parts, certificate=replace(s.certificate, gap=0.125)), scene)
     pushed = s.pressure * np.sin(s.theta_x) * np.cos(s.theta_y)
-    assert row == {
+    expected = {
         "status": s.status.value,
         "friction_coefficient": s.friction_coefficient,
         "contact_area": s.contact_area,
@@ -104,6 +105,7 @@ def test_each_outcome_of_a_row_by_hand() -> None:
             bool(s.contact[i, j]) for i in range(16) for j in range(16) if {i, j} & {0, 15}
         ),
     }
+    assert {name: row[name] for name in expected} == expected
     assert abs(np.cos(s.theta_y)[s.contact] - 1).max() > 1e-4
 
 
@@ -132,7 +134,10 @@ def test_failed_runs_are_neither_found_nor_finished(tmp_path: Path, monkeypatch:
 def test_rows_are_solutions_or_not_by_their_status(
     status: rf.Status, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    rows = [{"status": "converged", "key": "a"}, {"status": status.value, "key": "b"}]
+    rows = [
+        dict.fromkeys((*COORDINATES, *OUTCOMES), 1.0) | {"status": end, "key": key, "grid": 6, "warnings": ""}
+        for end, key in (("converged", "a"), (status.value, "b"))
+    ]
     done = Sweep(0, 2, {}, rows, [1.0, 2.0], 3.0)
     solved = status in (rf.Status.CONVERGED, rf.Status.CYCLED)
     assert done.unconverged == ([] if solved else rows[1:])

@@ -112,7 +112,7 @@ FIG6_METRIC = {"a": "at_least", "b": "at_most", "c": "at_most"}
 FIG6_TOLERANCE = {
     "a": {"quick": 0.5, "full": 0.5},
     "b": {"quick": 0.95, "full": 0.5},
-    "c": {"quick": 0.95, "full": 0.5},
+    "c": {"quick": 0.95, "full": 0.3},
 }
 
 
@@ -128,7 +128,7 @@ def _declare_fig6(rms: float, panel: str) -> None:
         "from theirs, the effect of roughness: 1 for a solver without roughness, 0 for theirs. A curve more "
         "than half the effect away is nearer to Hertz: no agreement, (a); less, (b) and (c). Sampling leaves "
         "0.06 to 0.13 with 75 realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) "
-        "by 0.95 only. Half of Greenwood and Tripp's pressure does not pass with 75 (in the data)",
+        "by 0.95 only; with 75 (c) is bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away",
         tags=("fig6",),
     )
     def agreement(tier: str) -> Measured:
