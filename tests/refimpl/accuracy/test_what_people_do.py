@@ -1,4 +1,4 @@
-"""Scenes that people bring, where bars once failed in silence: grooves, lay, maps, full windows, wrong units."""
+"""Scenes that people bring, where bars once failed in silence: grooves, lay, maps, full windows, units."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def test_inputs_that_are_seldom_meant_get_a_note_with_help(change: dict[str, obj
 
 
 def test_the_gap_is_nowhere_negative_beyond_the_penetration() -> None:
-    """On slopes the surfaces' own distance is, in contact and beside it; with a cap the indentation is added."""
+    """On slopes the surfaces' own distance is; with a cap the indentation is added."""
     steep = rf.GaussianRoughness(2e-6, 60e-6, seed=3)
     for hardness in (None, 0.8e9):
         body = rf.Body(rf.Material(E=118e9, nu=0.3, hardness=hardness), steep)
