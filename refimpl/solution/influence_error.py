@@ -113,7 +113,8 @@ def slope_error(slopes: Slopes, pressure: Array, pair: Pair, *, plane: bool = Fa
 def constant_along_an_axis(*heights: Array) -> bool:
     """Return whether all surfaces are constant along x, or all along y, on more than one element."""
     return any(
-        all(z.shape[axis] > 1 and not np.any(np.diff(z, axis=axis)) for z in heights) for axis in (0, 1)
+        all(len(z) > 1 and np.array_equal(z[1:], z[:-1]) for z in turned)
+        for turned in (heights, [z.T for z in heights])
     )
 
 

@@ -70,12 +70,16 @@ def steepness(problem: Problem, contact: Mask) -> float:
     slope.
     """
     grid, pair = problem.grid, problem.pair
-    near = grid.window_around(contact, margin=1).slices
+    near, wider = (grid.window_around(contact, margin=margin) for margin in (1, 2))
+    place = (
+        slice(near.i0 - wider.i0, near.i1 - wider.i0),
+        slice(near.j0 - wider.j0, near.j1 - wider.j0),
+    )
     total = 0.0
     shares = 1 - pair.upper_share, pair.upper_share
-    for share, heights in zip(shares, problem.heights, strict=True):
-        along_x, along_y = grid.gradient(heights)
-        total += share * float(np.mean(along_x[near] ** 2 + along_y[near] ** 2))
+    for share, heights in zip(shares, problem.windowed(wider).heights, strict=True):
+        along_x, along_y = (along[place] for along in grid.gradient(heights))
+        total += share * float(np.mean(along_x**2 + along_y**2))
     return 2 * total
 
 

@@ -23,7 +23,7 @@ BARE = Terms(coupled=False, oblique=False, tilted=False)
 M = 64
 RETURNED = (
     4 * 8
-)  # bytes per element: both deformed surfaces and the gap, which bare solves lack
+)  # bytes per element: both deformed surfaces, gap and indentation, which bare solves lack
 
 
 @cache
@@ -132,7 +132,7 @@ def shear_operations(solution: rf.Solution) -> int:
     source=SOURCE,
     metric="at_most",
     tolerance=1.0,
-    tolerance_reason="over the bare solve's peak plus 32 bytes an element; 0.76 measured at 64 x 64,"
+    tolerance_reason="over the bare solve's peak plus 32 bytes an element; 0.99 measured at 64 x 64,"
     " where each array of the grid's size counts 0.06",
     tags=("planning",),
 )
