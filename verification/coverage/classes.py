@@ -292,7 +292,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             if rows is None:
                 lost[kind] += 1
             else:
-                found += [{"class": kind, "seed": seed, "M": M, **row} for row in rows]
+                found += [{"class": kind, "seed": seed, **row} for row in rows]
             progress.tick(f"{kind}, {seed}")
     progress.close()
     table = tables(found)

@@ -190,7 +190,8 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
         executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
         before = set(multiprocessing.active_children())
         with interrupts_blocked():
-            executor.submit(int)  # starts all workers
+            for _ in range(workers):  # each starts a worker, as none is idle yet
+                executor.submit(int)
         try:
             yield executor
             executor.shutdown()
