@@ -49,7 +49,7 @@ CHAPTERS = (
         "Error bars",
         "Numerical uncertainty of single solves: coverage of the error bars on random scenes against far "
         "finer grids, sensitivities, and budgets after V&V 20.",
-        ("accuracy", "sensitivity"),
+        ("accuracy", "sensitivity", "identification"),
         ("coverage", "coverage_fresh", "coverage_classes", "multilevel"),
     ),
     Chapter(

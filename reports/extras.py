@@ -1,7 +1,7 @@
 """Exhibits that modules of their own add to a chapter.
 
 A module ``reports/NAME_figures.py`` takes part by defining ``CHAPTER``, the anchor of a chapter in
-`reports.chapters` (or a new one), and ``exhibits(evidence)``. Nothing else needs to know of it.
+`reports.chapters` (or a new one), and ``exhibits(evidence)``. No other file names it.
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ def _step_by_step(data: Any, steps: list[str]) -> Any:
 
 
 def _readings(data: Mapping[str, Any], *, below: bool) -> int | None:
-    """How many readings of "less than 2%" there are, or hold (per cent)."""
+    """Number of readings of "less than 2%", or share that holds (per cent)."""
     values = [
         v for name, row in data.items() if name.endswith(READINGS) and isinstance(row, list) for v in row
     ]

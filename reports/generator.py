@@ -88,7 +88,7 @@ def render(
 
 
 def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
-    """What a report on this project's own code shows beside its cases."""
+    """Sections of a report on this project's own code beside its cases."""
     claims = judged(evidence.cases, evidence.errata)
     numbers = agreement.numbers(by_claim(evidence.cases))
     extras = extra_exhibits(evidence)

@@ -45,7 +45,7 @@ def _list(value: object) -> bool:
 
 
 def _id(value: object) -> bool:
-    """Whether the value is "subject/slug" without blanks."""
+    """True if the value is "subject/slug" without blanks."""
     return isinstance(value, str) and all(value.partition("/")) and len(value.split()) == 1
 
 
@@ -58,7 +58,7 @@ def _one_of(*values: str) -> Kind:
 
 
 def _labels(value: object) -> bool:
-    """Whether the value is a table of texts, numbers and None."""
+    """True if the value is a table of texts, numbers and None."""
     return isinstance(value, Mapping) and all(
         item is None or _text(item) or _number(item) for item in value.values()
     )
@@ -154,7 +154,7 @@ def _check_verdict(case: Case) -> None:
 
 
 def _error_follows(case: Case) -> bool:
-    """Whether the error is that of value, reference and metric, and the reference certain enough to judge."""
+    """True if the error is that of value, reference and metric, and the reference certain enough to judge."""
     value, reference, error, metric = (case[name] for name in ("value", "reference", "error", "metric"))
     if metric in ("at_most", "at_least"):
         return reference is None and bool(error == value) and (metric == "at_least" or value >= 0)

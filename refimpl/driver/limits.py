@@ -30,9 +30,9 @@ class Limits:
                 require_number(name, value, "a positive number", above=0)
 
     @property
-    def any(self) -> bool:
-        """True if something is limited."""
-        return self != Limits()
+    def given(self) -> dict[str, float]:
+        """The limits that are given, by name."""
+        return {name: value for name, value in vars(self).items() if value is not None}
 
 
 class Allowance:

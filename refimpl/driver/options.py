@@ -53,8 +53,8 @@ class Options:
         if (self.grid is None) == (self.accuracy is None):
             allowed = "a number of elements along the longer side, or two, or an accuracy, and not both"
             raise InputError("grid", self.grid, allowed)
-        if self.accuracy is None and self.limits.any:
-            raise InputError("max_grid, max_seconds, max_memory", self.limits, "none without an accuracy")
+        for name, value in self.limits.given.items() if self.accuracy is None else ():
+            raise InputError(name, value, "none without an accuracy")
         _ = self.solve_grid  # refuses what is no grid
         if self.start is not None:
             self._check_start(self.start)

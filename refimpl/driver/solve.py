@@ -25,9 +25,11 @@ from refimpl.planning.term_effects import effects_in
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
+from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.limits import Notice
 from refimpl.solution.plausibility import implausible
-from refimpl.solution.solution import Cost, Solution, Solved, assemble, total_cost
+from refimpl.solution.solution import Solution, assemble
+from refimpl.solution.solved import Solved
 from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import InitialGuess

@@ -139,7 +139,7 @@ def _row(header: Sequence[str], quantity: str, k: int, cells: Sequence[str], fol
     scale = 1.0 if quantity == "mu" else load
     files = {name: str(folder / text) for name in _FILES if (text := found.get(name))}
     frame = {name: numbers[name] for name in _FRAME if name in numbers}
-    return Row(load, value / scale, spread / scale, **frame, **files)  # type: ignore[arg-type]
+    return Row(load, value / scale, spread / scale, **frame, **files)  # type: ignore[arg-type]  # names of fields
 
 
 def _number(k: int, name: str, text: str) -> float:

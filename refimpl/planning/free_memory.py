@@ -27,7 +27,7 @@ def _available() -> int:
 
 
 def _left_in_groups() -> Iterator[int]:
-    """What the limit of each group above this process leaves; droppable file pages count as free."""
+    """Bytes that the limit of each group above this process leaves; droppable file pages count as free."""
     for folder in _groups():
         for limit, usage in _USAGE.items():
             with suppress(OSError, ValueError):  # "max" is no limit
@@ -56,7 +56,7 @@ def _droppable(folder: Path) -> int:
 
 
 def _left_of_limits() -> Iterator[int]:
-    """What the limits of the address space and of the data segment leave (POSIX)."""
+    """Bytes that the limits of the address space and of the data segment leave (POSIX)."""
     with suppress(ImportError, OSError, ValueError):
         import resource
 

@@ -3,72 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.first_contact import HERTZ_EXPONENTS
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import (
-    AREAS,
     NUMBERS,
-    Uncertainty,
-    active_set_parts,
-    iteration_parts,
-    merged,
-    reported_numbers,
 )
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Mask
-from refimpl.model.certificate import Certificate, State
-from refimpl.model.friction import FrictionLaw, friction_per_area
+from refimpl.model.certificate import Certificate
+from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import SolverResult, Status
+from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
-from refimpl.planning.term_effects import Effect, effects_in, neglected_parts
+from refimpl.planning.term_effects import Effect
 from refimpl.scene.scene import Scene
 from refimpl.solution import display
 from refimpl.solution.arrays import UNITS, as_dataset
 from refimpl.solution.bounds import Bounds, proven_bounds
-from refimpl.solution.data_error import data_error
+from refimpl.solution.cost import Cost
 from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.solution.limits import Evidence, ModelWarning, Notice, model_warnings, plain_warning
 from refimpl.solution.model_form import ModelForm, model_form
 from refimpl.solution.patches import Patch, patches_of
+from refimpl.solution.solved import Solved
 
 REPORTED = NUMBERS
 """The numbers of a solution, each with an error bar."""
-
-
-@dataclass(frozen=True)
-class Cost:
-    """Work done: seconds, operator applications by kind, their ``n log2 n`` sum, iterations by loop."""
-
-    seconds: float
-    applications: Mapping[str, int]
-    point_logs: float
-    iterations: Mapping[str, int]
-
-
-def total_cost(costs: Iterable[Cost]) -> Cost:
-    """Return the cost of several solves together."""
-    total = Cost(0.0, {}, 0.0, {})
-    for cost in costs:
-        total = Cost(
-            seconds=total.seconds + cost.seconds,
-            applications=_added(total.applications, cost.applications),
-            point_logs=total.point_logs + cost.point_logs,
-            iterations=_added(total.iterations, cost.iterations),
-        )
-    return total
-
-
-def _added(first: Mapping[str, int], second: Mapping[str, int]) -> dict[str, int]:
-    return {key: first.get(key, 0) + second.get(key, 0) for key in {**first, **second}}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -284,97 +251,6 @@ def _dimensions(grid: Grid) -> dict[str, Any]:
     lengths = {"side": grid.lengths[0]} if square else {"size": list(grid.lengths)}
     same = square and grid.shape[0] == grid.shape[1]
     return {"grid": grid.shape[0] if same else list(grid.shape), **lengths}
-
-
-_MOST_OUTSIDE = 0.5  # share of the contact found
-
-
-@dataclass(frozen=True, eq=False)
-class Solved:
-    """A solved and certified problem on one grid, before it becomes a `Solution`.
-
-    ``scene`` says what lies beyond the domain and between points of data, if it is known.
-    """
-
-    problem: Problem
-    plan: Plan
-    result: SolverResult
-    state: State
-    tolerance: float
-    cost: Cost
-    scene: Scene | None = None
-
-    @property
-    def status(self) -> Status:
-        """The loops' status; a loop that ended well still fails on a certificate that does not hold."""
-        ended_well = self.result.status in (Status.CONVERGED, Status.CYCLED)
-        if ended_well and not self.state.certificate.satisfies(self.tolerance):
-            return Status.STAGNATED
-        return self.result.status
-
-    @cached_property
-    def neglected(self) -> dict[str, Effect]:
-        """Effects of the neglected terms, from the solved contact."""
-        return effects_in(self.plan.neglected, self.problem, self.state.pressure, self.plan.contact)
-
-    @cached_property
-    def features(self) -> GridFeatures:
-        """Features that error bars depend on, on this grid."""
-        return GridFeatures.of(self.problem, self.state, self.own_parts)
-
-    @property
-    def own_parts(self) -> Uncertainty:
-        """Parts of the uncertainty that this grid's own solution leaves: iteration, active set, neglected
-        terms."""
-        problem, state = self.problem, self.state
-        forces, total = state.forces, float(state.pressure.sum())
-        moved = (
-            {"approach": state.approach}
-            if problem.load is not None
-            else {"normal_force": HERTZ_EXPONENTS["normal_force"] * forces.normal}
-        )
-        return merged(
-            iteration_parts(problem, state),
-            active_set_parts(problem, state),
-            self._unseen,
-            neglected_parts(
-                self.neglected,
-                float(state.traction.sum()) / total if total else 0.0,
-                problem.nominal_load(forces.normal),
-                dict.fromkeys(AREAS, state.contact_area)
-                | {"plastic_area": state.plastic_area}
-                | {"max_pressure": 0.0 if state.plastic_area else state.max_pressure}
-                | moved,
-            ),
-        )
-
-    @property
-    def _unseen(self) -> Uncertainty:
-        """Parts by what the scene does not say: what lies beyond its domain, and between points of its data.
-
-        A contact that the domain cuts off counts as if it went on over an area like the domain's, as dense as
-        along the border; without bound where that is half of the contact found.
-        """
-        grid, state, given = self.problem.grid, self.state, self.problem.load is None
-        numbers = reported_numbers(self.problem, state)
-        border = grid.on_border(state.contact) if self.scene is not None and self.scene.continues else 0
-        data = data_error(self.scene, grid) if self.scene is not None else 0.0
-        if not state.contact.any() or not (border or data):
-            return {}
-        outside = border / (2 * sum(grid.shape)) * grid.nominal_area / state.contact_area
-        beyond = outside if outside < _MOST_OUTSIDE else math.inf
-        share = friction_per_area(self.problem.friction, state.forces.normal) * state.contact_area
-        shares = dict.fromkeys((*AREAS, "plastic_area", "approach"), data) | {"max_pressure": 2 * data}
-        shares["friction_coefficient"] = data * min(
-            share / (abs(numbers["friction_coefficient"]) or 1.0), 1.0
-        )
-        shares["friction_force"] = shares["friction_coefficient"]
-        prescribed = "approach" if given else "normal_force"
-        return {
-            name: {"border": beyond * abs(number), "data": shares.get(name, 0.0) * abs(number)}
-            for name, number in numbers.items()
-            if name != prescribed and number
-        }
 
 
 def _short_of_accuracy(solved: Solved) -> Status:

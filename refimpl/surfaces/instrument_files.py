@@ -97,7 +97,8 @@ def read_as(
         with library.open_topography(source, format=name) as reader:
             index, channel = _choose(path, reader, given)
             heights, unit, pixel = _loaded(path, reader, index, channel)
-    pixel = tuple(NMS_UNIT * edge for edge in pixel) if pixel and name == "nms" else pixel  # type: ignore[assignment]
+    if pixel and name == "nms":
+        pixel = NMS_UNIT * pixel[0], NMS_UNIT * pixel[1]
     notes += ("NMS: its spacing is in nm",) if name == "nms" else ()
     stated = unit if unit is None else library.Support.UnitConversion.get_unit_conversion_factor(unit, "m")
     unit, pixel, overridden = given.resolve(path.name, unit, pixel)

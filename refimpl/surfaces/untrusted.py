@@ -33,13 +33,13 @@ def read_untrusted(path: Path, load: Callable[[], T]) -> T:
         return _load_whole(path, load)
     except InputError:
         raise
-    except Exception as error:
+    except Exception as error:  # readers of forged bytes raise anything
         brief = " ".join(f"{type(error).__name__}: {error}".split())[:160]
         raise InputError("path", str(path), f"a file that can be read ({brief})") from error
 
 
 def _load_whole(path: Path, load: Callable[[], T]) -> T:
-    """What ``load`` returns, of a file that holds all its data."""
+    """Result of ``load``, of a file that holds all its data."""
     _refuse_external_data(path)
     return load()
 

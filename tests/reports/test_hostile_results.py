@@ -52,7 +52,7 @@ def replaced(document: dict[str, Any], path: tuple[Any, ...], value: object) -> 
 
 
 def shown_or_refused(document: object, against: object = None) -> bool:
-    """Whether it is shown; any other end than a refusal fails the test."""
+    """True if it is shown; any other end than a refusal fails the test."""
     try:
         check(document)
         render(document, {}, against)

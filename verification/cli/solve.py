@@ -161,7 +161,10 @@ def _gigabytes(text: str) -> float:
     >>> _gigabytes("1.5")
     1500000000.0
     """
-    return 1e9 * float(text)
+    try:
+        return 1e9 * float(text)
+    except ValueError as wrong:
+        raise argparse.ArgumentTypeError(f"expected a number of GB, not {text!r}") from wrong
 
 
 def _on_or_off(text: str) -> bool:

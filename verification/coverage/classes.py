@@ -1,8 +1,8 @@
 """Error bars by class of scene: ``python -m verification.coverage.classes --scenes 100 --json FILE``.
 
 A scene is solved on a grid of 48 to 128 elements along its longer side, and judged against one of four to ten
-times as many. Half of the scenes are free, half periodic; half are squares, half rectangles. Each number's
-bar is that of the single grid, as ``solve(scene, grid=M)`` states it.
+times as many. Half of the scenes are free, half periodic; half are squares, half rectangles; maps are free
+and square. Each number's bar is that of the single grid, as ``solve(scene, grid=M)`` states it.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy as np
 from scipy import stats
 
 import refimpl as rf
+from refimpl.accuracy.digits import LARGEST_SHARE
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.errors import InputError
 from refimpl.grid import Array
@@ -204,7 +205,7 @@ def _with_friction(draw: _Draw, kind: str, base: rf.Scene, load: float, pressed:
 
 
 def judged(one: rf.Scene, M: int, known: rf.Scene | None = None) -> list[dict[str, Any]] | None:
-    """Return bar, error and the reference's bound of each number; None where a solve did not end well.
+    """Return bar, error and the reference's bound, over each number; None where a solve did not end well.
 
     ``known`` replaces the scene on the coarse grid.
     """
@@ -216,15 +217,9 @@ def judged(one: rf.Scene, M: int, known: rf.Scene | None = None) -> list[dict[st
     for name in NUMBERS:
         exact, bound = reference(finest, name)
         found = float(getattr(coarse, name))
-        rows.append(
-            {
-                "number": name,
-                "bar": sum(coarse.uncertainty[name].values()),
-                "error": abs(found - exact),
-                "reference_bound": bound,
-                "value": found,
-            }
-        )
+        lengths = coarse.error(name), abs(found - exact), bound
+        shares = (length / abs(found) if length else 0.0 for length in lengths)
+        rows.append(dict(zip(("bar", "error", "reference_bound"), shares, strict=True)) | {"number": name})
     return rows
 
 
@@ -250,15 +245,22 @@ def reference(finest: rf.Solution, name: str) -> tuple[float, float]:
 
 
 def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """Return the share of bars that hold, its binomial test against `LEVEL`, and the median length."""
+    """Return the shares of bars that hold and are usable, a binomial test against `LEVEL`, and the length.
+
+    A bar without an end always holds: of those that are ``usable``, at most half of their number, the share
+    that holds stands by itself.
+    """
     rows = list(rows)
     held = sum(row["error"] <= row["bar"] for row in rows)
+    short = [row for row in rows if row["bar"] <= LARGEST_SHARE]
     finite = [row["bar"] / row["error"] for row in rows if row["error"] > 0]
     test = stats.binomtest(held, len(rows), LEVEL, alternative="less")
     return {
         "scenes": len(rows),
         "held": held / len(rows),
         "held_at_worst": sum(row["error"] + row["reference_bound"] <= row["bar"] for row in rows) / len(rows),
+        "usable": len(short) / len(rows),
+        "held_of_usable": sum(row["error"] <= row["bar"] for row in short) / len(short) if short else None,
         "p": test.pvalue,
         "median_bar_over_error": float(np.median(finite)) if finite else None,
     }
@@ -301,10 +303,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "first": options.first,
         "not_converged": lost,
         "table": table,
-        "rows": found,
+        "rows": [{name: _short(value) for name, value in row.items()} for row in found],
     }
     write_result(jsonable(document), options.json)
     print(columns(lines(table), indent=""))
+
+
+def _short(value: Any) -> Any:
+    """Numbers with two digits: the table is made of all of them."""
+    return float(f"{value:.2g}") if isinstance(value, float) else value
 
 
 def tables(found: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -320,7 +327,8 @@ def tables(found: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
     """Return the lines of the printed table."""
-    head = ["class", "number", "scenes", "held", "with the reference's bound", "p", "bar/error"]
+    head = ["class", "number", "scenes", "held", "with the reference's bound", "usable", "of these", "p"]
+    head.append("bar/error")
     return [head] + [
         [
             row["class"] or "all",
@@ -328,6 +336,8 @@ def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
             str(row["scenes"]),
             f"{row['held']:.3f}",
             f"{row['held_at_worst']:.3f}",
+            f"{row['usable']:.2f}",
+            "" if row["held_of_usable"] is None else f"{row['held_of_usable']:.3f}",
             f"{row['p']:.2g}",
             "" if row["median_bar_over_error"] is None else f"{row['median_bar_over_error']:.2f}",
         ]

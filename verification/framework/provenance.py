@@ -69,11 +69,15 @@ def machine() -> dict[str, str | int | None]:
 
 
 def command() -> str:
-    """The command line as it could be typed again: `python -m MODULE`, or a program without its directory."""
+    """The command line as it could be typed again: `python -m MODULE`, or a program without its directory.
+
+    Of absolute paths only the names are kept: they are this machine's.
+    """
+    arguments = [Path(word).name if Path(word).is_absolute() else word for word in sys.argv[1:]]
     module = sys.modules["__main__"].__spec__  # None of scripts, such as pip's for an entry point
     if module is None:
-        return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
-    return shlex.join(["python", "-m", module.name.removesuffix(".__main__"), *sys.argv[1:]])
+        return shlex.join([Path(sys.argv[0]).name, *arguments])
+    return shlex.join(["python", "-m", module.name.removesuffix(".__main__"), *arguments])
 
 
 def provenance() -> dict[str, object]:

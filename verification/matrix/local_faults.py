@@ -23,7 +23,7 @@ from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.budget import Budget
 from refimpl.solution import bounds, energy_norm, influence_error, solution
-from refimpl.solution.solution import Solved
+from refimpl.solution.solved import Solved
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, noise_lattice, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness

@@ -13,7 +13,8 @@ from refimpl.accuracy.iteration_error import iteration_parts, merged
 from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.model.certificate import Certificate
 from refimpl.model.forces import Forces
-from refimpl.solution.solution import REPORTED, total_cost
+from refimpl.solution.cost import total_cost
+from refimpl.solution.solution import REPORTED
 from tests.refimpl.states import state_of
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)

@@ -1,4 +1,4 @@
-"""What a solution hands over: errors by name, patches, arrays, texts at a prompt."""
+"""Errors by name, patches, arrays and texts at a prompt of a solution."""
 
 from __future__ import annotations
 

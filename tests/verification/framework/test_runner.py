@@ -144,6 +144,8 @@ def test_the_command_names_no_directory(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
     monkeypatch.setattr(sys, "argv", ["/some/where/rough-friction", "verify", "--only", "hertz/*"])
     assert provenance.command() == "rough-friction verify --only 'hertz/*'"
+    monkeypatch.setattr(sys, "argv", ["verify", "--json", "/some/where/out.json", "--map", "maps/a.x3p"])
+    assert provenance.command() == "verify --json out.json --map maps/a.x3p"
 
 
 @pytest.mark.parametrize("module", ["verification.matrix", "verification.coverage.priors"])

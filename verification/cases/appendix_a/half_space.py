@@ -13,7 +13,14 @@ from refimpl.model.materials import Material
 from refimpl.solution.influence_error import coefficient_error
 from refimpl.solution.influence_error_3d import element_error
 from verification.cases.appendix_a import finite_strain, solid_half_space
-from verification.cases.appendix_a.undeformed_study import JUDGED_ON, Judged, Profiles, drawn, judged
+from verification.cases.appendix_a.undeformed_study import (
+    JUDGED_ON,
+    WARNED_ON,
+    Judged,
+    Profiles,
+    drawn,
+    judged,
+)
 from verification.framework.case import Measured
 from verification.framework.registry import case
 
@@ -24,9 +31,9 @@ TAGS = ("appendix", "model form", "half-space")
 
 
 @cache
-def _plane() -> list[Judged]:
+def _plane(seed: int = JUDGED_ON) -> list[Judged]:
     found = []
-    for profiles in drawn(JUDGED_ON, COUNT):
+    for profiles in drawn(seed, COUNT):
         try:
             found.append(judged(profiles))
         except NotConverged:
@@ -67,7 +74,8 @@ def _scatter(contacts: list[Judged] | list[solid_half_space.SolidJudged]) -> dic
     source=SOURCE,
     metric="at_most",
     tolerance=0.1,
-    tolerance_reason="share of contacts where the true error is larger: what a 90 % statement allows",
+    tolerance_reason="share of contacts where the true error is larger, or the finite elements did not end: "
+    "what a 90 % statement allows",
     tier="full",
     tags=TAGS,
 )
@@ -76,8 +84,12 @@ def plane() -> Measured:
     rates = _rates(contacts)
     data = _scatter(contacts) | {"holds in, median of stated over true": rates}
     data |= {"slope (degrees)": [c.slope_deg for c in contacts], "kind": [c.kind for c in contacts]}
+    lost = COUNT - len(contacts)
     note = ", ".join(f"{q} {100 * holds:.0f} %, median {m:.1f} times" for q, (holds, m) in rates.items())
-    return Measured(1 - min(holds for holds, _ in rates.values()), data=data, note=note)
+    worst = min(holds for holds, _ in rates.values())
+    return Measured(
+        1 - worst * (1 - lost / COUNT), data=data, note=f"{note}; {lost} of {COUNT} without an end"
+    )
 
 
 @case(
@@ -99,7 +111,8 @@ def sharpness() -> Measured:
 @case(
     "model-form/half-space-warned",
     title="No contact whose N is off by more than 5 % goes without a warning",
-    claim="Every plane and every three-dimensional contact with N off by more than 5 % has the warning",
+    claim="Every plane contact of a seed that nothing was built on, and every three-dimensional contact, "
+    "with N off by more than 5 % has the warning",
     source=SOURCE,
     metric="at_most",
     tolerance=0.0,
@@ -108,7 +121,7 @@ def sharpness() -> Measured:
     tags=TAGS,
 )
 def warned() -> Measured:
-    contacts: list[Judged | solid_half_space.SolidJudged] = [*_plane(), *_space()]
+    contacts: list[Judged | solid_half_space.SolidJudged] = [*_plane(WARNED_ON), *_space()]
     off = [c for c in contacts if abs(c.true["normal_force"]) > 0.05]
     missed = [c for c in off if not c.warned]
     needless = [c for c in contacts if c.warned and abs(c.true["normal_force"]) < 0.02]

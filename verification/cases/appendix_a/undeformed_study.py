@@ -2,7 +2,7 @@
 
 A contact is drawn from a seed: slopes from 1 to 20 degrees, crest on crest, crest on a flat, flanks that
 climb and descend, and profiles of three waves; pairs from equal to rigid on soft. One seed served to build
-the estimate of `refimpl.solution.model_form`, another judges it.
+the estimate of `refimpl.solution.model_form`, others judge it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ from refimpl.sensitivities.half_space import half_space_error
 from refimpl.solution.model_form import FINITE_STRAIN, SECOND_ORDER, steepness
 
 Array = NDArray[np.float64]
-BUILT_FROM, JUDGED_ON = 39, 40  # seeds
+BUILT_FROM, JUDGED_ON, WARNED_ON = 39, 40, 41
+"""Seeds: of the constants; of the statements' judgement; of the warning's, whose rest was set after a look at
+the second."""
 KINDS = ("crest on crest", "crest on flat", "flank", "three waves")
 ZONE = 0.45  # half-width of the meshed zone, in wavelengths
 LEVELS = (0, 1)  # uniform refinements

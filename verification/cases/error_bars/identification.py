@@ -35,7 +35,7 @@ def _coverage(seeds: range) -> Measured:
     "identification/twins",
     title="95 % intervals of tau, beta and a new load's mu, in random twins",
     claim="The intervals cover the truth, and the warning stands in every twin whose tau is not determined.",
-    source="issue of the project; coverage as in ASME V&V 20 (2009)",
+    source="twins whose friction is known; coverage as in ASME V&V 20 (2009)",
     metric="at_least",
     tolerance=LEVEL,
     tolerance_reason="95 %, less what 300 twins scatter by (two standard deviations: 2.5 %) and rounding",

@@ -1,0 +1,75 @@
+"""Warnings of an identification: what is not determined, what is unlikely, what the model neglects."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from refimpl.identification.design import MAX_BORDER
+from refimpl.identification.forward import COVERAGE, Response
+from refimpl.identification.laws import DECISIVE
+from refimpl.identification.result import Identification
+
+OUTLIER = 3.0  # residual in standard uncertainties
+_UNLIKELY = 0.01  # probability of a chi-square as large, below which the model or the data are doubted
+
+
+def remarks(result: Identification) -> tuple[str, ...]:
+    """Return the warnings, the most important first."""
+    responses = result.fitted.responses
+    return (*_determined(result), *_residuals(result), *_model(result), *_law(result), *_limits(responses))
+
+
+def _determined(result: Identification) -> Iterator[str]:
+    tau, combination = result.values["tau"], result.combination
+    if result.is_identified:
+        return
+    width = f"+-{100 * tau.relative:.0f} %" if math.isfinite(tau.relative) else "unbounded"
+    text = (
+        f"tau is not determined apart from beta (95 % interval {width}): A/P hardly changes; "
+        f"the data determine {result.factor:.3g}/Pa tau + beta = {combination.value:.4g} "
+        f"({combination.low:.4g} to {combination.high:.4g})"
+    )
+    if result.proposal is not None:
+        loads = " and ".join(f"{load:.3g} N" for load in result.proposal.loads)
+        text += f"; measure at {loads}: tau's interval falls to +-{100 * result.proposal.widths[0]:.0f} %"
+    yield text + "; a curved surface changes A/P more than flat rough planes do"
+
+
+def _residuals(result: Identification) -> Iterator[str]:
+    if result.degrees and result.probability < _UNLIKELY:
+        yield (
+            f"chi-square {result.chi_square:.3g} of {result.degrees} degrees of freedom has probability "
+            f"{result.probability:.1g}: surfaces, law or uncertainties are wrong, intervals too short"
+        )
+    for k, residual in enumerate(result.residuals):
+        if abs(residual) > OUTLIER:
+            load = result.rows[k].load
+            yield f"row {k + 1} ({load:.4g} N) is off by {residual:+.1f} standard uncertainties"
+
+
+def _model(result: Identification) -> Iterator[str]:
+    responses, measured = result.fitted.responses, np.array([row.u_mu for row in result.rows])
+    bars = np.array([math.hypot(r.numerical, r.contact_edge) / COVERAGE for r in responses])
+    if (wide := int(np.sum(bars > measured))) > 0:
+        yield f"error bars of the model exceed the data's uncertainty in {wide} rows: take a finer grid"
+    if any(response.border > MAX_BORDER for response in responses):
+        yield "contact reaches the domain's border: mu of a larger domain differs"
+    if (most := max(response.plastic for response in responses)) > 0:
+        yield f"up to {100 * most:.0f} % of the contact is at the hardness: A/P changes little there"
+
+
+def _law(result: Identification) -> Iterator[str]:
+    best = result.laws[0]
+    linear = next(law for law in result.laws if law.name == "tau + beta f")
+    if math.isfinite(linear.aicc) and linear.aicc - best.aicc > DECISIVE:
+        yield f"the law {best.name} describes the data better (AICc lower by {linear.aicc - best.aicc:.1f})"
+
+
+def _limits(responses: Sequence[Response]) -> list[str]:
+    """Warnings of the solves, one of each kind: texts that differ in their numbers alone are one."""
+    kinds = {re.sub(r"[\d.]+", "", text): text for response in responses for text in response.warnings}
+    return list(kinds.values())

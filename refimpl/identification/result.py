@@ -1,0 +1,76 @@
+"""Result of an identification: values with intervals, parts of the uncertainty, predictions, laws."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from refimpl.grid import Array
+from refimpl.identification.data_table import Row
+from refimpl.identification.design import Proposal
+from refimpl.identification.fit import Fit
+from refimpl.identification.laws import Law
+
+WIDE = 0.2  # relative half-width of tau's interval from which the warning appears
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A value and its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def relative(self) -> float:
+        """Half of the interval over the value; infinite for a value of zero."""
+        return 0.5 * (self.high - self.low) / self.value if self.value > 0 else math.inf
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Predicted mu at a load (N), with its 95 % interval."""
+
+    load: float
+    mu: Interval
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """Result of `identify`.
+
+    values : "tau" (Pa) and "beta" with their intervals; covariance : (2, 2), of tau and beta without bounds
+    shares : standard uncertainties of tau and of beta by source
+    method : "ellipse", or "profile likelihood" where a bound cuts the interval
+    combination : ``k tau + beta``, what the data determine best; ``factor`` is k (1/Pa), near A / P
+    predictions : at the measured loads, then at the new ones
+    chi_square, degrees, probability : of the residuals; ``residuals`` in standard uncertainties
+    laws : compared by AICc; proposal : further loads, where tau is not determined
+    solves, passes : forward solves, and how often all rows were linearised
+    """
+
+    rows: tuple[Row, ...]
+    values: Mapping[str, Interval]
+    covariance: Array
+    shares: Mapping[str, tuple[float, float]]
+    method: str
+    factor: float
+    combination: Interval
+    predictions: tuple[Prediction, ...]
+    residuals: tuple[float, ...]
+    chi_square: float
+    degrees: int
+    probability: float
+    laws: tuple[Law, ...]
+    proposal: Proposal | None
+    warnings: tuple[str, ...]
+    solves: int
+    passes: int
+    fitted: Fit = field(repr=False)
+
+    @property
+    def is_identified(self) -> bool:
+        """False where tau's interval is too wide to be used apart from beta's."""
+        return self.values["tau"].relative <= WIDE
