@@ -1,0 +1,183 @@
+"""Random scenes by class for the study of error bars: isotropic roughness, lays, grooves, maps, caps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.errors import InputError
+from refimpl.grid import Array
+from refimpl.model.materials import Pair
+
+SIDE, RMS = 1e-3, 1e-7  # m
+
+
+@dataclass(frozen=True)
+class Wave(rf.Surface):
+    """``amplitude cos(2 pi n c / length + phase)`` along one axis: grooves (m)."""
+
+    amplitude: float
+    number: int
+    phase: float
+    axis: int
+    kind = "wave"
+
+    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
+        c, length = (grid.x, grid.y)[self.axis] + offset[self.axis], grid.lengths[self.axis]
+        z = self.amplitude * np.cos(2 * math.pi * self.number * c / length + self.phase)
+        return np.broadcast_to(z[:, None] if self.axis == 0 else z[None, :], grid.shape).copy()
+
+
+class _Draw:
+    """The random choices of a scene that its class does not make."""
+
+    def __init__(self, kind: str, seed: int) -> None:
+        self.rng = np.random.default_rng([38, *kind.encode(), seed])
+        self.seed = int(self.rng.integers(2**31))
+        self.periodic, ratio = bool(self.rng.integers(2)), self.rng.choice([1.0, self.log(1.0, 3.0)])
+        self.size = (SIDE, SIDE / ratio) if self.rng.integers(2) else (SIDE / ratio, SIDE)
+        self.lower, self.upper = (
+            rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49))) for _ in range(2)
+        )
+        self.modulus = Pair(lower=self.lower, upper=self.upper).reduced_modulus
+        self.direction = float(self.rng.uniform(0, 2 * math.pi))
+
+    def log(self, low: float, high: float) -> float:
+        return math.exp(self.rng.uniform(math.log(low), math.log(high)))
+
+    def lengths(self) -> tuple[float, float]:
+        """Correlation lengths of a lay, three to ten to one within the shorter side."""
+        side = min(self.size)
+        across = side * self.log(0.05, 0.15)
+        return min(across * self.log(3, 10), 0.9 * side), across
+
+
+Kind = Callable[[_Draw], rf.Surface]
+
+
+def _isotropic(draw: _Draw) -> rf.Surface:
+    return rf.GaussianRoughness(RMS, min(draw.size) * draw.log(0.05, 0.25), draw.seed)
+
+
+def _along(draw: _Draw) -> rf.Surface:
+    draw.direction = float(draw.rng.integers(4)) * math.pi / 2
+    return rf.GaussianRoughness(RMS, draw.lengths(), draw.seed, lay=draw.direction % math.pi)
+
+
+def _across(draw: _Draw) -> rf.Surface:
+    draw.direction = float(draw.rng.integers(4)) * math.pi / 2
+    return rf.GaussianRoughness(RMS, draw.lengths(), draw.seed, lay=(draw.direction + math.pi / 2) % math.pi)
+
+
+def _oblique(draw: _Draw) -> rf.Surface:
+    return rf.GaussianRoughness(
+        RMS, draw.lengths(), draw.seed, lay=math.radians(float(draw.rng.uniform(12, 78)))
+    )
+
+
+def _grooves(draw: _Draw) -> rf.Surface:
+    phase = float(draw.rng.uniform(0, 2 * math.pi))
+    return Wave(RMS, int(draw.rng.integers(1, 5)), phase, int(draw.rng.integers(2)))
+
+
+def _self_affine(draw: _Draw) -> rf.Surface:
+    roll_off = min(draw.size) * draw.log(0.15, 0.4)
+    return rf.SelfAffineRoughness(
+        hurst=float(draw.rng.uniform(0.5, 1.0)),
+        rms=RMS,
+        roll_off=roll_off,
+        long_cut=roll_off * draw.log(1.0, 2.0),
+        short_cut=roll_off / draw.log(4, 10),
+        seed=draw.seed,
+    )
+
+
+CLASSES: dict[str, Kind] = {
+    "isotropic": _isotropic,
+    "lay along sliding": _along,
+    "lay across sliding": _across,
+    "lay oblique to the grid": _oblique,
+    "grooves": _grooves,
+    "self-affine": _self_affine,
+    "capped": _isotropic,
+}
+
+
+MEASURED = "windows of a measured map"
+WHOLE = 256  # points of a window that is decimated
+
+
+def read_heights(path: Path) -> Array:
+    """Return the heights of a measured surface at its own points (m)."""
+    surface = rf.MeasuredSurface(path)
+    lengths = surface.extent((0.0, 0.0))
+    pitch = surface.pitch(lengths) if lengths else None
+    if lengths is None or pitch is None:
+        raise InputError("--map", str(path), "a measured surface with an end")
+    shape = round(lengths[0] / pitch), round(lengths[1] / pitch)
+    return surface.sample(rf.Grid(shape, lengths))
+
+
+def windows_of(heights: Array, *, whole: bool = False) -> Kind:
+    """Return the class of random square windows of a measured map, at one rms height: 100 to 300 points, or
+    `WHOLE`."""
+
+    def window(draw: _Draw) -> rf.Surface:
+        points = WHOLE if whole else min(int(draw.rng.integers(100, 301)), *heights.shape)
+        i, j = (int(draw.rng.integers(length - points + 1)) for length in heights.shape)
+        z = heights[i : i + points, j : j + points]
+        draw.size, draw.periodic = (SIDE, SIDE), False
+        return rf.ArraySurface(RMS * (z - z.mean()) / z.std())
+
+    return window
+
+
+DECIMATED = "decimated maps"
+
+
+def decimated(one: rf.Scene, seed: int) -> tuple[rf.Scene, int]:
+    """Return the scene with every second or fourth point of its map, and a grid of two elements a point."""
+    step = (2, 4)[seed % 2]
+    z = one.lower.surface.parts[0].sample(one.grid(WHOLE))[::step, ::step]
+    return replace(one, lower=rf.Body(one.lower.material, rf.ArraySurface(z))), 2 * len(z)
+
+
+def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Scene:
+    """Return the scene of a seed: its class's roughness on a flat, or under a ball where it is free."""
+    draw = _Draw(kind, seed)
+    surface = classes[kind](draw)
+    probe = rf.Scene(
+        upper=rf.Body(draw.upper, rf.Flat()),
+        lower=rf.Body(draw.lower, surface),
+        friction=rf.Friction(),
+        load=1.0,
+        size=draw.size,
+        periodic=draw.periodic,
+    )
+    grid = probe.grid(128)
+    slope = math.sqrt(sum(float(np.mean(g**2)) for g in grid.gradient(surface.sample(grid))))
+    height = float(np.std(surface.sample(grid)))
+    if draw.periodic:
+        pressed = 0.5 * draw.modulus * slope  # in contact, by Bush et al. 1975
+        share = draw.log(0.05, 0.6)
+        return _with_friction(draw, kind, probe, share * pressed * SIDE * min(draw.size), pressed)
+    a = min(draw.size) * draw.log(0.1, 0.3)
+    R = a**2 / (height * draw.log(1.5, 30))
+    load = 4 * draw.modulus * a**3 / (3 * R)
+    pressed = max(load / (math.pi * a**2), 0.5 * draw.modulus * slope)
+    ball = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(R)))
+    return _with_friction(draw, kind, ball, load, pressed)
+
+
+def _with_friction(draw: _Draw, kind: str, base: rf.Scene, load: float, pressed: float) -> rf.Scene:
+    friction = rf.Friction(tau=pressed * draw.log(0.01, 0.3), beta=draw.log(0.01, 0.3))
+    lower = base.lower
+    if kind == "capped":
+        H = max(pressed * draw.log(0.7, 3), 2 * load / (base.lengths[0] * base.lengths[1]))
+        lower = rf.Body(replace(lower.material, hardness=H), lower.surface)
+    return replace(base, lower=lower, friction=friction, load=load, sliding_direction=draw.direction)
