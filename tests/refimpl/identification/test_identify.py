@@ -50,6 +50,21 @@ def test_exact_data_give_the_parameters_back(smooth: rf.Scene) -> None:
     assert found.solves <= 7 * len(LOADS)
 
 
+def test_a_fit_without_a_first_guess_converges_where_pressures_are_far_below_the_modulus() -> None:
+    """A first guess of tau above the pressures of 1 mN shears all contact off: no solve converges there."""
+    soft = rf.Material(E=3e9, nu=0.2)
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(0.1)),
+        lower=rf.Body(soft, rf.Flat()),
+        friction=rf.Friction(tau=1e6, beta=0.1),
+        load=1.0,
+        side=1e-3,
+    )
+    found = identify(_blind(scene), _rows(scene, 0.01, (0.001, 0.01, 0.1, 1.0)), M, design=False)
+    assert found.values["tau"].value == pytest.approx(1e6, rel=1e-3)
+    assert found.values["beta"].value == pytest.approx(0.1, rel=1e-2)
+
+
 def test_slopes_are_those_of_finite_differences(smooth: rf.Scene) -> None:
     scene = replace(smooth, sliding_direction=0.3)
     solution = rf.solve(scene, M, tolerance=1e-11)

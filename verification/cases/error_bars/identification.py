@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,8 @@ import refimpl as rf
 from refimpl.identification import Identification, Row, identify
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
-from verification.coverage.identification import FIT_GRID, KINDS, LEVEL, SEEDS, study, summary
+from verification.coverage.identification import LEVEL, SETS, study, summary
+from verification.coverage.twins import KINDS, SHARP_FIT_GRID, Twin, sharp_twin, twin
 from verification.framework.case import Measured
 from verification.framework.registry import case
 
@@ -19,15 +21,15 @@ OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
 
 
-def _coverage(seeds: range) -> Measured:
-    found = summary(study(seeds))
+def _coverage(make: Callable[[int], Twin], seeds: range) -> Measured:
+    found = summary(study(make, seeds))
     coverage = found["coverage"]
     assert isinstance(coverage, dict)
     least = min(coverage[name] for name in NUMBERS)
     wrong = int(str(found["wide_without_warning"])) + int(str(found["narrow_with_warning"]))
     failed = int(str(found["failures"]))
     value = 0.0 if wrong or failed else least
-    note = f"{len(seeds)} twins on {FIT_GRID} elements a side; {wrong} warnings wrong, {failed} not solved"
+    note = f"{len(seeds)} twins, {found['narrow']} narrow; {wrong} warnings wrong, {failed} not solved"
     return Measured(value=value, data=found, note=note)
 
 
@@ -43,7 +45,7 @@ def _coverage(seeds: range) -> Measured:
     tags=("identification",),
 )
 def twins() -> Measured:
-    return _coverage(SEEDS)
+    return _coverage(twin, SETS["drawn"].seeds)
 
 
 @case(
@@ -57,7 +59,25 @@ def twins() -> Measured:
     tags=("identification",),
 )
 def twins_sample() -> Measured:
-    return _coverage(range(SEEDS.stop, SEEDS.stop + len(KINDS)))
+    stop = SETS["drawn"].seeds.stop
+    return _coverage(twin, range(stop, stop + len(KINDS)))
+
+
+@case(
+    "identification/sharp-twins",
+    title="95 % intervals of tau below 5 %, without a warning",
+    claim="Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
+    f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is known "
+    "within 5 % has the warning.",
+    source="as identification/twins, other seeds",
+    metric="at_least",
+    tolerance=0.88,
+    tolerance_reason="95 %, less two standard deviations of 60 twins (5.6 %) and rounding",
+    tier="full",
+    tags=("identification",),
+)
+def sharp_twins() -> Measured:
+    return _coverage(sharp_twin, SETS["sharp"].seeds)
 
 
 @case(
