@@ -12,6 +12,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
 from refimpl.identification.forward import COVERAGE, Forward, Response
+from refimpl.identification.profile import BOUNDED
 from refimpl.scene.scene import Scene
 
 FACTORS = 0.1, 0.3, 3.0, 10.0  # trial loads over the least and the greatest measured load
@@ -58,8 +59,8 @@ def propose(
                 slopes = np.array(response.slopes)
                 spread = np.hypot(relative * response.predict(theta), response.numerical / COVERAGE)
                 information = information + np.outer(slopes, slopes) / spread**2
-            half = COVERAGE * np.sqrt(np.diag(np.linalg.inv(information)))
-            tau, beta = (h / t if t > 0 else np.inf for h, t in zip(half, theta, strict=True))
+            half = COVERAGE * np.sqrt(np.diag(np.linalg.inv(information)))[:BOUNDED]
+            tau, beta = (h / t if t > 0 else np.inf for h, t in zip(half, theta[:BOUNDED], strict=True))
             proposals.append(
                 (half[0], Proposal(tuple(load for load, _ in chosen), (float(tau), float(beta))))
             )

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from refimpl.identification import Identification, identify
-from verification.coverage.twins import Twin, blind, sharp_twin, twin
+from verification.coverage.twins import Twin, blind, ensemble_twin, sharp_twin, twin, yielding_twin
 from verification.framework.case import jsonable
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
@@ -28,22 +28,37 @@ DIGITS = 5  # significant, of the numbers in the result file
 
 @dataclass(frozen=True)
 class TwinSet:
-    """A set of twins: its seeds, and the function that makes the twin of a seed."""
+    """A set of twins: its seeds, and the function that makes the twin of a seed.
+
+    fit : parameters fitted beside tau and beta; realisations : draws of a surface known by its statistics
+    """
 
     seeds: range
     make: Callable[[int], Twin]
+    fit: tuple[str, ...] = ()
+    realisations: int = 1
 
 
 SETS: Mapping[str, TwinSet] = {
     "drawn": TwinSet(range(5000, 5300), twin),
     "sharp": TwinSet(range(6000, 6060), sharp_twin),
+    "hardness": TwinSet(range(7000, 7048), yielding_twin, ("hardness",)),
+    "roughness": TwinSet(range(8000, 8040), ensemble_twin, ("roughness",), realisations=5),
 }
 
 
-def judged(make: Callable[[int], Twin], seed: int) -> dict[str, object]:
+def judged(twins: TwinSet, seed: int) -> dict[str, object]:
     """Return the result of the fit of one twin, beside the truth."""
-    case = make(seed)
-    found = identify(blind(case.scene), case.rows, case.grid, loads=(case.new_load,), design=False)
+    case = twins.make(seed)
+    found = identify(
+        blind(case.scene),
+        case.rows,
+        case.grid,
+        loads=(case.new_load,),
+        fit=twins.fit,
+        realisations=twins.realisations,
+        design=False,
+    )
     tau, beta, mu = found.values["tau"], found.values["beta"], found.predictions[-1].mu
     truth = case.scene.friction
     measured = found.shares["measurement"]
@@ -61,6 +76,19 @@ def judged(make: Callable[[int], Twin], seed: int) -> dict[str, object]:
         "measurement_share": measured[0] / math.sqrt(found.covariance[0, 0]),
         "warned": _warns(found),
         "solves": found.solves,
+        **_further(found, case.further),
+    }
+
+
+def _further(found: Identification, truth: float | None) -> dict[str, object]:
+    """Error and coverage of the parameter fitted beside tau and beta, if there is one."""
+    if truth is None:
+        return {}
+    one = list(found.values.values())[-1]
+    return {
+        "further": one.low <= truth <= one.high,
+        "further_half_width": 0.5 * (one.high - one.low) / one.value,
+        "further_error": one.value / truth - 1,
     }
 
 
@@ -85,7 +113,7 @@ def summary(twins: Iterable[Mapping[str, object]]) -> dict[str, object]:
     def number(row: Mapping[str, object], name: str) -> float:
         return math.inf if row[name] is None else float(str(row[name]))
 
-    names = ("tau", "beta", "mu")
+    names = ["tau", "beta", "mu"] + ["further"] * any("further" in row for row in solved)
     widths = [number(row, "tau_half_width") for row in solved]
     warned = [bool(row["warned"]) for row in solved]
     return {
@@ -108,19 +136,19 @@ def summary(twins: Iterable[Mapping[str, object]]) -> dict[str, object]:
 
 
 def study(
-    make: Callable[[int], Twin], seeds: Iterable[int], log: Path | None = None
+    twins: TwinSet, log: Path | None = None, seeds: Iterable[int] | None = None
 ) -> list[dict[str, object]]:
-    """Return the twins of all seeds; one without a converged solve holds its message.
+    """Return the twins of all seeds, or of others; one without a converged solve holds its message.
 
     ``log`` keeps finished twins, a line each: the study goes on where it was.
     """
-    seeds = list(seeds)
+    seeds = list(twins.seeds if seeds is None else seeds)
     found = [json.loads(line) for line in log.read_text().splitlines()] if log and log.exists() else []
     found = [row for row in found if row["seed"] in seeds]
     line = Progress(len(seeds) - len(found))
     for seed in sorted(set(seeds) - {row["seed"] for row in found}):
         try:
-            found.append(judged(make, seed))
+            found.append(judged(twins, seed))
         except ArithmeticError as failure:
             found.append({"seed": seed, "failure": str(failure)})
         if log is not None:
@@ -152,7 +180,7 @@ def main() -> None:
     options = parser.parse_args()
     document: dict[str, object] = {}
     for name in options.sets:
-        twins = study(SETS[name].make, SETS[name].seeds, options.log)
+        twins = study(SETS[name], options.log)
         document[name] = {"summary": summary(twins), "twins": [shortened(row) for row in twins]}
         print(name, summary(twins))
     write_result(document | {"provenance": provenance()}, options.json)

@@ -21,13 +21,18 @@ SIDE = 1e-3  # m; the problem is scale-free
 FIT_GRID, TRUE_GRID = 48, 128
 SHARP_FIT_GRID, SHARP_TRUE_GRID = 192, 512  # the smallest load's contact is a tenth of the largest one's
 SHARP_NOISE = 0.005
+YIELDING_FIT_GRID, YIELDING_TRUE_GRID = 96, 256
+ENSEMBLE_FIT_GRID, ENSEMBLE_TRUE_GRID = 96, 256
 
 Log = Callable[[float, float], float]
 
 
 @dataclass(frozen=True, eq=False)
 class Twin:
-    """A scene with its true friction, rows with noise, a new load (N) and its true mu; the grid of a fit."""
+    """A scene with its true friction, rows with noise, a new load (N) and its true mu; the grid of a fit.
+
+    ``further`` is the true value of a parameter that is fitted too: then the scene's is a first guess.
+    """
 
     kind: str
     scene: rf.Scene
@@ -36,6 +41,7 @@ class Twin:
     new_mu: float
     noise: float
     grid: int
+    further: float | None = None
 
 
 def twin(seed: int) -> Twin:
@@ -78,6 +84,67 @@ def sharp_twin(seed: int) -> Twin:
     rows = _measured(scene, loads, SHARP_NOISE, SHARP_TRUE_GRID, rng)
     new_mu = true_friction(scene, new_load, SHARP_TRUE_GRID)
     return Twin(kind, scene, rows, new_load, new_mu, SHARP_NOISE, SHARP_FIT_GRID)
+
+
+def yielding_twin(seed: int) -> Twin:
+    """Return a twin whose hardness is fitted too: a ball, smooth or rough, that yields at its larger loads.
+
+    Seven to twelve loads over a factor of 30 to 200, noise 0.3 to 1 %. The scene's hardness, the first guess
+    of a fit, is off by up to 40 %.
+    """
+    rng = np.random.default_rng([44, seed])
+    log = _log_uniform(rng)
+    kind = ("yielding ball", "yielding rough ball")[seed % 2]
+    lower, upper, modulus = _materials(log)
+    R, a = SIDE * log(5, 100), SIDE * log(0.2, 0.25)
+    load, pressure = _hertz(modulus, R, a)
+    rms, length = a**2 / R * log(0.005, 0.03), SIDE * log(0.1, 0.3)
+    rough = rf.GaussianRoughness(rms, length, 2 * seed) if "rough" in kind else rf.Flat()
+    hardness = pressure * log(0.6, 1.0)
+    scene = rf.Scene(
+        upper=rf.Body(upper, rf.Sphere(R)),
+        lower=rf.Body(replace(lower, hardness=hardness), rough),
+        friction=rf.Friction(tau=pressure * log(0.05, 0.3), beta=log(0.02, 0.2)),
+        load=load,
+        side=SIDE,
+    )
+    span, count, noise = log(30, 200), int(rng.integers(7, 13)), log(0.003, 0.01)
+    loads = [float(one) for one in np.geomspace(load / span, load, count)]
+    new_load = load * log(1 / span, 1.1)
+    rows = _measured(scene, loads, noise, YIELDING_TRUE_GRID, rng)
+    new_mu = true_friction(scene, new_load, YIELDING_TRUE_GRID)
+    guess = hardness * log(0.7, 1.4)
+    guessed = replace(scene, lower=rf.Body(replace(lower, hardness=guess), rough))
+    return Twin(kind, guessed, rows, new_load, new_mu, noise, YIELDING_FIT_GRID, hardness)
+
+
+def ensemble_twin(seed: int) -> Twin:
+    """Return a twin whose rough ball is known by its statistics alone, but for the height, which is fitted.
+
+    Its friction is of one realisation that no fit draws. Eight to twelve loads over a factor of 100 to 300,
+    noise 0.5 to 2 %; the scene's rms, the first guess of a fit, is off by up to 30 %.
+    """
+    rng = np.random.default_rng([45, seed])
+    log = _log_uniform(rng)
+    lower, upper, modulus = _materials(log)
+    R, a = SIDE * log(5, 100), SIDE * log(0.3, 0.35)
+    load, pressure = _hertz(modulus, R, a)
+    rms, length = a**2 / R * log(0.03, 0.1), SIDE * log(0.05, 0.1)
+    scene = rf.Scene(
+        upper=rf.Body(upper, rf.Sphere(R)),
+        lower=rf.Body(lower, rf.GaussianRoughness(rms, length, 2 * seed)),
+        friction=rf.Friction(tau=pressure * log(0.05, 0.3), beta=log(0.02, 0.2)),
+        load=load,
+        side=SIDE,
+    )
+    span, count, noise = log(100, 300), int(rng.integers(8, 13)), log(0.005, 0.02)
+    loads = [float(one) for one in np.geomspace(load / span, load, count)]
+    new_load = load * log(1 / span, 1.1)
+    rows = _measured(scene, loads, noise, ENSEMBLE_TRUE_GRID, rng)
+    new_mu = true_friction(scene, new_load, ENSEMBLE_TRUE_GRID)
+    drawn = rf.GaussianRoughness(rms * log(0.77, 1.3), length, 2 * seed + 1)
+    guessed = replace(scene, lower=rf.Body(lower, drawn))
+    return Twin("rough ball, drawn anew", guessed, rows, new_load, new_mu, noise, ENSEMBLE_FIT_GRID, rms)
 
 
 def _log_uniform(rng: np.random.Generator) -> Log:

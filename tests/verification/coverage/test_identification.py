@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from verification.coverage.identification import SETS, judged, study, summary
+from verification.coverage.identification import SETS, TwinSet, judged, study, summary
 from verification.coverage.twins import SHARP_NOISE, Twin, sharp_twin, twin
 
 ROW: dict[str, object] = {
@@ -65,9 +65,11 @@ def test_a_twin_without_a_converged_solve_counts_as_a_failure() -> None:
     def impossible(seed: int) -> Twin:
         raise ArithmeticError(f"the solve of {seed} ended as stagnated")
 
-    assert study(impossible, [3]) == [{"seed": 3, "failure": "the solve of 3 ended as stagnated"}]
+    assert study(TwinSet(range(3, 4), impossible)) == [
+        {"seed": 3, "failure": "the solve of 3 ended as stagnated"}
+    ]
 
 
 def test_a_fit_of_a_twin_covers_its_truth() -> None:
-    found = judged(twin, 5009)
+    found = judged(SETS["drawn"], 5009)
     assert (found["tau"], found["beta"], found["mu"], found["warned"]) == (True, True, True, True)
