@@ -168,3 +168,58 @@ def test_friction_has_no_tolerance(smooth: rf.Scene) -> None:
         identify(smooth, _rows(smooth, 0.02), M, tolerances={"friction.tau": 0.1})
     with pytest.raises(InputError, match="realisations"):
         identify(smooth, _rows(smooth, 0.02), M, realisations=5)
+
+
+def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
+    return replace(
+        smooth, lower=replace(smooth.lower, material=rf.Material(E=118e9, nu=0.3, hardness=hardness))
+    )
+
+
+def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
+    """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
+    rows = _rows(_yielding(smooth, 100e6), 0.002, (2.0, 5.0, 10.0, 20.0, 40.0, 80.0), 64)
+    found = identify(_yielding(_blind(smooth), 130e6), rows, 64, fit=["hardness"], design=False)
+    hardness = found.values["lower.material.hardness"]
+    assert hardness.value == pytest.approx(100e6, rel=0.02)
+    assert found.values["tau"].value == pytest.approx(15e6, rel=0.02)
+    assert hardness.low < 100e6 < hardness.high
+    assert found.covariance.shape == (3, 3)
+    assert found.degrees == 3
+    assert all(len(part) == 3 for part in found.shares.values())
+
+
+def test_a_hardness_above_all_pressures_is_not_determined(smooth: rf.Scene) -> None:
+    scene = _yielding(smooth, 10e9)
+    with pytest.raises(ArithmeticError, match=r"mu depends on lower\.material\.hardness at no measured load"):
+        identify(scene, _rows(scene, 0.01), M, fit=["hardness"])
+
+
+def test_parameters_to_fit_are_checked(smooth: rf.Scene) -> None:
+    rows, both = _rows(smooth, 0.01), _yielding(smooth, 1e8)
+    both = replace(both, upper=replace(both.upper, material=both.lower.material))
+    for scene, names, message in (
+        (smooth, ["hardness"], "a scene with a hardness"),
+        (smooth, ["tau"], "one of hardness, roughness"),
+        (smooth, "hardness", "a list of names"),
+        (both, ["hardness"], "two hardnesses that differ"),
+        (_yielding(smooth, 1e8), ["hardness", "lower.material.hardness"], "each parameter once"),
+    ):
+        with pytest.raises(InputError, match=message):
+            identify(scene, rows, M, fit=names)
+    with pytest.raises(InputError, match="at least 3 different loads"):
+        identify(_yielding(smooth, 1e8), rows[:2], M, fit=["hardness"])
+    with pytest.raises(InputError, match="parameter that is fitted"):
+        identify(
+            _yielding(smooth, 1e8), rows, M, fit=["hardness"], tolerances={"lower.material.hardness": 0.1}
+        )
+
+
+def test_a_profile_with_a_free_third_parameter() -> None:
+    """Independent parameters, the third below zero: its interval ends there as well, tau's at its bound."""
+    profile = Profile(np.array([-1.0, 20.0, -3.0]), np.eye(3))
+    assert profile.optimum == pytest.approx([0.0, 20.0, -3.0])
+    assert profile.interval(np.array([0.0, 0.0, 1.0])) == pytest.approx((-4.959964, -1.040036), abs=1e-5)
+    assert profile.interval(np.array([1.0, 0.0, 0.0])) == pytest.approx((0.0, 4.841459**0.5 - 1), abs=1e-5)
+    # sum of the second and the third: 17 +- 1.96 sqrt(2)
+    assert profile.interval(np.array([0.0, 1.0, 1.0])) == pytest.approx((14.2282, 19.7718), abs=1e-3)
