@@ -17,13 +17,14 @@ from scipy.optimize import least_squares
 
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
+from refimpl.identification.ensemble import draws, mean_response, scatter
 from refimpl.identification.forward import COVERAGE, Forward, Response
 from refimpl.identification.profile import BOUNDED, Profile
 from refimpl.scene.scene import Scene
 
-MAX_PASSES, MAX_FURTHER_PASSES = 6, 8  # of tau and beta alone, and with further parameters
+MAX_PASSES, MAX_FURTHER_PASSES = 6, 8  # without further parameters, and with them
 _AGREED = 0.02  # standard uncertainties by which prediction and solve may differ at the end
-_FURTHER_AGREED = 0.1  # the same with further parameters: elements that yield or not change mu by steps
+_FURTHER_AGREED = 0.1  # with further parameters, likewise: elements that yield or not change mu by steps
 _FULL_STEPS = 4  # passes with further parameters after which steps are halved: such steps can alternate
 _CORRELATED = 0.5  # share of the bars' variance that all rows have in common: one grid, one surface
 _LONGEST = math.log(1.5)  # step of a further parameter's logarithm in one pass
@@ -35,6 +36,7 @@ class Fit:
     """A fit: ``theta`` (tau in Pa, beta, logarithms) within the bounds, ``free`` without them.
 
     responses : of the rows, linear about the last solves; passes : of solves over all rows
+    between : (rows, rows), covariance of friction by the choice of a realisation
     gain : (parameters, rows), change of ``free`` by a change of the measured mu
     residuals : measured less predicted mu over ``scale``, the standard uncertainty with bars
     nonlinearity : largest difference of prediction and solve, in standard uncertainties
@@ -44,6 +46,7 @@ class Fit:
     theta: Array
     free: Array
     responses: tuple[Response, ...]
+    between: Array
     gain: Array
     weights: Array
     predicted: Array
@@ -54,18 +57,22 @@ class Fit:
     limited: bool = False
 
 
-def fit_rows(rows: Sequence[Row], scenes: Sequence[Scene], forward: Forward, start: Array) -> Fit:
-    """Fit all parameters. Raises `InputError` and `ArithmeticError` as the solves do."""
+def fit_rows(
+    rows: Sequence[Row], scenes: Sequence[Scene], forward: Forward, start: Array, realisations: int = 1
+) -> Fit:
+    """Fit all parameters to the mean over realisations. Raises errors as the solves do."""
     theta, predicted, passes = start, None, 0
     most, agreed = (MAX_FURTHER_PASSES, _FURTHER_AGREED) if forward.further else (MAX_PASSES, _AGREED)
     while True:
         passes += 1
-        responses = tuple(forward.respond(scene, theta) for scene in scenes)
+        drawn = [draws(forward, scene, theta, realisations) for scene in scenes]
+        between = scatter(np.array([[one.mu for one in row] for row in drawn]).T)
+        responses = tuple(mean_response(row) for row in drawn)
         _check_slopes(responses, forward.further, theta)
         solved = np.array([response.predict(theta) for response in responses])
-        scale = np.sqrt(np.diag(data_covariance(rows, responses)))
+        scale = np.sqrt(np.diag(data_covariance(rows, responses, between)))
         away = np.inf if predicted is None else float(np.max(np.abs(solved - predicted) / scale))
-        found = linear_fit(rows, responses, away, passes)
+        found = linear_fit(rows, responses, between, away, passes)
         if (away < agreed and not found.limited) or passes == most:
             return found
         share = 0.5 if forward.further and passes >= _FULL_STEPS else 1.0
@@ -83,9 +90,9 @@ def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: 
             )
 
 
-def data_covariance(rows: Sequence[Row], responses: Sequence[Response]) -> Array:
-    """Return the covariance of measured less modelled mu: measurement, bars and contact edges."""
-    return np.asarray(np.diag([row.u_mu**2 for row in rows]) + sum(_bars(responses).values()))
+def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between: Array) -> Array:
+    """Return the covariance of measured less modelled mu: measurement, bars, contact edges, realisations."""
+    return np.asarray(np.diag([row.u_mu**2 for row in rows]) + sum(_bars(responses).values()) + between)
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
@@ -98,14 +105,17 @@ def _bars(responses: Sequence[Response]) -> dict[str, Array]:
     }
 
 
-def linear_fit(rows: Sequence[Row], responses: Sequence[Response], away: float, passes: int) -> Fit:
+def linear_fit(
+    rows: Sequence[Row], responses: Sequence[Response], between: Array, away: float, passes: int
+) -> Fit:
     """Fit the linear models of all rows by generalised least squares, within the bounds and without."""
     measured = np.array([row.mu for row in rows])
     slopes = np.array([response.slopes for response in responses])
     origin = np.array([0.0] * BOUNDED + list(responses[0].at[BOUNDED:]))
     at_origin = np.array([response.predict(origin) for response in responses])
     scale = max(float(np.max(np.abs(measured))), 1e-12) / np.max(np.abs(slopes), axis=0)
-    root = np.linalg.inv(np.linalg.cholesky(data_covariance(rows, responses)))
+    covariance = data_covariance(rows, responses, between)
+    root = np.linalg.inv(np.linalg.cholesky(covariance))
     design, wanted = root @ slopes * scale, root @ (measured - at_origin)
     normal = design.T @ design
     normal += _RIDGE * np.trace(normal) * np.eye(len(scale))
@@ -114,15 +124,15 @@ def linear_fit(rows: Sequence[Row], responses: Sequence[Response], away: float, 
     moved = _bounded(design, wanted, step / scale, scale) * scale
     predicted = at_origin + slopes @ moved
     misfit = root @ (measured - predicted)
-    spread = np.sqrt(np.diag(data_covariance(rows, responses)))
     return Fit(
         theta=origin + moved,
         free=origin + step,
         responses=tuple(responses),
+        between=between,
         gain=gain,
         weights=root.T @ root,
         predicted=predicted,
-        residuals=(measured - predicted) / spread,
+        residuals=(measured - predicted) / np.sqrt(np.diag(covariance)),
         chi_square=float(misfit @ misfit),
         nonlinearity=away,
         passes=passes,
@@ -149,9 +159,12 @@ def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
 def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float]]) -> dict[str, Array]:
     """Return the parts of the covariance of all parameters by source.
 
-    measurement, numerical, contact edge, and each toleranced input, which all rows share.
+    measurement, numerical, contact edge, realisations where there are several, and each toleranced input,
+    which all rows share.
     """
     parts = {"measurement": np.diag([row.u_mu**2 for row in rows]), **_bars(fitted.responses)}
+    if fitted.between.any():
+        parts["realisations"] = fitted.between
     for name in inputs[0] if inputs else ():
         change = np.array([row[name] for row in inputs]) / COVERAGE
         parts[f"input {name}"] = np.outer(change, change)

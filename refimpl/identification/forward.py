@@ -33,6 +33,7 @@ class Response:
     area_per_load : A / P (m^2/N); border, plastic : shares of the contact on the border, at the hardness
     pressures, weights : pressures (Pa) and ``cos cos dA / P`` (1/Pa) that stand for the contact
     solves : solves of the scene; warnings : the solution's
+    scatter : standard uncertainty of mu by the choice of a realisation, where this is a mean over several
     """
 
     at: tuple[float, ...]
@@ -48,6 +49,7 @@ class Response:
     weights: tuple[float, ...]
     solves: int
     warnings: tuple[str, ...]
+    scatter: float = 0.0
 
     def predict(self, theta: Array) -> float:
         """Return mu at other parameters, by the slopes."""

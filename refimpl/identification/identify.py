@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
-from scipy.stats import t as student
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row, check_rows
 from refimpl.identification.design import Proposal, propose, trial_responses
+from refimpl.identification.ensemble import MIN_REALISATIONS, draws, is_random, mean_response
 from refimpl.identification.fit import Fit, fit_rows, profile_of, shares
 from refimpl.identification.forward import COVERAGE, NAMES, Forward, Key, Memory, Response, floors
 from refimpl.identification.further import further_parameters
@@ -23,12 +22,9 @@ from refimpl.identification.profile import Profile
 from refimpl.identification.remarks import remarks
 from refimpl.identification.result import WIDE, Identification, Interval, Prediction
 from refimpl.scene.parameters import check_tolerances, parameters
-from refimpl.scene.scene import Body, Scene
-from refimpl.surfaces import SurfaceSum
+from refimpl.scene.scene import Scene
 
-MIN_REALISATIONS = 3
 _LARGEST = math.log(1e300)
-_SEED_STEP = 1000  # between realisations: far from the seeds of both bodies
 
 
 def identify(
@@ -56,7 +52,8 @@ def identify(
     fit : parameters that are fitted as well, from the scene's values: "hardness", "roughness", or a whole
         name such as "lower.surface[0].rms". Each takes two more solves a row
     tolerances : relative half-widths (95 %) of inputs, as in `refimpl.budget`; friction is none of them
-    realisations : solve that many draws of random surfaces (their seeds moved), where no map is measured
+    realisations : fit the mean over that many draws of random surfaces (their seeds moved), where no map is
+        measured; their scatter adds to the uncertainty of each row
     design : propose further loads where tau is not determined
     memory, key : keep solves by a key of scene and settings, so that a stopped fit goes on
     report : called with a line of text before each solve
@@ -70,13 +67,14 @@ def identify(
     fitted, parts = _fitted(scene, rows, forward, realisations, tolerances)
     covariance = np.asarray(sum(parts.values()))
     profile = profile_of(fitted, covariance)
-    fitted = replace(fitted, theta=profile.optimum) if realisations > 1 else fitted
     values = _values(fitted, profile, further)
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
     factor = _best_factor(covariance, np.mean([one.slopes for one in fitted.responses], axis=0))
     gradient = np.array([factor, 1.0] + [0.0] * len(further))
     combination = Interval(float(gradient @ fitted.theta), *profile.interval(gradient))
-    new = [forward.respond(replace(scene, load=load), fitted.theta) for load in loads]
+    new = [
+        mean_response(draws(forward, replace(scene, load=load), fitted.theta, realisations)) for load in loads
+    ]
     responses, at = (*fitted.responses, *new), (*(row.load for row in rows), *loads)
     predictions = tuple(
         _prediction(load, response, fitted.theta, profile)
@@ -84,7 +82,7 @@ def identify(
     )
     degrees = max(len(rows) - len(values), 0)
     wide = design and values["tau"].relative > WIDE
-    proposal = _proposal(scene, rows, forward, fitted, covariance) if wide else None
+    proposal = _proposal(scene, rows, forward, fitted, covariance, realisations) if wide else None
     result = Identification(
         rows=rows,
         values=values,
@@ -111,29 +109,19 @@ def identify(
 def _fitted(
     scene: Scene, rows: Sequence[Row], forward: Forward, realisations: int, tolerances: Mapping[str, float]
 ) -> tuple[Fit, dict[str, Array]]:
-    """The fit, of the mean over realisations if there are several, and the covariance by source."""
+    """The fit, and the covariance by source."""
     logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
-    start, fits = np.concatenate([_start(scene, rows), logarithms]), []
-    for k in range(realisations):
-        drawn = _redrawn(scene, k)
-        fits.append(fit_rows(rows, [row.of(drawn) for row in rows], forward, start))
-        start = fits[0].theta
-    fitted, scenes = fits[0], [row.of(scene) for row in rows]
+    start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
+    fitted = fit_rows(rows, scenes, forward, start, realisations)
     inputs = [forward.respond(one, fitted.theta, tolerances).inputs for one in scenes] if tolerances else []
-    parts = shares(rows, fitted, inputs)
-    if realisations > 1:
-        free = np.array([one.free for one in fits])
-        fitted = replace(fitted, free=free.mean(axis=0))
-        few = student.ppf(0.975, realisations - 1) / COVERAGE  # their scatter is known from few
-        parts["realisations"] = np.cov(free.T) * (1 + 1 / realisations) * few**2
-    return fitted, parts
+    return fitted, shares(rows, fitted, inputs)
 
 
 def _proposal(
-    scene: Scene, rows: Sequence[Row], forward: Forward, fitted: Fit, covariance: Array
+    scene: Scene, rows: Sequence[Row], forward: Forward, fitted: Fit, covariance: Array, realisations: int
 ) -> Proposal | None:
     """Further loads, measured as well as the present ones in the median."""
-    trials = trial_responses(scene, rows, forward, fitted.theta)
+    trials = trial_responses(scene, rows, forward, fitted.theta, realisations)
     relative = float(np.median([row.u_mu / max(row.mu, row.u_mu) for row in rows]))
     return propose(fitted.theta, covariance, trials, relative)
 
@@ -179,8 +167,7 @@ def _check(
     require_number("realisations", realisations, allowed, at_least=1, at_most=100)
     if int(realisations) != realisations or 1 < realisations < MIN_REALISATIONS:
         raise InputError("realisations", realisations, allowed)
-    random = any(hasattr(part, "seed") for body in (scene.upper, scene.lower) for part in body.surface.parts)
-    if realisations > 1 and not random:
+    if realisations > 1 and not is_random(scene):
         raise InputError("realisations", realisations, "1: no surface of the scene is random")
     return further
 
@@ -197,21 +184,6 @@ def _start(scene: Scene, rows: Sequence[Row]) -> Array:
     return np.maximum([0.0, min(row.mu for row in rows)], floors(scene))
 
 
-def _redrawn(scene: Scene, k: int) -> Scene:
-    """The scene with the seeds of its random surfaces moved."""
-    if k == 0:
-        return scene
-    bodies: dict[str, Any] = {}
-    for name in ("upper", "lower"):
-        body = getattr(scene, name)
-        parts: tuple[Any, ...] = tuple(
-            replace(part, seed=part.seed + k * _SEED_STEP) if hasattr(part, "seed") else part
-            for part in body.surface.parts
-        )
-        bodies[name] = Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(parts))
-    return replace(scene, **bodies)
-
-
 def _best_factor(covariance: Array, mean: Array) -> float:
     """``k`` (1/Pa) of the combination ``k tau + beta`` with the least variance; never below zero."""
     best = -float(covariance[0, 1] / covariance[0, 0])
@@ -219,13 +191,13 @@ def _best_factor(covariance: Array, mean: Array) -> float:
 
 
 def _prediction(load: float, response: Response, theta: Array, profile: Profile) -> Prediction:
-    """Interval of mu: parameters by their likelihood, and the bars of mu at this load, in squares."""
+    """Interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in squares."""
     mu = response.predict(theta)
     slopes = np.array(response.slopes)
     slopes[: len(NAMES)] = np.maximum(slopes[: len(NAMES)], 0.0)
     middle = float(slopes @ theta)
     low, high = profile.interval(slopes)
-    bar = math.hypot(response.numerical, response.contact_edge)
+    bar = math.hypot(response.numerical, response.contact_edge, COVERAGE * response.scatter)
     return Prediction(
         load, Interval(mu, mu - math.hypot(middle - low, bar), mu + math.hypot(high - middle, bar))
     )
