@@ -43,7 +43,7 @@ SETS: Mapping[str, TwinSet] = {
     "drawn": TwinSet(range(5000, 5300), twin),
     "sharp": TwinSet(range(6000, 6060), sharp_twin),
     "hardness": TwinSet(range(7000, 7048), yielding_twin, ("hardness",)),
-    "roughness": TwinSet(range(8000, 8040), ensemble_twin, ("roughness",), realisations=5),
+    "roughness": TwinSet(range(8000, 8024), ensemble_twin, ("roughness",), realisations=4),
 }
 
 

@@ -17,6 +17,7 @@ from verification.framework.registry import case
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
+MOST_SOLVES = 60
 
 
 def _coverage(twins: TwinSet, seeds: range | None = None) -> Measured:
@@ -97,12 +98,12 @@ def hardness() -> Measured:
 @case(
     "identification/roughness",
     title="95 % intervals of tau, beta, the rms height and a new load's mu, from statistics of a surface",
-    claim="Where a rough ball is known by its statistics, but for the height, five other realisations "
+    claim="Where a rough ball is known by its statistics, but for the height, four other realisations "
     "determine tau, beta and the rms height within their intervals.",
     source="twins whose friction and rms height are known, of a realisation that no fit draws",
     metric="at_least",
-    tolerance=0.87,
-    tolerance_reason="95 %, less two standard deviations of 40 twins (6.9 %) and rounding",
+    tolerance=0.85,
+    tolerance_reason="95 %, less two standard deviations of 24 twins (8.9 %) and rounding",
     tier="full",
     tags=("identification",),
 )
@@ -141,19 +142,40 @@ def effects() -> Measured:
     data = {
         name: {
             "tau": one.values["tau"].value,
-            "beta": one.values["beta"].value,
             "chi_square": one.chi_square,
             "probability": one.probability,
             "residuals": list(one.residuals),
+            "largest_residual_row": int(np.argmax(np.abs(one.residuals))) + 1,
+            "tau_low": one.values["tau"].low,
+            "tau_high": one.values["tau"].high,
+            "beta": one.values["beta"].value,
         }
         for name, one in found.items()
     }
     return Measured(value=value, data=data, note=f"largest residual of the outlier's data: row {largest + 1}")
 
 
-def _noisy_rows(scene: rf.Scene) -> list[Row]:
+@case(
+    "identification/solves",
+    title="Forward solves of a fit to eight loads on 256 x 256, with friction and slopes",
+    claim=f"A fit without a first guess takes at most {MOST_SOLVES} solves.",
+    source="scene table1-rough, noise 1 %, seed 7; the limit is this project's own",
+    metric="at_most",
+    tolerance=MOST_SOLVES,
+    tolerance_reason="seven passes over eight rows, and further loads",
+    tags=("identification",),
+)
+def solves() -> Measured:
+    scene = rf.read_scene("table1-rough")
+    rows = _noisy_rows(scene, 8)
+    found = identify(replace(scene, friction=rf.Friction()), rows, FINE, loads=(1.0, 100.0))
+    note = f"{found.passes} passes; tau {found.values['tau'].value / 1e6:.2f} MPa, true 15"
+    return Measured(value=float(found.solves), data={"passes": found.passes}, note=note)
+
+
+def _noisy_rows(scene: rf.Scene, count: int = 10) -> list[Row]:
     rng, rows = np.random.default_rng(7), []
-    for load in map(float, np.geomspace(2, 80, 10)):
+    for load in map(float, np.geomspace(2, 80, count)):
         mu = rf.solve(replace(scene, load=load), FINE).friction_coefficient
         u = 0.01 * mu
         rows.append(Row(load, mu + u * float(rng.normal()), u))
