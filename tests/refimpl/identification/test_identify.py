@@ -150,6 +150,28 @@ def test_coulomb_data_prefer_coulombs_law(smooth: rf.Scene) -> None:
     assert found.method == "profile likelihood"
 
 
+def test_data_of_constant_shear_prefer_constant_shear(smooth: rf.Scene) -> None:
+    scene = replace(smooth, friction=rf.Friction(tau=15e6, beta=0.0))
+    found = identify(_blind(smooth), _rows(scene, 0.01), M, design=False)
+    assert found.laws[0].name == "constant shear"
+    assert found.laws[0].parameters["tau"] == pytest.approx(15e6, rel=1e-3)
+
+
+def test_data_of_a_limited_law_prefer_the_limited_law(smooth: rf.Scene) -> None:
+    """Shear stresses of 16 to 28 MPa under the fitted law, cut at 20 MPa: the pressures are hardly changed."""
+    rows = []
+    for load in (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 120.0, 160.0):
+        solution = rf.solve(replace(smooth, load=load), 96)
+        stress = np.minimum(15e6 + 0.08 * solution.pressure, 20e6)[solution.contact]
+        mu = float(stress.sum()) * solution.grid.element_area / load
+        rows.append(Row(load, mu, 0.001 * mu))
+    found = identify(_blind(smooth), rows, 96, design=False)
+    laws = {law.name: law for law in found.laws}
+    linear, limited = laws["tau + beta f"], laws["min(tau + beta f, r_max)"]
+    assert limited.parameters["r_max"] == pytest.approx(20e6, rel=0.05)
+    assert limited.chi_square < 0.1 * linear.chi_square
+
+
 def test_solves_are_kept(smooth: rf.Scene) -> None:
     memory: dict[str, object] = {}
 
