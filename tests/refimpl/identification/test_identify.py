@@ -158,7 +158,7 @@ def test_data_of_constant_shear_prefer_constant_shear(smooth: rf.Scene) -> None:
 
 
 def test_data_of_a_limited_law_prefer_the_limited_law(smooth: rf.Scene) -> None:
-    """Shear stresses of 16 to 28 MPa under the fitted law, cut at 20 MPa: the pressures are hardly changed."""
+    """Shear stresses of 16 to 28 MPa, cut at 20 MPa: pressures hardly change by the cut."""
     rows = []
     for load in (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 120.0, 160.0):
         solution = rf.solve(replace(smooth, load=load), 96)
