@@ -1,6 +1,6 @@
 """The report on paper: printed by an installed browser, then rewritten by pikepdf without loss.
 
-The browser writes every element of the tag tree as an object of its own, uncompressed: more than half of its file.
+The browser writes every element of the tag tree as an object of its own, uncompressed: half of its file.
 pikepdf packs the objects into compressed streams; pages, tags, outline and links stay as they are.
 """
 
