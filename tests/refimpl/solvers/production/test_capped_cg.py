@@ -101,12 +101,12 @@ def test_pressures_far_apart_are_filled_by_many_doublings() -> None:
 def test_a_cut_at_both_bounds_leaves_the_load() -> None:
     """4.5, 2, 0 bear 6.5 of 6: times 12/13. What is above 4, 2/13, fills 2.5 % of the room below the cap."""
     cg = capped_cg([3.9, 1.6, 0.5], [1.0, 1.0, 1.0], approach=None)
-    cg._weights = np.ones(3)  # of the free elements, as a step sets them
-    change = np.array([0.6, 0.4, -1.0])
-    trial = np.array([3.9, 1.6, 0.5]) + change
+    cg._weights = np.ones((1, 3))  # of the free elements, as a step sets them
+    change = np.array([[0.6, 0.4, -1.0]])
+    trial = np.array([[3.9, 1.6, 0.5]]) + change
     assert cg._cut(trial, change)
-    np.testing.assert_allclose(trial, [4.0, 1.9, 0.1], rtol=1e-12)
-    np.testing.assert_allclose(change, [0.1, 0.3, -0.4], rtol=1e-12)
+    np.testing.assert_allclose(trial, [[4.0, 1.9, 0.1]], rtol=1e-12)
+    np.testing.assert_allclose(change, [[0.1, 0.3, -0.4]], rtol=1e-12)
 
 
 def test_a_scaled_load_ends_at_the_cap_as_well() -> None:
