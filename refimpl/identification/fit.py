@@ -28,6 +28,7 @@ _FURTHER_AGREED = 0.1  # with further parameters, likewise: elements that yield 
 _FULL_STEPS = 4  # passes with further parameters after which steps are halved: such steps can alternate
 _CORRELATED = 0.5  # share of the bars' variance that all rows have in common: one grid, one surface
 _LONGEST = math.log(1.5)  # step of a further parameter's logarithm in one pass
+_ALONE = 1e-6  # share of a row's weight that the other rows leave to judge it, at least
 _RIDGE = 1e-10  # relative, added to the normal matrix: rows at one A/P leave it singular
 
 
@@ -38,7 +39,8 @@ class Fit:
     responses : of the rows, linear about the last solves; passes : of solves over all rows
     between : (rows, rows), covariance of friction by the choice of a realisation
     gain : (parameters, rows), change of ``free`` by a change of the measured mu
-    residuals : measured less predicted mu over ``scale``, the standard uncertainty with bars
+    residuals : measured less predicted mu over the standard uncertainty with bars
+    deleted : measured mu less that of the fit to the other rows, over its standard uncertainty
     nonlinearity : largest difference of prediction and solve, in standard uncertainties
     limited : whether a further parameter went its longest step in the last pass
     """
@@ -51,6 +53,7 @@ class Fit:
     weights: Array
     predicted: Array
     residuals: Array
+    deleted: Array
     chi_square: float
     nonlinearity: float
     passes: int
@@ -123,21 +126,32 @@ def linear_fit(
     step = gain @ (measured - at_origin)
     moved = _bounded(design, wanted, step / scale, scale) * scale
     predicted = at_origin + slopes @ moved
-    misfit = root @ (measured - predicted)
+    misfit, weights = root @ (measured - predicted), root.T @ root
     return Fit(
         theta=origin + moved,
         free=origin + step,
         responses=tuple(responses),
         between=between,
         gain=gain,
-        weights=root.T @ root,
+        weights=weights,
         predicted=predicted,
         residuals=(measured - predicted) / np.sqrt(np.diag(covariance)),
+        deleted=_deleted(weights, slopes @ gain, measured - predicted),
         chi_square=float(misfit @ misfit),
         nonlinearity=away,
         passes=passes,
         limited=bool(np.any(np.abs(moved[BOUNDED:]) > _LONGEST * (1 - 1e-6))),
     )
+
+
+def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
+    """Residual of each row from the fit to the others, in standard uncertainties (Cook and Weisberg 1982).
+
+    Rows are correlated, so it is ``(W e)_i / sqrt((W - W X G)_ii)``; 0 for a row that a parameter rests on.
+    """
+    own = np.diag(weights - weights @ hat)
+    alone = own < _ALONE * np.diag(weights)
+    return np.where(alone, 0.0, weights @ misfit / np.sqrt(np.where(alone, 1.0, own)))
 
 
 def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:

@@ -93,6 +93,7 @@ def identify(
         combination=combination,
         predictions=predictions,
         residuals=tuple(map(float, fitted.residuals)),
+        deleted=tuple(map(float, fitted.deleted)),
         chi_square=fitted.chi_square,
         degrees=degrees,
         probability=float(chi2.sf(fitted.chi_square, degrees)) if degrees else 1.0,

@@ -14,7 +14,6 @@ from refimpl.identification.laws import DECISIVE
 from refimpl.identification.profile import BOUNDED
 from refimpl.identification.result import WIDE, Identification
 
-OUTLIER = 3.0  # residual in standard uncertainties
 _SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
 _UNLIKELY = 0.01  # probability of a chi-square as large, below which the model or the data are doubted
 
@@ -74,10 +73,10 @@ def _residuals(result: Identification) -> Iterator[str]:
             f"chi-square {result.chi_square:.3g} of {result.degrees} degrees of freedom has probability "
             f"{result.probability:.1g}: surfaces, law or uncertainties are wrong, intervals too short"
         )
-    for k, residual in enumerate(result.residuals):
-        if abs(residual) > OUTLIER:
-            load = result.rows[k].load
-            yield f"row {k + 1} ({load:.4g} N) is off by {residual:+.1f} standard uncertainties"
+    for k in result.outliers:
+        load, deviation = result.rows[k].load, result.deleted[k]
+        away = f"{deviation:+.1f} standard uncertainties"
+        yield f"row {k + 1} ({load:.4g} N) is off by {away} from the fit to the other rows"
 
 
 def _model(result: Identification) -> Iterator[str]:

@@ -14,6 +14,8 @@ from refimpl.identification.laws import Law
 
 WIDE = 0.2  # relative half-width of tau's interval from which the warning appears
 
+OUTLIER = 3.0  # deviation from the fit to the other rows, in standard uncertainties
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -48,6 +50,7 @@ class Identification:
     combination : ``k tau + beta``, what the data determine best; ``factor`` is k (1/Pa), near A / P
     predictions : at the measured loads, then at the new ones
     chi_square, degrees, probability : of the residuals; ``residuals`` in standard uncertainties
+    deleted : each row's deviation from the fit to the others, in standard uncertainties
     laws : compared by AICc; proposal : further loads, where tau is not determined
     solves, passes : forward solves, and how often all rows were linearised
     """
@@ -61,6 +64,7 @@ class Identification:
     combination: Interval
     predictions: tuple[Prediction, ...]
     residuals: tuple[float, ...]
+    deleted: tuple[float, ...]
     chi_square: float
     degrees: int
     probability: float
@@ -70,6 +74,11 @@ class Identification:
     solves: int
     passes: int
     fitted: Fit = field(repr=False)
+
+    @property
+    def outliers(self) -> tuple[int, ...]:
+        """Indices of rows far from the fit to the others."""
+        return tuple(k for k, deviation in enumerate(self.deleted) if abs(deviation) > OUTLIER)
 
     @property
     def is_identified(self) -> bool:

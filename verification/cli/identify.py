@@ -131,6 +131,7 @@ def document(found: Identification) -> dict[str, object]:
         "combination": {"factor": found.factor, **_interval(found.combination)},
         "predictions": [{"load": p.load, **_interval(p.mu)} for p in found.predictions],
         "residuals": list(found.residuals),
+        "deleted_residuals": list(found.deleted),
         "chi_square": found.chi_square,
         "degrees_of_freedom": found.degrees,
         "probability": found.probability,

@@ -78,7 +78,7 @@ def _residuals(axes: Axes, found: Identification) -> None:
     axes.axhspan(-1.96, 1.96, color=BLUE, alpha=0.15, lw=0)
     axes.axhline(0, color="0.6", lw=0.8)
     axes.plot(loads, found.residuals, "o", color=BLACK, ms=4)
-    far = [k for k, residual in enumerate(found.residuals) if abs(residual) > 3]
+    far = found.outliers
     axes.plot([loads[k] for k in far], [found.residuals[k] for k in far], "o", color=ORANGE, ms=8, mfc="none")
     reach = max(4.0, 1.2 * max(map(abs, found.residuals)))
     axes.set(ylabel="residual / standard uncertainty", ylim=(-reach, reach))
