@@ -27,4 +27,4 @@ def test_our_solver_meets_its_claim_in_every_problem() -> None:
 
 def test_a_random_fault_is_caught() -> None:
     fault = next(f for f in map(random_fault, SEEDS) if f.effect.startswith("load times"))
-    assert caught(fault) is not None
+    assert caught(fault, ["plain"]) is not None
