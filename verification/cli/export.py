@@ -20,7 +20,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the folder; status 1 when a problem could not be certified (it is named, and left out)."""
+    """Write the folder; status 1 when a problem could not be certified (it is named, and not written)."""
     from refimpl.errors import InputError
     from verification.contestants import suite
     from verification.contestants.reference.certified import NotCertified, certified
@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
         progress = Progress(len(suite.select(options.only)))
     except LookupError as nothing:
         raise InputError("--only", options.only, f"the id of a case ({nothing})") from nothing
-    bounds, left_out, last = [], [], ""
+    bounds, uncertified, last = [], [], ""
     with limited_to_one_thread(), Export(options.export) as export:
         for named in problems(options.only):
             if named.case != last:
@@ -42,8 +42,8 @@ def run(options: argparse.Namespace) -> int:
             try:
                 found = certified(named.problem)
             except NotCertified as reason:
-                export.leave_out(named.name, str(reason))
-                left_out.append([named.name, str(reason)])
+                export.report_uncertified(named.name, str(reason))
+                uncertified.append([named.name, str(reason)])
                 continue
             export.add(named.name, named.case, found)
             bounds.append(found.bounds.pressure / (float(found.pressure.max()) or 1.0))
@@ -57,12 +57,12 @@ def run(options: argparse.Namespace) -> int:
         "suite": suite.identity(),
         "problems": len(bounds),
         "largest_relative_bound": max(bounds),
-        "not_certified": dict(left_out),
+        "not_certified": dict(uncertified),
     }
     summary = (
         f"{len(bounds)} problems in {options.export}; pressures are proven to {max(bounds):.2g} of the peak\n"
         f"version {version}"
     )
-    table = "\n\n".join(filter(None, [columns(left_out), summary]))
+    table = "\n\n".join(filter(None, [columns(uncertified), summary]))
     emit(document, options.json, table)
-    return 1 if left_out else 0
+    return 1 if uncertified else 0

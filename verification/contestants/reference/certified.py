@@ -20,7 +20,7 @@ from verification.contestants.protocol import ContactProblem
 from verification.contestants.reference.periodic_bound import periodic_bound
 
 TOLERANCE = 1e-12
-"""Relative residual asked of the solver: below, rounding decides."""
+"""Relative residual required of the solver: below, rounding decides."""
 USABLE = 1e-6
 """Bound of a pressure over the peak up to which a problem is exported; 1e-9 is usual."""
 SEPARATED, CONTACT, APPARENTLY_SEPARATED, APPARENTLY_CONTACT = range(4)

@@ -63,7 +63,7 @@ class Export:
             ) from refused
         (self._draft / "data").mkdir()
         self._entries: list[dict[str, Any]] = []
-        self._left_out: list[dict[str, str]] = []
+        self._uncertified: list[dict[str, str]] = []
 
     def __enter__(self) -> Export:
         return self
@@ -83,9 +83,9 @@ class Export:
         files = {what: path for what, (path, _) in arrays.items()}
         self._entries.append({"name": name, "case": case, **_numbers(found), "files": files})
 
-    def leave_out(self, name: str, reason: str) -> None:
+    def report_uncertified(self, name: str, reason: str) -> None:
         """Name a problem whose pressures could not be certified."""
-        self._left_out.append({"name": name, "reason": reason})
+        self._uncertified.append({"name": name, "reason": reason})
 
     def close(self) -> str:
         """Write what describes the data, put the folder in its place, and return the data's version."""
@@ -97,7 +97,7 @@ class Export:
             "tolerance": certified.TOLERANCE,
             "contact_codes": list(CODES),
             "problems": self._entries,
-            "not_certified": self._left_out,
+            "not_certified": self._uncertified,
         }
         self._write(INDEX, json.dumps(index, indent=1, allow_nan=False) + "\n")
         self._write("index.csv", _table(self._entries))
@@ -204,7 +204,7 @@ references:
 README = """# Reference data: contact problems with certified pressures
 
 {problems} problems of normal contact, with and without friction, free and periodic. `index.json` has for each
-its numbers, its answer and proven bounds on the answer's errors; `index.csv` has the same in one line each, and
+its numbers, its answer and proven bounds on the answer's errors; `index.csv` has most of it in lines, and
 `schema.json` describes the index. Lengths are in m, pressures in Pa, loads in N, angles in rad.
 
 - `data/NAME.gap.f64`, `data/NAME.pressure.f64`: float64, little endian, without a header; nx * ny numbers,

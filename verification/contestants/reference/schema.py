@@ -77,7 +77,7 @@ _FILES = _object(
     }
 )
 _ENTRY = _object({"name": _TEXT, "case": _TEXT, "problem": _PROBLEM, "answer": _ANSWER, "files": _FILES})
-_LEFT_OUT = _object({"name": _TEXT, "reason": _TEXT})
+_UNCERTIFIED = _object({"name": _TEXT, "reason": _TEXT})
 
 SCHEMA: dict[str, Any] = {
     "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -88,10 +88,10 @@ SCHEMA: dict[str, Any] = {
             "license": {"const": "MIT"},
             "suite": _object({"version": _TEXT, "cases": {"type": "integer"}, "digest": _TEXT}),
             "software": {"type": "object", "additionalProperties": {"type": ["string", "null"]}},
-            "tolerance": _number("relative residual asked of the solver", exclusiveMinimum=0),
+            "tolerance": _number("relative residual required of the solver", exclusiveMinimum=0),
             "contact_codes": {"type": "array", "items": _TEXT, "minItems": 4, "maxItems": 4},
             "problems": {"type": "array", "items": _ENTRY, "minItems": 1},
-            "not_certified": {"type": "array", "items": _LEFT_OUT},
+            "not_certified": {"type": "array", "items": _UNCERTIFIED},
         }
     ),
 }
