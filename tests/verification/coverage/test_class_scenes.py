@@ -13,6 +13,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
+from tests.verification.coverage.draws import fills
 from verification.coverage.class_scenes import (
     CLASSES,
     Wave,
@@ -29,14 +30,6 @@ DRAWN = {kind: [scene(kind, seed) for seed in SEEDS] for kind in CLASSES}
 def roughness(one: rf.Scene) -> Any:
     (part,) = one.parts("lower")
     return part
-
-
-def fills(values: list[float], low: float, high: float, *, logarithmic: bool = True) -> bool:
-    """Whether values lie between the bounds, some in each outer fifth (40 draws miss one in 1 of 7500)."""
-    places = np.log(values) if logarithmic else np.array(values)
-    ends = np.log([low, high]) if logarithmic else np.array([low, high])
-    place = (places - ends[0]) / (ends[1] - ends[0])
-    return bool(place.min() >= -1e-9 and place.max() <= 1 + 1e-9 and place.min() < 0.2 and place.max() > 0.8)
 
 
 def rms_gradient(one: rf.Scene) -> float:
