@@ -113,7 +113,7 @@ def test_the_laxest_claim_lets_no_broken_solver_through(fault: Fault) -> None:
     ("precision", "claim"), [(1e-13, 1e-8), (0.9e-8, 1e-8), (1.1e-8, 1.1e-8), (3e-7, 3e-7)]
 )
 def test_nobody_is_held_to_more_than_the_tolerance_of_the_problems(precision: float, claim: float) -> None:
-    """Which is 1e-8: a solver that claims rounding is not judged by rounding, one that claims less by that."""
+    """Which is 1e-8: a claim of rounding is not judged by rounding, and one of less by what it says."""
     entrant = Entrant(Limited(own.solve, replace(own.solve.abilities, precision=precision)))
     assert entrant.claim == claim
 
