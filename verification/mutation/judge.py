@@ -12,6 +12,7 @@ import importlib.machinery
 import json
 import os
 import resource
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,6 +24,7 @@ import pytest
 
 OUR_PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "tests")
 NO_SHRINKING = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+LONGEST = 60  # processor seconds of one test; the slowest takes less than half of them
 
 
 class Verdict(NamedTuple):
@@ -127,10 +129,16 @@ def _forget_the_tree() -> None:
 
 
 class _FirstFailure:
-    """Notes the first test, or the first file, that failed."""
+    """Notes the first test, or the first file, that failed; a test that finds no end fails."""
 
     def __init__(self) -> None:
         self.test: str | None = None
+
+    def pytest_runtest_setup(self) -> None:
+        signal.signal(signal.SIGXCPU, lambda *_: pytest.fail(f"no end within {LONGEST} processor seconds"))
+        used, hard = resource.getrusage(resource.RUSAGE_SELF), resource.getrlimit(resource.RLIMIT_CPU)[1]
+        limit = int(used.ru_utime + used.ru_stime) + LONGEST
+        resource.setrlimit(resource.RLIMIT_CPU, (limit if hard < 0 else min(limit, hard), hard))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed and self.test is None:
