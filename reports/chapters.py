@@ -48,7 +48,8 @@ CHAPTERS = (
         "error-bars",
         "Error bars",
         "Numerical uncertainty of single solves: coverage of the error bars on random scenes against far "
-        "finer grids, sensitivities, and budgets after V&V 20.",
+        "finer grids, sensitivities, and budgets after V&V 20. Identification of tau and beta from measured "
+        "friction: coverage of its intervals, and effects of wrong input.",
         ("accuracy", "sensitivity", "identification"),
         ("coverage", "coverage_fresh", "coverage_classes", "multilevel"),
     ),
