@@ -91,8 +91,8 @@ def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int, sound: se
         try:
             path.write_text(fault.applied(source), encoding="utf-8")
             os.utime(path, (moment, moment))
-            without = [f"--deselect={test}" for test in failing]
-            verdict = Suite(root, [*tests, *without]).verdict_of_tree(LIMIT)
+            without = tuple(f"--deselect={test}" for test in failing)
+            verdict = Suite(root, tests, by_file=True).verdict_of_tree(LIMIT, without)
         finally:
             path.write_text(source, encoding="utf-8")
             os.utime(path, (moment + 1, moment + 1))
