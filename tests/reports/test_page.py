@@ -7,16 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from reports.generator import render
-from reports.result_files import read_results
-from tests.documents import ROOT
 from tests.reports.test_generator import Page
-
-
-@pytest.fixture(scope="module")
-def html() -> str:
-    documents = read_results(ROOT / "reports/results")
-    return render(documents["quick"], documents)
 
 
 @pytest.mark.slow
