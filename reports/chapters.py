@@ -71,8 +71,8 @@ CHAPTERS = (
         "Seeded faults, mutants, random examples, extreme and damaged inputs: how far the checks can be "
         "trusted.",
         ("extremes",),
-        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "faults_by_hand", "hypothesis",
-         "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
+        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
+         "hypothesis", "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
     ),
     Chapter(
         "codes",

@@ -91,8 +91,8 @@ def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int, sound: se
         try:
             path.write_text(fault.applied(source), encoding="utf-8")
             os.utime(path, (moment, moment))
-            without = [f"--deselect={test}" for test in failing]
-            verdict = Suite(root, [*tests, *without]).verdict_of_tree(LIMIT)
+            without = tuple(f"--deselect={test}" for test in failing)
+            verdict = Suite(root, tests, by_file=True).verdict_of_tree(LIMIT, without)
         finally:
             path.write_text(source, encoding="utf-8")
             os.utime(path, (moment + 1, moment + 1))
@@ -199,6 +199,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--seed", type=int, default=1, help="of the mutants' order")
     parser.add_argument("--far", action="store_true", help="tests of other areas too; the list has them")
+    parser.add_argument("--tree", metavar="COMMIT", default="HEAD", help="what is judged (default HEAD)")
     parser.add_argument("--tries", type=int, metavar="N", help="end after N trials; the result is of what is")
     parser.add_argument("--log", type=Path, required=True, help="JSON lines: every verdict; resumed from")
     parser.add_argument("--first", type=Path, help="log, or earlier result, with first judgements")
@@ -209,6 +210,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as folder:
         clone = Path(folder) / "clone"
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
+        subprocess.run(["git", "-C", str(clone), "checkout", "-q", "--detach", options.tree], check=True)
         if options.random is None:
             listed = [fault for fault in faults if fault.area in chosen]
         else:
@@ -221,7 +223,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     found = summary(records, first, every=options.random is None)
     if options.json:
         seed = {} if options.random is None else {"seed": options.seed}
-        write_result({**found, **seed, "provenance": provenance()}, options.json)
+        tree = {} if options.tree == "HEAD" else {"tree": options.tree}
+        write_result({**found, **seed, **tree, "provenance": provenance()}, options.json)
     print(found["all"])
     return 0 if found["all"]["now"] >= GOAL else 1
 
