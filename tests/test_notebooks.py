@@ -27,6 +27,7 @@ STATED = {
         24 of 24 converged
         mu from 0.1176 to 0.1227
         Q/P from -0.0025 to +0.0025
+        across over along, both ways: +0.01%
     """,
     "two_maps_along_a_track": """
         21 of 21 converged
