@@ -8,7 +8,8 @@ import signal
 import time
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.output import columns, emit, judgement, wrapped
+from verification.cli import suite_table
+from verification.cli.output import columns, emit, judgement, output_file, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from verification.framework.case import Result
     from verification.framework.runner import Run
 
-ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout")
+ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -58,6 +59,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         help="seconds for one problem (default 60); a --solver has 5 more",
     )
+    group.add_argument(
+        "--table",
+        metavar="FILE",
+        type=output_file,
+        help="write a table of the run beside the published codes: FILE ends in .csv, .tex or .md",
+    )
 
 
 def chosen(options: argparse.Namespace) -> bool:
@@ -78,13 +85,15 @@ def run(options: argparse.Namespace) -> int:
     from verification.contestants import isolated, short_list, suite
     from verification.contestants.ending import Ended, unwinding
     from verification.framework.case import Tier, readable
-    from verification.framework.files import Progress
+    from verification.framework.files import Progress, write_text
     from verification.framework.runner import Run
 
     try:
         checks = suite.select(options.only)
     except LookupError as nothing:
         raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
+    if options.table is not None:
+        suite_table.require_suffix(options.table)
     if options.list:
         listed = [{"id": c.id, "title": c.title, "claim": c.description} for c in checks]
         emit(listed, options.json, columns([[c.id, c.title] for c in checks], indent=""))
@@ -131,6 +140,11 @@ def run(options: argparse.Namespace) -> int:
     }
     text = table(readable(name), done, unseen or [], left, len(missing))
     emit(document, options.json, text)
+    if options.table is not None:
+        entry = suite_table.run_entry(document["contestant"], suite.VERSION, results)
+        write_text(
+            suite_table.text_of(options.table.suffix, [entry, *suite_table.published()]), options.table
+        )
     if isinstance(ended, Ended):
         os.kill(os.getpid(), ended.number)  # everything is tidied up; now what the signal does by itself
     if ended is not None:

@@ -1,7 +1,7 @@
 """The suite with a solver in a process of its own: the judge, here, is out of the solver's reach.
 
-A solver may crash, hang, fork, or write into every descriptor that it finds: its case gets an `error`, and a new
-process starts. What it started is ended with it, whatever session that is in (`orphans`).
+A solver may crash, hang, fork, or write into every descriptor that it finds: its case gets an `error`, and a
+new process starts. What it started is ended with it, whatever session that is in (`orphans`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The judge is out of a solver's reach: what it writes, patches, forks or leaves running changes no verdict."""
+"""The judge is out of a solver's reach: what it writes, patches or leaves running changes no verdict."""
 
 from __future__ import annotations
 
