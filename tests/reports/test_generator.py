@@ -228,3 +228,20 @@ def test_progress_names_every_case_as_it_is_drawn() -> None:
     told: list[str] = []
     render(results(case("a/1"), case("hertz/b")), progress=told.append)
     assert {"a/1", "hertz/b"} <= set(told)
+
+
+def run_of(seconds: float, date: str, commit: str, processor: str) -> dict[str, object]:
+    made = results(case("kernels/textbook-x-fails", data=TEXTBOOK, seconds=seconds))
+    machine = {"cores": 2, "processor": processor, "platform": "Linux"}
+    made["provenance"] |= {"date": f"{date}T00:00:00+00:00", "commit": commit, "machine": machine}
+    return made
+
+
+def test_pages_of_two_runs_differ_in_provenance_alone() -> None:
+    expected = render(run_of(11.1, "2001-01-01", "a1" * 20, "one"))
+    changes = {"11.1 s": "22.2 s", "2001-01-01": "2002-02-02", "a1" * 20: "b2" * 20, "one, 2": "two, 2"}
+    for there, here in changes.items():
+        assert there in expected
+        expected = expected.replace(there, here)
+    expected = expected.replace("a1" * 6, "b2" * 6)
+    assert render(run_of(22.2, "2002-02-02", "b2" * 20, "two")) == expected
