@@ -23,13 +23,15 @@ import pytest
 from tests.documents import ROOT
 
 JOBS = ROOT / "examples/jobs"
+pytestmark = pytest.mark.slow
 PATIENCE = 300.0  # s, on a busy machine; each takes a few on an idle one
 
 
 def environment() -> dict[str, str]:
     """The console script of this interpreter first, one thread, and this checkout's packages."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    return {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), "MPLBACKEND": "agg"}
+    paths = os.pathsep.join((str(ROOT), os.environ.get("PYTHONPATH", "")))
+    return {**os.environ, "PATH": path, "PYTHONPATH": paths, "MPLBACKEND": "agg"}
 
 
 @pytest.fixture
@@ -142,6 +144,8 @@ def test_two_maps_along_a_track(job: Path) -> None:
 
 
 def test_arrays_for_xarray_and_paraview(job: Path) -> None:
+    pytest.importorskip("h5netcdf")
+    pytest.importorskip("xarray")
     printed = run(job, "arrays")
     found = document(job, "fields.json")
     lines = r"unit Pa, highest on the line (\S+), sum (\S+) N\nNumPy: (\S+), attribute: (\S+)"
