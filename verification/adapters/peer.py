@@ -31,7 +31,7 @@ class Peer:
     setup : how it is set up, and on whose advice
     press : maps a problem to an answer; may import the peer
     needs : what its installation takes besides the extra, or instead of one
-    wrong : what is known of answers that are wrong, or that it refuses although they are right
+    wrong : known defects of its answers
     """
 
     distribution: str

@@ -28,6 +28,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "chaos": ("refimpl", "verification/chaos", "verification/sweep"),
     "contestants": ("refimpl", "verification/contestants"),
     "coverage": ("refimpl", "verification/coverage"),
+    "class_costs": ("refimpl", "verification/coverage"),
     "coverage_classes": ("refimpl", "verification/coverage"),
     "coverage_fresh": ("refimpl", "verification/coverage"),
     "cross_code": ("verification/adapters", "verification/contestants"),

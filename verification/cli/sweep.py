@@ -144,7 +144,7 @@ def run(options: argparse.Namespace) -> int:
 def check_plot(options: argparse.Namespace, study: Study) -> None:
     """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
     from refimpl.errors import InputError
-    from verification.cli.plot import check_suffix
+    from verification.cli.plot_style import check_suffix
     from verification.sweep.run import COORDINATES, OUTCOMES
 
     check_suffix(options.plot)

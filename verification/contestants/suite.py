@@ -47,3 +47,7 @@ def select(globs: Iterable[str] = ()) -> tuple[Check, ...]:
 def run(contestant: Contestant, globs: Iterable[str] = ()) -> list[Result]:
     """Return a solver's results, from this process; a case beyond its abilities is `unavailable`."""
     return [check.case(contestant).run() for check in select(globs)]
+
+
+if __name__ == "__main__":
+    print("\n".join(f"{name}: {value}" for name, value in identity().items()))

@@ -42,7 +42,7 @@ class TwinSet:
 SETS: Mapping[str, TwinSet] = {
     "drawn": TwinSet(range(5000, 5300), twin),
     "sharp": TwinSet(range(6000, 6060), sharp_twin),
-    "hardness": TwinSet(range(7000, 7048), yielding_twin, ("hardness",)),
+    "hardness": TwinSet(range(7000, 7040), yielding_twin, ("hardness",)),
     "roughness": TwinSet(range(8000, 8024), ensemble_twin, ("roughness",), realisations=4),
 }
 

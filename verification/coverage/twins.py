@@ -21,7 +21,7 @@ SIDE = 1e-3  # m; the problem is scale-free
 FIT_GRID, TRUE_GRID = 48, 128
 SHARP_FIT_GRID, SHARP_TRUE_GRID = 192, 512  # the smallest load's contact is a tenth of the largest one's
 SHARP_NOISE = 0.005
-YIELDING_FIT_GRID, YIELDING_TRUE_GRID = 96, 256
+YIELDING_FIT_GRID, YIELDING_TRUE_GRID = 64, 192
 ENSEMBLE_FIT_GRID, ENSEMBLE_TRUE_GRID = 64, 192
 
 Log = Callable[[float, float], float]
