@@ -181,6 +181,24 @@ DECLARED = (
         for name, height in (("tau-shares", 3.4), ("tau-shares-128", 6.8))
     ),
     Figure(
+        "identification/effects",
+        ("load (N)", "right", "modulus +10 %", "another surface", "outlier"),
+        lines(
+            "load (N)",
+            {
+                "right": "right input",
+                "modulus +10 %": "modulus 10 % too high",
+                "another surface": "another realisation of the surface",
+                "outlier": "fifth row 10 % too high",
+            },
+            xlabel="load (N)",
+            ylabel="residual / standard uncertainty",
+            log="x",
+            marker=True,
+        ),
+        "Residuals of a fit of tau and beta: one outlier stands apart, a wrong surface bends all of them.",
+    ),
+    Figure(
         "surfaces/ensemble",
         ("lag / l", "estimate", "eq9", "standard error"),
         lines(

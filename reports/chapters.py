@@ -56,7 +56,8 @@ CHAPTERS = (
         "error-bars",
         "Error bars",
         "Numerical uncertainty of single solves: coverage of the error bars on random scenes against far "
-        "finer grids, sensitivities, and budgets after V&V 20.",
+        "finer grids, sensitivities, and budgets after V&V 20. Identification of tau and beta from measured "
+        "friction: coverage of its intervals, and effects of wrong input.",
         ("accuracy", "sensitivity", "identification"),
         ("coverage", "coverage_fresh", "coverage_classes", "multilevel"),
     ),
@@ -78,8 +79,8 @@ CHAPTERS = (
         "Seeded faults, mutants, random examples, extreme and damaged inputs: how far the checks can be "
         "trusted.",
         ("extremes",),
-        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "faults_by_hand", "hypothesis",
-         "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
+        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
+         "hypothesis", "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
     ),
     Chapter(
         "codes",

@@ -30,7 +30,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     who = group.add_mutually_exclusive_group()
     who.add_argument(
-        "--solver", metavar="MODULE:FUNCTION", help="a Python function of one ContactProblem, see its module"
+        "--solver",
+        metavar="MODULE:FUNCTION",
+        help="a Python function of one ContactProblem, see its module; or one of the published codes "
+        "tamaas, contactmechanics, aspher, slippy",
     )
     who.add_argument(
         "--exec", metavar="COMMAND", help="a program, run as COMMAND DIRECTORY; files: contestants/command.py"
@@ -134,6 +137,7 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
     """Name and source of the solver, and the abilities that are stated here: a program has no other."""
     from dataclasses import asdict, replace
 
+    from verification.adapters import PEERS
     from verification.contestants.command import Command
     from verification.contestants.isolated import Named
     from verification.contestants.protocol import Abilities
@@ -145,7 +149,7 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
         stated = {name: able for name, able in listed.items() if name not in limits} | stated
     abilities = replace(Abilities(), **stated)  # refuses what cannot be, before anything is imported
     if options.solver is not None:
-        return options.solver, Named(options.solver, stated).contestant, stated
+        return options.solver, Named(PEERS.get(options.solver, options.solver), stated).contestant, stated
     command = Command.of(options.exec, abilities, _timeout(options))
     return options.exec, command.contestant, asdict(abilities)
 

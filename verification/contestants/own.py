@@ -39,18 +39,23 @@ class Own:
 
     def __call__(self, problem: ContactProblem) -> Answer:
         """The pressures; converged when the solution is certified, alternating contact edges included."""
-        solution = rf.solve(
-            scene(problem),
-            problem.shape,
-            method=self.method,
-            approach=problem.approach,
-            oblique=False,
-            plastic=problem.hardness is not None,
-            tolerance=problem.tolerance / (1.0 if problem.approach is None else WORK),
-        )
+        solution = solved(problem, problem.tolerance, self.method)
         apart = solution.status is rf.Status.NO_CONTACT and problem.approach is not None
         ended_well = apart or solution.status in (rf.Status.CONVERGED, rf.Status.CYCLED)
         return Answer(solution.pressure, ended_well)
+
+
+def solved(problem: ContactProblem, tolerance: float, method: Method = "fft") -> rf.Solution:
+    """The problem's solution; ``tolerance`` is the suite's residual. Raises `Unsupported` as `scene` does."""
+    return rf.solve(
+        scene(problem),
+        problem.shape,
+        method=method,
+        approach=problem.approach,
+        oblique=False,
+        plastic=problem.hardness is not None,
+        tolerance=tolerance / (1.0 if problem.approach is None else WORK),
+    )
 
 
 def scene(problem: ContactProblem) -> rf.Scene:

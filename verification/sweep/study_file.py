@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from refimpl import read_scene
+from refimpl import Scene, read_scene
 from refimpl.errors import InputError, require_number
 from refimpl.planning.plan import METHODS
 from refimpl.planning.terms import RequestedTerms
@@ -64,12 +64,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
     base = read_scene(scene_file)
-    own = tuple(
-        name
-        for name in parameters(base)
-        if (".surface[" in name and not name.endswith(".seed")) or ".material." in name
-    )
-    _refuse_unknown("vary", vary, (*AXES, *own))
+    _refuse_unknown("vary", vary, (*AXES, *varied_names(base)))
     scene = scene_to_dict(base)
     study = Study(
         scene=scene,
@@ -88,6 +83,19 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
         study = replace(study, scene=scene | {"size": [x, y]}, notes=(note,))
     _check(study)
     return study
+
+
+def varied_names(scene: Scene) -> tuple[str, ...]:
+    """Return the full names that a study of a scene may vary beside `AXES`: of surfaces and materials.
+
+    >>> varied_names(read_scene("hertz"))[:3]
+    ('upper.material.E', 'upper.material.nu', 'upper.surface[0].radius')
+    """
+    return tuple(
+        name
+        for name in parameters(scene)
+        if (".surface[" in name and not name.endswith(".seed")) or ".material." in name
+    )
 
 
 def _check(study: Study) -> None:

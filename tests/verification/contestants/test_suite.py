@@ -109,6 +109,15 @@ def test_the_laxest_claim_lets_no_broken_solver_through(fault: Fault) -> None:
     assert any(run(lax, [name])[0].status == "fail" for name in naming(fault))
 
 
+@pytest.mark.parametrize(
+    ("precision", "claim"), [(1e-13, 1e-8), (0.9e-8, 1e-8), (1.1e-8, 1.1e-8), (3e-7, 3e-7)]
+)
+def test_nobody_is_held_to_more_than_the_tolerance_of_the_problems(precision: float, claim: float) -> None:
+    """Which is 1e-8: a claim of rounding is not judged by rounding, and one of less by what it says."""
+    entrant = Entrant(Limited(own.solve, replace(own.solve.abilities, precision=precision)))
+    assert entrant.claim == claim
+
+
 def test_single_precision_that_says_so_is_held_to_what_it_says() -> None:
     noisy = naming(Fault.SINGLE_PRECISION)
     honest = Limited(BROKEN[Fault.SINGLE_PRECISION](), replace(own.solve.abilities, precision=1e-6))
