@@ -84,8 +84,8 @@ def test_missing_series_make_no_picture(data: dict[str, Any]) -> None:
 
 def test_curves_that_coincide_have_a_panel_of_their_difference() -> None:
     draw = lines(
-        "x", {"p": "ours"}, exact={"q": "exact"}, band=("w", "95 %"), xlabel="x", ylabel="p", difference="less",
-        per_x=10.0,
+        "x", {"p": "ours"}, exact={"q": "exact"}, band=("w", "95 %"), xlabel="x", ylabel="p",
+        difference="less", per_x=10.0,
     )  # fmt: skip
     above, below = drawn(draw, {"x": [0, 1], "p": [1.0, 2.0], "q": [1.0, 1.5], "w": [0.1, 0.1]}).axes
     np.testing.assert_array_equal(below.lines[0].get_ydata(), [0.0, 0.5])
