@@ -82,7 +82,7 @@ def to_dataframe(rows: Sequence[Row]) -> Any:
     try:
         import pandas
     except ModuleNotFoundError as missing:
-        allowed = "pandas installed (pip install 'rough-friction[arrays]')"
+        allowed = "pandas installed (pip install '.[arrays]' in a checkout)"
         raise InputError("to_dataframe", "pandas", allowed) from missing
     frame = pandas.DataFrame([row | named(row) for row in rows])
     frame.attrs["units"] = {name: unit_of(name) for name in frame.columns}
@@ -129,5 +129,5 @@ def require_parquet(path: Path) -> None:
     try:
         import pyarrow.parquet  # noqa: F401  # only whether it is there
     except ModuleNotFoundError as missing:
-        allowed = "pyarrow installed (pip install 'rough-friction[parquet]'), or --csv instead"
+        allowed = "pyarrow installed (pip install '.[parquet]' in a checkout), or --csv instead"
         raise InputError("--parquet", str(path), allowed) from missing

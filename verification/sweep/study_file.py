@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from refimpl import read_scene
+from refimpl import Scene, read_scene
 from refimpl.errors import InputError, require_number
 from refimpl.planning.plan import METHODS
 from refimpl.planning.terms import RequestedTerms
@@ -64,16 +64,9 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
     base = read_scene(scene_file)
-    scene = scene_to_dict(base)
-    own = [name for name in parameters(base) if ".surface[" in name or ".material." in name]
-    own += [
-        f"{side}.surface[{k}].path"
-        for side in ("upper", "lower")
-        for k, part in enumerate(scene[side]["surface"])
-        if part["kind"] == "measured"
-    ]
     vary = _by_axis(vary)
-    _refuse_unknown("vary", vary, (*AXES, *own))
+    _refuse_unknown("vary", vary, (*AXES, *varied_names(base)))
+    scene = scene_to_dict(base)
     study = Study(
         scene=scene,
         realisations=_whole("realisations", table.get("realisations", 1), at_least=1),
@@ -92,6 +85,23 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
         study = replace(study, scene=scene | {"size": [x, y]}, notes=(note,))
     _check(study)
     return study
+
+
+def varied_names(scene: Scene) -> tuple[str, ...]:
+    """Return the full names that a study of a scene may vary beside `AXES`: of surfaces and materials.
+
+    >>> varied_names(read_scene("hertz"))[:3]
+    ('upper.material.E', 'upper.material.nu', 'upper.surface[0].radius')
+    """
+    numbers = (name for name in parameters(scene) if ".surface[" in name or ".material." in name)
+    table = scene_to_dict(scene)
+    files = (
+        f"{side}.surface[{k}].path"
+        for side in ("upper", "lower")
+        for k, part in enumerate(table[side]["surface"])
+        if part["kind"] == "measured"
+    )
+    return (*numbers, *files)
 
 
 def _check(study: Study) -> None:
