@@ -64,15 +64,9 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
     base = read_scene(scene_file)
-    scene = scene_to_dict(base)
-    paths = [
-        f"{side}.surface[{k}].path"
-        for side in ("upper", "lower")
-        for k, part in enumerate(scene[side]["surface"])
-        if part["kind"] == "measured"
-    ]
     vary = _by_axis(vary)
-    _refuse_unknown("vary", vary, (*AXES, *varied_names(base), *paths))
+    _refuse_unknown("vary", vary, (*AXES, *varied_names(base)))
+    scene = scene_to_dict(base)
     study = Study(
         scene=scene,
         realisations=_whole("realisations", table.get("realisations", 1), at_least=1),
@@ -99,11 +93,15 @@ def varied_names(scene: Scene) -> tuple[str, ...]:
     >>> varied_names(read_scene("hertz"))[:3]
     ('upper.material.E', 'upper.material.nu', 'upper.surface[0].radius')
     """
-    return tuple(
-        name
-        for name in parameters(scene)
-        if (".surface[" in name and not name.endswith(".seed")) or ".material." in name
+    numbers = (name for name in parameters(scene) if ".surface[" in name or ".material." in name)
+    table = scene_to_dict(scene)
+    files = (
+        f"{side}.surface[{k}].path"
+        for side in ("upper", "lower")
+        for k, part in enumerate(table[side]["surface"])
+        if part["kind"] == "measured"
     )
+    return (*numbers, *files)
 
 
 def _check(study: Study) -> None:
