@@ -1,7 +1,7 @@
 """Right solvers through the whole suite at three claims: none may fail.
 
-``python -m verification.contestants.claims --json FILE``; with ``--exec ./contestant`` a program as well, made
-of ``tests/verification/contestants/contestant.c``.
+``python -m verification.contestants.claims --json FILE``; with ``--exec ./contestant`` a program as well,
+such as that of ``tests/verification/contestants/contestant.c``.
 """
 
 from __future__ import annotations
