@@ -125,7 +125,7 @@ def _entrant(name: str, solver: Solver) -> dict[str, object]:
         "counts": counts,
         "seconds": sum(row["seconds"] for row in rows),
         "worst residual": max(residuals) if residuals else None,
-        "results": summarised(rows),
+        "results": [{name: _short(value) for name, value in row.items()} for row in summarised(rows)],
     }
 
 
@@ -137,6 +137,11 @@ def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         if (design := _design(row["id"])) is not None:
             designs.setdefault(design, []).append(row)
     return single + [_of_design(design, found) for design, found in designs.items()]
+
+
+def _short(value: Any) -> Any:
+    """Four digits of a number: no report shows more."""
+    return float(f"{value:.4g}") if isinstance(value, float) else value
 
 
 def _of_design(design: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

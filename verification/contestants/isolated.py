@@ -203,8 +203,8 @@ def run(
 ) -> list[Result]:
     """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
 
-    ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver; ``begin`` and ``tick``
-    see each check before and after, and ``left`` what the solver left running.
+    ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``begin`` and
+    ``tick`` see each check before and after, and ``left`` what the solver left running.
 
     Raises `InputError` for a solver that cannot be loaded, LookupError for a glob that matches nothing.
     """

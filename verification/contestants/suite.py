@@ -19,10 +19,12 @@ otherwise. `identity` has a digest that shows when it should be."""
 
 
 def suite() -> tuple[Check, ...]:
-    """Every check of every module in `verification.contestants.checks`."""
-    for module in pkgutil.iter_modules(checks.__path__, prefix=f"{checks.__name__}."):
-        importlib.import_module(module.name)
-    return declared()
+    """Every check of every module in `verification.contestants.checks`, in their order."""
+    names = [m.name for m in pkgutil.iter_modules(checks.__path__, prefix=f"{checks.__name__}.")]
+    for name in names:
+        importlib.import_module(name)
+    place = {name: number for number, name in enumerate(names)}
+    return tuple(sorted(declared(), key=lambda check: place.get(check.judge.__module__, len(names))))
 
 
 def identity() -> dict[str, str | int]:

@@ -128,6 +128,13 @@ def test_without_contact_pressures_are_exactly_zero() -> None:
     assert (found.contact == SEPARATED).all()
 
 
+def test_uniform_periodic_pressures_have_no_residual_and_their_bounds() -> None:
+    found = certified(ContactProblem(np.zeros((6, 6)), 0.5, E, load=9e3, periodic=True))
+    assert found.residual is None
+    assert float(np.abs(found.pressure - 1e3).max()) <= found.bounds.pressure + 1e-12
+    assert (found.contact == CONTACT).all()
+
+
 def test_codes_of_elements() -> None:
     touching = np.array([True, True, False, False])
     inside, outside = np.array([True, False, False, False]), np.array([False, False, True, False])

@@ -66,7 +66,7 @@ _ANSWER = _object(
         "elements_undecided": {"type": "integer", "minimum": 0, "description": "codes 2 and 3"},
         "bounds": _BOUNDS,
         "condition": {"type": "string", "description": "what the bounds hold fixed; empty: nothing"},
-        "residual": {"oneOf": [_RESIDUAL, {"type": "null"}], "description": "null without contact"},
+        "residual": {"oneOf": [_RESIDUAL, {"type": "null"}], "description": "null without elastic energy"},
     }
 )
 _FILES = _object(
