@@ -96,10 +96,10 @@ def test_no_pattern_is_used(path: Path) -> None:
 
 
 def test_pages_speak_the_same_language() -> None:
-    """The prose of docs/, without blocks: commands and files have names of their own."""
+    """The prose of docs/: blocks and tables have names of commands, files and recorded results."""
     for page in sorted((ROOT / "docs").glob("*.md")):
         prose = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
-        lines = [line for line in prose.splitlines() if not line.startswith("#")]
+        lines = [line for line in prose.splitlines() if not line.startswith(("#", "|"))]
         used = [m for line in lines for p in PATTERNS if (m := re.search(p["match"], line, re.IGNORECASE))]
         assert [(page.name, match.group()) for match in used] == []
 
