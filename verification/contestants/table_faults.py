@@ -253,9 +253,6 @@ TABLE: dict[str, TableFault] = {
     "1 % off above 160 elements": TableFault(
         _LARGE, partial(with_hooks, normal=_off_above(160, 1.01)), (_N,)
     ),
-    "shear 5 % off above 160 elements": TableFault(
-        _LARGE, partial(with_hooks, shear=_off_above(160, 1.05)), (_N,)
-    ),
     "tolerance 1e-4 above 160 elements": TableFault(
         _LARGE, _pose(lambda _, p: replace(p, tolerance=1e-4) if p.M > 160 else p), (_N,)
     ),
