@@ -19,7 +19,7 @@ otherwise. `identity` has a digest that shows when it should be."""
 
 
 def suite() -> tuple[Check, ...]:
-    """Every check of every module in `verification.contestants.checks`, in their order, whoever imported one."""
+    """Every check of every module in `verification.contestants.checks`, in the modules' order."""
     names = [m.name for m in pkgutil.iter_modules(checks.__path__, prefix=f"{checks.__name__}.")]
     for name in names:
         importlib.import_module(name)
