@@ -13,13 +13,13 @@ from verification.contestants.check import Check, declared
 from verification.contestants.protocol import Contestant
 from verification.framework.case import Result
 
-VERSION = "1.2"
+VERSION = "1.1"
 """Version of the suite, in every result and in CITATION.cff: raised when a case is added, removed or judged
 otherwise. `identity` has a digest that shows when it should be."""
 
 
 def suite() -> tuple[Check, ...]:
-    """Every check of every module in `verification.contestants.checks`, in their order."""
+    """Every check of every module in `verification.contestants.checks`, in the modules' order."""
     names = [m.name for m in pkgutil.iter_modules(checks.__path__, prefix=f"{checks.__name__}.")]
     for name in names:
         importlib.import_module(name)
