@@ -15,6 +15,7 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import NullLocator
 
 from reports.inline_svg import inline
+from reports.text import symbols
 
 Data = Mapping[str, Any]
 Draw = Callable[[Canvas, Data], None]
@@ -31,6 +32,8 @@ STYLE: dict[Any, Any] = {
     "svg.hashsalt": "rough-friction", "svg.fonttype": "none", "font.family": ["DejaVu Sans"],
     "text.parse_math": True,
 }  # fmt: skip
+_TEXT = re.compile(r"(<text\b[^>]*>)([^<]*)(</text>)")
+_NAME = re.compile(r"[\w/]+(-\w+)+")
 _INSIDE = 6  # series up to which a legend finds room among them
 
 
@@ -78,8 +81,14 @@ def drawn(figure: Figure, data: Data, name: str = "figure", caption: str | None 
         buffer = io.StringIO()
         # No date: the same results give the same bytes.
         canvas.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-        alt = words(canvas, figure.caption if caption is None else caption)
-    return Drawn(inline(buffer.getvalue().replace(INK, "currentColor"), name, alt), alt)
+        alt = symbols(words(canvas, figure.caption if caption is None else caption))
+    made = _TEXT.sub(lambda text: text[1] + _in_symbols(text[2]) + text[3], buffer.getvalue())
+    return Drawn(inline(made.replace(INK, "currentColor"), name, alt), alt)
+
+
+def _in_symbols(text: str) -> str:
+    """The text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
+    return text if _NAME.fullmatch(text) else symbols(text)
 
 
 def svg(figure: Figure, data: Data) -> str | None:

@@ -165,7 +165,7 @@ def _fig9(canvas: Canvas, data: Data) -> None:
     )
     axes.grid(visible=False)
     _label(axes, "sliding distance (µm)", "direction of sliding (degrees)")
-    canvas.colorbar(image, ax=axes, label="binormal force Q (N)")
+    canvas.colorbar(image, ax=axes, label="transverse force Q (N)")
 
 
 def _fig10(canvas: Canvas, data: Data) -> None:
@@ -301,7 +301,7 @@ REPRODUCTION = (
         "reproduction/fig9*",
         ("distance (um)", "direction (deg)", "Q (N)"),
         _fig9,
-        "Fig. 9: binormal force over sliding distance and direction, P = 70 N.",
+        "Fig. 9: transverse (binormal) force Q over sliding distance and direction, P = 70 N.",
     ),
     Figure(
         "reproduction/fig10-*",

@@ -33,6 +33,16 @@ def test_everything_has_a_name(html: str) -> None:
 
 
 @pytest.mark.slow
+def test_figures_have_symbols_and_units_and_no_hatching(html: str) -> None:
+    figures = re.findall(r'<svg class="plot".*?</svg>', html, flags=re.S)
+    assert len(figures) > 50
+    texts = [text for figure in figures for text in re.findall(r"<text\b[^>]*>([^<]*)</text>", figure)]
+    plain = re.compile(r"(?<![\w-])(mu|tau|beta|f_max|\d um|mm\^2|\(m\))(?![\w-])")
+    assert [text for text in texts if plain.search(text)] == []
+    assert not any("<pattern" in figure for figure in figures)
+
+
+@pytest.mark.slow
 def test_the_first_page_answers_five_questions_in_numbers(html: str) -> None:
     first = html.partition('<section id="summary">')[2].partition("</section>")[0]
     questions = re.findall(r"<h3>(.*?)</h3>", first)

@@ -44,7 +44,7 @@ class Peer:
 
     @property
     def installation(self) -> str:
-        """How to install the peer beside a checkout of this project.
+        """Return the command that installs the peer in a checkout of this project.
 
         >>> Peer("tamaas", "tamaas", "", Abilities(), lambda problem: PeerAnswer([], True)).installation
         "pip install -c constraints.txt -e '.[tamaas]' in a checkout"

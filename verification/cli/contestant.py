@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from verification.framework.case import Result
     from verification.framework.runner import Run
 
-ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table")
+ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -60,6 +60,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="seconds for one problem (default 60); a --solver has 5 more",
     )
     group.add_argument(
+        "--discretisation",
+        choices=("same", "other"),
+        help="other: judge limits and orders of convergence in the place of equality with element-wise\n"
+        "pressures; exit status 0 when both hold, 3 when an order is low, 1 when a limit is wrong",
+    )
+    group.add_argument(
         "--table",
         metavar="FILE",
         type=output_file,
@@ -82,14 +88,15 @@ def chosen(options: argparse.Namespace) -> bool:
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from refimpl.errors import InputError
-    from verification.contestants import isolated, short_list, suite
+    from verification.contestants import convergence, isolated, short_list, suite
     from verification.contestants.ending import Ended, unwinding
     from verification.framework.case import Tier, readable
     from verification.framework.files import Progress, write_text
     from verification.framework.runner import Run
 
     try:
-        checks = suite.select(options.only)
+        among = convergence.CASES if options.discretisation == "other" else None
+        checks = suite.select(options.only, among)
     except LookupError as nothing:
         raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
     if options.table is not None:
@@ -115,17 +122,19 @@ def run(options: argparse.Namespace) -> int:
                 options.only,
                 timeout=_timeout(options),
                 name=name,
+                among=among,
                 begin=lambda check: progress.show(f"running     {check.id}"),
                 tick=judged,
                 left=left.append,
             )
-    except (Ended, KeyboardInterrupt) as end:  # what is judged so far is shown and written all the same
+    except (Ended, KeyboardInterrupt) as end:  # verdicts so far are shown and written
         ended = end
     progress.close()
     done = Run(Tier.FULL, tuple(options.only), tuple(results), time.perf_counter() - start)
     missing = [check.id for check in checks[len(results) :]]
-    unseen = None if options.only or ended else unseen_faults(results)
-    document = done.document() | {
+    unseen = None if options.only or among or ended else unseen_faults(results)
+    low = convergence.slow(results) if among else []
+    document: dict[str, Any] = done.document() | {
         "suite": suite.identity(),
         "interrupted": ended is not None,
         "contestant": {
@@ -134,11 +143,16 @@ def run(options: argparse.Namespace) -> int:
             "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
             "not_judged": missing,
             "left_running": left,
+            "low_order": low,
             "unseen_faults": unseen,
             "short_list": short_list.of_results(results),
         },
     }
     text = table(readable(name), done, unseen or [], left, len(missing))
+    if among and results:
+        orders = columns([[r.id, r.note] for r in results if r.status == "pass"])
+        low_ones = "right in the limit, but of low order: " + ", ".join(low) if low else ""
+        text = "\n\n".join(filter(None, [orders, low_ones, text]))
     emit(document, options.json, text)
     if options.table is not None:
         entry = suite_table.run_entry(document["contestant"], suite.VERSION, results)
@@ -149,7 +163,7 @@ def run(options: argparse.Namespace) -> int:
         os.kill(os.getpid(), ended.number)  # everything is tidied up; now what the signal does by itself
     if ended is not None:
         raise ended
-    return done.exit_status
+    return convergence.exit_status(results) if among else done.exit_status
 
 
 def identity_of(options: argparse.Namespace) -> dict[str, str | None]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from refimpl import Solution
     from refimpl.grid import Array
 
-MARGIN = 0.12  # of the contact's longer side, on each side of it
+MARGIN = 0.12  # share of the contact's longer side, on each side of it
 LEAST = 8  # elements along each side of the window
 MOST_OF_DOMAIN = 0.6  # share of the domain from which on all of it is shown
 SLENDEREST = 3.0  # ratio of the window's sides; beyond, lengths are drawn to two scales
@@ -26,7 +26,7 @@ class View:
     """Window and units of a picture.
 
     first, last : element indices ``[i, j]``, ``last`` excluded
-    peak : element of the highest pressure; of several, that nearest to the middle of the load
+    peak : element of p_max; of several, that nearest to the middle of the load
     origin, size : corner and sides of the window (m), from the domain's corner
     whole : True if the window is the domain
     length, pressure, gap : units
@@ -91,7 +91,7 @@ def view_of(solution: Solution) -> View:
 
 
 def peak_of(pressure: Array) -> tuple[int, int]:
-    """Return the element of the highest pressure; of equal ones, that nearest to the middle of the load.
+    """Return the element of p_max; of equal ones, that nearest to the middle of the load.
 
     >>> import numpy as np
     >>> peak_of(np.array([[1.0, 0.0, 0.0, 1.0, 1.0, 1.0]]))

@@ -65,7 +65,7 @@ def residual(problem: ContactProblem, pressure: Array) -> float:
 
 
 def fails(solver: compact.Compact, slug: str, problem: ContactProblem) -> bool:
-    """Return whether a faulty solver misses its claim in a problem; False where the right one does as well."""
+    """Return whether a faulty solver misses its claim in a problem that the right one solves."""
     exact = right(slug)
     if exact is None or solver.changes_nothing(problem, exact):
         return False
@@ -102,18 +102,18 @@ def judged(seed: int, known: Mapping[str, Any]) -> Record:
 
 
 def run(seeds: Iterable[int], log: Path) -> list[Record]:
-    """Judge the faults that the log (JSON lines) does not hold whole; return the records of all."""
+    """Judge the faults that the log (JSON lines) does not hold whole, memories last; return all records."""
     lines = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
     known = {record["seed"]: record for record in map(json.loads, lines)}
-    records = []
-    for seed in seeds:
+    order = list(seeds)
+    for seed in sorted(order, key=lambda seed: random_fault(seed).fresh().hooks.key is not None):
         before = known.get(seed, {})
-        records.append(judged(seed, before))
-        if records[-1] != before:
+        known[seed] = judged(seed, before)
+        if known[seed] != before:
             with log.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(records[-1]) + "\n")
-            print(records[-1], file=sys.stderr, flush=True)
-    return records
+                file.write(json.dumps(known[seed]) + "\n")
+            print(known[seed], file=sys.stderr, flush=True)
+    return [known[seed] for seed in order]
 
 
 def summary(records: Sequence[Record]) -> Record:

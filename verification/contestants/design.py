@@ -113,9 +113,10 @@ def in_turn(row: Row) -> tuple[Row, ...]:
     """Return the rows that are posed in turn: of a memory the row, the changed one, and the row again."""
     if "changed" not in row:
         return (row,)
+    # the modulus is changed at the same c0, the coupling at the same modulus
     others: dict[str, Any] = {
         "edge": {"edge": 3 * row["edge"]},
-        "modulus": {"modulus": 7 * row["modulus"]},
+        "modulus": {"modulus": row["modulus"] / 3, "coupling": row["coupling"] / 3},
         "borders": {"borders": "free" if row["borders"] == "periodic" else "periodic"},
         "control": {"control": "load" if row["control"] == "approach" else "approach"},
         "load": {"contact": "most"},

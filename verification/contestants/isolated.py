@@ -196,18 +196,19 @@ def run(
     *,
     timeout: float,
     name: str = "the solver",
+    among: tuple[Check, ...] | None = None,
     begin: Callable[[Check], None] = lambda check: None,
     tick: Callable[[Result], None] = lambda result: None,
     left: Callable[[str], None] = lambda process: None,
 ) -> list[Result]:
     """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
 
-    ``name`` is what a refusal calls the solver; ``begin`` and ``tick`` see each check before and after, and
-    ``left`` what the solver left running.
+    ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver; ``begin`` and ``tick``
+    see each check before and after, and ``left`` what the solver left running.
 
     Raises `InputError` for a solver that cannot be loaded, LookupError for a glob that matches nothing.
     """
-    chosen, results = select(globs), []
+    chosen, results = select(globs, among), []
     with ExitStack() as ending:
         ending.enter_context(orphans.adopting())
         remote = Remote(source, timeout, name)

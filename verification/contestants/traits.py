@@ -6,6 +6,7 @@ Names are the design's dimensions. Numbers are compared with thresholds; texts a
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 from verification.contestants.design import HEIGHT, Row, in_turn, rows, shape_of
@@ -58,12 +59,23 @@ def levels(slug: str) -> dict[str, Trait] | None:
         "oblong elements": row.get("shape") in ("both", "oblong elements"),
         "sliding": _slides(row),
         "hardness": "cap" in row,
+        "shape met before": slug not in _first_of_their_shapes(),
     }
     if (iterations := ITERATIONS.get(slug)) is not None:
         traits["iterations"] = float(iterations)
     if "changed" in row:
         traits["changed"] = str(row["changed"])
     return traits | (_of_sliding(row) if _slides(row) else {})
+
+
+@cache
+def _first_of_their_shapes() -> frozenset[str]:
+    """Slugs of the problems before which none of their shape and borders is posed; of no problems in turn."""
+    first: dict[tuple[tuple[int, int], str], str] = {}
+    for design, found in rows().items():
+        for number, row in enumerate(found, start=1):
+            first.setdefault((shape_of(row), row["borders"]), f"design-{design}-{number:02}")
+    return frozenset(slug for slug in first.values() if "-memory-" not in slug)
 
 
 def _slides(row: Row) -> bool:

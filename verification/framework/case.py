@@ -30,7 +30,7 @@ class Unavailable(Exception):
 
 
 class Reported(Exception):
-    """Raised for a failure in another process; the message is the whole note: it says what, and where."""
+    """Raised for a failure in another process; the message is the whole note, with the failure's place."""
 
 
 class Metric(StrEnum):

@@ -78,7 +78,7 @@ def uses(kind: str) -> dict[str, str]:
     The scene has that kind of surface on its lower body, and no number that is zero.
 
     >>> uses("sphere")["lower.surface[0].radius"], uses("gaussian")["lower.surface[0].seed"]
-    ('vary, tolerances', '')
+    ('vary, tolerances', 'vary')
     """
     found = {}
     for choice in range(len(SAMPLES[kind])):

@@ -32,7 +32,8 @@ def test_problems_in_turn_differ_in_one_dimension() -> None:
     for row in rows()["memory"]:
         first, second, third = in_turn(row)
         assert first == third
-        assert sum(second.get(name) != first.get(name) for name in {*first, *second}) == 1
+        changed = {name for name in {*first, *second} if second.get(name) != first.get(name)}
+        assert len(changed) == 1 or changed == {"modulus", "coupling"}  # which leaves c0 as it is
     assert {row["changed"] for row in rows()["memory"]} == {*CHANGED}
 
 
