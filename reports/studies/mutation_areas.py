@@ -20,8 +20,8 @@ def build(document: Document) -> Exhibit:
             f"{document['all']['faults']} random mutants, as many of each area as time allowed, in an order "
             "every beginning of which is a fair sample of the area. Beside the usual changes, arguments, "
             "columns and keys change places, and units are wrong. First each is judged by the doctests of "
-            "its module and the tests of its area, as they were. Trials under way at a stop are left "
-            "out; they are long, so more of them than of others would not have been noticed.",
+            "its module and the tests of its area, as they were. Trials under way at a stop count "
+            "for nothing; they are long, so more of them than of others would not have been noticed.",
             "Those that were not noticed are judged by today's tests, of other areas or written since. Lower "
             "bounds are Clopper and Pearson's (95 %).",
         ),

@@ -1,4 +1,4 @@
-"""Verdicts on a solver under test: by the worst of a case's problems."""
+"""Verdicts on a solver under test: by the worst of its problems."""
 
 from __future__ import annotations
 
