@@ -16,13 +16,14 @@ DOCS = sorted((ROOT / "docs").glob("*.md"))
 
 @pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
 def test_a_page_is_true(path: Path, tmp_path: Path) -> None:
-    for name in ("tests", "examples"):  # as seen from a checkout
+    for name in ("tests", "examples", "docs"):  # as seen from a checkout
         (tmp_path / name).symlink_to(ROOT / name)
     page = path.read_text(encoding="utf-8")
     if "\n$ cc " in page and shutil.which("cc") is None:
         pytest.skip("no C compiler")
-    if "to_xarray()\n" in page:
-        pytest.importorskip("xarray", reason="the extra arrays, which dev includes")
+    for words, library in (("to_xarray()\n", "xarray"), ("-m nbconvert", "nbconvert")):
+        if words in page:
+            pytest.importorskip(library, reason="an extra that dev includes")
     stated = [b for b in blocks(page) if b.language == "text" and not b.file]
     shown = [s for b in blocks(page) if b.language == "console" for _, s in commands(b) if s.strip()]
     assert run(page, tmp_path) == len(stated) + len(shown)

@@ -31,7 +31,7 @@ class Peer:
     setup : how it is set up, and on whose advice
     press : maps a problem to an answer; may import the peer
     needs : what its installation takes besides the extra, or instead of one
-    wrong : what is known of answers that are wrong, or that it refuses although they are right
+    wrong : known defects of its answers
     """
 
     distribution: str
@@ -44,7 +44,7 @@ class Peer:
 
     @property
     def installation(self) -> str:
-        """How to install the peer beside a checkout of this project.
+        """Return the command that installs the peer in a checkout of this project.
 
         >>> Peer("tamaas", "tamaas", "", Abilities(), lambda problem: PeerAnswer([], True)).installation
         "pip install -c constraints.txt -e '.[tamaas]' in a checkout"

@@ -65,7 +65,7 @@ def residual(problem: ContactProblem, pressure: Array) -> float:
 
 
 def fails(solver: compact.Compact, slug: str, problem: ContactProblem) -> bool:
-    """Whether a faulty solver misses its claim in a problem; False where the right one does as well."""
+    """Return whether a faulty solver misses its claim in a problem; False where the right one does as well."""
     exact = right(slug)
     if exact is None or solver.changes_nothing(problem, exact):
         return False

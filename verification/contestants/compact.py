@@ -140,7 +140,7 @@ class Compact:
         return Solved(self.hooks.pressure(problem, f), ok, limit - left)
 
     def changes_nothing(self, problem: ContactProblem, right: Solved) -> bool:
-        """Whether no hook changes anything of a problem whose right solution is given: nor would the answer.
+        """Return whether no hook changes anything of a problem whose right solution is given: nor would the answer.
 
         Operators that are kept are made, as they would be by the solution.
         """

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 import importlib.util
 import shlex
 import shutil
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, packages_distributions
 from pathlib import Path
+from typing import Any
 
 DIGITS = 16
 """Of a checksum's hexadecimal digits those that are shown."""
@@ -52,3 +54,10 @@ def of_distribution(name: str) -> str | None:
     except PackageNotFoundError:
         return None
     return hashlib.sha256(record.encode()).hexdigest()[:DIGITS] if record else None
+
+
+def of_peer(name: str) -> dict[str, str | None]:
+    """Identity of a published code by its adapter, ``module:attribute``: of the code, not of the adapter."""
+    module, _, attribute = name.partition(":")
+    peer: Any = getattr(importlib.import_module(module), attribute)
+    return {"name": name, "version": peer.version, "checksum": peer.checksum}

@@ -1,8 +1,8 @@
 """Every fault of the table against the covering designs: is it caught, and is its dimension named?
 
 ``python -m verification.contestants.named --log FILE --json FILE`` resumes from its log. Each fault is put to
-all problems of up to 64 elements a side that the compact solver solves when right; one of large grids to those
-up to 176 as well.
+all problems of up to 64 elements a side that the compact solver solves when right. Those of large grids are
+put to problems of up to 176 as well.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Record = dict[str, Any]
 
 
 def verdicts(fault: TableFault, designs: Iterable[str] = TRIED) -> dict[str, bool]:
-    """Whether each problem of the designs fails, by slug, in the order of the suite."""
+    """Return whether each problem of the designs fails, by slug, in the order of the suite."""
     solver = fault.fresh()
     failed: dict[str, bool] = {}
     for design in designs:
@@ -40,7 +40,7 @@ def verdicts(fault: TableFault, designs: Iterable[str] = TRIED) -> dict[str, boo
 
 
 def named(listed: Sequence[str], dimensions: Sequence[Sequence[str]]) -> bool:
-    """Whether the list names a dimension of every group.
+    """Return whether the list names a dimension of every group.
 
     >>> named(["beta above 1", "edge below 1e-06"], [["beta"], ["edge", "heights"]])
     True
@@ -53,7 +53,7 @@ def named(listed: Sequence[str], dimensions: Sequence[Sequence[str]]) -> bool:
 
 
 def tried(name: str) -> Record:
-    """Return the record of a fault: problems judged and failed, and whether the short list names the fault."""
+    """Return the record of a fault: problems judged and failed, the short list, and whether it names it."""
     fault = TABLE[name]
     failed = verdicts(fault)
     listed = short_list(failed)

@@ -32,12 +32,13 @@ def identity() -> dict[str, str | int]:
     return {"version": VERSION, "cases": len(cases), "digest": digest}
 
 
-def select(globs: Iterable[str] = ()) -> tuple[Check, ...]:
+def select(globs: Iterable[str] = (), among: tuple[Check, ...] | None = None) -> tuple[Check, ...]:
     """The checks whose id (``contestant/...``) matches any of ``globs``; all without any.
 
-    Raises LookupError for a glob that matches none: an empty selection must not look like success.
+    ``among`` takes the place of the suite. Raises LookupError for a glob that matches none: an empty
+    selection must not look like success.
     """
-    patterns, checks_ = tuple(globs), suite()
+    patterns, checks_ = tuple(globs), suite() if among is None else among
     idle = [p for p in patterns if not any(fnmatchcase(c.id, p) for c in checks_)]
     if idle:
         raise LookupError(f"no case of the suite matches {', '.join(idle)}")
@@ -47,3 +48,7 @@ def select(globs: Iterable[str] = ()) -> tuple[Check, ...]:
 def run(contestant: Contestant, globs: Iterable[str] = ()) -> list[Result]:
     """Return a solver's results, from this process; a case beyond its abilities is `unavailable`."""
     return [check.case(contestant).run() for check in select(globs)]
+
+
+if __name__ == "__main__":
+    print("\n".join(f"{name}: {value}" for name, value in identity().items()))

@@ -29,6 +29,10 @@ class Unavailable(Exception):
     """Raised by a case whose optional dependency is missing; the message says which."""
 
 
+class Reported(Exception):
+    """Raised for a failure in another process; the message is the whole note, with the failure's place."""
+
+
 class Metric(StrEnum):
     """Definition of a case's error from its value; a closed list."""
 
@@ -147,6 +151,8 @@ class Case:
             error = error_of(self.metric, self.tolerance, measured)
         except Unavailable as missing:
             status, note = Status.UNAVAILABLE, readable(str(missing)) or "an optional dependency is missing"
+        except Reported as elsewhere:
+            note = readable(str(elsewhere))
         # The one place that takes any failure: a case that breaks, or asks to exit, gets its verdict as well.
         except (Exception, SystemExit) as failure:
             note = f"{type(failure).__name__}: {readable(str(failure))} [{_place(failure)}]"
