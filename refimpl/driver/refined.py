@@ -80,7 +80,7 @@ def _interrupted(scene: Scene, grids: _Refinement, discretiser: Discretiser) -> 
 
 @dataclass(frozen=True)
 class Forecast:
-    """What an accuracy is expected to take: its last grid, and seconds and memory (bytes) of that one.
+    """Last grid that an accuracy is expected to take, seconds and memory (bytes) of that one.
 
     ``solved`` are the grids that the forecast itself took; ``refusal`` says why no grid is expected to do, or
     is empty.

@@ -19,6 +19,7 @@ MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
 _STRONG = 10.0  # tau over the mean contact pressure
 _SOFTER = 10.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics and polymers
 _INDEX = 1e3  # plasticity index
+_LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
 
 
 def notes(scene: Scene, solved: Solved, lines: Sequence[str]) -> tuple[Notice, ...]:
@@ -69,9 +70,8 @@ def _surface(name: str, scene: Scene) -> Iterator[str]:
                 "a paraboloid is no sphere there"
             )
         if isinstance(part, GaussianRoughness | SelfAffineRoughness):
-            lengths = [length for length in part.parameters().items() if "length" in length[0]]
-            for label, length in lengths:
-                if length > shorter:
+            for label, length in part.parameters().items():
+                if label.startswith(_LENGTHS) and length > shorter:
                     yield (
                         f"{name}: {label} {length:.4g} m is beyond the domain's {shorter:.4g} m: "
                         "did you mean um (100 um is 100e-6)?"

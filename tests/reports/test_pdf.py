@@ -56,6 +56,9 @@ def test_the_pdf_is_small_tagged_and_has_an_outline_and_contents(path: Path, pap
         links = [note for note in document.pages[0].Annots if note.Subtype == "/Link"]
         assert len(links) >= 10  # the contents
         assert all("/Dest" in link or "/A" in link for link in links)
+        after = root.Dests["/numbers"][0].objgen  # what follows the results on one page
+        pages = [page.obj.objgen == after for page in document.pages].index(True)
+        assert pages == {"a4": 1, "letter": 2}[paper]  # letter paper is 18 mm shorter
 
 
 def two_pages(folder: Path) -> Path:

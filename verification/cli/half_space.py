@@ -29,7 +29,7 @@ def surface(options: argparse.Namespace) -> int:
 
     import refimpl
     from refimpl.sensitivities.half_space import advice, half_space_error, local_error
-    from verification.cli.plot import check_suffix
+    from verification.cli.plot_style import check_suffix
 
     check_suffix(options.plot)
     scene = refimpl.read_scene(options.scene)
@@ -83,21 +83,17 @@ def _row(name: str, solution: Solution, error: HalfSpaceError) -> dict[str, floa
 
 def _draw(local: Array, solution: Solution, path: Path) -> None:
     """Write the map of the local coefficient error, the contact outlined."""
-    import matplotlib
+    from verification.cli.plot_style import ORANGE, print_style, write
 
-    matplotlib.use("Agg")  # no display is needed
-    import matplotlib.pyplot as plt
+    with print_style():
+        import matplotlib.pyplot as plt
 
-    from verification.framework.files import replacing
-
-    figure, axes = plt.subplots(figsize=(6.5, 5.2), layout="constrained")
-    x, y = solution.grid.x * 1e3, solution.grid.y * 1e3
-    shown = axes.pcolormesh(x, y, 100 * local.T, cmap="cividis", shading="nearest")
-    figure.colorbar(shown, label="error of a flat's coefficients (%)")
-    if solution.contact.any() and min(solution.grid.shape) > 1:
-        axes.contour(x, y, solution.contact.T.astype(float), levels=[0.5], colors="#D55E00", linewidths=0.8)
-    axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
-    axes.set_title("at the undeformed slopes; contact outlined")
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=130, format="png")
-    plt.close(figure)
+        figure, axes = plt.subplots(figsize=(4.4, 3.6), layout="constrained")
+        x, y = solution.grid.x * 1e3, solution.grid.y * 1e3
+        shown = axes.pcolormesh(x, y, 100 * local.T, cmap="cividis", shading="nearest", rasterized=True)
+        figure.colorbar(shown, label="error of a flat's coefficients (%)")
+        if solution.contact.any() and min(solution.grid.shape) > 1:
+            axes.contour(x, y, solution.contact.T.astype(float), levels=[0.5], colors=ORANGE, linewidths=0.8)
+        axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
+        axes.set_title("at the undeformed slopes; contact outlined")
+        write(figure, path)

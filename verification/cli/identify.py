@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.identification import identify, read_rows
     from refimpl.scene.scene_file import read_scene, read_tolerances
     from verification.cli.identify_store import SolveStore, key
-    from verification.cli.plot import check_suffix
+    from verification.cli.plot_style import check_suffix
     from verification.framework.provenance import provenance
 
     check_suffix(options.plot)

@@ -211,11 +211,11 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.planning.terms import RequestedTerms
     from refimpl.scene.discretise import Discretiser
     from refimpl.scene.scene_file import read_tolerances
-    from verification.cli import arrays, explain, plot, vtk
+    from verification.cli import arrays, explain, plot, plot_style, vtk
     from verification.cli import budget as budget_lines
 
     _refuse_ignored(options)
-    plot.check_suffix(options.plot)
+    plot_style.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     arrays.check(options.npz, options.netcdf)
     scene = refimpl.read_scene(options.scene)

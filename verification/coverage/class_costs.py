@@ -1,6 +1,6 @@
 """Cost of an accuracy by class of scene: ``python -m verification.coverage.class_costs --json FILE``.
 
-A number is asked for by ``accuracy=``, and the transforms' ``n log n`` of all grids solved are compared with
+A number is requested by ``accuracy=``, and the transforms' ``n log n`` of all grids solved are compared with
 those of the cheapest grid that would have done, which is known only afterwards: the coarsest one from which
 on the error is within the accuracy, against 512 elements along the longer side. Beside it stands what the
 grids that open a refinement forecast.
@@ -32,7 +32,7 @@ SIZES = [M for M in GRID_SIZES if M < REFERENCE]
 
 
 def costs(one: rf.Scene, *, most: int = REFERENCE) -> list[dict[str, Any]]:
-    """Return, for each number asked for, the cost over that of the cheapest grid, and the forecast's grid.
+    """Return, for each number requested, the cost over that of the cheapest grid, and the forecast's grid.
 
     The cost is None where the accuracy was not reached, or no grid below the reference would have done.
     """

@@ -19,14 +19,18 @@ import numpy as np
 LONGEST_NOTE = 1000
 """Characters of somebody else's message that a note keeps."""
 SERIES_DIGITS = 9
-MAP_DIGITS = 5
-"""Digits of recorded numbers; two more for a map than 256 colours show."""
+MAP_DIGITS = 4
+"""Digits of recorded numbers; one more for a map than 256 colours show."""
 MAP_SIZE = 1000
 """Fewest numbers of a map."""
 
 
 class Unavailable(Exception):
     """Raised by a case whose optional dependency is missing; the message says which."""
+
+
+class Reported(Exception):
+    """Raised for a failure in another process; the message is the whole note, with the failure's place."""
 
 
 class Metric(StrEnum):
@@ -147,6 +151,8 @@ class Case:
             error = error_of(self.metric, self.tolerance, measured)
         except Unavailable as missing:
             status, note = Status.UNAVAILABLE, readable(str(missing)) or "an optional dependency is missing"
+        except Reported as elsewhere:
+            note = readable(str(elsewhere))
         # The one place that takes any failure: a case that breaks, or asks to exit, gets its verdict as well.
         except (Exception, SystemExit) as failure:
             note = f"{type(failure).__name__}: {readable(str(failure))} [{_place(failure)}]"
@@ -220,7 +226,7 @@ def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
 
 
 def jsonable(item: object) -> object:
-    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 9 digits, maps 5.
+    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 9 digits, maps 4.
 
     A map is a list of lists with at least `MAP_SIZE` numbers.
     Raises TypeError for anything that is not a number, a text, a mapping or a series of such.

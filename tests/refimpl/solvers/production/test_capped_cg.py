@@ -130,3 +130,19 @@ def test_load_that_no_element_can_bear_is_a_residual() -> None:
     gap, penetration = cg.residuals()
     assert gap == pytest.approx(0.2, rel=1e-12)
     assert penetration == 0.0
+
+
+def test_a_start_at_the_cap_alone_counts_once() -> None:
+    """No element is free, so no step is taken: v = 4 + 0.5 and 4 + 0.75 lie below d = 5."""
+    cg = capped_cg([4.0, 6.0], [0.5, 0.75], approach=5.0)
+    np.testing.assert_array_equal(cg.pressure, [[4.0, 4.0]])
+    assert cg.residuals() == (0.0, 0.0)
+
+
+def test_at_an_approach_the_mean_of_the_free_elements_is_a_residual_as_well() -> None:
+    """At d = 3 v = 2.5 at the cap, and 3.2 and 2.9 on free pressures of 1 and 2: their mean is d. With 3.2 on
+    both it is 0.2 more: the work is that times all pressure."""
+    balanced = capped_cg([4.0, 1.0, 2.0], [-1.5, 2.2, 0.9], approach=3.0)
+    assert balanced.residuals()[0] == pytest.approx((0.2 + 2 * 0.1) / 10.5, rel=1e-12)
+    off = capped_cg([4.0, 1.0, 2.0], [-1.5, 2.2, 1.2], approach=3.0)
+    assert off.residuals()[0] == pytest.approx(0.2 * 7 / 10.5, rel=1e-12)
