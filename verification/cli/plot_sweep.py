@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from matplotlib.axis import Axis
+
     from verification.sweep.curves import Curves
 
 # Okabe and Ito 2008, safe for colour-blind readers; markers and dashes tell curves apart in print
@@ -51,8 +53,10 @@ def draw(found: Curves, x: str, y: str, by: str | None, path: Path) -> None:
     points = [point for curve in found.values() for point in curve]
     if is_logarithmic([point.x for point in points]):
         axes.set_xscale("log")
+        _plain_decades(axes.xaxis)
     if is_logarithmic([point.mean - point.scatter for point in points]):
         axes.set_yscale("log")
+        _plain_decades(axes.yaxis)
     axes.set(xlabel=label(x), ylabel=label(y))
     if by:
         axes.legend(frameon=False, fontsize="small")
@@ -60,6 +64,15 @@ def draw(found: Curves, x: str, y: str, by: str | None, path: Path) -> None:
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=150)
     plt.close(figure)
+
+
+def _plain_decades(axis: Axis) -> None:
+    """Ticks at 1, 2, 5 of each decade, as plain numbers; no labels between them."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def scale(name: str) -> tuple[float, str]:

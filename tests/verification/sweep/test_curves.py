@@ -6,10 +6,11 @@ import math
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 
 from refimpl.errors import InputError
 from tests.verification.sweep.test_quality import row
-from verification.cli import main
+from verification.cli import main, plot_sweep
 from verification.sweep.curves import Point, curves
 
 STUDY = """scene = "table1-rough"
@@ -34,6 +35,16 @@ def test_points_by_hand() -> None:
     assert curves(rows, "load", "contact_area")[None][0].error == math.inf
     with pytest.raises(InputError, match="--x"):
         curves(rows, "status", "contact_area")
+
+
+def test_logarithmic_axes_have_plain_numbers() -> None:
+    axes = Figure().subplots()
+    axes.plot([5.0, 20.0, 70.0], [1.0, 2.0, 3.0])
+    axes.set_xscale("log")
+    plot_sweep._plain_decades(axes.xaxis)
+    low, high = axes.get_xlim()
+    shown = [axes.xaxis.get_major_formatter()(x) for x in axes.get_xticks() if low <= x <= high]
+    assert shown == ["5", "10", "20", "50"]
 
 
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
