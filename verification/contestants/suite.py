@@ -13,7 +13,7 @@ from verification.contestants.check import Check, declared
 from verification.contestants.protocol import Contestant
 from verification.framework.case import Result
 
-VERSION = "1.1"
+VERSION = "1.2"
 """Version of the suite, in every result and in CITATION.cff: raised when a case is added, removed or judged
 otherwise. `identity` has a digest that shows when it should be."""
 
