@@ -135,16 +135,15 @@ def pressed_on_a_flat(
 
     Raises `InputError`.
     """
-    bodies = {"upper": Body(Material(math.inf, material.nu), Flat()), "lower": Body(material, surface)}
+    upper, lower = Body(Material(math.inf, material.nu), Flat()), Body(material, surface)
     friction = friction or Friction()
+    probe = Scene(upper, lower, friction, load=1.0)
     if pressure is None:
-        probe = Scene(**bodies, friction=friction, load=1.0)
-        lower, _ = (problem := discretise(probe, probe.grid(grid))).heights
-        along_x, along_y = problem.grid.gradient(lower)
+        problem = discretise(probe, probe.grid(grid))
+        along_x, along_y = problem.grid.gradient(problem.heights[0])
         gradient = math.sqrt(float(np.mean(along_x**2 + along_y**2)))
         pressure = LIGHT * material.E / (1 - material.nu**2) * gradient
         require_number("surface", pressure, "a surface that is not flat, or a pressure (Pa)", above=0)
     else:
         require_number("pressure", pressure, "a nominal pressure in Pa", above=0)
-        probe = Scene(**bodies, friction=friction, load=1.0)
-    return Scene(**bodies, friction=friction, load=pressure * math.prod(probe.lengths))
+    return Scene(upper, lower, friction, load=pressure * math.prod(probe.lengths))

@@ -279,7 +279,7 @@ def _refuse_angles(options: argparse.Namespace) -> None:
 
 
 @contextmanager
-def _by_option(**other: tuple[str, float, str]) -> Iterator[None]:
+def _by_option(**other: tuple[str, object, str]) -> Iterator[None]:
     """Refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by field."""
     from appendix_a.errors import InputError
 
