@@ -107,7 +107,7 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         equation="A1",
         kind=Kind.NOTATION,
-        printed="tan theta_1,2 = y / (x -+ a)",
+        printed="'tan theta_1,2 = y / (x -+ a), -infinity < x < infinity, and 0 <= y < infinity'",
         corrected="theta_1,2 the angles in [0, pi] with that tangent (not the principal arctan)",
         measure="|sigma_y + p| in the middle of the loaded boundary, over p",
         evidence=lambda: _branch(principal=True),
@@ -118,7 +118,7 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         equation="A3 (theta)",
         kind=Kind.PAPER,
-        printed="theta is the slope of the boundary",
+        printed="'where theta is the slope of the boundary'",
         corrected="theta is the direction angle of the outward normal: "
         "n = (cos theta, sin theta) = (sin s, -cos s) for the slope s",
         measure="largest net traction left on a flat boundary, over p",
@@ -130,7 +130,8 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         equation="A3 (load)",
         kind=Kind.NOTATION,
-        printed="X = -(...), Y = -(...) on the whole boundary",
+        printed="'X = -(sigma_x cos theta + tau_xy sin theta)', 'Y = -(sigma_y sin theta + tau_xy cos "
+        "theta)', for 'A stress-free boundary on such a periodically wavy surface'",
         corrected="the applied traction -p n is added under the strip; (A3) alone cancels the load itself",
         measure="pseudo traction under the centre of a strip on a flat boundary, over p",
         evidence=_load_left,
@@ -141,7 +142,8 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         equation="A3 (displacement)",
         kind=Kind.PAPER,
-        printed="the wavy surface's displacement is the flat one plus what the pseudo forces cause",
+        printed="'Surface displacements due to the pseudo forces are calculated as a function of surface "
+        "waviness'",
         corrected="plus, under the strip, the strain -(1+nu)(1-2nu) p/E times the depth of the wavy line",
         measure="relative error of the first-order change at x = a/2, crest, lambda = 20 a, 0.01 degrees",
         evidence=lambda: _strain_left(0.0),
@@ -152,8 +154,9 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         equation="A5",
         kind=Kind.CONVERSION,
-        printed="+ pi cos(gamma) cos(theta) / (pi - 2 gamma + sin 2 gamma)",
-        corrected="- pi cos(gamma) cos(theta) / (pi - 2 gamma + sin 2 gamma)",
+        printed="'(pi r / 2 a) (sigma_theta + sigma_r) = pi cos gamma cos theta / "
+        "(pi - 2 gamma + sin 2 gamma) + ...'",
+        corrected="... = - pi cos gamma cos theta / (pi - 2 gamma + sin 2 gamma) + ...",
         measure="force across the arc r = 7 a against the load 2 a p cos(gamma), gamma = 0.3",
         evidence=lambda: _missing_load(wedge_printed.PRINTED_SIGN),
         check=lambda: _missing_load(wedge_printed.CORRECT_SIGN),
@@ -163,7 +166,7 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         equation="A7-A9",
         kind=Kind.NOTATION,
-        printed="cosh(pi/2 - gamma + theta) xi, sinh(pi - 2 gamma) xi, ...",
+        printed="'cosh(pi/2 - gamma + theta)xi', 'sinh(pi - 2 gamma)xi', and so on",
         corrected="cosh{(pi/2 - gamma + theta) xi}, sinh{(pi - 2 gamma) xi}, ...",
         measure="P(50) / P(1) at gamma = 0.3, theta = 0.5; read literally xi cancels and (A4)-(A6) diverge",
         evidence=lambda: _kernel_left(literal=True),

@@ -123,7 +123,7 @@ APPENDIX = (
             f"appendix-correction/{pair}",
             tuple(f"{q}, {t}" for q in QUANTITIES for t in TREATMENTS),
             _effect,
-            "What exact facet tractions change, and the paper's near-field remedy; means over eight "
+            "{title}: what exact facet tractions and the paper's near-field remedy change; means over eight "
             "surfaces, 95 % intervals; dotted: the paper's largest rms slope.",
             (8.6, 6.0),
         )

@@ -11,7 +11,9 @@ from reports.yield_figures import BEYOND_YIELD
 
 def _order(cases: str, what: str, expected: float) -> Figure:
     draw = order({"error": what}, ylabel="relative error", expected=(expected,))
-    return Figure(cases, ("M", "error"), draw, f"Error of the {what} over the grid, and the order expected.")
+    return Figure(
+        cases, ("M", "error"), draw, f"{{title}}: error of the {what} over the grid, and the order expected."
+    )
 
 
 FIG12 = {
@@ -55,7 +57,7 @@ DECLARED = (
             log="xy",
             marker=True,
         ),
-        "Relative error of the textbook form and of this code, over the distance from the loaded element.",
+        "{title}: relative error of its textbook form and of this code, over the distance from the load.",
     ),
     Figure(
         "kernels/tables-50-digits",
@@ -67,7 +69,7 @@ DECLARED = (
         "kernels/*al-50-digits",
         ("worst",),
         dots("worst", xlabel="largest relative error", limit=1e-14),
-        "Largest relative error by group of points.",
+        "{title}: largest relative error by group of points.",
     ),
     *(
         Figure(cases, ("worst",), dots("worst", xlabel=what, limit=limit), caption, (6.4, 5.0))
@@ -76,13 +78,13 @@ DECLARED = (
                 "cross-check/[!c]*",
                 "difference of the solvers",
                 1e-9,
-                "Agreement of both solvers, scene by scene.",
+                "{title}: difference scene by scene.",
             ),
             (
                 "manufactured/*",
                 "error",
                 1e-12,
-                "Error of both solvers on states whose answer was chosen.",
+                "{title}: error of both solvers.",
             ),
             (
                 "balance/normal-force",
@@ -107,8 +109,10 @@ DECLARED = (
             exact={"hertz": "Hertz"},
             xlabel="x from the centre (mm)",
             ylabel="pressure (MPa)",
+            difference="difference (MPa)",
         ),
-        "Profile of the pressure through the centre, against Hertz.",
+        "Pressure through the centre of a smooth ball, and its difference from Hertz.",
+        (6.4, 4.8),
     ),
     Figure(
         "hertz/peak-pressure",
@@ -144,7 +148,7 @@ DECLARED = (
             {"pressure along": "pressure", "traction along": "traction"},
             exact={"hertz pressure": "Hertz", "hertz traction": "beta times Hertz"},
             xlabel="x from the centre, along sliding (mm)",
-            ylabel="MPa",
+            ylabel="stress (MPa)",
         ),
         "Profiles along the sliding direction, against the contact without friction.",
     ),
@@ -171,10 +175,28 @@ DECLARED = (
             f"accuracy/{name}",
             ("difference / bar",),
             dots("difference / bar", xlabel="difference of mu / bar of tau's active set", limit=1.0),
-            "Alternating contact edges, and their elements excluded from tau; mu of a law without a jump.",
+            "{title}: difference from the rule that excludes elements from tau, over its bar.",
             (6.4, height),
         )
         for name, height in (("tau-shares", 3.4), ("tau-shares-128", 6.8))
+    ),
+    Figure(
+        "identification/effects",
+        ("load (N)", "right", "modulus +10 %", "another surface", "outlier"),
+        lines(
+            "load (N)",
+            {
+                "right": "right input",
+                "modulus +10 %": "modulus 10 % too high",
+                "another surface": "another realisation of the surface",
+                "outlier": "fifth row 10 % too high",
+            },
+            xlabel="load (N)",
+            ylabel="residual / standard uncertainty",
+            log="x",
+            marker=True,
+        ),
+        "Residuals of a fit of tau and beta: one outlier stands apart, a wrong surface bends all of them.",
     ),
     Figure(
         "surfaces/ensemble",
@@ -186,8 +208,10 @@ DECLARED = (
             band=("standard error", "one standard error"),
             xlabel="lag / correlation length",
             ylabel="autocorrelation",
+            difference="difference",
         ),
-        "Autocorrelation of an ensemble of rough surfaces and of Eq. (9).",
+        "Autocorrelation of an ensemble of rough surfaces, and its difference from Eq. (9).",
+        (6.4, 4.8),
     ),
     Figure(
         "surfaces/spectrum",
@@ -210,10 +234,12 @@ DECLARED = (
             "x",
             {"p/p*": "this code"},
             exact={"exact p/p*": "exact, singular exponent"},
-            xlabel="x (m)",
+            xlabel="x / wavelength",
             ylabel="pressure / that of full contact",
+            difference="difference",
         ),
-        "Pressure of a sliding wave of dissimilar materials and its exact solution.",
+        "Pressure of a sliding wave of dissimilar materials, and its difference from the exact solution.",
+        (6.4, 4.8),
     ),
     Figure(
         "reference/greenwood-tripp-*",
@@ -305,7 +331,8 @@ DECLARED = (
             "q",
             {"power / specified": "eight realisations"},
             band=("standard error", "standard error"),
-            xlabel="wave number (rad/m)",
+            xlabel="wave number (rad/mm)",
+            per_x=1e-3,
             ylabel="power / specified power",
             log="x",
             marker=True,

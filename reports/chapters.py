@@ -13,13 +13,21 @@ from reports.studies import exhibit
 
 @dataclass(frozen=True)
 class Chapter:
-    """A chapter: its anchor and title, an introduction, subjects of cases, and names of study files."""
+    """A chapter: its anchor and title, an introduction, subjects of cases, and names of study files.
+
+    A folded one shows its introduction, and the rest on request and on paper.
+    """
 
     anchor: str
     title: str
     introduction: str
     subjects: tuple[str, ...]
     studies: tuple[str, ...] = ()
+
+    @property
+    def folded(self) -> bool:
+        """True for appendices of the report."""
+        return self.title.startswith("Appendix I")
 
 
 REPRODUCED = ("reproduction", "errata")
@@ -48,7 +56,8 @@ CHAPTERS = (
         "error-bars",
         "Error bars",
         "Numerical uncertainty of single solves: coverage of the error bars on random scenes against far "
-        "finer grids, sensitivities, and budgets after V&V 20.",
+        "finer grids, sensitivities, and budgets after V&V 20. Identification of tau and beta from measured "
+        "friction: coverage of its intervals, and effects of wrong input.",
         ("accuracy", "sensitivity", "identification"),
         ("coverage", "coverage_fresh", "coverage_classes", "multilevel"),
     ),
@@ -70,8 +79,8 @@ CHAPTERS = (
         "Seeded faults, mutants, random examples, extreme and damaged inputs: how far the checks can be "
         "trusted.",
         ("extremes",),
-        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "faults_by_hand", "hypothesis",
-         "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
+        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
+         "hypothesis", "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
     ),
     Chapter(
         "codes",
@@ -103,8 +112,8 @@ def all_chapters(evidence: Evidence, extras: Mapping[str, Sequence[Exhibit]]) ->
     new = [Chapter(name, name.replace("-", " ").capitalize(), "", ()) for name in extras if name not in known]
     claimed = {subject for chapter in CHAPTERS for subject in chapter.subjects} | set(REPRODUCED)
     left = tuple(s for s in by_subject(list(evidence.cases)) if s not in claimed)
-    main = [chapter for chapter in CHAPTERS if "Appendix I" not in chapter.title]
-    back = [chapter for chapter in CHAPTERS if "Appendix I" in chapter.title]
+    main = [chapter for chapter in CHAPTERS if not chapter.folded]
+    back = [chapter for chapter in CHAPTERS if chapter.folded]
     further = [Chapter("further", "Further checks", "", left)] if left else []
     return [*main[:-1], *new, *further, *main[-1:], *back]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import matplotlib
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import NullLocator
 
 from reports.inline_svg import inline
+from reports.text import symbols
 
 Data = Mapping[str, Any]
 Draw = Callable[[Canvas, Data], None]
@@ -31,18 +32,25 @@ STYLE: dict[Any, Any] = {
     "svg.hashsalt": "rough-friction", "svg.fonttype": "none", "font.family": ["DejaVu Sans"],
     "text.parse_math": True,
 }  # fmt: skip
+_TEXT = re.compile(r"(<text\b[^>]*>)([^<]*)(</text>)")
+_NAME = re.compile(r"[\w/]+(-\w+)+")
 _INSIDE = 6  # series up to which a legend finds room among them
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A declared figure: which cases (glob) it belongs to, the series it needs, and how it is drawn."""
+    """A declared figure: which cases (glob) it belongs to, the series it needs, and how it is drawn.
+
+    ``{title}`` in the caption stands for the case's title. ``derived`` computes what is drawn beside the
+    recorded series, so that the CSV has it as well.
+    """
 
     cases: str
     needs: tuple[str, ...]
     draw: Draw
     caption: str
     size: tuple[float, float] = (6.4, 3.8)
+    derived: Callable[[Data], Data] = field(default=lambda _: {})
 
     def available(self, data: Data) -> bool:
         """True if every series that the plot needs is there and not empty."""
@@ -57,18 +65,30 @@ class Drawn:
     alt: str
 
 
-def drawn(figure: Figure, data: Data, name: str = "figure") -> Drawn | None:
+def complete(figure: Figure, data: Data) -> Data:
+    """The recorded series and those derived from them."""
+    return {**data, **figure.derived(data)}
+
+
+def drawn(figure: Figure, data: Data, name: str = "figure", caption: str | None = None) -> Drawn | None:
     """The drawn figure; its definitions carry ``name``, unique on the page. None without its series."""
     if not figure.available(data):
         return None
+    data = complete(figure, data)
     with matplotlib.rc_context(STYLE):
         canvas = Canvas(figsize=figure.size, layout="constrained")
         figure.draw(canvas, data)
         buffer = io.StringIO()
         # No date: the same results give the same bytes.
         canvas.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-        alt = words(canvas, figure.caption)
-    return Drawn(inline(buffer.getvalue().replace(INK, "currentColor"), name, alt), alt)
+        alt = symbols(words(canvas, figure.caption if caption is None else caption))
+    made = _TEXT.sub(lambda text: text[1] + _in_symbols(text[2]) + text[3], buffer.getvalue())
+    return Drawn(inline(made.replace(INK, "currentColor"), name, alt), alt)
+
+
+def _in_symbols(text: str) -> str:
+    """The text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
+    return text if _NAME.fullmatch(text) else symbols(text)
 
 
 def svg(figure: Figure, data: Data) -> str | None:
@@ -107,28 +127,42 @@ def lines(
     band: tuple[str, str] | None = None,
     log: str = "",
     marker: bool = False,
+    per_x: float = 1.0,
+    difference: str = "",
 ) -> Draw:
     """Series (key to legend text) over `x`, and those of `exact` dashed.
 
     `band` is the key and the legend text of the first series' half width, drawn around it; `log` names the
-    logarithmic axes, "", "x", "y" or "xy".
+    logarithmic axes, "", "x", "y" or "xy"; `x` is multiplied by `per_x`. `difference` labels a second panel,
+    of the first series less the first exact one: curves that coincide show nothing else.
     """
 
     def draw(canvas: Canvas, data: Data) -> None:
-        axes = _axes(canvas, xlabel, ylabel, log)
+        over = per_x * _numbers(data[x])
+        axes, below = _axes(canvas, xlabel, ylabel, log), None
+        if difference:
+            canvas.clear()
+            axes, below = canvas.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+            axes.set(ylabel=ylabel)
+            below.set(xlabel=xlabel, ylabel=difference)
         for k, (key, label) in enumerate(series.items()):
             mark, colour = MARKERS[k % 6] if marker else None, COLOURS[k % 6]
             style = ("-", "--")[k // 6 % 2]
-            axes.plot(data[x], _numbers(data[key]), style, marker=mark, color=colour, label=label)
+            axes.plot(over, _numbers(data[key]), style, marker=mark, color=colour, label=label)
         for style, (key, label) in zip(("--", ":", "-."), (exact or {}).items(), strict=False):
-            axes.plot(data[x], _numbers(data[key]), style, color=INK, label=label)
+            axes.plot(over, _numbers(data[key]), style, color=INK, label=label)
+        middle = _numbers(data[next(iter(series))])
+        width = np.zeros_like(middle) if band is None else _numbers(data[band[0]])
+        exact_one = _numbers(data[next(iter(exact))]) if below is not None and exact else middle
+        if below is not None:
+            below.plot(over, middle - exact_one, color=COLOURS[0])
         if band is not None:
-            middle, width = _numbers(data[next(iter(series))]), _numbers(data[band[0]])
-            axes.fill_between(
-                data[x], middle - width, middle + width, color=COLOURS[0], alpha=0.2, label=band[1]
-            )
+            shade: dict[str, Any] = {"color": COLOURS[0], "alpha": 0.2, "label": band[1]}
+            axes.fill_between(over, middle - width, middle + width, **shade)
+            if below is not None:
+                below.fill_between(over, middle - exact_one - width, middle - exact_one + width, **shade)
         if "x" in log:
-            _few_ticks(axes, np.asarray(data[x], dtype=float))
+            _few_ticks(axes, over)
         if len(series) > _INSIDE:
             canvas.legend(loc="outside right upper")
         else:
@@ -150,7 +184,7 @@ def order(
     """
 
     def draw(canvas: Canvas, data: Data) -> None:
-        axes = _axes(canvas, "elements per side" if spacing is None else "element (um)", ylabel, "xy")
+        axes = _axes(canvas, "elements per side" if spacing is None else "element (µm)", ylabel, "xy")
         grid = np.asarray(data[spacing or "M"], dtype=float) * (1.0 if spacing is None else 1e6)
         if not (grid.ndim == 1 and np.all((grid > 0) & np.isfinite(grid))):
             raise ValueError("grids that are no positive numbers")

@@ -56,16 +56,14 @@ def _kept(canvas: Canvas, data: Data) -> None:
                 values[i, low:high] = series[k]
     axes = canvas.add_subplot()
     image = _map(axes, values, rows, "viridis", 16.0)
-    styles = {"honest failure": (NO_NUMBER, "///"), "crash": (COLOURS[5], "xx"), "wrong": (COLOURS[1], "")}
+    styles = {"honest failure": NO_NUMBER, "crash": COLOURS[5], "wrong": COLOURS[1]}
     for i, low, high, verdict in fails:
-        colour, hatch = styles[verdict]
         axes.axhspan(
             i - 0.5,
             i + 0.5,
             low / columns,
             high / columns,
-            facecolor=colour,
-            hatch=hatch,
+            facecolor=styles[verdict],
             edgecolor=INK,
             lw=0.2,
         )
@@ -73,8 +71,8 @@ def _kept(canvas: Canvas, data: Data) -> None:
     axes.set_xlabel("along the axis, to the end given in the table")
     present = {fail[3] for fail in fails}
     legend = [
-        Patch(facecolor=c, hatch=h, edgecolor=INK, label=name)
-        for name, (c, h) in styles.items()
+        Patch(facecolor=colour, edgecolor=INK, label=name)
+        for name, colour in styles.items()
         if name in present
     ]
     if legend:

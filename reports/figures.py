@@ -18,7 +18,7 @@ OFFERED = (
         "*",
         ("pressure map", "traction map", "side (mm)"),
         maps({"pressure map": "Pressure", "traction map": "Traction"}, side="side (mm)", unit="MPa"),
-        "Maps of contact pressure and traction.",
+        "{title}: maps of contact pressure and traction.",
         (8.6, 3.8),
     ),
     Figure(
@@ -30,15 +30,18 @@ OFFERED = (
             exact={"hertz (MPa)": "Hertz"},
             xlabel="x from the centre (mm)",
             ylabel="pressure (MPa)",
+            difference="difference (MPa)",
         ),
-        "Profile of the pressure through the centre, against Hertz.",
+        "{title}: pressure through the centre, and its difference from Hertz.",
     ),
-    Figure("*", ("M", "error"), order({"error": "error"}), "Error over the grid, with the fitted order."),
+    Figure(
+        "*", ("M", "error"), order({"error": "error"}), "{title}: error over the grid, with the fitted order."
+    ),
     Figure(
         "*",
         ("difference by scene",),
         dots("difference by scene", xlabel="largest difference between the solvers"),
-        "Agreement of the solvers, scene by scene.",
+        "{title}: difference of the solvers, scene by scene.",
     ),
 )
 

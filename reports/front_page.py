@@ -13,7 +13,11 @@ from reports.evidence import Evidence
 from reports.results import FORMAT, Case
 from reports.text import number
 
-HERTZ = ("hertz/peak-pressure", "hertz/approach", "hertz/radius-corrected")
+HERTZ = {
+    "hertz/peak-pressure": "peak pressure",
+    "hertz/approach": "approach",
+    "hertz/radius-corrected": "contact radius",
+}
 NAMED = (NOT_ESTABLISHED, "not confirmed", "erratum proposed", "confirmed with conditions", "confirmed")
 UNITS = {"Pa": ("MPa", 1e-6), "m": ("µm", 1e6)}
 
@@ -26,9 +30,10 @@ class FrontPage:
     table3: Sequence[Number]
     beyond: int
     beyond_sampling: int
-    hertz: Sequence[tuple[str, str, str, str]]
+    largest_difference: float
+    """Largest difference from print of those beyond u (%)."""
+    hertz: Sequence[str]
     quantities: Sequence[tuple[str, int, str, str, int]]
-    coverage: Sequence[Sequence[str]]
     trust: Sequence[str]
     revisions: Sequence[tuple[str, str, str]]
 
@@ -56,20 +61,23 @@ def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[N
         table3=table3,
         beyond=sum(not n.within for n in table3),
         beyond_sampling=sum(abs(n.difference) > math.sqrt(2) * n.half_width for n in table3),
-        hertz=[row for row in map(_hertz, evidence.cases) if row],
+        largest_difference=100
+        * max((abs(n.difference) / n.printed for n in table3 if not n.within), default=0.0),
+        hertz=[said for said in map(_hertz, evidence.cases) if said],
         quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
-        coverage=_coverage(evidence.studies),
-        trust=_trust(evidence.studies),
+        trust=[*_coverage(evidence.studies), *_trust(evidence.studies)],
         revisions=revisions(evidence),
     )
 
 
-def _hertz(case: Case) -> tuple[str, str, str, str] | None:
-    if case["id"] not in HERTZ or case["value"] is None or case["reference"] is None:
-        return None
+def _hertz(case: Case) -> str:
+    """Computed and exact number, and the relative error; empty for another case."""
+    name = HERTZ.get(case["id"])
+    if name is None or case["value"] is None or case["reference"] is None:
+        return ""
     unit, scale = UNITS.get(case["unit"], (case["unit"], 1.0))
-    value, reference = (f"{scale * case[key]:.7g} {unit}" for key in ("value", "reference"))
-    return case["title"], value, reference, f"{case['error']:.1e}"
+    value, reference = (f"{scale * case[key]:.6g}" for key in ("value", "reference"))
+    return f"{name} {value} for {reference} {unit} ({case['error']:.1e})"
 
 
 def _quantity(name: str, group: Sequence[Number]) -> tuple[str, int, str, str, int]:
@@ -83,23 +91,23 @@ def _quantity(name: str, group: Sequence[Number]) -> tuple[str, int, str, str, i
     )
 
 
-def _coverage(studies: Mapping[str, Any]) -> list[Sequence[str]]:
-    """Coverage of error bars of mu, A and p_max at 1 % and 0.1 %, on both samples of random scenes."""
+def _coverage(studies: Mapping[str, Any]) -> list[str]:
+    """Coverage of error bars of mu, A and p_max at 1 %, on both samples of random scenes."""
     names = {"friction_coefficient": "μ", "contact_area": "A", "max_pressure": "p_max"}
-    rows: list[Sequence[str]] = []
+    said = []
     for name, label in names.items():
-        row = [label]
-        for accuracy in (0.01, 0.001):
-            found = [
-                judged["numbers"][name]
-                for study in ("coverage", "coverage_fresh")
-                for judged in studies.get(study, {}).get("accuracies", ())
-                if judged["accuracy"] == accuracy
-            ]
-            row.append(" / ".join(f"{100 * f['covered']:.0f} %" for f in found) or "n/a")
-            row.append(" / ".join(number(f["median_bar_over_error"], 2) for f in found) or "n/a")
-        rows.append(row)
-    return rows if "coverage" in studies else []
+        found = [
+            judged["numbers"][name]
+            for study in ("coverage", "coverage_fresh")
+            for judged in studies.get(study, {}).get("accuracies", ())
+            if judged["accuracy"] == 0.01
+        ]
+        if found:
+            covered = " and ".join(f"{100 * f['covered']:.0f} %" for f in found)
+            longer = " and ".join(number(f["median_bar_over_error"], 2) for f in found)
+            said.append(f"{label} in {covered} ({longer} times the error)")
+    samples = "95 % error bars asked to 1 % cover far finer grids, on two samples of random scenes"
+    return [f"{samples}: {'; '.join(said)}"] if said else []
 
 
 def _trust(studies: Mapping[str, Any]) -> list[str]:
@@ -118,8 +126,8 @@ def _trust(studies: Mapping[str, Any]) -> list[str]:
     if "extremes" in studies:
         counts = studies["extremes"]["counts"]
         said.append(
-            f"of {sum(counts.values())} extreme inputs {counts['wrong']} gave a wrong answer and "
-            f"{counts['crash']} a crash"
+            f"{counts['wrong']} of {sum(counts.values())} extreme inputs gave a wrong answer, "
+            f"{counts['crash']} a crash, and {counts['honest failure']} a status that says that they failed"
         )
     return said
 

@@ -45,9 +45,8 @@ def render(
     def case_pictures(case: Case) -> list[Mapping[str, Any]]:
         progress(case["id"])
         try:
-            return [
-                p for f in figures.figures_of(case["id"], case["data"]) if (p := album.add(f, case["data"]))
-            ]
+            offered = figures.figures_of(case["id"], case["data"])
+            return [p for f in offered if (p := album.add(f, case["data"], case["title"]))]
         except _OTHER_SHAPE as broken:
             raise CaseDataError(f"data of case {case['id']!r}: {broken}", case["origin"]) from broken
 

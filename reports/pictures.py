@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from reports.drawing import Data, Figure, drawn
+from reports.drawing import Data, Figure, complete, drawn
 from reports.exhibit import as_csv, csv_address
 from reports.inline_svg import StyleSheet
 
@@ -19,26 +19,27 @@ class Album:
         self._number = 0
         self._sheet = StyleSheet()
 
-    def add(self, figure: Figure, data: Data) -> Mapping[str, Any] | None:
+    def add(self, figure: Figure, data: Data, title: str = "") -> Mapping[str, Any] | None:
         """The figure for the page; None for one that is on the page already, or whose series are missing.
 
         A figure that is shown has ``svg``, ``caption``, ``name``, and ``csv``: an address of all data of its
-        case, or a link to the figure, ``table``, that has them.
+        case, or a link to the figure, ``table``, that has them. ``title`` is the case's.
         """
+        caption = figure.caption.replace("{title}", title)
         if not figure.available(data):
-            return {"caption": figure.caption, "svg": None, "csv": None, "name": "", "table": ""}
+            return {"caption": caption, "svg": None, "csv": None, "name": "", "table": ""}
         key = repr((figure.caption, [data[name] for name in figure.needs]))
         if key in self._shown:
             return None
-        found = drawn(figure, data, f"f{self._number}")
+        found = drawn(figure, data, f"f{self._number}", caption)
         self._shown.add(key)
         self._number += 1
         name = f"figure-{self._number}"
         first = self._tables.setdefault(id(data), (data, name))[1]  # holds the data: an id is used once
         return {
-            "caption": figure.caption,
+            "caption": caption,
             "svg": self._sheet.shared(found.svg) if found else None,
-            "csv": csv_address(as_csv(figure, data)) if first == name else f"#{first}",
+            "csv": csv_address(as_csv(figure, complete(figure, data))) if first == name else f"#{first}",
             "name": name,
             "table": first,
         }

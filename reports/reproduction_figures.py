@@ -59,16 +59,31 @@ def _fig4(canvas: Canvas, data: Data) -> None:
     draw(canvas, data)
 
 
+def _fig5_differences(data: Data) -> dict[str, list[float]]:
+    """Differences from the curves with which stresses nearly coincide."""
+    return {
+        f"{ours}{suffix} less {theirs} (MPa)": list(
+            _values(data, f"{ours}{suffix} (MPa)") - _values(data, f"{theirs} (MPa)")
+        )
+        for suffix in ("", " across")
+        for ours, theirs in (("pressure", "hertz"), ("traction", "coulomb"))
+    }
+
+
 def _fig5(canvas: Canvas, data: Data) -> None:
     x = _values(data, "x (mm)")
-    for axes, suffix, title in zip(
-        _row(canvas, 2), ("", " across"), ("(a) along sliding", "(b) across"), strict=True
+    panels = canvas.subplots(2, 2, sharex=True, sharey="row", height_ratios=(2, 1))
+    for axes, below, suffix, title in zip(
+        *panels, ("", " across"), ("(a) along sliding", "(b) across"), strict=True
     ):
         axes.plot(x, data[f"pressure{suffix} (MPa)"], color=COLOURS[0], label="normal stress")
         axes.plot(x, data[f"traction{suffix} (MPa)"], color=COLOURS[1], label="tangential stress")
         axes.plot(x, data["hertz (MPa)"], DOTTED, color=INK, label="Hertz")
         axes.plot(x, data["coulomb (MPa)"], DASHED, color=INK, label="Coulomb, same $\\mu$")
-        _label(axes, "distance from the centre (mm)", "stress (MPa)", title)
+        below.plot(x, data[f"pressure{suffix} less hertz (MPa)"], color=COLOURS[0])
+        below.plot(x, data[f"traction{suffix} less coulomb (MPa)"], color=COLOURS[1])
+        _label(axes, "", "stress (MPa)", title)
+        _label(below, "distance from the centre (mm)", "difference (MPa)")
     _below(canvas, 4)
 
 
@@ -150,7 +165,7 @@ def _fig9(canvas: Canvas, data: Data) -> None:
     )
     axes.grid(visible=False)
     _label(axes, "sliding distance (µm)", "direction of sliding (degrees)")
-    canvas.colorbar(image, ax=axes, label="binormal force Q (N)")
+    canvas.colorbar(image, ax=axes, label="transverse force Q (N)")
 
 
 def _fig10(canvas: Canvas, data: Data) -> None:
@@ -167,14 +182,23 @@ def _fig10(canvas: Canvas, data: Data) -> None:
     above.legend(ncols=2)
 
 
+def _fig11_gaussians(data: Data) -> dict[str, list[float]]:
+    """Gaussian densities of the same rms."""
+    found = {}
+    for panel in FIG11:
+        x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")
+        rms = float(np.sqrt(np.sum(density * x**2) / np.sum(density)))
+        gauss = np.exp(-0.5 * (x / rms) ** 2) / (rms * np.sqrt(2 * np.pi))
+        found[f"{panel}: Gaussian"] = [float(value) for value in gauss]
+    return found
+
+
 def _fig11(canvas: Canvas, data: Data) -> None:
     units = ("height from the mean (µm)", "slope from the mean (degrees)") * 2
     for axes, panel, letter, unit in zip(_row(canvas, 2, rows=2), FIG11, "abcd", units, strict=True):
         x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")
         axes.step(x, density, where="mid", color=COLOURS[0], label="all realisations")
-        rms = float(np.sqrt(np.sum(density * x**2) / np.sum(density)))
-        gauss = np.exp(-0.5 * (x / rms) ** 2) / (rms * np.sqrt(2 * np.pi))
-        axes.plot(x, gauss, DASHED, color=INK, label="Gaussian of the same rms")
+        axes.plot(x, data[f"{panel}: Gaussian"], DASHED, color=INK, label="Gaussian of the same rms")
         (skew, half), (kurtosis, wide) = data[f"{panel}: skewness"], data[f"{panel}: kurtosis"]
         title = f"({letter}) skewness {skew:+.2f} ± {half:.2f}, kurtosis {kurtosis:.2f} ± {wide:.2f}"
         axes.set_title(title, fontsize=9)
@@ -184,12 +208,12 @@ def _fig11(canvas: Canvas, data: Data) -> None:
 
 def _traces(canvas: Canvas, data: Data) -> None:
     x = _values(data, "offset (um)")
-    names = ("mu", "A (mm^2)", "elastic friction (N)", "Q (N)")
-    for axes, name, colour in zip(_row(canvas, 1, rows=4), names, COLOURS, strict=False):
+    names = {"mu": "$\\mu$", "A (mm^2)": "A (mm²)", "elastic friction (N)": "elastic F (N)", "Q (N)": "Q (N)"}
+    for axes, (name, label), colour in zip(_row(canvas, 1, rows=4), names.items(), COLOURS, strict=False):
         values = _values(data, name)
         axes.plot(x, values, color=colour)
         axes.axhline(values.mean(), color=INK, linestyle=DASHED)
-        _label(axes, "", name)
+        _label(axes, "", label)
     canvas.axes[-1].set_xlabel("sliding distance (µm); means dashed")
 
 
@@ -198,10 +222,13 @@ def _scatter(canvas: Canvas, data: Data) -> None:
     x = _values(data, "sigma_e (um)")
     names: Sequence[str] = ("scatter of A", "scatter of mu", "Eq. (10)")
     for k, name in enumerate(name for name in names if name in data):
-        axes.plot(x, 100 * _values(data, name), marker=MARKERS[k], color=COLOURS[k], label=name)
+        label = name.replace("mu", "$\\mu$")
+        axes.plot(x, 100 * _values(data, name), marker=MARKERS[k], color=COLOURS[k], label=label)
     for name, style in (("printed A", DASHED), ("printed mu", DOTTED)):
         if name in data:
-            axes.axhline(100 * float(data[name]), color=INK, linestyle=style, label=name)
+            axes.axhline(
+                100 * float(data[name]), color=INK, linestyle=style, label=name.replace("mu", "$\\mu$")
+            )
     axes.set_ylim(bottom=0)
     _label(axes, "$\\sigma_e$ (µm)", "standard deviation / mean (%)")
     axes.legend()
@@ -222,7 +249,7 @@ REPRODUCTION = (
         "reproduction/table3-[amp]*",
         ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %"),
         _table3,
-        "Table 3: this code over the printed value, with 95 % intervals.",
+        "{title}: this code over the printed value, with 95 % intervals.",
     ),
     Figure(
         "reproduction/fig4-correlation*",
@@ -235,8 +262,10 @@ REPRODUCTION = (
         "reproduction/fig5-*",
         ("x (mm)", "pressure (MPa)", "pressure across (MPa)", "traction (MPa)", "traction across (MPa)"),
         _fig5,
-        "Fig. 5: normal and tangential stress of the smooth sliding sphere, P = 70 N.",
-        (8.6, 3.8),
+        "Fig. 5: normal and tangential stress of the smooth sliding sphere, P = 70 N; below, normal stress "
+        "less that of Hertz, and tangential stress less Coulomb's.",
+        (8.6, 5.2),
+        _fig5_differences,
     ),
     *(
         Figure(
@@ -272,7 +301,7 @@ REPRODUCTION = (
         "reproduction/fig9*",
         ("distance (um)", "direction (deg)", "Q (N)"),
         _fig9,
-        "Fig. 9: binormal force over sliding distance and direction, P = 70 N.",
+        "Fig. 9: transverse (binormal) force Q over sliding distance and direction, P = 70 N.",
     ),
     Figure(
         "reproduction/fig10-*",
@@ -288,19 +317,20 @@ REPRODUCTION = (
         "Fig. 11: heights and slopes within the nominal contact before, and in true contact; means over "
         "realisations with 95 % intervals.",
         (8.6, 6.4),
+        _fig11_gaussians,
     ),
     Figure(
         "reproduction/steady-sliding*",
         ("offset (um)", "mu", "A (mm^2)", "elastic friction (N)", "Q (N)"),
         _traces,
-        "Traces of a slide.",
+        "Traces of a slide: friction, contact area, elastic friction and Q over the distance.",
         (6.4, 7.2),
     ),
     Figure(
         "reproduction/section8-*",
         ("sigma_e (um)", "scatter of A", "scatter of mu"),
         _scatter,
-        "Scatter between surface representations.",
+        "{title}: standard deviation over the mean.",
     ),
     Figure(
         "reproduction/facet-tractions",

@@ -276,6 +276,7 @@ def studies(documents: Documents) -> str:
     drawn, chaos = documents["extremes_drawn"]["counts"], documents["chaos"]
     invariants, order, ensembles = documents["hypothesis"], documents["random_order"], documents["multilevel"]
     seen = sum(bool(fault["caught_by"]) for fault in faults["faults"])
+    tests = [run["tests"] for run in order["runs"]]
     covered = {name: found["covered"] for name, found in ensembles["quantities"].items()}
     rows: list[Row] = [
         (
@@ -329,7 +330,7 @@ def studies(documents: Documents) -> str:
         ),
         (
             "tests in random order",
-            f"{len(order['runs'])} orders of {order['runs'][0]['tests']} tests, "
+            f"{len(tests)} orders of {' to '.join(dict.fromkeys((str(min(tests)), str(max(tests)))))} tests, "
             + (
                 "no test changes its outcome" if order["no_test_flips"] else "some tests change their outcome"
             ),

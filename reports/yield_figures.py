@@ -102,6 +102,6 @@ BEYOND_YIELD = (
             log="x",
             marker=True,
         ),
-        "Mean pressure under a sphere: what a cap on the pressure gives, and the published law.",
+        "{title}: mean pressure of the capped model, and the published law.",
     ),
 )

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from refimpl.solution.limits import Limit
 from tests.documents import ROOT, Block, agree, blocks, commands, run
 
 DOCS = sorted((ROOT / "docs").glob("*.md"))
@@ -15,11 +16,14 @@ DOCS = sorted((ROOT / "docs").glob("*.md"))
 
 @pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
 def test_a_page_is_true(path: Path, tmp_path: Path) -> None:
-    for name in ("tests", "examples"):  # as seen from a checkout
+    for name in ("tests", "examples", "docs"):  # as seen from a checkout
         (tmp_path / name).symlink_to(ROOT / name)
     page = path.read_text(encoding="utf-8")
     if "\n$ cc " in page and shutil.which("cc") is None:
         pytest.skip("no C compiler")
+    for words, library in (("to_xarray()\n", "xarray"), ("-m nbconvert", "nbconvert")):
+        if words in page:
+            pytest.importorskip(library, reason="an extra that dev includes")
     stated = [b for b in blocks(page) if b.language == "text" and not b.file]
     shown = [s for b in blocks(page) if b.language == "console" for _, s in commands(b) if s.strip()]
     assert run(page, tmp_path) == len(stated) + len(shown)
@@ -37,9 +41,17 @@ def test_what_a_page_points_to_is_there(path: Path) -> None:
 
 
 def test_the_readme_leads_to_every_page() -> None:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert DOCS
-    assert [path.name for path in DOCS if f"docs/{path.name}" not in readme] == []
+    """By the reading order of docs/README.md, which has every other page."""
+    assert "docs/README.md" in (ROOT / "README.md").read_text(encoding="utf-8")
+    order = (ROOT / "docs/README.md").read_text(encoding="utf-8")
+    assert len(DOCS) > 15
+    assert [path.name for path in DOCS if path.name != "README.md" and f"]({path.name}" not in order] == []
+
+
+def test_every_limit_of_a_result_stands_on_the_page_of_limits() -> None:
+    page = (ROOT / "docs/limits.md").read_text(encoding="utf-8")
+    assert [limit.value for limit in Limit if f"`{limit.value}`" not in page] == []
+    assert "https://" in page
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ EXAMPLES = {
         "on the lower body it touches first at x = +0.20, y = +0.21 mm\n"
         "on the upper body it touches first at x = +0.20, y = -0.21 mm",
     ),
+    "conventions": (["33"], "centre of pressure at x = -0.046 mm, theta_x in front up to +0.088"),
     "small_slopes": (["32"], "a / R = 0.05: p_max +0.1 %\n...a / R = 0.33: p_max +6.3 %"),
     "direction_scan": (
         ["32", "2"],

@@ -95,6 +95,15 @@ def test_no_pattern_is_used(path: Path) -> None:
     assert [m for m in found(path) if (name, m[1].lower()) not in EXCEPTIONS] == []
 
 
+def test_pages_speak_the_same_language() -> None:
+    """The prose of docs/: blocks and tables have names of commands, files and recorded results."""
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        prose = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+        lines = [line for line in prose.splitlines() if not line.startswith(("#", "|"))]
+        used = [m for line in lines for p in PATTERNS if (m := re.search(p["match"], line, re.IGNORECASE))]
+        assert [(page.name, match.group()) for match in used] == []
+
+
 def test_every_exception_is_needed() -> None:
     used = {(str(path.relative_to(ROOT)), m[1].lower()) for path in FILES for m in found(path)}
     assert set(EXCEPTIONS) <= used

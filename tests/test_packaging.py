@@ -6,7 +6,10 @@ That a wheel installs and runs elsewhere is checked by `.ci/package`, which take
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -41,6 +44,53 @@ def test_every_dependency_states_a_least_version() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
     lists = [PROJECT["project"]["dependencies"], *extras.values()]
     assert all(">=" in line or line.startswith("rough-friction[") for names in lists for line in names)
+
+
+EXTRAS_TESTED_ELSEWHERE = {
+    "instrument",
+    "rigorous",
+    "fast",
+    "mutation",
+    "tamaas",
+    "contactmechanics",
+    "aspher",
+    "dev",
+}
+"""The first three are set up by make beside dev; the others are of studies, which tests do not run."""
+
+
+def test_what_ci_installs_has_the_extras_that_tests_use() -> None:
+    extras = PROJECT["project"]["optional-dependencies"]
+    (own,) = (line for line in extras["dev"] if line.startswith("rough-friction["))
+    assert set(own.partition("[")[2].rstrip("]").split(",")) == set(extras) - EXTRAS_TESTED_ELSEWHERE
+
+
+OPTIONAL = (
+    "xarray", "h5netcdf", "h5py", "pandas", "pyarrow", "dask", "distributed", "ducc0", "flint",
+    "SurfaceTopography", "piqp", "cosmic_ray", "tamaas", "ContactMechanics", "aspher",
+)  # fmt: skip
+
+
+@pytest.mark.slow
+def test_without_any_extra_it_solves_plots_and_writes_csv(tmp_path: Path) -> None:
+    blocked = "".join(f"sys.modules[{name!r}] = None\n" for name in OPTIONAL)
+    (tmp_path / "sitecustomize.py").write_text(
+        f"import sys\n{blocked}"
+    )  # workers of a sweep start with it too
+    (tmp_path / "study.toml").write_text('scene = "hertz"\n[vary]\ngrid = 8\nload = [1.0, 2.0]\n')
+    paths = os.pathsep.join((str(tmp_path), str(ROOT)))
+    for words in (
+        "solve hertz --grid 16 --plot s.png --patches s.csv --npz s.npz --vtk s.vtu --json s.json",
+        "sweep study.toml --workers 1 --csv t.csv --plot t.pdf",
+    ):
+        command = [sys.executable, "-c", "from verification.cli import main; raise SystemExit(main())"]
+        done = subprocess.run(
+            [*command, *words.split()], cwd=tmp_path, env={**os.environ, "PYTHONPATH": paths},
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+    written = {path.name for path in tmp_path.iterdir() if path.stat().st_size > 100}
+    assert written >= {"s.png", "s.csv", "s.npz", "s.vtu", "s.json", "t.csv", "t.pdf"}
 
 
 def test_the_wheels_check_can_be_run() -> None:

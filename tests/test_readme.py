@@ -69,7 +69,8 @@ def in_both(halves: list[dict[str, Any]], key: str, unit: str) -> str:
 
 
 def test_the_table_of_bars_is_that_of_the_results() -> None:
-    rows = re.findall(r"^\| ([\w, -]+) to (0\.\d+) \| (.*) \|$", README, flags=re.M)
+    page = (ROOT / "docs/error-bars.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([\w, -]+) to (0\.\d+) \| (.*) \|$", page, flags=re.M)
     assert len(rows) == 6
     files = [ROOT / "reports/results" / f"{name}.json" for name in ("coverage", "coverage_fresh")]
     studies = [read_result(path) for path in files]
@@ -83,3 +84,10 @@ def test_the_table_of_bars_is_that_of_the_results() -> None:
         cells = [in_both(halves, key, "%") for key in ("met", "covered", "covered_at_worst")]
         cells += [in_both(halves, key, "") for key in ("median_bar_over_error", "median_cost")]
         assert rest.split(" | ") == cells, name
+    text = " ".join(README.split())
+    (mu,) = (row for name, accuracy, row in rows if (name, accuracy) == ("mu", "0.01"))
+    _, held, _, longer, _ = mu.split(" | ")
+    assert f"those of mu cover in {held.split()[-2]} %" in text
+    assert f"are {longer.split()[-1]} times the error in the median" in text
+    scenes = sum(last - first + 1 for first, last in (study["seeds"] for study in studies))
+    assert f"on {scenes} random scenes" in text

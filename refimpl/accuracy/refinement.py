@@ -68,6 +68,7 @@ def refine_until(
     grid_sizes: Iterable[int] = GRID_SIZES,
     *,
     slenderness: int = 1,
+    finest_by_data: float = math.inf,
 ) -> Refinement:
     """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
 
@@ -75,31 +76,40 @@ def refine_until(
 
     A grid that ``features_at`` refuses by `InputError` (memory) is replaced by the next coarser one, as long
     as that is finer than the last. The part that tau's active set leaves open need not fall on finer grids:
-    where it has not fallen and exceeds the accuracy, the refinement ends.
+    where it has not fallen and exceeds the accuracy, the refinement ends. Where the data leave more open than
+    the accuracy, no grid is finer than ``finest_by_data`` elements along the longer side.
     """
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
     remaining, refusal = [M * slenderness for M in grid_sizes], ""
     while results[-1].touching and relative_bound(results, quantity) > accuracy:
-        if math.isinf(_own_bound(results[-1], quantity)):
-            return Refinement(tuple(results), "the domain cuts the contact off: enlarge it")
-        for part, reason in REMAINING_PARTS.items():
-            if remains(part, results, accuracy, quantity):
-                return Refinement(tuple(results), reason)
+        if reason := out_of_reach(results, accuracy, quantity):
+            return Refinement(tuple(results), reason)
         last = size_of(results[-1])
         remaining = [M for M in remaining if last < M]
-        if remaining and (needed := forecast(results, accuracy, quantity)) > max(remaining):
-            reason = (
-                f"by the bars so far it takes about {needed:.2g} elements a side, more than {max(remaining)}"
-            )
+        useful = remaining
+        if leaves("data", results[-1], accuracy, quantity):
+            useful = [M for M in remaining if finest_by_data >= M]
+            refusal = refusal if useful else REMAINING_PARTS["data"]
+        if useful and (needed := forecast(results, accuracy, quantity)) > max(useful):
+            size = f"about {needed:.2g} elements a side, more than {max(useful)}"
+            reason = f"by the bars so far it takes {size}"
             return Refinement(tuple(results), refusal or reason)
-        if not remaining:
+        if not useful:
             return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
-        M = next_grid(results, accuracy, quantity, remaining)
+        M = next_grid(results, accuracy, quantity, useful)
         try:
             results.append(features_at(M))
         except InputError as refused:
             remaining, refusal = [size for size in remaining if size < M], str(refused)
     return Refinement(tuple(results), "")
+
+
+def out_of_reach(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> str:
+    """Return why no finer grid can reach an accuracy; empty where none is known not to."""
+    if math.isinf(_own_bound(results[-1], quantity)):
+        return "the domain cuts the contact off: enlarge it"
+    reasons = (text for part, text in REMAINING_PARTS.items() if remains(part, results, accuracy, quantity))
+    return next(reasons, "")
 
 
 def size_of(features: GridFeatures) -> int:
@@ -112,17 +122,25 @@ def next_grid(
 ) -> int:
     """Return the coarsest size whose predicted bar is short enough, within reach of the last grid."""
     fine = results[-1]
-    found = fine.numbers[quantity]
-    estimate = estimates(results)[quantity]
-    ratio = MAX_REFINEMENT if estimate.half_width < abs(found) else MAX_BLIND_REFINEMENT
+    predictable = estimates(results)[quantity].half_width < abs(fine.numbers[quantity])
+    ratio = MAX_REFINEMENT if predictable else MAX_BLIND_REFINEMENT
     reach = [size for size in grid_sizes if size <= ratio * size_of(fine)] or grid_sizes[:1]
+    return predicted_size(results, accuracy, quantity, reach) or reach[-1]
+
+
+def predicted_size(
+    results: Sequence[GridFeatures], accuracy: float, quantity: str, grid_sizes: Sequence[int]
+) -> int | None:
+    """Return the coarsest size whose predicted bar is short enough; None if none is."""
+    fine = results[-1]
+    found, estimate = fine.numbers[quantity], estimates(results)[quantity]
     own, order = _own_bound(fine, quantity), _own_order(results, quantity)
-    for M in reach:
+    for M in grid_sizes:
         finer = size_of(fine) / M
         bound = estimate.predicted_bound(found, finer) + own * finer**order
         if bound <= _MARGIN * accuracy * abs(found):
             return M
-    return reach[-1]
+    return None
 
 
 def _own_bound(features: GridFeatures, quantity: str) -> float:
@@ -151,7 +169,12 @@ def remains(part: str, results: Sequence[GridFeatures], accuracy: float, quantit
     if len(results) == len(FIRST_GRIDS):
         return False
     coarse, fine = (result.parts.get(quantity, {}).get(part, 0.0) for result in results[-2:])
-    return fine >= coarse and fine > accuracy * abs(results[-1].numbers[quantity])
+    return fine >= coarse and leaves(part, results[-1], accuracy, quantity)
+
+
+def leaves(part: str, result: GridFeatures, accuracy: float, quantity: str) -> bool:
+    """Return whether a part alone leaves more than the accuracy open."""
+    return result.parts.get(quantity, {}).get(part, 0.0) > accuracy * abs(result.numbers[quantity])
 
 
 def forecast(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:

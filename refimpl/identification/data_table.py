@@ -153,15 +153,17 @@ def _number(k: int, name: str, text: str) -> float:
     return number
 
 
-def check_rows(rows: Sequence[Row]) -> tuple[Row, ...]:
-    """Return the rows; raises `InputError` where two parameters cannot be found from them.
+def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
+    """Return the rows; raises `InputError` where the parameters cannot be found from them.
 
-    At least two loads, or two scenes, are required. Rows whose mu or whose loads lie so far apart that N and
-    kN are mixed are refused.
+    As many loads, or scenes, as unknowns are required. Rows whose mu or whose loads lie so far apart that N
+    and kN are mixed are refused.
     """
     cases = {replace(row, mu=0.0, u_mu=0.0) for row in rows}
-    if len(cases) < 2:
-        raise InputError("data", f"{len(rows)} rows at {len(cases)} load", "at least two different loads")
+    if len(cases) < unknowns:
+        count = "two" if unknowns == 2 else f"{unknowns}"
+        loads_found = f"{len(rows)} rows at {len(cases)} load{'s' if len(cases) > 1 else ''}"
+        raise InputError("data", loads_found, f"at least {count} different loads")
     loads = sorted(row.load for row in rows)
     jump = max(high / low for low, high in itertools.pairwise(loads))
     if jump > MIXED_LOADS:

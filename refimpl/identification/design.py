@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,7 +12,9 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
+from refimpl.identification.ensemble import draws, mean_response
 from refimpl.identification.forward import COVERAGE, Forward, Response
+from refimpl.identification.profile import BOUNDED
 from refimpl.scene.scene import Scene
 
 FACTORS = 0.1, 0.3, 3.0, 10.0  # trial loads over the least and the greatest measured load
@@ -27,7 +30,7 @@ class Proposal:
 
 
 def trial_responses(
-    scene: Scene, rows: Sequence[Row], forward: Forward, theta: Array
+    scene: Scene, rows: Sequence[Row], forward: Forward, theta: Array, realisations: int = 1
 ) -> list[tuple[float, Response]]:
     """Return responses at trial loads below and above those measured, where the model is usable."""
     low, high = min(row.load for row in rows), max(row.load for row in rows)
@@ -35,7 +38,7 @@ def trial_responses(
     for factor in FACTORS:
         load = factor * (low if factor < 1 else high)
         try:
-            response = forward.respond(replace(scene, load=load), theta)
+            response = mean_response(draws(forward, replace(scene, load=load), theta, realisations))
         except (InputError, ArithmeticError):
             continue  # a load beyond the hardness, or one whose solve does not converge
         if response.border <= MAX_BORDER:
@@ -56,10 +59,11 @@ def propose(
             information = np.linalg.inv(covariance)
             for _, response in chosen:
                 slopes = np.array(response.slopes)
-                spread = np.hypot(relative * response.predict(theta), response.numerical / COVERAGE)
+                measured = relative * response.predict(theta)
+                spread = math.hypot(measured, response.numerical / COVERAGE, response.scatter)
                 information = information + np.outer(slopes, slopes) / spread**2
-            half = COVERAGE * np.sqrt(np.diag(np.linalg.inv(information)))
-            tau, beta = (h / t if t > 0 else np.inf for h, t in zip(half, theta, strict=True))
+            half = COVERAGE * np.sqrt(np.diag(np.linalg.inv(information)))[:BOUNDED]
+            tau, beta = (h / t if t > 0 else np.inf for h, t in zip(half, theta[:BOUNDED], strict=True))
             proposals.append(
                 (half[0], Proposal(tuple(load for load, _ in chosen), (float(tau), float(beta))))
             )

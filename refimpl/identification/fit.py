@@ -1,12 +1,14 @@
-"""Weighted nonlinear least squares for tau and beta, with parts of the covariance.
+"""Weighted nonlinear least squares for tau, beta and further parameters, with parts of the covariance.
 
 At a fixed contact ``mu = F / P`` is linear in ``(tau, beta)``, and the contact depends on friction weakly.
 So the model of all rows is solved and linearised, fitted within its bounds, and linearised again at the fit
-(Gauss and Newton), until the linear model predicts what the next solves give.
+(Gauss and Newton), until the linear model predicts what the next solves give. Further parameters are fitted
+by their logarithms, in steps of half of their value at most.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,29 +17,36 @@ from scipy.optimize import least_squares
 
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
+from refimpl.identification.ensemble import draws, mean_response, scatter
 from refimpl.identification.forward import COVERAGE, Forward, Response
-from refimpl.identification.profile import Profile
+from refimpl.identification.profile import BOUNDED, Profile
 from refimpl.scene.scene import Scene
 
-MAX_PASSES = 6
+MAX_PASSES, MAX_FURTHER_PASSES = 6, 8  # without further parameters, and with them
 _AGREED = 0.02  # standard uncertainties by which prediction and solve may differ at the end
+_FURTHER_AGREED = 0.1  # with further parameters, likewise: elements that yield or not change mu by steps
+_FULL_STEPS = 4  # passes with further parameters after which steps are halved: such steps can alternate
 _CORRELATED = 0.5  # share of the bars' variance that all rows have in common: one grid, one surface
+_LONGEST = math.log(1.5)  # step of a further parameter's logarithm in one pass
 _RIDGE = 1e-10  # relative, added to the normal matrix: rows at one A/P leave it singular
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A fit: ``theta`` (tau in Pa, beta) within the bounds, ``free`` without them.
+    """A fit: ``theta`` (tau in Pa, beta, logarithms) within the bounds, ``free`` without them.
 
     responses : of the rows, linear about the last solves; passes : of solves over all rows
-    gain : (2, rows), change of ``free`` by a change of the measured mu
+    between : (rows, rows), covariance of friction by the choice of a realisation
+    gain : (parameters, rows), change of ``free`` by a change of the measured mu
     residuals : measured less predicted mu over ``scale``, the standard uncertainty with bars
     nonlinearity : largest difference of prediction and solve, in standard uncertainties
+    limited : whether a further parameter went its longest step in the last pass
     """
 
     theta: Array
     free: Array
     responses: tuple[Response, ...]
+    between: Array
     gain: Array
     weights: Array
     predicted: Array
@@ -45,26 +54,45 @@ class Fit:
     chi_square: float
     nonlinearity: float
     passes: int
+    limited: bool = False
 
 
-def fit(rows: Sequence[Row], scenes: Sequence[Scene], forward: Forward, start: Array) -> Fit:
-    """Fit both parameters. Raises `InputError` and `ArithmeticError` as the solves do."""
+def fit_rows(
+    rows: Sequence[Row], scenes: Sequence[Scene], forward: Forward, start: Array, realisations: int = 1
+) -> Fit:
+    """Fit all parameters to the mean over realisations. Raises errors as the solves do."""
     theta, predicted, passes = start, None, 0
+    most, agreed = (MAX_FURTHER_PASSES, _FURTHER_AGREED) if forward.further else (MAX_PASSES, _AGREED)
     while True:
         passes += 1
-        responses = tuple(forward.respond(scene, theta) for scene in scenes)
+        drawn = [draws(forward, scene, theta, realisations) for scene in scenes]
+        between = scatter(np.array([[one.mu for one in row] for row in drawn]).T)
+        responses = tuple(mean_response(row) for row in drawn)
+        _check_slopes(responses, forward.further, theta)
         solved = np.array([response.predict(theta) for response in responses])
-        scale = np.sqrt(np.diag(data_covariance(rows, responses)))
+        scale = np.sqrt(np.diag(data_covariance(rows, responses, between)))
         away = np.inf if predicted is None else float(np.max(np.abs(solved - predicted) / scale))
-        found = linear_fit(rows, responses, away, passes)
-        if away < _AGREED or passes == MAX_PASSES:
+        found = linear_fit(rows, responses, between, away, passes)
+        if (away < agreed and not found.limited) or passes == most:
             return found
-        theta, predicted = found.theta, found.predicted
+        share = 0.5 if forward.further and passes >= _FULL_STEPS else 1.0
+        theta, predicted = theta + share * (found.theta - theta), solved + share * (found.predicted - solved)
 
 
-def data_covariance(rows: Sequence[Row], responses: Sequence[Response]) -> Array:
-    """Return the covariance of measured less modelled mu: measurement, bars and contact edges."""
-    return np.asarray(np.diag([row.u_mu**2 for row in rows]) + sum(_bars(responses).values()))
+def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: Array) -> None:
+    """Raise `ArithmeticError` where mu does not depend on a further parameter at any load."""
+    for j, name in enumerate(further, start=BOUNDED):
+        if not any(response.slopes[j] for response in responses):
+            value = math.exp(theta[j])
+            raise ArithmeticError(
+                f"mu depends on {name} at no measured load, near {value:.4g}: the data do not determine it, "
+                "or the scene's value is a bad first guess"
+            )
+
+
+def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between: Array) -> Array:
+    """Return the covariance of measured less modelled mu: measurement, bars, contact edges, realisations."""
+    return np.asarray(np.diag([row.u_mu**2 for row in rows]) + sum(_bars(responses).values()) + between)
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
@@ -77,48 +105,66 @@ def _bars(responses: Sequence[Response]) -> dict[str, Array]:
     }
 
 
-def linear_fit(rows: Sequence[Row], responses: Sequence[Response], away: float, passes: int) -> Fit:
+def linear_fit(
+    rows: Sequence[Row], responses: Sequence[Response], between: Array, away: float, passes: int
+) -> Fit:
     """Fit the linear models of all rows by generalised least squares, within the bounds and without."""
     measured = np.array([row.mu for row in rows])
     slopes = np.array([response.slopes for response in responses])
-    at_zero = np.array([response.predict(np.zeros(2)) for response in responses])
+    origin = np.array([0.0] * BOUNDED + list(responses[0].at[BOUNDED:]))
+    at_origin = np.array([response.predict(origin) for response in responses])
     scale = max(float(np.max(np.abs(measured))), 1e-12) / np.max(np.abs(slopes), axis=0)
-    root = np.linalg.inv(np.linalg.cholesky(data_covariance(rows, responses)))
-    design, wanted = root @ slopes * scale, root @ (measured - at_zero)
+    covariance = data_covariance(rows, responses, between)
+    root = np.linalg.inv(np.linalg.cholesky(covariance))
+    design, wanted = root @ slopes * scale, root @ (measured - at_origin)
     normal = design.T @ design
-    normal += _RIDGE * np.trace(normal) * np.eye(2)
+    normal += _RIDGE * np.trace(normal) * np.eye(len(scale))
     gain = scale[:, None] * np.linalg.solve(normal, design.T @ root)
-    free = gain @ (measured - at_zero)
-    inside = np.maximum(free / scale, 1e-12)
-    bounded = least_squares(
-        lambda x: design @ x - wanted, inside, jac=lambda x: design, bounds=(0, np.inf), xtol=1e-12
-    )
-    theta = np.where(bounded.active_mask < 0, 0.0, bounded.x) * scale
-    if np.all(free >= 0):
-        theta = free
-    predicted = at_zero + slopes @ theta
+    step = gain @ (measured - at_origin)
+    moved = _bounded(design, wanted, step / scale, scale) * scale
+    predicted = at_origin + slopes @ moved
     misfit = root @ (measured - predicted)
-    spread = np.sqrt(np.diag(data_covariance(rows, responses)))
     return Fit(
-        theta=theta,
-        free=free,
+        theta=origin + moved,
+        free=origin + step,
         responses=tuple(responses),
+        between=between,
         gain=gain,
         weights=root.T @ root,
         predicted=predicted,
-        residuals=(measured - predicted) / spread,
+        residuals=(measured - predicted) / np.sqrt(np.diag(covariance)),
         chi_square=float(misfit @ misfit),
         nonlinearity=away,
         passes=passes,
+        limited=bool(np.any(np.abs(moved[BOUNDED:]) > _LONGEST * (1 - 1e-6))),
     )
 
 
-def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float]]) -> dict[str, Array]:
-    """Return the parts of the covariance (2, 2) of both parameters by source.
+def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
+    """Least squares with tau and beta not negative and with the longest step of further parameters.
 
-    measurement, numerical, contact edge, and each toleranced input, which all rows share.
+    All in units of ``scale``; ``free`` is the minimum without bounds.
+    """
+    low = np.concatenate([np.zeros(BOUNDED), -_LONGEST / scale[BOUNDED:]])
+    high = np.concatenate([np.full(BOUNDED, np.inf), _LONGEST / scale[BOUNDED:]])
+    if np.all((free >= low) & (free <= high)):
+        return free
+    start = np.clip(free, low + 1e-12, high - 1e-12)
+    found = least_squares(
+        lambda x: design @ x - wanted, start, jac=lambda x: design, bounds=(low, high), xtol=1e-12
+    )
+    return np.select([found.active_mask < 0, found.active_mask > 0], [low, high], found.x)
+
+
+def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float]]) -> dict[str, Array]:
+    """Return the parts of the covariance of all parameters by source.
+
+    measurement, numerical, contact edge, realisations where there are several, and each toleranced input,
+    which all rows share.
     """
     parts = {"measurement": np.diag([row.u_mu**2 for row in rows]), **_bars(fitted.responses)}
+    if fitted.between.any():
+        parts["realisations"] = fitted.between
     for name in inputs[0] if inputs else ():
         change = np.array([row[name] for row in inputs]) / COVERAGE
         parts[f"input {name}"] = np.outer(change, change)

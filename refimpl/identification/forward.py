@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, MutableMapping
+from collections.abc import Callable, Mapping, MutableMapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -11,33 +11,34 @@ import numpy as np
 
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
-from refimpl.scene.parameters import with_parameter
+from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.scene.scene import Scene
-from refimpl.sensitivities.sensitivity import friction_slopes, sensitivity
+from refimpl.sensitivities.sensitivity import difference_quotients, friction_slopes, sensitivity
 from refimpl.solution.solution import Solution
 
 COVERAGE = 1.959963984540054  # half-width of 95 % over the standard uncertainty, normal distribution
 NAMES = ("friction.tau", "friction.beta")
 _FLOOR = 1e-4  # share of the friction below which a parameter is not solved for: slopes extrapolate to zero
 _QUANTILES = 64  # pressures that stand for a contact in other laws: mu to 1e-3
-_TAU_SOLVES = 2  # solves that a derivative by the load, and by each number of a surface, takes
+_DIFFERENCE_SOLVES = 2  # solves that a derivative by the load, a hardness or a number of a surface takes
 
 
 @dataclass(frozen=True)
 class Response:
-    """Model of one row, linear about the parameters ``at`` (Pa, 1).
+    """Model of one row, linear about the parameters ``at``: tau (Pa), beta, logarithms of further ones.
 
-    mu : friction coefficient; slopes : ``d mu / d tau`` (1/Pa) and ``d mu / d beta``
+    mu : friction coefficient; slopes : ``d mu / d tau`` (1/Pa), ``d mu / d beta``, ``d mu / d ln p``
     numerical, contact_edge : 95 % half-widths of mu: error bar, and choice at contact edges
     inputs : 95 % half-widths of mu by toleranced parameter, with the sign of the derivative
     area_per_load : A / P (m^2/N); border, plastic : shares of the contact on the border, at the hardness
     pressures, weights : pressures (Pa) and ``cos cos dA / P`` (1/Pa) that stand for the contact
     solves : solves of the scene; warnings : the solution's
+    scatter : standard uncertainty of mu by the choice of a realisation, where this is a mean over several
     """
 
-    at: tuple[float, float]
+    at: tuple[float, ...]
     mu: float
-    slopes: tuple[float, float]
+    slopes: tuple[float, ...]
     numerical: float
     contact_edge: float
     inputs: Mapping[str, float]
@@ -48,6 +49,7 @@ class Response:
     weights: tuple[float, ...]
     solves: int
     warnings: tuple[str, ...]
+    scatter: float = 0.0
 
     def predict(self, theta: Array) -> float:
         """Return mu at other parameters, by the slopes."""
@@ -59,7 +61,10 @@ Key = Callable[[Scene, Any], str]
 
 
 class Forward:
-    """Responses of scenes on one grid; ``memory`` keeps them by ``key``, for a fit that goes on later."""
+    """Responses of scenes on one grid; ``memory`` keeps them by ``key``, for a fit that goes on later.
+
+    ``further`` names parameters that are fitted beside tau and beta, by their logarithms.
+    """
 
     def __init__(
         self,
@@ -67,29 +72,33 @@ class Forward:
         memory: Memory | None = None,
         key: Key | None = None,
         report: Callable[[str], None] | None = None,
+        further: Sequence[str] = (),
     ) -> None:
-        self.grid, self.solves = grid, 0
+        self.grid, self.solves, self.further = grid, 0, tuple(further)
         self._memory, self._key, self._report = memory, key, report
 
     def respond(self, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None) -> Response:
-        """Return the response of a scene at parameters ``(tau, beta)``.
+        """Return the response of a scene at parameters ``(tau, beta, ln p, ...)``.
 
         Raises `InputError` as `refimpl.solve` does, `ArithmeticError` where the solve does not converge.
         """
         if self._report is not None:
             self._report(f"solve {self.solves + 1}: {scene.load:.4g} N")
-        at = tuple(max(float(value), floor) for value, floor in zip(theta, floors(scene), strict=True))
-        for name, value in zip(NAMES, at, strict=True):
-            scene = with_parameter(scene, name, value)
+        friction = np.maximum(theta[: len(NAMES)], floors(scene))
+        for name, value in zip(NAMES, friction, strict=True):
+            scene = with_parameter(scene, name, float(value))
+        for name, logarithm in zip(self.further, theta[len(NAMES) :], strict=True):
+            scene = with_parameter(scene, name, math.exp(logarithm))
+        at = (*map(float, friction), *map(float, theta[len(NAMES) :]))
         tolerances = dict(tolerances or {})
-        settings = {"grid": self.grid, "tolerances": tolerances}
+        settings = {"grid": self.grid, "tolerances": tolerances, "further": self.further}
         if self._memory is None or self._key is None:
-            found = _response(scene, self.grid, at, tolerances)
+            found = _response(scene, self.grid, at, tolerances, self.further)
         else:
             key = self._key(scene, settings)
             if (stored := self._memory.get(key)) is not None:
                 return restored(stored)
-            found = _response(scene, self.grid, at, tolerances)
+            found = _response(scene, self.grid, at, tolerances, self.further)
             self._memory[key] = asdict(found)
         self.solves += found.solves
         return found
@@ -106,20 +115,23 @@ def floors(scene: Scene) -> tuple[float, float]:
     return _FLOOR * 1e-4 * scene.materials.reduced_modulus, _FLOOR * 1e-2
 
 
-def _response(scene: Scene, grid: Any, at: tuple[float, ...], tolerances: Mapping[str, float]) -> Response:
+def _response(
+    scene: Scene, grid: Any, at: tuple[float, ...], tolerances: Mapping[str, float], further: Sequence[str]
+) -> Response:
     solution = solve(scene, grid)
     if not solution.converged or not solution.contact.any():
         raise ArithmeticError(f"the solve at {scene.load:.4g} N ended as {solution.status.value}")
     inputs, solves = _inputs(scene, solution, tolerances)
+    slopes = (*friction_slopes(scene, solution), *(_log_slope(scene, solution, name) for name in further))
     parts = dict(solution.uncertainty["friction_coefficient"])
     edge = parts.pop("active set", 0.0)
     pressures, weights = _condensed(solution, scene.load)
     contact = solution.contact
     on_border = float(contact.sum() - contact[1:-1, 1:-1].sum()) / float(contact.sum())
     return Response(
-        at=(at[0], at[1]),
+        at=at,
         mu=solution.friction_coefficient,
-        slopes=friction_slopes(scene, solution),
+        slopes=slopes,
         numerical=min(math.fsum(parts.values()), 10 * abs(solution.friction_coefficient)),
         contact_edge=edge,
         inputs=inputs,
@@ -128,9 +140,15 @@ def _response(scene: Scene, grid: Any, at: tuple[float, ...], tolerances: Mappin
         plastic=solution.plastic_area / solution.contact_area,
         pressures=pressures,
         weights=weights,
-        solves=1 + solves,
+        solves=1 + solves + _DIFFERENCE_SOLVES * len(further),
         warnings=tuple(str(text) for text in solution.warnings if getattr(text, "number", None) is not None),
     )
+
+
+def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
+    """``d mu / d ln p`` by two solves: areas, and with them friction, are counted (`sensitivity`)."""
+    value = parameters(scene)[name]
+    return value * difference_quotients(scene, solution, name, value)["friction_coefficient"]
 
 
 def _inputs(
@@ -145,7 +163,7 @@ def _inputs(
     if solution.plastic_area > 0:
         differenced = len(found.parameters)
     inputs = {name: derivatives[name] * found.parameters[name] * tol for name, tol in tolerances.items()}
-    return inputs, _TAU_SOLVES * differenced
+    return inputs, _DIFFERENCE_SOLVES * differenced
 
 
 def _condensed(solution: Solution, load: float) -> tuple[tuple[float, ...], tuple[float, ...]]:

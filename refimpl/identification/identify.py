@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
@@ -14,18 +13,18 @@ from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row, check_rows
 from refimpl.identification.design import Proposal, propose, trial_responses
-from refimpl.identification.fit import Fit, fit, profile_of, shares
-from refimpl.identification.forward import NAMES, Forward, Key, Memory, Response, floors
+from refimpl.identification.ensemble import MIN_REALISATIONS, draws, is_random, mean_response
+from refimpl.identification.fit import Fit, fit_rows, profile_of, shares
+from refimpl.identification.forward import COVERAGE, NAMES, Forward, Key, Memory, Response, floors
+from refimpl.identification.further import further_parameters
 from refimpl.identification.laws import compare
 from refimpl.identification.profile import Profile
 from refimpl.identification.remarks import remarks
 from refimpl.identification.result import WIDE, Identification, Interval, Prediction
 from refimpl.scene.parameters import check_tolerances, parameters
-from refimpl.scene.scene import Body, Scene
-from refimpl.surfaces import SurfaceSum
+from refimpl.scene.scene import Scene
 
-MIN_REALISATIONS = 3
-_SEED_STEP = 1000  # between realisations: far from the seeds of both bodies
+_LARGEST = math.log(1e300)
 
 
 def identify(
@@ -34,6 +33,7 @@ def identify(
     grid: int | tuple[int, int],
     *,
     loads: Sequence[float] = (),
+    fit: Sequence[str] = (),
     tolerances: Mapping[str, float] | None = None,
     realisations: int = 1,
     design: bool = True,
@@ -41,7 +41,7 @@ def identify(
     key: Key | None = None,
     report: Callable[[str], None] | None = None,
 ) -> Identification:
-    """Find tau and beta from measured friction, with 95 % intervals.
+    """Find tau and beta, and further parameters, from measured friction, with 95 % intervals.
 
     Parameters
     ----------
@@ -49,8 +49,11 @@ def identify(
     rows : measurements (`read_rows`), of at least two loads
     grid : as in `refimpl.solve`
     loads : further loads (N) at which mu is predicted
+    fit : parameters that are fitted as well, from the scene's values: "hardness", "roughness", or a whole
+        name such as "lower.surface[0].rms". Each takes two more solves a row
     tolerances : relative half-widths (95 %) of inputs, as in `refimpl.budget`; friction is none of them
-    realisations : solve that many draws of random surfaces (their seeds moved), where no map is measured
+    realisations : fit the mean over that many draws of random surfaces (their seeds moved), where no map is
+        measured; their scatter adds to the uncertainty of each row
     design : propose further loads where tau is not determined
     memory, key : keep solves by a key of scene and settings, so that a stopped fit goes on
     report : called with a line of text before each solve
@@ -58,33 +61,33 @@ def identify(
     Raises `InputError` for input that is out of range, `ArithmeticError` where a solve does not converge.
     """
     rows, tolerances = check_rows(rows), dict(tolerances or {})
-    _check(scene, loads, tolerances, realisations)
-    forward = Forward(grid, memory, key, report)
+    further = _check(scene, loads, tolerances, realisations, fit)
+    check_rows(rows, len(NAMES) + len(further))
+    forward = Forward(grid, memory, key, report, further)
     fitted, parts = _fitted(scene, rows, forward, realisations, tolerances)
     covariance = np.asarray(sum(parts.values()))
     profile = profile_of(fitted, covariance)
-    fitted = replace(fitted, theta=profile.optimum) if realisations > 1 else fitted
-    values = {
-        name: Interval(float(fitted.theta[j]), *profile.interval(np.eye(2)[j]))
-        for j, name in enumerate(("tau", "beta"))
-    }
+    values = _values(fitted, profile, further)
+    units = np.array([1.0, 1.0, *(values[name].value for name in further)])
     factor = _best_factor(covariance, np.mean([one.slopes for one in fitted.responses], axis=0))
-    gradient = np.array([factor, 1.0])
+    gradient = np.array([factor, 1.0] + [0.0] * len(further))
     combination = Interval(float(gradient @ fitted.theta), *profile.interval(gradient))
-    new = [forward.respond(replace(scene, load=load), fitted.theta) for load in loads]
+    new = [
+        mean_response(draws(forward, replace(scene, load=load), fitted.theta, realisations)) for load in loads
+    ]
     responses, at = (*fitted.responses, *new), (*(row.load for row in rows), *loads)
     predictions = tuple(
         _prediction(load, response, fitted.theta, profile)
         for load, response in zip(at, responses, strict=True)
     )
-    degrees = max(len(rows) - 2, 0)
+    degrees = max(len(rows) - len(values), 0)
     wide = design and values["tau"].relative > WIDE
-    proposal = _proposal(scene, rows, forward, fitted, covariance) if wide else None
+    proposal = _proposal(scene, rows, forward, fitted, covariance, realisations) if wide else None
     result = Identification(
         rows=rows,
         values=values,
-        covariance=covariance,
-        shares={name: _two(np.sqrt(np.diag(part))) for name, part in parts.items()},
+        covariance=covariance * np.outer(units, units),
+        shares={name: _standard(part, units) for name, part in parts.items()},
         method="profile likelihood" if profile.is_bounded else "ellipse",
         factor=factor,
         combination=combination,
@@ -106,76 +109,79 @@ def identify(
 def _fitted(
     scene: Scene, rows: Sequence[Row], forward: Forward, realisations: int, tolerances: Mapping[str, float]
 ) -> tuple[Fit, dict[str, Array]]:
-    """The fit, of the mean over realisations if there are several, and the covariance by source."""
-    start, fits = _start(scene, rows), []
-    for k in range(realisations):
-        drawn = _redrawn(scene, k)
-        fits.append(fit(rows, [row.of(drawn) for row in rows], forward, start))
-        start = fits[0].theta
-    fitted, scenes = fits[0], [row.of(scene) for row in rows]
+    """The fit, and the covariance by source."""
+    logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
+    start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
+    fitted = fit_rows(rows, scenes, forward, start, realisations)
     inputs = [forward.respond(one, fitted.theta, tolerances).inputs for one in scenes] if tolerances else []
-    parts = shares(rows, fitted, inputs)
-    if realisations > 1:
-        free = np.array([one.free for one in fits])
-        fitted = replace(fitted, free=free.mean(axis=0))
-        parts["realisations"] = np.cov(free.T) * (1 + 1 / realisations)
-    return fitted, parts
+    return fitted, shares(rows, fitted, inputs)
 
 
 def _proposal(
-    scene: Scene, rows: Sequence[Row], forward: Forward, fitted: Fit, covariance: Array
+    scene: Scene, rows: Sequence[Row], forward: Forward, fitted: Fit, covariance: Array, realisations: int
 ) -> Proposal | None:
     """Further loads, measured as well as the present ones in the median."""
-    trials = trial_responses(scene, rows, forward, fitted.theta)
+    trials = trial_responses(scene, rows, forward, fitted.theta, realisations)
     relative = float(np.median([row.u_mu / max(row.mu, row.u_mu) for row in rows]))
     return propose(fitted.theta, covariance, trials, relative)
 
 
-def _two(pair: Array) -> tuple[float, float]:
-    return float(pair[0]), float(pair[1])
+def _values(fitted: Fit, profile: Profile, further: Sequence[str]) -> dict[str, Interval]:
+    """Values with their intervals; those of further parameters from the logarithms'."""
+    found = {}
+    for j, name in enumerate(("tau", "beta", *further)):
+        ends = float(fitted.theta[j]), *profile.interval(np.eye(len(fitted.theta))[j])
+        found[name] = Interval(*(ends if j < len(NAMES) else map(_power, ends)))
+    return found
 
 
-def _check(scene: Scene, loads: Sequence[float], tolerances: Mapping[str, float], realisations: int) -> None:
+def _power(logarithm: float) -> float:
+    """``exp``, infinite where an interval is too wide for floating point."""
+    return math.exp(logarithm) if logarithm < _LARGEST else math.inf
+
+
+def _standard(part: Array, units: Array) -> tuple[float, ...]:
+    return tuple(map(float, np.sqrt(np.diag(part)) * units))
+
+
+def _check(
+    scene: Scene,
+    loads: Sequence[float],
+    tolerances: Mapping[str, float],
+    realisations: int,
+    fit: Sequence[str],
+) -> tuple[str, ...]:
+    """Return the names of the further parameters."""
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
     for load in loads:
         require_number("loads", load, "positive loads in N", above=0)
+    further = further_parameters(scene, fit)
     for name, tolerance in tolerances.items():
         if name in NAMES:
             raise InputError(f"tolerances.{name!r}", tolerance, "no friction: it is what is identified")
+        if name in further:
+            raise InputError(f"tolerances.{name!r}", tolerance, "no tolerance of a parameter that is fitted")
     check_tolerances(scene, tolerances)
     allowed = f"1, or from {MIN_REALISATIONS} to 100"
     require_number("realisations", realisations, allowed, at_least=1, at_most=100)
     if int(realisations) != realisations or 1 < realisations < MIN_REALISATIONS:
         raise InputError("realisations", realisations, allowed)
-    random = any(hasattr(part, "seed") for body in (scene.upper, scene.lower) for part in body.surface.parts)
-    if realisations > 1 and not random:
+    if realisations > 1 and not is_random(scene):
         raise InputError("realisations", realisations, "1: no surface of the scene is random")
+    return further
 
 
 def _start(scene: Scene, rows: Sequence[Row]) -> Array:
-    """First guess: the scene's friction, or half of mu by each part at a mean pressure of E* / 100."""
+    """First guess: the scene's friction, or the least measured mu as beta and hardly any tau.
+
+    Little friction leaves the contact nearly as it is without: the solve converges, and slopes hold. A tau
+    above the pressures of the smallest load, which nobody knows beforehand, does neither.
+    """
     found = np.array([parameters(scene)[name] for name in NAMES])
     if found.all():
         return found
-    mu = float(np.mean([row.mu for row in rows]))
-    guess = np.array([0.5 * mu * 0.01 * scene.materials.reduced_modulus, 0.5 * mu])
-    return np.asarray(np.maximum(guess, floors(scene)), dtype=np.float64)
-
-
-def _redrawn(scene: Scene, k: int) -> Scene:
-    """The scene with the seeds of its random surfaces moved."""
-    if k == 0:
-        return scene
-    bodies: dict[str, Any] = {}
-    for name in ("upper", "lower"):
-        body = getattr(scene, name)
-        parts: tuple[Any, ...] = tuple(
-            replace(part, seed=part.seed + k * _SEED_STEP) if hasattr(part, "seed") else part
-            for part in body.surface.parts
-        )
-        bodies[name] = Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(parts))
-    return replace(scene, **bodies)
+    return np.maximum([0.0, min(row.mu for row in rows)], floors(scene))
 
 
 def _best_factor(covariance: Array, mean: Array) -> float:
@@ -185,12 +191,13 @@ def _best_factor(covariance: Array, mean: Array) -> float:
 
 
 def _prediction(load: float, response: Response, theta: Array, profile: Profile) -> Prediction:
-    """Interval of mu: parameters by their likelihood, and the bars of mu at this load, in squares."""
+    """Interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in squares."""
     mu = response.predict(theta)
-    slopes = np.maximum(np.array(response.slopes), 0.0)
+    slopes = np.array(response.slopes)
+    slopes[: len(NAMES)] = np.maximum(slopes[: len(NAMES)], 0.0)
     middle = float(slopes @ theta)
     low, high = profile.interval(slopes)
-    bar = math.hypot(response.numerical, response.contact_edge)
+    bar = math.hypot(response.numerical, response.contact_edge, COVERAGE * response.scatter)
     return Prediction(
         load, Interval(mu, mu - math.hypot(middle - low, bar), mu + math.hypot(high - middle, bar))
     )

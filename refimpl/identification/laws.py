@@ -1,7 +1,8 @@
 """Nested friction laws compared by information criteria (AICc: Hurvich and Tsai 1989; BIC: Schwarz 1978).
 
 ``r = tau + beta f`` holds Coulomb's law (tau = 0) and constant shear (beta = 0), and is held by
-``r = min(tau + beta f, r_max)``. The limited law is computed at the pressures of the fitted law.
+``r = min(tau + beta f, r_max)``. The limited law is computed at the pressures of the fitted law, and all of
+them at further parameters as fitted, which count as parameters of each.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from scipy.optimize import least_squares, nnls
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
 from refimpl.identification.fit import Fit
+from refimpl.identification.profile import BOUNDED
 
 DECISIVE = 6.0  # difference of AICc from which the worse law has little support
 
@@ -37,16 +39,18 @@ class Law:
 def compare(rows: Sequence[Row], fitted: Fit) -> tuple[Law, ...]:
     """Return the laws, ordered by AICc, and by BIC where AICc is infinite."""
     measured = np.array([row.mu for row in rows])
-    slopes = np.array([response.slopes for response in fitted.responses])
-    at_zero = fitted.predicted - slopes @ fitted.theta
+    slopes = np.array([response.slopes[:BOUNDED] for response in fitted.responses])
+    at_zero = fitted.predicted - slopes @ fitted.theta[:BOUNDED]
+    further = len(fitted.theta) - BOUNDED
     root = np.asarray(np.linalg.cholesky(fitted.weights).T)
     scale = np.max(np.abs(slopes), axis=0)
     wanted = root @ (measured - at_zero)
 
-    laws = [_law("tau + beta f", {"tau": fitted.theta[0], "beta": fitted.theta[1]}, fitted.chi_square, rows)]
+    linear = {"tau": fitted.theta[0], "beta": fitted.theta[1]}
+    laws = [_law("tau + beta f", linear, fitted.chi_square, rows, further)]
     for k, (name, parameter) in enumerate((("constant shear", "tau"), ("Coulomb", "beta"))):
         x, misfit = nnls((root @ slopes[:, [k]]) / scale[k], wanted)
-        laws.append(_law(name, {parameter: float(x[0] / scale[k])}, misfit**2, rows))
+        laws.append(_law(name, {parameter: float(x[0] / scale[k])}, misfit**2, rows, further))
     if len(rows) > 3:
         laws.append(_limited(rows, fitted, root, measured))
     return tuple(sorted(laws, key=lambda law: (law.aicc, law.bic)))
@@ -56,7 +60,7 @@ def _limited(rows: Sequence[Row], fitted: Fit, root: Array, measured: Array) -> 
     """The law with a limit, from several starts: the least of them."""
     pressures = [np.array(response.pressures) for response in fitted.responses]
     weights = [np.array(response.weights) for response in fitted.responses]
-    tau, beta = fitted.theta
+    tau, beta = fitted.theta[:BOUNDED]
     peak = max(float(p.max()) for p in pressures)
     top = tau + beta * peak
     scales = np.array([max(tau, 1e-3 * top), max(beta, 1e-3 * top / peak), top])
@@ -82,11 +86,14 @@ def _limited(rows: Sequence[Row], fitted: Fit, root: Array, measured: Array) -> 
         dict(zip(("tau", "beta", "r_max"), map(float, x), strict=True)),
         chi_square,
         rows,
+        len(fitted.theta) - BOUNDED,
     )
 
 
-def _law(name: str, parameters: Mapping[str, float], chi_square: float, rows: Sequence[Row]) -> Law:
-    n, k = len(rows), len(parameters)
+def _law(
+    name: str, parameters: Mapping[str, float], chi_square: float, rows: Sequence[Row], further: int
+) -> Law:
+    n, k = len(rows), len(parameters) + further
     few = n - k - 1 <= 0
     aicc = math.inf if few else chi_square + 2 * k + 2 * k * (k + 1) / (n - k - 1)
     values = {key: float(value) for key, value in parameters.items()}

@@ -1,24 +1,34 @@
-"""Profile likelihood of a linear combination of parameters that may not be negative.
+"""Profile likelihood of a linear combination of parameters, of which the first may not be negative.
 
 With ``Q = (theta - c)^T C^-1 (theta - c)``, the combination ``g theta = m`` is inside the 95 % interval where
 ``min Q`` over ``theta >= 0`` on that line exceeds the least of all by at most 3.84 (Wilks 1938). Where no
 bound is active the interval is that of the ellipse, ``g c +- 1.96 sqrt(g C g)``.
+
+The minimum of a convex Q is the minimum on one face of the bounds (some parameters at zero, the rest free),
+and there are few faces: each is tried.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from refimpl.grid import Array
 
 LEVEL = 3.841458820694124  # 95 % quantile of chi-square, one degree of freedom
+BOUNDED = 2  # parameters that may not be negative, the first ones: tau and beta
+_ROUNDING = 1e-12  # below zero, in standard deviations, that still counts as zero
+
+Indices = NDArray[np.intp]
 
 
 class Profile:
-    """Likelihood of two parameters about ``centre`` (the optimum without bounds), covariance (2, 2)."""
+    """Likelihood of parameters about ``centre`` (the optimum without bounds), covariance (n, n)."""
 
     def __init__(self, centre: Array, covariance: Array) -> None:
         self.scale = np.sqrt(np.diag(covariance))
@@ -31,39 +41,43 @@ class Profile:
         away = theta - self.centre
         return float(away @ self.precision @ away)
 
+    def _faces(self) -> Iterator[tuple[Indices, Array, Array]]:
+        """Each face: its free parameters, the optimum on it, and the covariance of the free ones."""
+        n = len(self.centre)
+        for count in range(BOUNDED + 1):
+            for chosen in itertools.combinations(range(BOUNDED), count):
+                at_zero = np.array(chosen, dtype=np.intp)
+                free = np.setdiff1d(np.arange(n), at_zero)
+                covariance = np.linalg.inv(self.precision[np.ix_(free, free)])
+                theta = np.zeros(n)
+                pull = self.precision[np.ix_(free, at_zero)] @ self.centre[at_zero]
+                theta[free] = self.centre[free] + covariance @ pull
+                yield free, theta, covariance
+
     def _optimum(self) -> Array:
-        """The optimum within the bounds: inside, on one of both axes, or the origin."""
-        if np.all(self.centre >= 0):
-            return np.asarray(self.centre * self.scale)
-        axes = []
-        for k in (0, 1):
-            other = 1 - k
-            moved = self.centre[k] + self.precision[k, other] / self.precision[k, k] * self.centre[other]
-            axes.append(np.eye(2)[k] * max(float(moved), 0.0))
-        return np.asarray(min(axes, key=self._misfit) * self.scale)
+        """The optimum within the bounds: inside, or on one of their faces, the last of which has no bound."""
+        inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
+        return np.asarray(min(inside, key=self._misfit) * self.scale)
 
     def on_line(self, gradient: Array, value: float) -> float:
-        """Return the least misfit on ``gradient theta = value`` within the bounds; gradient >= 0."""
-        g = gradient * self.scale
-        direction = np.array([-g[1], g[0]])
-        direction = direction / np.linalg.norm(direction)
-        start = g * value / float(g @ g)
-        slope = float(direction @ self.precision @ direction)
-        best = -float(direction @ self.precision @ (start - self.centre)) / slope
-        low, high = -math.inf, math.inf
-        for at, along in zip(start, direction, strict=True):
-            if along > 0:
-                low = max(low, -at / along)
-            elif along < 0:
-                high = min(high, -at / along)
-        return self._misfit(start + min(max(best, low), high) * direction)
+        """Return the least misfit on ``gradient theta = value`` within the bounds; infinite outside them."""
+        g, least = gradient * self.scale, math.inf
+        for free, theta, covariance in self._faces():
+            along = covariance @ g[free]
+            slope = float(g[free] @ along)
+            if slope > 0:
+                theta[free] += along * (value - float(g @ theta)) / slope
+                if np.all(theta[:BOUNDED] >= -_ROUNDING):
+                    least = min(least, self._misfit(theta))
+        return least
 
     def interval(self, gradient: Array) -> tuple[float, float]:
-        """Return the 95 % interval of ``gradient theta``; its low end is 0 where the bound is inside."""
-        middle = float(gradient @ self.optimum)
-        spread = math.sqrt(
-            float((gradient * self.scale) @ np.linalg.inv(self.precision) @ (gradient * self.scale))
-        )
+        """Return the 95 % interval of ``gradient theta``.
+
+        Its low end is 0 where the bounds keep the combination from less, and that bound is inside.
+        """
+        middle, g = float(gradient @ self.optimum), gradient * self.scale
+        spread = math.sqrt(float(g @ np.linalg.inv(self.precision) @ g))
 
         def excess(value: float) -> float:
             return self.on_line(gradient, value) - self.least - LEVEL
@@ -72,10 +86,14 @@ class Profile:
         while excess(high) < 0:
             high += spread
         upper = float(brentq(excess, middle, high, xtol=1e-9 * spread))
-        low = 0.0 if excess(0.0) <= 0 else float(brentq(excess, 0.0, middle, xtol=1e-9 * spread))
-        return low, upper
+        floor = 0.0 if np.all(g[:BOUNDED] >= 0) and not np.any(g[BOUNDED:]) else -math.inf
+        low = max(middle - spread, floor)
+        while low > floor and excess(low) < 0:
+            low = max(low - spread, floor)
+        inside = low == floor and excess(floor) <= 0
+        return floor if inside else float(brentq(excess, low, middle, xtol=1e-9 * spread)), upper
 
     @property
     def is_bounded(self) -> bool:
         """True where the bounds cut the 95 % intervals of the ellipse."""
-        return bool(np.any(self.centre < math.sqrt(LEVEL)))
+        return bool(np.any(self.centre[:BOUNDED] < math.sqrt(LEVEL)))

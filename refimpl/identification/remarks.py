@@ -11,16 +11,26 @@ import numpy as np
 from refimpl.identification.design import MAX_BORDER
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import DECISIVE
-from refimpl.identification.result import Identification
+from refimpl.identification.profile import BOUNDED
+from refimpl.identification.result import WIDE, Identification
 
 OUTLIER = 3.0  # residual in standard uncertainties
+_SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
 _UNLIKELY = 0.01  # probability of a chi-square as large, below which the model or the data are doubted
 
 
 def remarks(result: Identification) -> tuple[str, ...]:
     """Return the warnings, the most important first."""
     responses = result.fitted.responses
-    return (*_determined(result), *_residuals(result), *_model(result), *_law(result), *_limits(responses))
+    return (
+        *_determined(result),
+        *_further(result),
+        *_settled(result),
+        *_residuals(result),
+        *_model(result),
+        *_law(result),
+        *_limits(responses),
+    )
 
 
 def _determined(result: Identification) -> Iterator[str]:
@@ -37,6 +47,25 @@ def _determined(result: Identification) -> Iterator[str]:
         loads = " and ".join(f"{load:.3g} N" for load in result.proposal.loads)
         text += f"; measure at {loads}: tau's interval falls to +-{100 * result.proposal.widths[0]:.0f} %"
     yield text + "; a curved surface changes A/P more than flat rough planes do"
+
+
+def _further(result: Identification) -> Iterator[str]:
+    for name, one in list(result.values.items())[BOUNDED:]:
+        if not one.relative <= WIDE:
+            yield (
+                f"{name} is hardly determined (95 % interval {one.low:.3g} to {one.high:.3g}): mu changes "
+                "little with it at the measured loads, or as it does with tau or beta"
+            )
+
+
+def _settled(result: Identification) -> Iterator[str]:
+    fitted = result.fitted
+    if fitted.limited or fitted.nonlinearity > _SETTLED:
+        away = f"{fitted.nonlinearity:.1g} standard uncertainties"
+        yield (
+            f"the fit did not settle: the last solves differ by up to {away} from their prediction; take "
+            "a finer grid or another first guess"
+        )
 
 
 def _residuals(result: Identification) -> Iterator[str]:

@@ -41,8 +41,9 @@ class Prediction:
 class Identification:
     """Result of `identify`.
 
-    values : "tau" (Pa) and "beta" with their intervals; covariance : (2, 2), of tau and beta without bounds
-    shares : standard uncertainties of tau and of beta by source
+    values : "tau" (Pa), "beta" and further fitted parameters (SI) with their intervals
+    covariance : of these, in their order, without bounds
+    shares : standard uncertainties of these by source
     method : "ellipse", or "profile likelihood" where a bound cuts the interval
     combination : ``k tau + beta``, what the data determine best; ``factor`` is k (1/Pa), near A / P
     predictions : at the measured loads, then at the new ones
@@ -54,7 +55,7 @@ class Identification:
     rows: tuple[Row, ...]
     values: Mapping[str, Interval]
     covariance: Array
-    shares: Mapping[str, tuple[float, float]]
+    shares: Mapping[str, tuple[float, ...]]
     method: str
     factor: float
     combination: Interval

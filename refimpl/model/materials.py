@@ -14,8 +14,8 @@ RIGID = 1e100  # Pa; beside any other body's it is as good as infinite, and its 
 class Material:
     """A linear elastic, isotropic material: Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``.
 
-    ``E = math.inf`` is a rigid body. ``hardness`` (Pa), if given, is what pressures are warned against; the
-    model stays elastic.
+    ``E = math.inf`` is a rigid body. ``hardness`` (Pa), if given, is where contact pressures end
+    (`Scene.plastic`).
 
     Raises `InputError` unless ``E`` and ``hardness`` are positive and finite (``E`` may be infinite) and
     ``-1 < nu <= 0.5``.

@@ -101,7 +101,7 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
         values = {name: value for name, value in values.items() if name in ("load", *names)}
     answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
     solved = {
-        name: _differenced(scene, solution, name, value)
+        name: difference_quotients(scene, solution, name, value)
         for name, value in values.items()
         if name == "load" or ".surface" in name or yields
     }
@@ -214,8 +214,11 @@ def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
     return discretise(changed, base.grid, base.terms)
 
 
-def _differenced(scene: Scene, solution: Solution, name: str, value: float) -> dict[str, float]:
-    """Each number's derivative by a difference of two solves, central but at the end of a range."""
+def difference_quotients(scene: Scene, solution: Solution, name: str, value: float) -> dict[str, float]:
+    """Return each number's derivative over a parameter by two solves, a tenth of its value to either side.
+
+    Central but at the end of a range. Raises `ArithmeticError` where one of both solves does not converge.
+    """
     step = _stride(scene, name, value)
     low, high = _ends(name, value, step)
     below, above = (

@@ -30,7 +30,7 @@ from refimpl.surfaces import Flat
 
 NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force")
 LIGHT = 0.05  # mean pressure over E* Sdq by default: about a tenth of the area is in contact
-_SHORT = 0.1  # share of the mean square slope at short waves that is worth a sentence
+_SHORT = 0.1  # largest share of the mean square slope at short waves without a sentence
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +42,8 @@ class SurfaceVerdict:
     local : coefficient error at each element's undeformed slopes (relative), the grid's shape
     share_above : share of the area where it exceeds 2 %
     short_waves : share of the mean square slope at wavelengths that the coefficient tables do not reach
-    advice : keep, correct or finite elements
-    evidence : what the advice rests on
+    advice : one of three: keep, correct, finite elements
+    evidence : slopes, contacts and limits behind the advice
     """
 
     solution: Solution

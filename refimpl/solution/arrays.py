@@ -90,7 +90,7 @@ def as_dataset(solution: Reported, provenance: Mapping[str, str] | None = None) 
     try:
         import xarray
     except ModuleNotFoundError as missing:
-        allowed = "xarray installed: pip install 'rough-friction[arrays]'"
+        allowed = "xarray installed: pip install '.[arrays]' in a checkout"
         raise InputError("to_xarray", "xarray", allowed) from missing
     centres = {"x": solution.grid.x, "y": solution.grid.y}
     data = {

@@ -19,6 +19,7 @@ from refimpl.scene.scene import Scene
 from refimpl.surfaces import Sphere
 from refimpl.surfaces.surface import Surface
 
+MOST_ELEMENTS = 4  # between points of the data: the surface between them is interpolated, and smooth there
 _OCTAVES = 1.5  # changes as of the last octave, of which a bar holds this many
 _MOST_POINTS = 2048  # a side, of a map whose gradients are computed
 
@@ -36,6 +37,13 @@ def data_error(scene: Scene, grid: Grid) -> float:
         return 0.0
     missed, unseen = (1 - math.sqrt(min(1.0, (s + other) / (at_pitch + other))) for s in (at_grid, above))
     return missed + _OCTAVES * unseen
+
+
+def finest_by_data(scene: Scene) -> float:
+    """Return the elements along the longer side at four a pitch; infinite without measured parts."""
+    parts = [part for name in ("lower", "upper") for part in scene.parts(name)]
+    pitches = [pitch for part in parts if (pitch := part.pitch(scene.lengths)) is not None]
+    return MOST_ELEMENTS * max(scene.lengths) / min(pitches) if pitches else math.inf
 
 
 def _squares(measured: list[Surface], grid: Grid) -> Iterator[tuple[float, float, float]]:

@@ -66,15 +66,14 @@ def short_wave_share(problem: Problem) -> float:
     k_y = 2 * math.pi * np.fft.rfftfreq(grid.shape[1], dy)[None, :]
     square = k_x**2 + k_y**2
     short = square > (2 * math.pi / (SHORTEST * math.sqrt(dx * dy))) ** 2
-    weight = np.full(square.shape, 2.0)  # of a real transform's columns, which stand for two
+    weight = np.full(square.shape, 2.0)  # a column of a real transform stands for two
     weight[:, 0] = 1.0
     if grid.shape[1] % 2 == 0:
         weight[:, -1] = 1.0
-    taper = 1.0 if grid.periodic else np.outer(*(np.hanning(n + 2)[1:-1] for n in grid.shape))
     total = above = 0.0
     shares = 1 - problem.pair.upper_share, problem.pair.upper_share
     for share, heights in zip(shares, problem.heights, strict=True):
-        power = share * weight * square * np.abs(np.fft.rfft2((heights - heights.mean()) * taper)) ** 2
+        power = share * weight * square * np.abs(np.fft.rfft2((heights - heights.mean()) * grid.taper)) ** 2
         total += float(power.sum())
         above += float(power[short].sum())
     return above / total if total > 0 else 0.0

@@ -6,17 +6,29 @@ None of them is an error: the theory has no scale, and what is unusual may be ri
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
 from refimpl.scene.scene import Scene
+from refimpl.solution.limits import Notice
+from refimpl.solution.solved import Solved
 from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
 
 MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
 _STRONG = 10.0  # tau over the mean contact pressure
 _SOFTER = 10.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics and polymers
 _INDEX = 1e3  # plasticity index
+_LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
+
+
+def notes(scene: Scene, solved: Solved, lines: Sequence[str]) -> tuple[Notice, ...]:
+    """Notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its own."""
+    grid, parts = solved.problem.grid, (*scene.lower.surface.parts, *scene.upper.surface.parts)
+    lines = (*implausible(scene, solved.plan), *lines)
+    rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
+    named = {line for part in rough for line in part.cautions(grid)}
+    return tuple(Notice(line) for line in lines if line not in named)
 
 
 def implausible(scene: Scene, plan: Plan) -> Iterator[str]:
@@ -58,9 +70,8 @@ def _surface(name: str, scene: Scene) -> Iterator[str]:
                 "a paraboloid is no sphere there"
             )
         if isinstance(part, GaussianRoughness | SelfAffineRoughness):
-            lengths = [length for length in part.parameters().items() if "length" in length[0]]
-            for label, length in lengths:
-                if length > shorter:
+            for label, length in part.parameters().items():
+                if label.startswith(_LENGTHS) and length > shorter:
                     yield (
                         f"{name}: {label} {length:.4g} m is beyond the domain's {shorter:.4g} m: "
                         "did you mean um (100 um is 100e-6)?"

@@ -113,10 +113,11 @@ def check_level(level: object, repeats: bool) -> None:
     """Raise InputError unless ``level`` names a form; of a map that repeats only the mean can be."""
     if repeats:
         require_one_of("level", level, ("none", "mean"))
-    elif isinstance(level, bool) or not isinstance(level, int):
-        require_one_of("level", level, (*DEGREES, *CURVED))
-    elif not 0 <= level <= MAX_DEGREE:
-        raise InputError("level", level, f"a polynomial's total degree, 0 to {MAX_DEGREE}")
+        return
+    degree = isinstance(level, int) and not isinstance(level, bool) and 0 <= level <= MAX_DEGREE
+    if not degree and not (isinstance(level, str) and level in (*DEGREES, *CURVED)):
+        words = ", ".join((*DEGREES, *CURVED))
+        raise InputError("level", level, f"one of {words}, or a polynomial's total degree, 0 to {MAX_DEGREE}")
 
 
 def fit_form(x: Array, y: Array, z: Array, level: str | int, pixel: tuple[float, float] = (1.0, 1.0)) -> Form:

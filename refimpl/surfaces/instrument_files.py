@@ -180,7 +180,7 @@ def library_for(path: Path) -> ModuleType:
         import SurfaceTopography.Exceptions
     except ImportError as error:
         allowed = (
-            'a plain .npy or .csv, or the package that reads it (pip install "rough-friction[instrument]")'
+            'a plain .npy or .csv, or the package that reads it (pip install ".[instrument]" in a checkout)'
         )
         raise InputError("path", str(path), allowed) from error
     logging.getLogger("SurfaceTopography").addHandler(logging.NullHandler())  # nothing on stderr

@@ -95,7 +95,10 @@ class SelfAffineRoughness(Surface):
             what = "both" if present else "neither"
             raise InputError("rms, rms_gradient", what, "one of rms (m) and rms_gradient")
         (given,) = present
-        require_size(given, sizes[given], f"a positive {given}, rms in m")
+        allowed = (
+            "a positive rms height in m" if given == "rms" else "a positive rms of the gradient's length"
+        )
+        require_size(given, sizes[given], allowed)
         size, ratio = float(sizes[given]), self._gradient_per_height
         object.__setattr__(self, "given", given)
         object.__setattr__(self, "rms", size if given == "rms" else size / ratio)

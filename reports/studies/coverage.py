@@ -42,7 +42,7 @@ def build(document: Document) -> Exhibit:
         "Accuracy requested, and kept",
         (summary, *_reference(document)),
         (_by_number(document), *(_by_class(judged) for judged in document["accuracies"]), _beside(document)),
-        tuple((FIGURE, _series(judged)) for judged in document["accuracies"]),
+        tuple((_figure(document, judged), _series(judged)) for judged in document["accuracies"]),
     )
 
 
@@ -193,11 +193,13 @@ def _draw(canvas: Canvas, data: Data) -> None:
     canvas.legend(handles, labels, loc="outside lower center", ncols=8, fontsize=8)
 
 
-FIGURE = Figure(
-    "*",
-    ("number", "class", "error", "bar", "reached", "accuracy"),
-    _draw,
-    f"True error over the bar of each scene; bars above {LONGEST:g}, and those without end, are drawn there. "
-    "Dotted: the requested accuracy.",
-    (11.0, 3.8),
-)
+def _figure(document: Document, judged: dict[str, Any]) -> Figure:
+    first, last = document["seeds"]
+    return Figure(
+        "*",
+        ("number", "class", "error", "bar", "reached", "accuracy"),
+        _draw,
+        f"Accuracy {judged['accuracy']:g} requested of scenes {first} to {last}: true error over the bar; "
+        f"bars above {LONGEST:g}, and those without end, are drawn there. Dotted: the accuracy.",
+        (11.0, 3.8),
+    )

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from reports.exhibit import Document, Exhibit, Table
 
+HEAD = ("seed", "share (per cent)", "tests", "failed", "skipped", "processor time (s)", "commit")
+
 
 def build(document: Document) -> Exhibit:
     """A row for each run: its seed, tests and failures."""
     rows = [
         (
             run["seed"],
+            round(100 * run.get("share", 1)),
             run["tests"],
             sum(end != "skipped" for end in run["not_passed"].values()),
             sum(end == "skipped" for end in run["not_passed"].values()),
@@ -25,7 +28,8 @@ def build(document: Document) -> Exhibit:
         "Random order",
         (
             f"{verdict} in {len(rows)} runs with files and tests shuffled, and every search of random "
-            f"examples seeded by the run's seed. All that is skipped is of {', '.join(skipped)}.",
+            "examples seeded by the run's seed; a share of the tests is drawn for each. All that is skipped "
+            f"is of {', '.join(skipped)}.",
         ),
-        [Table("Runs.", ("seed", "tests", "failed", "skipped", "processor time (s)", "commit"), rows)],
+        [Table("Runs.", HEAD, rows)],
     )

@@ -1,4 +1,5 @@
-// Tables sort by a click on a column's head; the filter hides the checks that lack its words; a link opens its check.
+// Tables sort by a click on a column's head; the filter hides the checks that lack its words; a link opens what its
+// target stands in.
 for (const table of document.querySelectorAll("table.sortable")) {
   const heads = [...table.tHead.rows[0].cells];
   heads.forEach((head, column) => {
@@ -23,7 +24,9 @@ for (const table of document.querySelectorAll("table.sortable")) {
 }
 const opened = () => {
   const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
-  if (target && target.tagName === "DETAILS") target.open = true;
+  if (!target) return;
+  for (let around = target; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
+  target.scrollIntoView();
 };
 addEventListener("hashchange", opened);
 opened();

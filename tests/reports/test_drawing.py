@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import INK, Draw, Figure, dots, lines, maps, order, svg
+from reports.drawing import COLOURS, INK, Draw, Figure, complete, dots, lines, maps, order, svg
+from reports.exhibit import as_csv
 
 
 def drawn(draw: Draw, data: dict[str, Any]) -> Canvas:
@@ -79,3 +80,43 @@ def test_the_export_takes_the_readers_colours() -> None:
 def test_missing_series_make_no_picture(data: dict[str, Any]) -> None:
     figure = Figure("*", ("x", "y"), lines("x", {"y": "y"}, xlabel="x", ylabel="y"), "a caption")
     assert svg(figure, data) is None
+
+
+def test_curves_that_coincide_have_a_panel_of_their_difference() -> None:
+    draw = lines(
+        "x", {"p": "ours"}, exact={"q": "exact"}, band=("w", "95 %"), xlabel="x", ylabel="p",
+        difference="less", per_x=10.0,
+    )  # fmt: skip
+    above, below = drawn(draw, {"x": [0, 1], "p": [1.0, 2.0], "q": [1.0, 1.5], "w": [0.1, 0.1]}).axes
+    np.testing.assert_array_equal(below.lines[0].get_ydata(), [0.0, 0.5])
+    np.testing.assert_array_equal(above.lines[0].get_xdata(), [0, 10])
+    assert (above.get_xlabel(), below.get_xlabel(), below.get_ylabel()) == ("", "x", "less")
+
+
+def test_what_is_drawn_beside_the_record_is_in_the_csv() -> None:
+    figure = Figure(
+        "*", ("x",), lines("x", {"y": "y"}, xlabel="", ylabel=""), "", derived=lambda d: {"y": d["x"]}
+    )
+    assert as_csv(figure, complete(figure, {"x": [1, 2]})).splitlines() == ["x,y", "1,1", "2,2"]
+    assert svg(figure, {"x": [1, 2]}) is not None
+
+
+def test_labels_have_symbols_and_names_are_left_alone() -> None:
+    made = svg(Figure("*", ("v",), dots("v", xlabel="mu over 3 um"), ""), {"v": {"tau": 1.0, "tau-bar": 2.0}})
+    assert made is not None
+    texts = re.findall(r"<text[^>]*>([^<]*)</text>", made)
+    assert {"μ over 3 µm", "τ", "tau-bar"} <= set(texts)
+
+
+@pytest.mark.parametrize("page", ["#ffffff", "#17181b"])
+@pytest.mark.parametrize("colour", COLOURS)
+def test_colours_are_seen_on_light_and_dark(colour: str, page: str) -> None:
+    """Contrast of at least 3 after WCAG 2.1."""
+    shades = [luminance(colour), luminance(page)]
+    assert (max(shades) + 0.05) / (min(shades) + 0.05) >= 3
+
+
+def luminance(colour: str) -> float:
+    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), linear, strict=True))

@@ -7,16 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from reports.generator import render
-from reports.result_files import read_results
-from tests.documents import ROOT
 from tests.reports.test_generator import Page
-
-
-@pytest.fixture(scope="module")
-def html() -> str:
-    documents = read_results(ROOT / "reports/results")
-    return render(documents["quick"], documents)
 
 
 @pytest.mark.slow
@@ -33,11 +24,22 @@ def test_everything_has_a_name(html: str) -> None:
     assert len(re.findall(r"<table\b", html)) == len(re.findall(r"<caption\b", html))
     assert not re.search(r"<th[^>]*>\s*</th>", html)  # the script makes buttons of heads
     assert all(image["aria-label"] for image in Page(html).images)
-    captions = re.findall(r"<figcaption>(.*?)<", html, flags=re.S)
+    captions = re.findall(r"<figcaption>Figure \d+\. (.*?)\s*<", html, flags=re.S)
+    assert len(captions) > 50
     assert "The series that the case recorded" not in html
     assert len(captions) == len(set(captions))
     levels = [int(level) for level in re.findall(r"<h(\d)\b", html)]
     assert all(b <= a + 1 for a, b in pairwise(levels))
+
+
+@pytest.mark.slow
+def test_figures_have_symbols_and_units_and_no_hatching(html: str) -> None:
+    figures = re.findall(r'<svg class="plot".*?</svg>', html, flags=re.S)
+    assert len(figures) > 50
+    texts = [text for figure in figures for text in re.findall(r"<text\b[^>]*>([^<]*)</text>", figure)]
+    plain = re.compile(r"(?<![\w-])(mu|tau|beta|f_max|\d um|mm\^2|\(m\))(?![\w-])")
+    assert [text for text in texts if plain.search(text)] == []
+    assert not any("<pattern" in figure for figure in figures)
 
 
 @pytest.mark.slow

@@ -10,7 +10,8 @@ from tests.documents import ROOT
 from tests.reports.sample import case, results
 
 TABLE = re.compile(
-    r'<table class="(?:sortable)?( wide)?">\s*<caption[^>]*>[^<]*</caption>\s*<thead><tr>(.*?)</tr>',
+    r'<table class="(?:sortable)?(?: short)?( wide)?">\s*<caption[^>]*>[^<]*</caption>'
+    r"\s*<thead><tr>(.*?)</tr>",
     flags=re.S,
 )
 

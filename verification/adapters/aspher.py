@@ -5,7 +5,7 @@ here, so the exact one takes its place ("modestly faster", its authors say, up t
 
 Its extra builds from source: that takes a C++17 compiler, CMake, and Eigen (Debian's libeigen3-dev).
 
-``rough-friction verify --solver verification.adapters.aspher:solve``
+``rough-friction verify --solver aspher``
 """
 
 from __future__ import annotations
@@ -61,6 +61,7 @@ solve = Peer(
     setup="solve_nested from 64 x 64 with backend 'fft' or 'periodic', double precision, its other defaults",
     abilities=Abilities(approach=False),
     press=press,
+    needs="it builds from source: a C++17 compiler, CMake and Eigen (Debian: apt-get install libeigen3-dev)",
 )
 """Solver under test."""
 

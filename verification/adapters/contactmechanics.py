@@ -8,7 +8,7 @@ version 1.8.3 calls the uniform pressure of its first iteration converged (`veri
 A hardness is an argument of ``minimize_proxy``, as a force of an element. Where most of the contact is at it
 the solver turns to relaxation, and may not end.
 
-``rough-friction verify --solver verification.adapters.contactmechanics:solve``
+``rough-friction verify --solver contactmechanics``
 """
 
 from __future__ import annotations
@@ -88,5 +88,7 @@ solve = Peer(
     "dual_minimize_proxy at an approach",
     abilities=Abilities(rectangle=True, oblong_elements=True, hardness=True),
     press=press,
+    wrong="surfaces out of reach: at an approach where nothing touches, version 1.8.3 returns no pressures, "
+    "which is right, and says that it did not converge",
 )
 """Solver under test."""

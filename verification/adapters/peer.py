@@ -10,6 +10,7 @@ from types import ModuleType
 
 import numpy as np
 
+from verification.contestants import identity
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Unsupported
 from verification.framework.case import Unavailable
 
@@ -29,6 +30,8 @@ class Peer:
     extra : this project's extra that installs it
     setup : how it is set up, and on whose advice
     press : maps a problem to an answer; may import the peer
+    needs : what its installation takes besides the extra, or instead of one
+    wrong : known defects of its answers
     """
 
     distribution: str
@@ -36,6 +39,18 @@ class Peer:
     setup: str
     abilities: Abilities
     press: Callable[[ContactProblem], PeerAnswer]
+    needs: str = ""
+    wrong: str = ""
+
+    @property
+    def installation(self) -> str:
+        """Return the command that installs the peer in a checkout of this project.
+
+        >>> Peer("tamaas", "tamaas", "", Abilities(), lambda problem: PeerAnswer([], True)).installation
+        "pip install -c constraints.txt -e '.[tamaas]' in a checkout"
+        """
+        command = f"pip install -c constraints.txt -e '.[{self.extra}]' in a checkout" if self.extra else ""
+        return "; ".join(filter(None, [command, self.needs]))
 
     @property
     def installed(self) -> str | None:
@@ -50,6 +65,11 @@ class Peer:
         """Name and installed version."""
         return f"{self.distribution} {self.installed or '(not installed)'}"
 
+    @property
+    def checksum(self) -> str | None:
+        """Checksum of the installed distribution, or None."""
+        return identity.of_distribution(self.distribution)
+
     def __call__(self, problem: ContactProblem) -> PeerAnswer:
         """The peer's answer.
 
@@ -57,9 +77,7 @@ class Peer:
         problem.
         """
         if self.installed is None:
-            raise Unavailable(
-                f"{self.distribution} is not installed: pip install 'rough-friction[{self.extra}]'"
-            )
+            raise Unavailable(f"{self.distribution} is not installed: {self.installation}")
         lacking = self.abilities.lacking(problem)
         if lacking:
             raise Unsupported(f"{self.distribution} does not offer: {lacking}")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from refimpl.grid import Array
-from verification.adapters import aspher, contactmechanics, tamaas, traps
+from verification.adapters import aspher, contactmechanics, slippy, tamaas, traps
 from verification.adapters.peer import Peer
 from verification.contestants import own, referee
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, abilities_of
-from verification.contestants.suite import suite
-from verification.framework.case import Result, Status, jsonable
+from verification.contestants.suite import identity, suite
+from verification.framework.case import Metric, Result, Status, jsonable
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 
@@ -33,11 +33,19 @@ ENTRANTS: dict[str, Solver] = {
     "Tamaas": tamaas.solve,
     "ContactMechanics": contactmechanics.solve,
     "ASPHER": aspher.solve,
+    "SlipPY": slippy.solve,
     "Tamaas, registered only": traps.registered_only,
     "ContactMechanics, no mean stiffness": traps.no_mean_stiffness,
+    "SlipPY, its default in free space": slippy.by_default,
 }
 OURS = {"refimpl": "nested FFT solver, its defaults", "refimpl, dense": "dense matrices, active sets"}
-TRAPS = ("Tamaas, registered only", "ContactMechanics, no mean stiffness")
+TRAPS = (
+    "Tamaas, registered only",
+    "ContactMechanics, no mean stiffness",
+    "SlipPY, its default in free space",
+)
+WORST = ("fail", "error", "pass", "unavailable")
+"""Of the problems of a covering design the first that occurs is the design's verdict."""
 
 
 @dataclass
@@ -80,8 +88,17 @@ def measured() -> dict[str, object]:
         entrants.append(_entrant(name, solver))
         progress.tick(name)
     progress.close()
-    cases = [{"id": f"contestant/{c.slug}", "title": c.title, "metric": c.metric} for c in suite()]
-    return {"provenance": provenance(), "cases": cases, "entrants": entrants}
+    cases = [{"id": c.id, "title": c.title, "metric": c.metric} for c in suite() if not _design(c.id)]
+    for design in dict.fromkeys(filter(None, (_design(c.id) for c in suite()))):
+        title = f"Covering design, {design.rpartition('-')[2]}: all problems"
+        cases.append({"id": design, "title": title, "metric": Metric.AT_MOST})
+    return {"provenance": provenance(), "suite": identity(), "cases": cases, "entrants": entrants}
+
+
+def _design(case: str) -> str | None:
+    """Return ``contestant/design-NAME`` of a problem of a covering design; None of other cases."""
+    head, _, number = case.rpartition("-")
+    return head if "/design-" in case and number.isdigit() else None
 
 
 def _entrant(name: str, solver: Solver) -> dict[str, object]:
@@ -91,6 +108,8 @@ def _entrant(name: str, solver: Solver) -> dict[str, object]:
         "version": solver.version,
         "setup": OURS[name] if isinstance(solver, own.Own) else solver.setup,
         "role": "ours" if ours else "trap" if name in TRAPS else "peer",
+        "checksum": None if isinstance(solver, own.Own) else solver.checksum,
+        "wrong": "" if isinstance(solver, own.Own) or name in TRAPS else solver.wrong,
         "abilities": asdict(solver.abilities),
         "installed": isinstance(solver, own.Own) or solver.installed is not None,
     }
@@ -106,7 +125,41 @@ def _entrant(name: str, solver: Solver) -> dict[str, object]:
         "counts": counts,
         "seconds": sum(row["seconds"] for row in rows),
         "worst residual": max(residuals) if residuals else None,
-        "results": rows,
+        "results": [{name: _short(value) for name, value in row.items()} for row in summarised(rows)],
+    }
+
+
+def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of the cases, and one for each covering design: its worst error, and which problems failed."""
+    single = [dict(row) for row in rows if _design(row["id"]) is None]
+    designs: dict[str, list[Mapping[str, Any]]] = {}
+    for row in rows:
+        if (design := _design(row["id"])) is not None:
+            designs.setdefault(design, []).append(row)
+    return single + [_of_design(design, found) for design, found in designs.items()]
+
+
+def _short(value: Any) -> Any:
+    """Four digits of a number: no report shows more."""
+    return float(f"{value:.4g}") if isinstance(value, float) else value
+
+
+def _of_design(design: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    def worst(name: str) -> float | None:
+        return max((row[name] for row in rows if row[name] is not None), default=None)
+
+    failed = [
+        f"{row['status']}: {row['id'].rpartition('-')[2]}" for row in rows if row["status"] in WORST[:2]
+    ]
+    reasons = list(dict.fromkeys(row["note"] for row in rows if row["status"] == "error"))[:3]
+    return {
+        "id": design,
+        "status": min((row["status"] for row in rows), key=WORST.index),
+        "error": worst("error"),
+        "tolerance": rows[0]["tolerance"],
+        "seconds": sum(row["seconds"] for row in rows),
+        "residual": worst("residual"),
+        "note": "; ".join([*failed, *reasons]),
     }
 
 

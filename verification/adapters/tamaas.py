@@ -10,7 +10,7 @@ Free space takes two steps: ``registerNonPeriodic`` adds the zero-padded operato
 ``setIntegralOperator`` tells the solver to use it. Without the second, Tamaas 2.9.0 solves the periodic
 problem and says nothing; `verification.adapters.traps` keeps that in view.
 
-``rough-friction verify --solver verification.adapters.tamaas:solve``
+``rough-friction verify --solver tamaas``
 """
 
 from __future__ import annotations
@@ -91,5 +91,8 @@ solve = Peer(
     "registerNonPeriodic and setIntegralOperator",
     abilities=Abilities(rectangle=True, oblong_elements=True, hardness=True),
     press=press,
+    wrong="periodic grids of M elements, M odd: version 2.9.0 takes the waves of index (M - 1)/2 along x "
+    "for the next shorter ones, so that displacements err by up to 19, 12 and 6 % on the highest waves of 9, "
+    "15 and 33 elements, and reports success. KatoSaturated may rest at a wrong state, its error being 0",
 )
 """Solver under test."""

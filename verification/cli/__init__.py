@@ -13,7 +13,18 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
 
-from verification.cli import appendix_a, identify, inspect, remake, report, solve, sweep, tradeoff, verify
+from verification.cli import (
+    appendix_a,
+    identify,
+    inspect,
+    keys,
+    remake,
+    report,
+    solve,
+    sweep,
+    tradeoff,
+    verify,
+)
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 OUTPUT_REFUSED = (
@@ -51,7 +62,7 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"rough-friction {version('rough-friction')}")
     commands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
-    for module in (solve, inspect, identify, verify, report, remake, sweep, tradeoff, appendix_a):
+    for module in (solve, inspect, identify, keys, verify, report, remake, sweep, tradeoff, appendix_a):
         module.add_parser(commands)
     return top
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 LOOK_UP = "error of flat coefficients in the plane, from the shipped map"
 ELEMENT = "error of flat coefficients of a square element in three dimensions, from the shipped table"
-SHARE = 0.1  # of the first order: more in the second is worth a caution
+SHARE = 0.1  # second order over first; more has a caution
 
 
 def add_look_up(parser: argparse.ArgumentParser) -> None:

@@ -26,7 +26,7 @@ def check(npz: Path | None, netcdf: Path | None) -> None:
             import h5netcdf  # noqa: F401  # only whether it is there
             import xarray  # noqa: F401
         except ModuleNotFoundError as missing:
-            allowed = "xarray and h5netcdf installed (pip install 'rough-friction[arrays]'), or --npz instead"
+            allowed = "xarray and h5netcdf installed (in a checkout: pip install '.[arrays]'), or --npz"
             raise InputError("--netcdf", str(netcdf), allowed) from missing
 
 

@@ -8,7 +8,8 @@ import signal
 import time
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.output import columns, emit, judgement, wrapped
+from verification.cli import suite_table
+from verification.cli.output import columns, emit, judgement, output_file, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from verification.framework.case import Result
     from verification.framework.runner import Run
 
-ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout")
+ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -30,7 +31,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     who = group.add_mutually_exclusive_group()
     who.add_argument(
-        "--solver", metavar="MODULE:FUNCTION", help="a Python function of one ContactProblem, see its module"
+        "--solver",
+        metavar="MODULE:FUNCTION",
+        help="a Python function of one ContactProblem, see its module; or one of the published codes "
+        "tamaas, contactmechanics, aspher, slippy",
     )
     who.add_argument(
         "--exec", metavar="COMMAND", help="a program, run as COMMAND DIRECTORY; files: contestants/command.py"
@@ -53,7 +57,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--timeout",
         metavar="S",
         type=float,
-        help="seconds for one problem (default 60); a --solver has 6 S + 10 for a case of up to 6",
+        help="seconds for one problem (default 60); a --solver has 5 more",
+    )
+    group.add_argument(
+        "--discretisation",
+        choices=("same", "other"),
+        help="other: judge limits and orders of convergence in the place of equality with element-wise\n"
+        "pressures; exit status 0 when both hold, 3 when an order is low, 1 when a limit is wrong",
+    )
+    group.add_argument(
+        "--table",
+        metavar="FILE",
+        type=output_file,
+        help="write a table of the run beside the published codes: FILE ends in .csv, .tex or .md",
     )
 
 
@@ -72,48 +88,97 @@ def chosen(options: argparse.Namespace) -> bool:
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from refimpl.errors import InputError
-    from verification.contestants import isolated, short_list, suite
+    from verification.contestants import convergence, isolated, short_list, suite
     from verification.contestants.ending import Ended, unwinding
     from verification.framework.case import Tier, readable
-    from verification.framework.files import Progress
+    from verification.framework.files import Progress, write_text
     from verification.framework.runner import Run
 
     try:
-        checks = suite.select(options.only)
+        among = convergence.CASES if options.discretisation == "other" else None
+        checks = suite.select(options.only, among)
     except LookupError as nothing:
         raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
+    if options.table is not None:
+        suite_table.require_suffix(options.table)
     if options.list:
         listed = [{"id": c.id, "title": c.title, "claim": c.description} for c in checks]
         emit(listed, options.json, columns([[c.id, c.title] for c in checks], indent=""))
         return 0
     name, source, stated = _source(options)
     start, progress = time.perf_counter(), Progress(len(checks))
+    results: list[Result] = []
+    left: list[str] = []
+
+    def judged(result: Result) -> None:
+        results.append(result)
+        progress.tick(f"{result.status:<11} {result.id}")
+
+    ended: BaseException | None = None
     try:
         with unwinding(signal.SIGTERM, signal.SIGHUP):  # a batch queue's, a terminal's that is closed
-            results = isolated.run(
+            isolated.run(
                 source,
                 options.only,
                 timeout=_timeout(options),
                 name=name,
-                tick=lambda r: progress.tick(f"{r.status:<11} {r.id}"),
+                among=among,
+                begin=lambda check: progress.show(f"running     {check.id}"),
+                tick=judged,
+                left=left.append,
             )
-    except Ended as ended:
-        os.kill(os.getpid(), ended.number)  # everything is tidied up; now what the signal does by itself
-        raise
+    except (Ended, KeyboardInterrupt) as end:  # verdicts so far are shown and written
+        ended = end
     progress.close()
     done = Run(Tier.FULL, tuple(options.only), tuple(results), time.perf_counter() - start)
-    unseen = None if options.only else unseen_faults(results)
-    document = done.document() | {
+    missing = [check.id for check in checks[len(results) :]]
+    unseen = None if options.only or among or ended else unseen_faults(results)
+    low = convergence.slow(results) if among else []
+    document: dict[str, Any] = done.document() | {
+        "suite": suite.identity(),
+        "interrupted": ended is not None,
         "contestant": {
-            "name": readable(name),
+            **identity_of(options),
             "abilities": stated or None,
             "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
+            "not_judged": missing,
+            "left_running": left,
+            "low_order": low,
             "unseen_faults": unseen,
             "short_list": short_list.of_results(results),
-        }
+        },
     }
-    emit(document, options.json, table(readable(name), done, unseen or []))
-    return done.exit_status
+    text = table(readable(name), done, unseen or [], left, len(missing))
+    if among and results:
+        orders = columns([[r.id, r.note] for r in results if r.status == "pass"])
+        low_ones = "right in the limit, but of low order: " + ", ".join(low) if low else ""
+        text = "\n\n".join(filter(None, [orders, low_ones, text]))
+    emit(document, options.json, text)
+    if options.table is not None:
+        entry = suite_table.run_entry(document["contestant"], suite.VERSION, results)
+        write_text(
+            suite_table.text_of(options.table.suffix, [entry, *suite_table.published()]), options.table
+        )
+    if isinstance(ended, Ended):
+        os.kill(os.getpid(), ended.number)  # everything is tidied up; now what the signal does by itself
+    if ended is not None:
+        raise ended
+    return convergence.exit_status(results) if among else done.exit_status
+
+
+def identity_of(options: argparse.Namespace) -> dict[str, str | None]:
+    """Name, version and checksum of the solver."""
+    from verification.adapters import PEERS
+    from verification.contestants import identity
+    from verification.framework.case import readable
+
+    if options.exec is not None:
+        found = identity.of_command(options.exec)
+    elif options.solver in PEERS:
+        found = identity.of_peer(PEERS[options.solver])
+    else:
+        found = identity.of_function(options.solver)
+    return found | {"name": readable(options.solver or options.exec)}
 
 
 def unseen_faults(results: Iterable[Result]) -> list[str]:
@@ -134,6 +199,7 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
     """Name and source of the solver, and the abilities that are stated here: a program has no other."""
     from dataclasses import asdict, replace
 
+    from verification.adapters import PEERS
     from verification.contestants.command import Command
     from verification.contestants.isolated import Named
     from verification.contestants.protocol import Abilities
@@ -145,13 +211,18 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
         stated = {name: able for name, able in listed.items() if name not in limits} | stated
     abilities = replace(Abilities(), **stated)  # refuses what cannot be, before anything is imported
     if options.solver is not None:
-        return options.solver, Named(options.solver, stated).contestant, stated
+        return options.solver, Named(PEERS.get(options.solver, options.solver), stated).contestant, stated
     command = Command.of(options.exec, abilities, _timeout(options))
     return options.exec, command.contestant, asdict(abilities)
 
 
-def table(name: str, done: Run, unseen: Sequence[str] = ()) -> str:
-    """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts."""
+def table(
+    name: str, done: Run, unseen: Sequence[str] = (), left: Sequence[str] = (), missing: int = 0
+) -> str:
+    """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts.
+
+    ``left`` are processes that the solver left running, ``missing`` the cases that an interrupted run missed.
+    """
     ran = [r for r in done.results if r.status != "unavailable"]
     rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
     reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
@@ -163,6 +234,10 @@ def table(name: str, done: Run, unseen: Sequence[str] = ()) -> str:
         parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
     if unseen:
         parts.append("looked for by none of these cases:\n" + wrapped(", ".join(unseen), "  "))
+    if left:
+        parts.append("processes that the solver left behind:\n  " + "\n  ".join(left))
+    if missing:
+        parts.append(f"interrupted: {missing} cases were not judged")
     return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
 
 

@@ -1,4 +1,7 @@
-"""`rough-friction solve --explain`: what a scene requires, printed without solving it."""
+"""`rough-friction solve --explain`: what a scene requires, printed without solving it.
+
+With an accuracy the two grids that open a refinement are solved: by their bars the last grid is forecast.
+"""
 
 from __future__ import annotations
 
@@ -13,27 +16,44 @@ from verification.cli.output import columns
 
 if TYPE_CHECKING:
     from refimpl.driver.options import Options
+    from refimpl.driver.refined import Forecast
     from refimpl.planning.plan import Plan
     from refimpl.planning.terms import Term
     from refimpl.scene.resolution import Resolution
 
 
-def explained(options: Options, plan: Plan, scene: str) -> str:
-    """Return the plan as a table of at most 100 columns, and the contact that is expected."""
+def explained(options: Options, plan: Plan, scene: str, expected: Forecast | None = None) -> str:
+    """Return the plan as a table of at most 100 columns, the contact that is expected, and the forecast."""
     demand = f"requested accuracy: {plan.demand:.2g}; neglected terms may add up to {plan.budget:.2g}"
     rows = [["term", "", "change of mu", "of A", "why"], *(_row(term) for term in plan.terms)]
     size = "refined" if options.grid is None else f"{plan.grid} elements"
     return "\n\n".join(
         (
-            f"{scene}: {size}, method {plan.method}; nothing is solved\n{demand}",
+            f"{scene}: {size}, method {plan.method}; {_solved(expected)}\n{demand}",
             columns(rows),
             "changes are relative, and expected not to be exceeded in 19 of 20 scenes",
-            columns(_expectations(options, plan)),
+            columns([*_expectations(options, plan), *_forecast(options, expected)]),
         )
     )
 
 
-def document(options: Options, plan: Plan, scene: str) -> dict[str, object]:
+def _solved(expected: Forecast | None) -> str:
+    if expected is None:
+        return "nothing is solved"
+    return f"solved are only {' and '.join(str(grid) for grid in expected.solved)} elements, for the forecast"
+
+
+def _forecast(options: Options, expected: Forecast | None) -> list[list[str]]:
+    if expected is None:
+        return []
+    what = f"{options.target_quantity} to {options.accuracy:g}"
+    if expected.refusal:
+        return [["forecast", f"{what} is not to be reached: {expected.refusal}"]]
+    took = f"about {expected.seconds:.1g} s, {expected.memory / 1e6:.3g} MB"
+    return [["forecast", f"{what} takes {expected.grid} elements, {took}"]]
+
+
+def document(options: Options, plan: Plan, scene: str, expected: Forecast | None = None) -> dict[str, object]:
     """Return the plan for JSON, in SI units; one number of elements is that along the longer side."""
     resolved = _resolution(options, plan)
     return {
@@ -47,6 +67,17 @@ def document(options: Options, plan: Plan, scene: str) -> dict[str, object]:
         "expected": asdict(plan.contact),
         "resolution": None if resolved is None else asdict(resolved),
         "memory": plan.memory,
+        "forecast": None if expected is None else _forecast_document(expected),
+    }
+
+
+def _forecast_document(expected: Forecast) -> dict[str, object]:
+    return {
+        "grid": list(expected.grid.shape),
+        "seconds": expected.seconds,
+        "memory": expected.memory,
+        "refusal": expected.refusal,
+        "solved": [list(grid.shape) for grid in expected.solved],
     }
 
 

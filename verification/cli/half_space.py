@@ -20,7 +20,7 @@ ROWS = (  # name, label, factor, unit
     ("approach", "approach", 1e6, "um"),
     ("normal_force", "N at this approach", 1.0, "N"),
 )
-ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # of a surface file, which states no material
+ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surface file, which states no material
 FILE_OPTIONS = (*ALONE, "pressure", "unit", "pixel_size")
 
 
@@ -46,7 +46,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def surface(options: argparse.Namespace) -> int:
     """Solve, state the half-space's error in each number and on each element, and advise."""
     from refimpl.sensitivities.surface_verdict import surface_verdict
-    from verification.cli.plot import check_suffix
+    from verification.cli.plot_style import check_suffix
 
     check_suffix(options.plot)
     scene, note = _posed(options)

@@ -27,6 +27,7 @@ EPILOG = """examples:
   rough-friction identify pair.toml friction.csv
   rough-friction identify pair.toml friction.csv --loads 5,80 --plot fit.png --json fit.json
   rough-friction identify pair.toml friction.csv --store fit.json
+  rough-friction identify pair.toml friction.csv --fit hardness
 
 DATA.csv has the columns load,mu,u_mu or load,friction_force,u_friction_force: N, and standard
 uncertainties (68 %). Optional columns: sliding_direction (rad), sliding_offset (m), upper_file,
@@ -49,6 +50,7 @@ def add_parser(commands: Parsers) -> None:
     add("data", metavar="DATA.csv", type=Path, help="the measured friction")
     add("--grid", metavar="M", type=int, default=256, help="elements along the longer side (default 256)")
     add("--loads", metavar="P,P,...", type=_numbers, default=(), help="loads (N) at which mu is predicted")
+    add("--fit", metavar="NAME,...", type=_names, default=(), help="fit hardness or roughness as well")
     add("--realisations", metavar="N", type=int, default=1, help="draws of random surfaces (default 1)")
     add("--store", metavar="FILE.json", type=output_file, help="keep finished solves there, and go on")
     add("--plot", metavar="FILE.png", type=output_file, help="draw data, fit, ellipse and residuals")
@@ -61,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.identification import identify, read_rows
     from refimpl.scene.scene_file import read_scene, read_tolerances
     from verification.cli.identify_store import SolveStore, key
-    from verification.cli.plot import check_suffix
+    from verification.cli.plot_style import check_suffix
     from verification.framework.provenance import provenance
 
     check_suffix(options.plot)
@@ -77,6 +79,7 @@ def run(options: argparse.Namespace) -> int:
             rows,
             options.grid,
             loads=options.loads,
+            fit=options.fit,
             tolerances=tolerances,
             realisations=options.realisations,
             memory=store,
@@ -91,6 +94,15 @@ def run(options: argparse.Namespace) -> int:
         draw(found, options.plot)
     emit(document(found) | {"provenance": provenance()}, options.json, table(found))
     return 0
+
+
+def _names(text: str) -> tuple[str, ...]:
+    """Names from text.
+
+    >>> _names("hardness, lower.surface[0].rms")
+    ('hardness', 'lower.surface[0].rms')
+    """
+    return tuple(name.strip() for name in text.split(","))
 
 
 def _numbers(text: str) -> tuple[float, ...]:
@@ -111,10 +123,11 @@ def document(found: Identification) -> dict[str, object]:
     return {
         "tau": _interval(found.values["tau"]),
         "beta": _interval(found.values["beta"]),
+        "fitted": {name: _interval(found.values[name]) for name in _further(found)},
         "covariance": found.covariance.tolist(),
         "identified": found.is_identified,
         "method": found.method,
-        "shares": {name: {"tau": tau, "beta": beta} for name, (tau, beta) in found.shares.items()},
+        "shares": {name: dict(zip(found.values, part, strict=True)) for name, part in found.shares.items()},
         "combination": {"factor": found.factor, **_interval(found.combination)},
         "predictions": [{"load": p.load, **_interval(p.mu)} for p in found.predictions],
         "residuals": list(found.residuals),
@@ -148,26 +161,53 @@ def _finite(number: float) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _interval(interval: Interval) -> dict[str, float]:
-    return {"value": interval.value, "low": interval.low, "high": interval.high}
+def _interval(interval: Interval) -> dict[str, float | None]:
+    return {"value": interval.value, "low": interval.low, "high": _finite(interval.high)}
+
+
+def _further(found: Identification) -> tuple[str, ...]:
+    """Names of the parameters fitted beside tau and beta."""
+    return tuple(found.values)[2:]
+
+
+def _scaled(name: str) -> tuple[str, float]:
+    """Label with a unit at the object's scale, and the unit.
+
+    >>> _scaled("lower.material.hardness"), _scaled("lower.surface[0].rms")
+    (('lower.material.hardness (MPa)', 1000000.0), ('lower.surface[0].rms (um)', 1e-06))
+    """
+    for ending, (unit, size) in {"hardness": ("MPa", MEGA), "rms": ("um", 1e-6)}.items():
+        if name.endswith(ending):
+            return f"{name} ({unit})", size
+    return name, 1.0
+
+
+def _shown(label: str, one: Interval, unit: float) -> list[str]:
+    return [label, f"{one.value / unit:.4g}", f"{one.low / unit:.4g} to {one.high / unit:.4g}"]
 
 
 def table(found: Identification) -> str:
     """Values, parts of their uncertainty, rows, laws and warnings."""
     tau, beta, both = found.values["tau"], found.values["beta"], found.combination
+    further = {name: _scaled(name) for name in _further(found)}
     values = [
         ["", "value", "95 % interval"],
         ["tau (MPa)", f"{tau.value / MEGA:.4g}", f"{tau.low / MEGA:.4g} to {tau.high / MEGA:.4g}"],
         ["beta", f"{beta.value:.4g}", f"{beta.low:.4g} to {beta.high:.4g}"],
+        *(_shown(label, found.values[name], unit) for name, (label, unit) in further.items()),
         [
             f"{found.factor * MEGA:.3g} tau/MPa + beta",
             f"{both.value:.4g}",
             f"{both.low:.4g} to {both.high:.4g}",
         ],
     ]
+    units = [MEGA, 1.0, *(unit for _, unit in further.values())]
     parts = [
-        ["standard uncertainty", "tau (MPa)", "beta"],
-        *([name, f"{t / MEGA:.2g}", f"{b:.2g}"] for name, (t, b) in found.shares.items()),
+        ["standard uncertainty", "tau (MPa)", "beta", *(label for label, _ in further.values())],
+        *(
+            [name, *(f"{u / unit:.2g}" for u, unit in zip(part, units, strict=True))]
+            for name, part in found.shares.items()
+        ),
     ]
     rows = [["load (N)", "mu measured", "mu of the model", "95 % interval", "residual / u"]]
     for k, prediction in enumerate(found.predictions):

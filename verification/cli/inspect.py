@@ -69,7 +69,7 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Inspect the file."""
     from refimpl import inspect
-    from verification.cli.plot import check_suffix
+    from verification.cli.plot_style import check_suffix
 
     check_suffix(options.plot)
     check_outputs([Path(options.file)], plot=options.plot, json=options.json)

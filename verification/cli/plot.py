@@ -1,59 +1,64 @@
-"""A solution as a picture: maps of pressure and traction, and profiles through the centre."""
+"""A solution as a picture: maps about the contact, profiles through the peak, histograms."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any
+
+from verification.cli.plot_style import (
+    AREAS,
+    BLACK,
+    BLUE,
+    LENGTHS,
+    ORANGE,
+    PINK,
+    PRESSURES,
+    print_style,
+    unit_at_scale,
+    write,
+)
+from verification.cli.plot_view import view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
     from refimpl import Scene, Solution
+    from verification.cli.plot_view import View
     from verification.exact.hertz import Sphere as HertzSphere
 
-BLUE, ORANGE, BLACK = (
-    "#0072B2",
-    "#D55E00",
-    "#000000",
-)  # Okabe and Ito 2008, safe for colour-blind readers
-MEGA, MILLI = 1e6, 1e-3
-SLENDER = 4.0
-FORMATS = (".png", ".svg", ".pdf")
-
-
-def check_suffix(path: Path | None) -> None:
-    """Refuse, before any work, a picture of another format. Raises InputError."""
-    from refimpl.errors import InputError
-
-    if path is not None and path.suffix not in FORMATS:
-        raise InputError("--plot", str(path), f"a file name that ends in {', '.join(FORMATS)}")
+WIDTH = 7.1  # inches, 180 mm: the width of a page's text
+LEFT, RIGHT = 0.6, 4.2  # inches, left edges of both columns
+MAP, LOWEST_MAP, GRAPH = 2.35, 1.0, 1.05  # inches: width of all panels, least height of a map, of a graph
+KEY = 2.15  # inches, least height of the numbers and the legend
+BELOW, ABOVE = 0.42, 0.25  # inches, for an axis with its label, and for a title
 
 
 def draw(solution: Solution, scene: Scene, path: Path) -> None:
-    """Write the picture: two maps above, profiles along x and y below, against Hertz for a sphere."""
-    import matplotlib
+    """Write the picture: maps of pressure, shear and gap, profiles through the peak, histograms.
 
-    matplotlib.use("Agg")  # no display is needed
-    import matplotlib.pyplot as plt
+    Coordinates count from the domain's corner, as in arrays and tables. For a scene with a sphere the
+    profiles have Hertz' pressure beside them.
+    """
+    from verification.cli.plot_maps import gap_map, pressure_map, shear_map
+    from verification.cli.plot_profiles import gap_histogram, pressure_histogram, profile
 
-    from verification.framework.files import replacing
-
-    figure, axes = plt.subplots(2, 2, figsize=(9.5, 8), layout="constrained")
-    _map(axes[0, 0], solution, "pressure", "viridis")
-    _map(axes[0, 1], solution, "traction", "cividis")
+    view = view_of(solution)
     hertz = hertz_of(scene, solution.normal_force)
-    _profile(axes[1, 0], solution, hertz, axis=0)
-    _profile(axes[1, 1], solution, hertz, axis=1)
-    figure.legend(*axes[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
-    figure.suptitle(
-        f"$\\mu$ = {solution.friction_coefficient:.4f},  A = {solution.contact_area / MILLI**2:.4g} mm$^2$,  "
-        f"$f_{{max}}$ = {solution.max_pressure / MEGA:.4g} MPa,  {solution.status.value};  "
-        f"the upper body slides at {math.degrees(solution.sliding_direction):g}° from x"
-    )
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=130)
-    plt.close(figure)
+    with print_style():
+        figure, panels = _panels(_map_height(view))
+        pressure_map(panels["pressure"], solution, view)
+        shear_map(panels["shear"], solution, view)
+        gap_map(panels["gap"], solution, view)
+        _key(panels["key"], solution, view, hertz)
+        for axis, name in enumerate(("along x", "along y")):
+            profile(panels[name], solution, view, hertz, axis)
+        pressure_histogram(panels["pressures"], solution, view)
+        gap_histogram(panels["gaps"], solution, view)
+        write(figure, path)
 
 
 def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
@@ -72,49 +77,96 @@ def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
     return hertz.Sphere(load=load, radius=1 / curvature, modulus=scene.materials.reduced_modulus)
 
 
-def _map(axes: Axes, solution: Solution, name: str, colours: str) -> None:
-    """One field in MPa over the domain in mm; places without contact are left white.
+def _panels(height: float) -> tuple[Figure, dict[str, Axes]]:
+    """A figure and its panels by name: two columns, from below, maps of this height (inches)."""
+    import matplotlib.pyplot as plt
 
-    Lengths of a slender domain are not drawn to one scale.
-    """
-    import numpy as np
-
-    field = np.ma.masked_equal(getattr(solution, name) / MEGA, 0.0)
-    width, height = (length / MILLI for length in solution.grid.lengths)
-    aspect: Literal["equal", "auto"] = (
-        "equal" if max(width, height) <= SLENDER * min(width, height) else "auto"
+    rows = (  # names, height of the row, height of its left panel, which is at the row's top
+        ("pressures", "gaps", GRAPH, GRAPH),
+        ("along x", "along y", GRAPH, GRAPH),
+        ("gap", "key", max(height, KEY), height),
+        ("pressure", "shear", height, height),
     )
-    image = axes.imshow(field.T, origin="lower", extent=(0, width, 0, height), cmap=colours, aspect=aspect)
-    axes.set(xlabel="x (mm)", ylabel="y (mm)", title=name.capitalize())
-    axes.figure.colorbar(image, ax=axes, label="MPa")
+    total = sum(row[2] + BELOW + ABOVE for row in rows)
+    figure, panels, bottom = plt.figure(figsize=(WIDTH, total)), {}, BELOW
+    for first, second, tall, own in rows:
+        for name, left, low, high in ((first, LEFT, tall - own, own), (second, RIGHT, 0.0, tall)):
+            place = left / WIDTH, (bottom + low) / total, MAP / WIDTH, high / total
+            panels[name] = figure.add_axes(place, label=name)
+        bottom += tall + ABOVE + BELOW
+    return figure, panels
 
 
-def _profile(axes: Axes, solution: Solution, hertz: HertzSphere | None, axis: int) -> None:
-    """Pressure and traction (MPa) along the line of elements next to the centre."""
-    import numpy as np
+def numbers_of(solution: Solution) -> list[str]:
+    """Return the lines of numbers, each with the digits that its error bar leaves."""
+    area = unit_at_scale(100 * solution.contact_area, AREAS)
+    pressure = unit_at_scale(solution.max_pressure, PRESSURES)
+    approach = unit_at_scale(solution.approach, LENGTHS)
+    rows = (
+        ("friction_coefficient", "μ", 1.0, ""),
+        ("contact_area", "A", area.size, area.name),
+        ("max_pressure", "$p_{max}$", pressure.size, pressure.name),
+        ("approach", "approach", approach.size, approach.name),
+    )
+    turned = math.degrees(solution.sliding_direction)
+    return [
+        *(_with_bar(solution, *row) for row in rows),
+        f"N = {solution.normal_force:.6g} N, A/A0 = {100 * solution.contact_area_share:.3g} %",
+        f"sliding at {turned:.4g}° from x",
+        f"{solution.status.value}, {solution.grid.shape[0]} × {solution.grid.shape[1]} elements",
+    ]
 
-    grid = solution.grid
-    centred = [centres - length / 2 for centres, length in zip((grid.x, grid.y), grid.lengths, strict=True)]
-    s, across = centred[axis], centred[1 - axis]
-    middle = len(across) // 2
-    for name, colour in (("pressure", BLUE), ("traction", ORANGE)):
-        line = np.take(getattr(solution, name), middle, axis=1 - axis)
-        axes.plot(s / MILLI, line / MEGA, color=colour, label=name, marker=".", markersize=3, linewidth=1)
+
+def _with_bar(solution: Solution, name: str, symbol: str, size: float, unit: str) -> str:
+    from refimpl.accuracy.digits import bar_of, digits_of, usable
+
+    error, value = solution.error(name) / size, getattr(solution, name) / size
+    number = f"{symbol} = {digits_of(value, error)}"
+    if not usable(error, value):
+        return f"{number} {unit} (not usable)".replace("  ", " ")
+    return " ".join(part for part in (number, bar_of(error).replace("+-", "±"), unit) if part)
+
+
+def _map_height(view: View) -> float:
+    """Height of a map in inches; lengths to one scale where the window is not slender."""
+    ratio = 1.0 if view.is_slender else view.size[1] / view.size[0]
+    return min(max(MAP * ratio, LOWEST_MAP), MAP)
+
+
+def _key(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None) -> None:
+    """Whole domain where the maps show a part of it, numbers, and meaning of lines and colours."""
+    from verification.cli.plot_maps import domain_map
+
+    axes.axis("off")
+    if not view.whole:
+        domain_map(axes.inset_axes((-0.08, 0.56, 0.44, 0.40)), solution, view)
+    left = 0.0 if view.whole else 0.46
+    lines = [*numbers_of(solution), *(["x and y to different scales"] if view.is_slender else [])]
+    axes.text(left, 1.04, "\n".join(lines), va="top", linespacing=1.3, fontsize=7)
+    axes.legend(
+        handles=legend_of(solution, hertz), loc="lower left", frameon=False, bbox_to_anchor=(-0.18, -0.2)
+    )
+
+
+def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Line2D]:
+    """Return the entries of the legend: those of what the solution has."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    def line(label: str, colour: str, dashes: Any = "-", width: float = 1.1) -> Line2D:
+        return Line2D([], [], color=colour, linestyle=dashes, linewidth=width, label=label)
+
+    found = [
+        line("pressure p", BLUE),
+        line("shear r", ORANGE, (0, (3, 1))),
+        line("gap (right scale)", "0.45", ":"),
+    ]
     if hertz is not None:
-        fine = np.linspace(s[0], s[-1], 2001)
-        label = "Hertz, smooth and frictionless"
-        axes.plot(
-            fine / MILLI,
-            hertz.pressure(np.hypot(fine, across[middle])) / MEGA,
-            "--",
-            color=BLACK,
-            lw=1,
-            label=label,
-        )
-    letter = "xy"[axis]
-    title = f"Profile through the centre along {letter}"
-    axes.set(xlabel=f"{letter} from the centre (mm)", ylabel="MPa", title=title)
-    if axes.get_ylim()[1] < solution.max_pressure / MEGA / 100:
-        axes.set_ylim(top=solution.max_pressure / MEGA)
-        axes.text(0.5, 0.5, "no contact on this line", ha="center", transform=axes.transAxes)
-    axes.set_ylim(bottom=0)
+        found.append(line("Hertz' pressure, smooth", BLACK, (0, (5, 2)), 0.8))
+    found.append(line("maps: lines of the profiles", BLACK, (0, (4, 3)), 0.6))
+    if solution.plastic.any():
+        found.append(line("pressure map: edge of plastic zones", ORANGE, width=0.7))
+    patches = [Patch(color=ORANGE, label="gap map: contact")]
+    if (solution.excluded & solution.contact).any():
+        patches.append(Patch(color=PINK, label="shear map: no adhesive shear, r = β p"))
+    return [*found, *patches]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verification.cli.plot import BLACK, BLUE, ORANGE
+from verification.cli.plot_style import BLACK, BLUE, ORANGE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,8 +57,8 @@ def _fit(axes: Axes, found: Identification) -> None:
 def _region(axes: Axes, found: Identification) -> None:
     """The joint 95 % ellipse about the optimum without bounds, within the bounds, and both intervals."""
     angle = np.linspace(0, 2 * np.pi, 2000)
-    root = np.linalg.cholesky(found.covariance)
-    ellipse = found.fitted.free[:, None] + np.sqrt(JOINT) * root @ [np.cos(angle), np.sin(angle)]
+    root = np.linalg.cholesky(found.covariance[:2, :2])
+    ellipse = found.fitted.free[:2, None] + np.sqrt(JOINT) * root @ [np.cos(angle), np.sin(angle)]
     tau, beta = found.values["tau"], found.values["beta"]
     axes.plot(ellipse[0] / MEGA, ellipse[1], color=BLUE, label="joint 95 %, without bounds")
     axes.errorbar(

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.plot import BLACK, BLUE, MILLI, ORANGE, SLENDER
+from verification.cli.plot_style import BLACK, BLUE, ORANGE, print_style, write
+
+MILLI = 1e-3
+SLENDER = 4.0  # ratio of the lengths from which a profile shows more than a map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,26 +18,23 @@ if TYPE_CHECKING:
 
 def draw_local_error(verdict: SurfaceVerdict, path: Path) -> None:
     """Write the picture, in the format of the path's suffix; maps in vector formats are images within."""
-    import matplotlib
-
-    matplotlib.use("Agg")  # no display is needed
-    import matplotlib.pyplot as plt
-
-    from verification.framework.files import replacing
-
     low, high = sorted(verdict.solution.grid.lengths)
     slender = high > SLENDER * low
-    figure, axes = plt.subplots(figsize=(6.5, 3.6 if slender else 5.2), layout="constrained")
-    (_profile if slender else _map)(axes, verdict)
-    figure.suptitle(
+    with print_style():
+        import matplotlib.pyplot as plt
+
+        figure, axes = plt.subplots(figsize=(4.4, 2.8 if slender else 3.8), layout="constrained")
+        (_profile if slender else _map)(axes, verdict)
+        figure.suptitle(_title(verdict), fontsize=8)
+        write(figure, path)
+
+
+def _title(verdict: SurfaceVerdict) -> str:
+    percents = [_percent(verdict, name) for name in ("normal_force", "friction_coefficient", "contact_area")]
+    return (
         f"Flat coefficients off by more than 2 % on {verdict.share_above:.1%} of the area;\n"
-        f"N at the approach by {_percent(verdict, 'normal_force')}, mu by "
-        f"{_percent(verdict, 'friction_coefficient')}, A by {_percent(verdict, 'contact_area')} (stated)",
-        fontsize="medium",
+        f"N at the approach by {percents[0]}, mu by {percents[1]}, A by {percents[2]} (stated)"
     )
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=110)
-    plt.close(figure)
 
 
 def _percent(verdict: SurfaceVerdict, name: str) -> str:

@@ -19,7 +19,11 @@ SCALES = {
     "N": (1.0, "N"),
     "rad": (180 / math.pi, "°"),
 }
-LABELS = {"friction_coefficient": "friction coefficient $\\mu$", "contact_area": "real contact area $A$"}
+LABELS = {
+    "sliding_offset": "sliding distance",
+    "friction_coefficient": "friction coefficient $\\mu$",
+    "contact_area": "real contact area $A$",
+}
 
 
 def draw(found: Curves, x: str, y: str, by: str | None, path: Path) -> None:
@@ -84,7 +88,7 @@ def _entry(by: str | None, value: object) -> str | None:
     if by is None:
         return None
     factor, unit = scale(by)
-    shown = f"{value * factor:.4g}" if isinstance(value, int | float) else str(value)
+    shown = f"{value * factor:.4g}" if isinstance(value, int | float) else Path(str(value)).name
     return f"{by.replace('_', ' ')} = {shown} {unit}".rstrip()
 
 

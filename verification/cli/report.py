@@ -4,31 +4,20 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
-import subprocess
-import tempfile
+import sys
 from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from verification.cli.output import Parsers, StatusLine, add_json, check_outputs, columns, emit
+from verification.cli.pdf import PAPERS, compacts, printed
 
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
   rough-friction report --results results.json --output report
-  rough-friction report --results results.json --against older.json --pdf
+  rough-friction report --results results.json --against older.json --pdf --paper letter
 """
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-FLAGS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--no-pdf-header-footer",
-    "--generate-pdf-document-outline",
-)
 
 
 def add_parser(commands: Parsers) -> None:
@@ -52,6 +41,7 @@ def add_parser(commands: Parsers) -> None:
     )
     parser.add_argument("--against", metavar="OLD", type=Path, help="say what changed since this result file")
     parser.add_argument("--pdf", action="store_true", help="also print it to PDF, by an installed Chromium")
+    parser.add_argument("--paper", choices=sorted(PAPERS), default="a4", help="size of paper (default a4)")
     add_json(parser)
     parser.set_defaults(run=run)
 
@@ -84,7 +74,9 @@ def run(options: argparse.Namespace) -> int:
     write_text(page, path)
     written = [path]
     if options.pdf:
-        written.append(_printed(path))
+        written.append(printed(path, options.paper))
+        if not compacts():
+            sys.stderr.write("note: pikepdf is not installed (extra 'pdf'): the PDF is twice as large\n")
     rows = [[status, str(number)] for status, number in results["counts"].items()]
     document = {"report": str(path), "counts": results["counts"]}
     emit(document, options.json, "\n".join([columns(rows, indent=""), *map(str, map(Path.resolve, written))]))
@@ -165,19 +157,3 @@ def _read(option: str, path: Path) -> Any:
         raise
     except (ValueError, RecursionError) as broken:  # JSON, UTF-8, or thousands of digits
         raise InputError(option, str(path), f"JSON ({broken})") from broken
-
-
-def _printed(page: Path) -> Path:
-    """The page as PDF beside it."""
-    from refimpl.errors import InputError
-
-    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if browser is None:
-        raise InputError("--pdf", True, f"an installed browser, one of {', '.join(BROWSERS)}")
-    target = page.with_suffix(".pdf").resolve()
-    with tempfile.TemporaryDirectory() as profile:
-        command = [browser, *FLAGS, f"--user-data-dir={profile}", f"--print-to-pdf={target}"]
-        done = subprocess.run([*command, page.resolve().as_uri()], capture_output=True, text=True)
-    if done.returncode != 0 or not target.exists():
-        raise InputError("--pdf", True, f"a browser that prints ({done.stderr.strip()[-200:]})")
-    return target

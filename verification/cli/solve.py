@@ -138,7 +138,7 @@ def add_parser(commands: Parsers) -> None:
         type=_on_or_off,
         help="end pressures at the hardness, or never (default: the scene's own, or where they reach it)",
     )
-    add("--explain", action="store_true", help="print what the scene requires, and solve nothing")
+    add("--explain", action="store_true", help="print what the scene requires, without solving it")
     add("--tolerance", metavar="T", type=float, help="for the certificate (default 1e-8; paper 1e-4)")
     add(
         "--budget",
@@ -206,14 +206,16 @@ def run(options: argparse.Namespace) -> int:
     import refimpl
     from refimpl.driver.limits import Limits
     from refimpl.driver.options import Options
+    from refimpl.driver.refined import forecast
     from refimpl.errors import InputError
     from refimpl.planning.terms import RequestedTerms
+    from refimpl.scene.discretise import Discretiser
     from refimpl.scene.scene_file import read_tolerances
-    from verification.cli import arrays, explain, plot, vtk
+    from verification.cli import arrays, explain, plot, plot_style, vtk
     from verification.cli import budget as budget_lines
 
     _refuse_ignored(options)
-    plot.check_suffix(options.plot)
+    plot_style.check_suffix(options.plot)
     vtk.check_suffix(options.vtk)
     arrays.check(options.npz, options.netcdf)
     scene = refimpl.read_scene(options.scene)
@@ -229,9 +231,11 @@ def run(options: argparse.Namespace) -> int:
     most = {name: getattr(options, name) for name in LIMITS}
     checked = Options(scene=scene, requested=RequestedTerms(**switches), limits=Limits(**most), **keywords)
     if options.explain:
-        plan = checked.plan()
-        found = explain.document(checked, plan, options.scene)
-        emit(found, options.json, explain.explained(checked, plan, options.scene))
+        discretiser = Discretiser(scene, checked.approach)
+        plan = checked.plan(discretiser)
+        expected = None if checked.accuracy is None else forecast(checked, plan, discretiser)
+        found = explain.document(checked, plan, options.scene, expected)
+        emit(found, options.json, explain.explained(checked, plan, options.scene, expected))
         return 0
     if options.budget and options.approach is not None:
         raise InputError(
@@ -282,7 +286,7 @@ def _refuse_ignored(options: argparse.Namespace) -> None:
     for name in (*FILES, "budget", "strict") if options.explain else ():
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
-            raise InputError(f"--{name}", shown, "none with --explain, which solves nothing")
+            raise InputError(f"--{name}", shown, "none with --explain, which does not solve the scene")
 
 
 def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:

@@ -45,7 +45,8 @@ message is shown, or did not converge: then its row says so by its status.
   normalise = true            # scale each realisation to its rms (default: as the scene says)
   [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
   grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and by full name
-                              #   numbers of surfaces and materials; grid is needed
+                              #   numbers of surfaces and materials, seeds, and the path of
+                              #   a measured surface (relative to this file); grid is needed
                               #   unless [solve] has an accuracy; one value needs no list
   lower_rms = [0.504e-6, 1.68e-6]
   "lower.surface[0].lay" = [0.0, 0.7854]
@@ -144,7 +145,7 @@ def run(options: argparse.Namespace) -> int:
 def check_plot(options: argparse.Namespace, study: Study) -> None:
     """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
     from refimpl.errors import InputError
-    from verification.cli.plot import check_suffix
+    from verification.cli.plot_style import check_suffix
     from verification.sweep.run import COORDINATES, OUTCOMES
 
     check_suffix(options.plot)
@@ -159,8 +160,10 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
             raise InputError(f"--{name}", value, f"one of {', '.join(known)}")
     several = [axis for axis, values in study.vary.items() if len(values) > 1]
     options.y = options.y or "friction_coefficient"
-    options.x = options.x or next((axis for axis in several if axis != options.by), "realisation")
-    options.by = options.by or next((axis for axis in several if axis != options.x), None)
+    numbers = [axis for axis in several if axis != options.by and not axis.endswith((".path", ".seed"))]
+    options.x = options.x or next(iter(numbers), "realisation")
+    others = [axis for axis in several if axis != options.x and not axis.endswith(".seed")]
+    options.by = options.by or next(iter(others), None)
 
 
 def _check_suffixes(**written: Path | None) -> None:
@@ -251,11 +254,15 @@ def _quality(rows: list[Row]) -> list[str]:
     ]
     parts = [f"relative, median over the study:\n{columns(table)}"] if table else []
     for found in quality_of(rows):
-        if found.is_biased:
+        if found.biased:
             text = (
-                "the error bar exceeds the scatter of realisations: use a finer grid, or accuracy in [solve]"
+                "the grid's error bar exceeds the scatter of realisations at "
+                f"{found.biased} of {found.points} points: use a finer grid, or accuracy in [solve]"
             )
             parts.append(wrapped(text, f"warning ({NAMES[found.name]}): "))
+        elif found.points:
+            text = f"the grid's error bar is below the scatter of realisations at all {found.points} points"
+            parts.append(wrapped(text, f"{NAMES[found.name]}: "))
     with_any = sum(1 for row in rows if row["warnings"])
     if with_any:
         counted = ", ".join(f"{name} in {number}" for name, number in warnings_of(rows).items())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from verification.cli import contestant
+from verification.cli import contestant, export
 from verification.cli.output import Parsers, add_json, columns, emit, judgement
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ EPILOG = """examples:
   rough-friction verify --solver verification.contestants.own:solve
   rough-friction verify --exec './my-solver --quiet' --able aperiodic,load --largest 32
   rough-friction verify --self-test
+  rough-friction verify --export reference-data
   rough-friction verify --stale
 """
 SELF_TEST = "contestants/*"
@@ -46,6 +47,7 @@ def add_parser(commands: Parsers) -> None:
         action="store_true",
         help="run nothing; list the committed results, and which are older than the code that they judge",
     )
+    export.add_options(parser)
     contestant.add_options(parser)
     add_json(parser)
     parser.set_defaults(run=run)
@@ -63,6 +65,10 @@ def run(options: argparse.Namespace) -> int:
         return stale.run(options)
     if options.jobs < 1:
         raise InputError("--jobs", options.jobs, "at least one worker process")
+    if options.export is not None:
+        if options.solver or options.exec or options.self_test or options.list:
+            raise InputError("--export", str(options.export), "no other action beside it")
+        return export.run(options)
     if contestant.chosen(options):
         return contestant.run(options)
     if options.self_test:

@@ -94,7 +94,7 @@ class Entrant:
     @property
     def claim(self) -> float:
         """The relative residual that it is held to."""
-        return max(1e-8, abilities_of(self.contestant).precision)
+        return abilities_of(self.contestant).precision
 
     def press(
         self,

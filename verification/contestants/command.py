@@ -137,10 +137,10 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-def write_problem(problem: ContactProblem, directory: Path) -> None:
-    """Write the three files of a problem."""
+def header_of(problem: ContactProblem) -> dict[str, object]:
+    """Return the fields of ``problem.json``, all but the gap."""
     coupling, by_load = problem.coupling, problem.load is not None
-    header = {
+    return {
         "M": problem.M,
         "spacing": problem.spacing,
         "reduced_modulus": problem.reduced_modulus,
@@ -157,6 +157,11 @@ def write_problem(problem: ContactProblem, directory: Path) -> None:
         "lengths": problem.lengths,
         "hardness": problem.hardness or 0.0,
     }
+
+
+def write_problem(problem: ContactProblem, directory: Path) -> None:
+    """Write the three files of a problem."""
+    header = header_of(problem)
     lines = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in header.items())
     (directory / "problem.json").write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
     np.savetxt(directory / "gap.csv", problem.gap, fmt="%.17g", delimiter=",")

@@ -1,35 +1,45 @@
-"""A solver under test in a process of its own: a crash, hang or early exit is an `error`, never a pass."""
+"""The suite with a solver in a process of its own: the judge, here, is out of the solver's reach.
+
+A solver may crash, hang, fork, or write into every descriptor that it finds: its case gets an `error`, and a
+new process starts. What it started is ended with it, whatever session that is in (`orphans`).
+"""
 
 from __future__ import annotations
 
 import importlib
 import multiprocessing
 import os
+import pickle
+import secrets
 import signal
+import socket
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field, replace
+from multiprocessing import resource_tracker
 from multiprocessing.connection import wait
 from typing import Any
 
+import numpy as np
+
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from verification.contestants import orphans, wire
 from verification.contestants.check import Check
 from verification.contestants.command import require_timeout
 from verification.contestants.ending import told
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
 from verification.contestants.serving import PATIENCE, Source, serve
 from verification.contestants.suite import select
-from verification.framework.case import Result, Status
+from verification.framework.case import Reported, Result, Unavailable
+from verification.framework.workers import interrupts_blocked
 
-MOST_PROBLEMS = 6
-"""No check poses more problems: so many times the time for one is the time for a check."""
-GRACE = 10.0
-"""Seconds beyond that: a command's own limit goes first, and says more."""
+GRACE = 5.0
+"""Seconds beyond the limit of a problem: a command's own limit goes first, and says more."""
 START = 120.0
-"""Seconds for a new process to import the solver and the suite."""
+"""Seconds for a new process to import the solver."""
 
 
 @dataclass(frozen=True)
@@ -74,37 +84,62 @@ class Limited:
         return self.solver(problem)
 
 
-class Table:
-    """Runs checks one by one in a child process, and starts a new one after a death or a timeout."""
+class Remote:
+    """A solver under test in another process: poses problems to it, and starts it anew after a failure.
+
+    ``left`` names the processes that it left behind so far.
+    """
 
     def __init__(self, source: Source, timeout: float, name: str) -> None:
         require_timeout(timeout)
-        self._source, self._limit, self._name = source, MOST_PROBLEMS * timeout + GRACE, name
-        self._open()
+        self._source, self._limit, self._name = source, timeout + GRACE, name
+        self._mark, self._number, self._lost = secrets.token_hex(8), 0, False
+        self.left: list[str] = []
+        resource_tracker.ensure_running()
+        self._others = orphans.children()
+        self.abilities = self._open()
 
-    def run(self, check: Check) -> Result:
-        """Return the verdict on one check; never raises for a fault of the solver under test."""
-        start, case = time.perf_counter(), check.case(_absent)
+    def __call__(self, problem: ContactProblem) -> Array:
+        """The solver's pressures. Raises `Reported` for what became of it instead, and `Unavailable`."""
+        if self._lost:
+            self.close()
+            self._open()
+        self._number, deadline = self._number + 1, time.monotonic() + self._limit
         try:
-            self._pipe.send(check.slug)
-            if self._pipe.poll(self._limit):
-                result: object = self._pipe.recv()
-                if isinstance(result, Result) and result.id == case.id:
-                    return result
-                note = "the solver's process sent something else than this case's verdict"
-            else:
-                note = f"no verdict within {self._limit:g} s"
+            reply, body = self._exchange(problem, deadline)
+        except BaseException:
+            self._lost = True
+            raise
+        if reply["kind"] == "unavailable":
+            raise Unavailable(str(reply.get("note", "")))
+        if reply["kind"] != "answer":
+            raise Reported(str(reply.get("note", "")))
+        return np.frombuffer(body, "<f8").reshape(problem.shape)
+
+    def _exchange(self, problem: ContactProblem, deadline: float) -> tuple[dict[str, Any], bytes]:
+        try:
+            question = {"number": self._number}
+            wire.send(self._socket, question, pickle.dumps(problem), seconds=self._limit)
+            reply: dict[str, Any] = {}
+            while reply.get("number") != self._number:  # an earlier answer's double is skipped
+                left = max(0.0, deadline - time.monotonic())
+                reply, body = wire.receive(self._socket, seconds=left)
+                if not (isinstance(reply.get("number"), int) and reply["number"] <= self._number):
+                    raise wire.Garbled("an answer to no problem")
+            if reply.get("kind") not in ("answer", "failed", "unavailable"):
+                raise wire.Garbled("an answer of no kind")
+            if reply["kind"] == "answer" and len(body) != problem.gap.nbytes:
+                raise wire.Garbled("pressures of another size")
+        except wire.Late:
+            raise Reported(f"no answer within {self._limit:g} s") from None
+        except wire.Garbled:
+            raise Reported("the solver's process sent something else than an answer") from None
         except (EOFError, OSError):
-            note = f"the solver's process died ({told(self._exit_status())})"
-        self.close()
-        self._open()
-        return case.result(Status.ERROR, note, time.perf_counter() - start)
+            raise Reported(f"the solver's process died ({told(self._exit_status())})") from None
+        return reply, body
 
     def close(self) -> None:
-        """End the process and what it started: first in good order, then by force.
-
-        What has left the process's group is out of reach, but for a program that the process itself ran.
-        """
+        """End the process and what it started: first in good order, then by force."""
         self._process.terminate()
         wait([self._process.sentinel], PATIENCE)
         if self._process.pid is not None:
@@ -112,41 +147,47 @@ class Table:
                 os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         self._process.join()
-        self._pipe.close()
+        self._socket.close()
+        self.left += orphans.end(self._others, self._mark)
 
-    def _open(self) -> None:
-        context = multiprocessing.get_context("spawn")
-        self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=serve, args=(theirs, self._source))
-        self._process.start()
-        theirs.close()
+    def _open(self) -> Abilities:
+        context, before = multiprocessing.get_context("spawn"), os.environ.get(orphans.MARK)
+        self._socket, theirs = socket.socketpair()
+        self._lost = False
+        os.environ[orphans.MARK] = self._mark
         try:
-            refusal = self._refusal()
+            with interrupts_blocked():
+                self._process = context.Process(target=serve, args=(theirs, self._source))
+                self._process.start()
+        finally:
+            del os.environ[orphans.MARK]
+            if before is not None:
+                os.environ[orphans.MARK] = before
+            theirs.close()
+        try:
+            return self._greeting()
         except BaseException:
             self.close()
             raise
-        if refusal is not None:
-            self.close()
-            raise refusal
 
-    def _refusal(self) -> InputError | None:
-        """What the new process has against the solver, or what became of the process itself."""
+    def _greeting(self) -> Abilities:
+        """Abilities of the solver. Raises `InputError` for one that is refused, or whose process is lost."""
         try:
-            if self._pipe.poll(START):
-                refused: InputError | None = self._pipe.recv()
-                return refused
+            reply, _ = wire.receive(self._socket, seconds=START)
+            if reply.get("kind") == "refused":
+                raise InputError(str(reply["field"]), str(reply["value"]), str(reply["allowed"]))
+            return Abilities(**reply["abilities"])
+        except wire.Late:
             reason = f"no end within {START:g} s"
-        except EOFError:
+        except (EOFError, OSError):
             reason = f"its process died, {told(self._exit_status())}"
-        return InputError("--solver", self._name, f"a solver whose import ends well ({reason})")
+        except (wire.Garbled, KeyError, TypeError):
+            reason = "its process sent something else than its abilities"
+        raise InputError("--solver", self._name, f"a solver whose import ends well ({reason})")
 
     def _exit_status(self) -> int | None:
         self._process.join(1.0)
         return self._process.exitcode
-
-
-def _absent(problem: ContactProblem) -> Answer:
-    raise RuntimeError("stands for a solver whose process died")
 
 
 def run(
@@ -155,21 +196,26 @@ def run(
     *,
     timeout: float,
     name: str = "the solver",
-    tick: Callable[[Result], None] = lambda r: None,
+    among: tuple[Check, ...] | None = None,
+    begin: Callable[[Check], None] = lambda check: None,
+    tick: Callable[[Result], None] = lambda result: None,
+    left: Callable[[str], None] = lambda process: None,
 ) -> list[Result]:
     """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
 
-    A check is ended after `MOST_PROBLEMS` times that and `GRACE`: a function cannot be timed from outside
-    problem by problem. ``name`` is what a refusal calls the solver.
+    ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``begin`` and
+    ``tick`` see each check before and after, and ``left`` what the solver left running.
 
     Raises `InputError` for a solver that cannot be loaded, LookupError for a glob that matches nothing.
     """
-    chosen = select(globs)
-    table, results = Table(source, timeout, name), []
-    try:
+    chosen, results = select(globs, among), []
+    with ExitStack() as ending:
+        ending.enter_context(orphans.adopting())
+        remote = Remote(source, timeout, name)
+        ending.callback(lambda: any(map(left, remote.left)))
+        ending.callback(remote.close)
         for check in chosen:
-            results.append(table.run(check))
+            begin(check)
+            results.append(check.case(remote).run())
             tick(results[-1])
-    finally:
-        table.close()
     return results

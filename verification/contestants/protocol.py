@@ -189,8 +189,8 @@ class Abilities:
     oblong_elements : elements whose edges differ
     hardness : pressures that end at a given one
     largest : most elements along the longer axis that it should be given (None: any)
-    precision : the least relative residual that it claims to reach, at most 1e-6; it is held to the larger of
-        this and the problem's tolerance
+    precision : the relative residual that it claims to reach, at most 1e-6: the suite's problems have it as
+        their tolerance, and the solver is held to it
     """
 
     periodic: bool = True

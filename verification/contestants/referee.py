@@ -94,6 +94,16 @@ def displacement(problem: ContactProblem, pressure: Array) -> Array:
     return normal + c0 * moved
 
 
+def symbols(problem: ContactProblem) -> tuple[Array, NDArray[np.complex128]]:
+    """Symbols of ``a`` and of ``a + beta c`` of a periodic problem (m/Pa)."""
+    waves, E, coupling = _waves(problem), problem.reduced_modulus, problem.coupling
+    normal = symbol_at(*waves, E)
+    if coupling is None:
+        return normal.real, normal
+    slip = np.pi * coupling.shear_compliance * E * coupling.beta
+    return normal.real, symbol_at(*waves, E, slip, coupling.sliding_direction)
+
+
 def _waves(problem: ContactProblem) -> tuple[Array, Array]:
     x, y = (
         np.asarray(2 * np.pi * np.fft.fftfreq(n, d), dtype=np.float64)

@@ -141,7 +141,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "first": options.first,
         "not_converged": lost,
         "table": table,
-        "rows": [{name: _short(value) for name, value in row.items()} for row in found],
+        "rows": [
+            {name: _short(value) for name, value in row.items()}
+            for row in sorted(found, key=lambda row: str(row["number"]))
+        ],
     }
     write_result(jsonable(document), options.json)
     print(columns(lines(table), indent=""))

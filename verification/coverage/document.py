@@ -116,11 +116,11 @@ def _judged(stored: Mapping[int, Sequence[Rung]], accuracy: float) -> dict[str, 
                 "grid": [v.grids[-1] for v in part],
                 "grids": [list(v.grids) for v in part],
                 "met": [v.met for v in part],
-                "bar": [v.bar if math.isfinite(v.bar) else None for v in part],
-                "error": [v.error for v in part],
-                "reference_bound": [v.reference_bound for v in part],
+                "bar": _four_digits(v.bar for v in part),
+                "error": _four_digits(v.error for v in part),
+                "reference_bound": _four_digits(v.reference_bound for v in part),
                 "cheapest": [v.cheapest for v in part],
-                "cost": [v.cost for v in part],
+                "cost": _four_digits(v.cost for v in part),
             }
             for number, part in of.items()
         },
@@ -136,8 +136,17 @@ def _beside(found: Sequence[Bar]) -> dict[str, object]:
             "seed": [bar.seed for bar in found],
             "class": [bar.kind for bar in found],
             "grid": [bar.grid for bar in found],
-            "bar": [bar.bar if math.isfinite(bar.bar) else None for bar in found],
-            "error": [bar.error for bar in found],
-            "reference_bound": [bar.reference_bound for bar in found],
+            "bar": _four_digits(bar.bar for bar in found),
+            "error": _four_digits(bar.error for bar in found),
+            "reference_bound": _four_digits(bar.reference_bound for bar in found),
         },
     }
+
+
+def _four_digits(values: Iterable[float | None]) -> list[float | None]:
+    """Relative bars and errors as recorded: an infinite one is None.
+
+    >>> _four_digits([2 / 3, math.inf])
+    [0.6667, None]
+    """
+    return [None if v is None or not math.isfinite(v) else float(f"{v:.4g}") for v in values]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -18,10 +18,19 @@ import numpy as np
 
 LONGEST_NOTE = 1000
 """Characters of somebody else's message that a note keeps."""
+SERIES_DIGITS = 9
+MAP_DIGITS = 4
+"""Digits of recorded numbers; one more for a map than 256 colours show."""
+MAP_SIZE = 1000
+"""Fewest numbers of a map."""
 
 
 class Unavailable(Exception):
     """Raised by a case whose optional dependency is missing; the message says which."""
+
+
+class Reported(Exception):
+    """Raised for a failure in another process; the message is the whole note, with the failure's place."""
 
 
 class Metric(StrEnum):
@@ -142,6 +151,8 @@ class Case:
             error = error_of(self.metric, self.tolerance, measured)
         except Unavailable as missing:
             status, note = Status.UNAVAILABLE, readable(str(missing)) or "an optional dependency is missing"
+        except Reported as elsewhere:
+            note = readable(str(elsewhere))
         # The one place that takes any failure: a case that breaks, or asks to exit, gets its verdict as well.
         except (Exception, SystemExit) as failure:
             note = f"{type(failure).__name__}: {readable(str(failure))} [{_place(failure)}]"
@@ -215,26 +226,37 @@ def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
 
 
 def jsonable(item: object) -> object:
-    """`item` as JSON can hold it: arrays to lists, 9 digits (they feed figures), NaN and inf to None.
+    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 9 digits, maps 4.
 
+    A map is a list of lists with at least `MAP_SIZE` numbers.
     Raises TypeError for anything that is not a number, a text, a mapping or a series of such.
 
     >>> jsonable({"x": np.array([1 / 3, np.nan])})
     {'x': [0.333333333, None]}
     """
+    return _jsonable(item, SERIES_DIGITS)
+
+
+def _jsonable(item: object, digits: int) -> object:
     if item is None or isinstance(item, bool | str):
         return item
     if isinstance(item, np.ndarray | np.generic):
-        return jsonable(item.tolist())
+        return _jsonable(item.tolist(), digits)
     if isinstance(item, int):
         return item
     if isinstance(item, float):
-        return float(f"{item:.9g}") if math.isfinite(item) else None
+        return float(f"{item:.{digits}g}") if math.isfinite(item) else None
     if isinstance(item, Mapping):
-        return {str(key): jsonable(value) for key, value in item.items()}
+        return {str(key): _jsonable(value, digits) for key, value in item.items()}
     if isinstance(item, list | tuple):
-        return [jsonable(value) for value in item]
+        inner = MAP_DIGITS if _is_map(item) else digits
+        return [_jsonable(value, inner) for value in item]
     raise TypeError(f"data holds a {type(item).__name__}, which JSON cannot")
+
+
+def _is_map(item: Sequence[object]) -> bool:
+    rows = [row for row in item if isinstance(row, list | tuple)]
+    return len(rows) == len(item) and sum(map(len, rows)) >= MAP_SIZE
 
 
 def readable(text: str) -> str:

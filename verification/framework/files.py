@@ -123,6 +123,10 @@ class Progress:
     def tick(self, text: str) -> None:
         """Count a finished step and show its text, cut to the terminal's usual width."""
         self.done += 1
+        self.show(text)
+
+    def show(self, text: str) -> None:
+        """Show a text beside the count, such as the step that begins."""
         if self._shown:
             sys.stderr.write("\r\x1b[K" + f"[{self.done}/{self.total}] {text}"[:78])
             sys.stderr.flush()

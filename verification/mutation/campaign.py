@@ -4,7 +4,8 @@ The faults of ``faults.toml`` were invented by reading the source: a sign, a col
 With ``--random N`` they are N mutants of each area instead, of all its modules. Each fault is written into a
 clone of the committed tree and judged there: by the doctests of its module, the tests that import it and the
 tests of its area, until one fails. A verdict is kept in the log and counts as long as the module stands as it
-was; an unnoticed fault is tried again when its tests have changed.
+was; an unnoticed fault is tried again when its tests have changed. Mutants take turns by area: a run that is
+stopped, or has ``--tries``, has judged a stratified sample.
 """
 
 from __future__ import annotations
@@ -22,17 +23,19 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from reports.result_files import read_result
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 from verification.mutation.judge import Suite
 from verification.mutation.mutants import candidates, mutant
-from verification.mutation.score import lower_bound
+from verification.mutation.score import explanations, lower_bound
 from verification.mutation.session import in_fair_order
 from verification.mutation.targets import near_first
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLE = Path(__file__).with_name("faults.toml")
 GOAL = 0.90  # share of the faults that tests notice
+NOT_JUDGED = "not judged"
 LIMIT = 600  # processor seconds of one trial: more than the tests of any area take
 
 Record = dict[str, Any]
@@ -75,11 +78,12 @@ def mutants_of(root: Path, name: str, folders: Sequence[str], seed: int) -> Iter
             yield Fault(name, candidate.module, line, source, changed.source)
 
 
-def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record:
+def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int, sound: set[str]) -> Record:
     """Write a fault into the tree at ``root``, run the tests, and restore the file.
 
     ``moment`` (s) dates the file: bytecode of another trial is not taken for its own. A test that fails
-    without the fault as well counts for nothing, and the trial is repeated without it.
+    without the fault as well counts for nothing, and the trial is repeated without it; ``sound`` collects
+    the tests that were seen to pass without one.
     """
     path, failing, seconds = root / fault.file, list[str](), 0.0
     source = path.read_text(encoding="utf-8")
@@ -87,15 +91,16 @@ def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record
         try:
             path.write_text(fault.applied(source), encoding="utf-8")
             os.utime(path, (moment, moment))
-            without = [f"--deselect={test}" for test in failing]
-            verdict = Suite(root, [*tests, *without]).verdict_of_tree(LIMIT)
+            without = tuple(f"--deselect={test}" for test in failing)
+            verdict = Suite(root, tests, by_file=True).verdict_of_tree(LIMIT, without)
         finally:
             path.write_text(source, encoding="utf-8")
             os.utime(path, (moment + 1, moment + 1))
         seconds += verdict.seconds
-        if verdict.outcome != "killed" or not verdict.killer or verdict.killer in failing:
+        if verdict.outcome != "killed" or not verdict.killer or verdict.killer in (*failing, *sound):
             break
         if Suite(root, [verdict.killer]).verdict_of_tree(LIMIT).outcome == "survived":
+            sound.add(verdict.killer)
             break
         failing.append(verdict.killer)
     outcome = "unnoticed" if verdict.outcome == "survived" else "noticed"
@@ -103,24 +108,35 @@ def tried(root: Path, fault: Fault, tests: Sequence[str], moment: int) -> Record
 
 
 def run(
-    faults: Sequence[Fault], areas: Areas, log: Path, clone: Path, *, far: bool, early: Sequence[str] = ()
+    faults: Sequence[Fault],
+    areas: Areas,
+    log: Path,
+    clone: Path,
+    *,
+    far: bool,
+    first: Sequence[Record] = (),
+    tries: int | None = None,
 ) -> list[Record]:
-    """Try the faults that the log (JSON lines) does not hold; return the records of all, in their order.
+    """Try the faults that the log (JSON lines) does not hold; return the records of all that are judged.
 
-    ``far`` has tests of other areas that import the module run as well; tests whose path matches a pattern of
-    ``early`` come first.
+    ``far`` has tests of other areas that import the module run as well. The test that noticed the fault
+    before, in a record of ``first``, is in the file that comes first. Trials end after ``tries``.
     """
     known = {record["key"]: record for record in _read(log)}
-    records, progress = [], Progress(len(faults))
+    noticed_by = {record["breaks"]: str(record["test"]).partition("::")[0] for record in first}
+    records, progress, sound = [], Progress(len(faults)), set[str]()
     Suite(clone, ["tests"]).import_foreign()
     for number, fault in enumerate(faults):
         near = near_first(clone, fault.file, areas[fault.area]["tests"], far=far)
-        tests = sorted((fault.file, *near), key=lambda test: not any(fnmatch(test, one) for one in early))
+        before = noticed_by.get(fault.breaks)
+        tests = sorted((fault.file, *near), key=lambda test: test != before)
         key = _digest([*fault, (clone / fault.file).read_text(encoding="utf-8")])
         suite = _digest((clone / test).read_text(encoding="utf-8") for test in tests)
         record = known.get(key)
         if record is None or (record["outcome"] == "unnoticed" and record["suite"] != suite):
-            found = tried(clone, fault, tests, 10**9 + 2 * number)
+            if tries is not None and (tries := tries - 1) < 0:
+                continue
+            found = tried(clone, fault, tests, 10**9 + 2 * number, sound)
             record = {"key": key, "suite": suite, "area": fault.area, "file": fault.file}
             record |= {"breaks": fault.breaks, **found}
             with log.open("a", encoding="utf-8") as lines:
@@ -137,7 +153,7 @@ def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: b
     ``first`` are the records of the faults as first judged, before any test was written for one of them.
     ``every`` lists noticed faults as well.
     """
-    before = {record["breaks"]: record["outcome"] for record in first or records}
+    before, reasons = {r["breaks"]: r["outcome"] for r in first or records}, _reasons()
     listed = [r for r in records if every or "unnoticed" in (r["outcome"], before.get(r["breaks"]))]
     return {
         "all": _counts(records, before),
@@ -147,10 +163,16 @@ def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: b
         ],
         "list": [
             {name: record[name] for name in ("area", "file", "breaks", "outcome", "test")}
-            | {"first": before.get(record["breaks"], "not judged")}
+            | {"first": before.get(record["breaks"], NOT_JUDGED)}
+            | {"reason": reasons.get((record["file"], record["breaks"].partition(": ")[2]))}
             for record in listed
         ],
     }
+
+
+def _reasons() -> dict[tuple[str, str], str]:
+    """Reasons for survivors of random mutants, by their file and by their lines before and after."""
+    return {(file, f"{before} -> {after}"): why for (file, before, after), why in explanations().items()}
 
 
 def _counts(records: Sequence[Record], before: Mapping[str, str]) -> Record:
@@ -176,9 +198,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--random", type=int, metavar="N", help="N mutants of each area, in place of the list"
     )
     parser.add_argument("--seed", type=int, default=1, help="of the mutants' order")
-    parser.add_argument("--early", nargs="+", default=[], help="patterns of the tests to run first")
+    parser.add_argument("--far", action="store_true", help="tests of other areas too; the list has them")
+    parser.add_argument("--tree", metavar="COMMIT", default="HEAD", help="what is judged (default HEAD)")
+    parser.add_argument("--tries", type=int, metavar="N", help="end after N trials; the result is of what is")
     parser.add_argument("--log", type=Path, required=True, help="JSON lines: every verdict; resumed from")
-    parser.add_argument("--first", type=Path, help="log of the faults as first judged")
+    parser.add_argument("--first", type=Path, help="log, or earlier result, with first judgements")
     parser.add_argument("--json", type=Path, help="result to write")
     options = parser.parse_args(arguments)
     faults, areas = read_faults()
@@ -186,20 +210,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as folder:
         clone = Path(folder) / "clone"
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
+        subprocess.run(["git", "-C", str(clone), "checkout", "-q", "--detach", options.tree], check=True)
         if options.random is None:
             listed = [fault for fault in faults if fault.area in chosen]
         else:
             orders = [mutants_of(clone, name, areas[name]["modules"], options.seed) for name in chosen]
             drawn = [list(islice(order, options.random)) for order in orders]
             listed = [fault for several in zip(*drawn, strict=True) for fault in several]
-        records = run(listed, areas, options.log, clone, far=options.random is None, early=options.early)
-    first = _read(options.first) if options.first else ()
+        first = first_judgements(options.first) if options.first else ()
+        far = options.far or options.random is None
+        records = run(listed, areas, options.log, clone, far=far, first=first, tries=options.tries)
     found = summary(records, first, every=options.random is None)
     if options.json:
         seed = {} if options.random is None else {"seed": options.seed}
-        write_result({**found, **seed, "provenance": provenance()}, options.json)
+        tree = {} if options.tree == "HEAD" else {"tree": options.tree}
+        write_result({**found, **seed, **tree, "provenance": provenance()}, options.json)
     print(found["all"])
     return 0 if found["all"]["now"] >= GOAL else 1
+
+
+def first_judgements(path: Path) -> list[Record]:
+    """Return the records of a log (``.jsonl``), or those of a result's faults that were judged at first."""
+    if path.suffix == ".jsonl":
+        return _read(path)
+    rows = read_result(path)["list"]
+    return [{**row, "outcome": row["first"]} for row in rows if row["first"] != NOT_JUDGED]
 
 
 def _read(log: Path) -> list[Record]:

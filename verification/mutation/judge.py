@@ -12,6 +12,7 @@ import importlib.machinery
 import json
 import os
 import resource
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,6 +24,7 @@ import pytest
 
 OUR_PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "tests")
 NO_SHRINKING = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+LONGEST = 60  # processor seconds of one test; the slowest takes less than half of them
 
 
 class Verdict(NamedTuple):
@@ -34,10 +36,14 @@ class Verdict(NamedTuple):
 
 
 class Suite:
-    """The kill-suite ``tests`` (arguments for pytest) of the tree at ``root``, where it is run from."""
+    """The kill-suite ``tests`` (arguments for pytest) of the tree at ``root``, where it is run from.
 
-    def __init__(self, root: Path, tests: Sequence[str]) -> None:
-        self.root, self.tests = root, tests
+    With ``by_file`` (paths alone) the files are collected one after the other, until one fails: most mutants
+    are noticed by the first.
+    """
+
+    def __init__(self, root: Path, tests: Sequence[str], *, by_file: bool = False) -> None:
+        self.root, self.tests, self.by_file = root, tests, by_file
 
     def baseline(self) -> float:
         """Processor seconds of the suite on the tree as it is, measured with everything foreign imported.
@@ -62,9 +68,9 @@ class Suite:
         """Try ``module`` (a path in the tree) with another source, within ``limit`` processor seconds."""
         return self._judged(self._forked(module, source, limit))
 
-    def verdict_of_tree(self, limit: int) -> Verdict:
-        """Try the tree as it stands, within ``limit`` processor seconds."""
-        return self._judged(self._forked(None, "", limit))
+    def verdict_of_tree(self, limit: int, options: Sequence[str] = ()) -> Verdict:
+        """Try the tree as it stands, within ``limit`` processor seconds; ``options`` are pytest's."""
+        return self._judged(self._forked(None, "", limit, options))
 
     @staticmethod
     def _judged(found: dict[str, Any]) -> Verdict:
@@ -113,7 +119,12 @@ class Suite:
         hypothesis.settings.load_profile("judge")
         first = _FirstFailure()
         options = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--assert=plain")
-        status = int(pytest.main([*options, *more, *self.tests], plugins=[first]))
+        for tests in [[test] for test in self.tests] if self.by_file else [self.tests]:
+            status = int(pytest.main([*options, *more, *tests], plugins=[first]))
+            if self.by_file and status == pytest.ExitCode.NO_TESTS_COLLECTED:  # a module without doctests
+                status = 0
+            if status:
+                break
         report: dict[str, Any] = {"status": status, "killer": first.test}
         if module is None:
             report["foreign"] = _foreign(self.root)
@@ -127,10 +138,16 @@ def _forget_the_tree() -> None:
 
 
 class _FirstFailure:
-    """Notes the first test, or the first file, that failed."""
+    """Notes the first test, or the first file, that failed; a test that finds no end fails."""
 
     def __init__(self) -> None:
         self.test: str | None = None
+
+    def pytest_runtest_setup(self) -> None:
+        signal.signal(signal.SIGXCPU, lambda *_: pytest.fail(f"no end within {LONGEST} processor seconds"))
+        used, hard = resource.getrusage(resource.RUSAGE_SELF), resource.getrlimit(resource.RLIMIT_CPU)[1]
+        limit = int(used.ru_utime + used.ru_stime) + LONGEST
+        resource.setrlimit(resource.RLIMIT_CPU, (limit if hard < 0 else min(limit, hard), hard))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed and self.test is None:

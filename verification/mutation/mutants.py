@@ -111,7 +111,7 @@ def cosmic_ray() -> tuple[Callable[..., Any], Callable[..., Any], Callable[[str]
         from cosmic_ray.mutating import mutate_code
         from cosmic_ray.plugins import get_operator
     except ImportError as missing:
-        raise Unavailable("cosmic-ray is not installed: pip install 'rough-friction[mutation]'") from missing
+        raise Unavailable("cosmic-ray is not installed: pip install '.[mutation]' in a checkout") from missing
     return ast_nodes, get_ast, lambda name: get_operator(f"core/{name}")(), mutate_code
 
 

@@ -35,7 +35,7 @@ Curves = dict[object, list[Point]]
 def curves(rows: Sequence[Row], x: str, y: str, by: str | None = None) -> Curves:
     """Return the curves of column y over column x, one for each value of ``by``.
 
-    Raises `InputError` for a column that is not there, or is not a number in all rows.
+    Raises `InputError` for a column that is not there, or is not a number (``by``: a text) in all rows.
     """
     rows = [row | named(row) for row in rows]
     for option, name in (("--x", x), ("--y", y), ("--by", by)):
@@ -64,7 +64,8 @@ def _check_column(option: str, name: str | None, rows: Sequence[Row]) -> None:
     if name is None:
         return
     known = dict.fromkeys([*COORDINATES, *OUTCOMES, *(key for row in rows for key in named(row))])
-    numeric = [key for key in known if all(isinstance(row.get(key), int | float) for row in rows)]
+    kinds = int | float | str if option == "--by" else int | float
+    numeric = [key for key in known if all(isinstance(row.get(key), kinds) for row in rows)]
     if name not in numeric:
         raise InputError(option, name, f"one of {', '.join(numeric)}")
 

@@ -222,7 +222,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int, Callable[[], None]]]
 
         connect: Any = distributed.Client  # untyped
     except ModuleNotFoundError as missing:
-        allowed = "dask.distributed installed: pip install 'rough-friction[cluster]'"
+        allowed = "dask.distributed installed: pip install '.[cluster]' in a checkout"
         raise InputError("--scheduler", address, allowed) from missing
     with _no_log():
         try:

@@ -36,6 +36,18 @@ UNITS = {
     "seconds": "s",
 }
 """Units of the columns; those of an error or a cycle are its number's, all others have none."""
+KEY_UNITS = {
+    "E": "Pa",
+    "hardness": "Pa",
+    "radius": "m",
+    "rms": "m",
+    "correlation_length": "m",
+    "roll_off": "m",
+    "long_cut": "m",
+    "short_cut": "m",
+    "lay": "rad",
+}
+"""Units of numbers varied by their full names, by the last part of the name."""
 EXPORTED = (*COLUMNS, "seconds")
 
 
@@ -44,7 +56,11 @@ def unit_of(name: str) -> str:
 
     >>> unit_of("contact_area_error"), unit_of("load"), unit_of("status")
     ('m^2', 'N', '')
+    >>> unit_of("lower.material.hardness"), unit_of("upper.surface[0].correlation_length[1]")
+    ('Pa', 'm')
     """
+    if "." in name:
+        return KEY_UNITS.get(name.rpartition(".")[2].partition("[")[0], "")
     return UNITS.get(name.removesuffix("_error").removesuffix("_cycle"), "")
 
 
@@ -66,7 +82,7 @@ def to_dataframe(rows: Sequence[Row]) -> Any:
     try:
         import pandas
     except ModuleNotFoundError as missing:
-        allowed = "pandas installed (pip install 'rough-friction[arrays]')"
+        allowed = "pandas installed (pip install '.[arrays]' in a checkout)"
         raise InputError("to_dataframe", "pandas", allowed) from missing
     frame = pandas.DataFrame([row | named(row) for row in rows])
     frame.attrs["units"] = {name: unit_of(name) for name in frame.columns}
@@ -113,5 +129,5 @@ def require_parquet(path: Path) -> None:
     try:
         import pyarrow.parquet  # noqa: F401  # only whether it is there
     except ModuleNotFoundError as missing:
-        allowed = "pyarrow installed (pip install 'rough-friction[parquet]'), or --csv instead"
+        allowed = "pyarrow installed (pip install '.[parquet]' in a checkout), or --csv instead"
         raise InputError("--parquet", str(path), allowed) from missing

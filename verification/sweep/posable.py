@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from refimpl.driver.options import Options
 from refimpl.planning.plan import memory_of
@@ -66,7 +67,11 @@ def _closest(study: Study) -> Iterator[Scene]:
             yield replace(scene, sliding_direction=direction, sliding_offset=offset)
 
 
-def _ends(axis: str, values: Sequence[float]) -> tuple[float, ...]:
-    """The values of an axis that come closest to a limit; one of those that heights do not depend on."""
+def _ends(axis: str, values: Sequence[Any]) -> tuple[Any, ...]:
+    """The values of an axis that come closest to a limit: all files; one of what limits do not depend on."""
+    if axis.endswith(".path"):
+        return tuple(values)
+    if axis.endswith(".seed"):
+        return tuple(values[:1])
     ends = _CLOSEST.get(axis, _BOTH if ".surface[" in axis else _SMALL)
     return tuple(dict.fromkeys(end(values) for end in ends))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import median, stdev
 
 from verification.sweep.run import CERTIFIED, COORDINATES, Row
@@ -21,16 +23,19 @@ class Quality:
 
     error : relative error bar; inf where most are unbounded
     scatter : relative standard deviation over realisations; None with one realisation a point
+    points, biased : points with several realisations, and those whose error bar exceeds their scatter
     """
 
     name: str
     error: float
     scatter: float | None
+    points: int = 0
+    biased: int = 0
 
     @property
     def is_biased(self) -> bool:
-        """True if the error bar exceeds the scatter: more realisations do not improve the mean."""
-        return self.scatter is not None and self.error > self.scatter
+        """True if the error bar exceeds the scatter at half of the points: more realisations do not help."""
+        return self.points > 0 and 2 * self.biased >= self.points
 
 
 def points_of(rows: Sequence[Row]) -> dict[tuple[object, ...], list[Row]]:
@@ -38,8 +43,18 @@ def points_of(rows: Sequence[Row]) -> dict[tuple[object, ...], list[Row]]:
     found: dict[tuple[object, ...], list[Row]] = {}
     for row in rows:
         if row["status"] in CERTIFIED:
-            found.setdefault(tuple(row[name] for name in POINT), []).append(row)
+            found.setdefault(tuple(map(_without_seeds(row).get, POINT)), []).append(row)
     return found
+
+
+def _without_seeds(row: Row) -> Row:
+    """The row without varied seeds, which make realisations and no other point."""
+    if not row.get("parameters"):
+        return row
+    kept = {
+        name: value for name, value in json.loads(row["parameters"]).items() if not name.endswith(".seed")
+    }
+    return row | {"parameters": json.dumps(kept) if kept else None}
 
 
 def quality_of(rows: Sequence[Row]) -> list[Quality]:
@@ -49,9 +64,13 @@ def quality_of(rows: Sequence[Row]) -> list[Quality]:
     for name in JUDGED:
         of_number = [[row for row in group if row[name]] for group in groups]
         errors = [_median_error(group, name) for group in of_number if group]
-        scatters = [_scatter([row[name] for row in group]) for group in of_number if len(group) > 1]
+        several = [group for group in of_number if len(group) > 1]
+        scatters = [_scatter([row[name] for row in group]) for group in several]
+        pairs = zip(map(partial(_median_error, name=name), several), scatters, strict=True)
+        biased = sum(error > scatter for error, scatter in pairs)
         if errors:
-            found.append(Quality(name, median(errors), median(scatters) if scatters else None))
+            middle = median(scatters) if scatters else None
+            found.append(Quality(name, median(errors), middle, len(several), biased))
     return found
 
 

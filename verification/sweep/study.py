@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,8 @@ class Study:
 
     ``vary`` maps names of `AXES`, and of `refimpl.scene.parameters` of surfaces (``lower.surface[0].hurst``,
     counted in the base scene) and materials (``lower.material.E``), to their values (SI, rad); an rms
-    of 0 leaves that body's roughness out.
+    of 0 leaves that body's roughness out. Measured surfaces have their files to vary
+    (``lower.surface[0].path``). A varied ``seed`` takes the place of the realisation's.
     Realisations are of random roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
     `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
@@ -42,19 +43,25 @@ class Study:
     realisations: int
     first_seed: int
     normalise: bool | None
-    vary: Mapping[str, tuple[float, ...]]
+    vary: Mapping[str, tuple[Any, ...]]
     settings: Mapping[str, Any]
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()
 
     def runs(self) -> Iterator[Run]:
         """All runs, realisations outermost, then the axes in the order of `AXES`."""
-        files = measured_files(self.scene)
+        files = self.measured
         axes = (*AXES, *self.own_axes)
         values = [self.vary.get(axis, (None,)) for axis in axes]
         for k in range(self.realisations):
             for point in itertools.product(*values):
                 yield self._run(k, dict(zip(axes, point, strict=True)), files)
+
+    @property
+    def measured(self) -> dict[str, str]:
+        """Digests of all measured surfaces of the study by path; InputError for a missing file."""
+        varied = [path for axis, paths in self.vary.items() if axis.endswith(".path") for path in paths]
+        return measured_files(self.scene) | digests_of(varied)
 
     @property
     def own_axes(self) -> tuple[str, ...]:
@@ -112,7 +119,7 @@ class Study:
             "grid": grid,
             "solve": dict(self.settings),
             "code": code_digest(),
-            "files": dict(files),
+            "files": {path: files[path] for path in measured_paths(scene)},
         }
         return Run({name: coordinates[name] for name in COORDINATES}, inputs)
 
@@ -126,7 +133,7 @@ class Study:
             if part["kind"] not in RANDOM:
                 parts.append(part)
             elif rms != 0:
-                change: Table = {"seed": seed}
+                change: Table = {} if f"{name}.surface[{k}].seed" in own else {"seed": seed}
                 change |= {} if rms is None else {"rms": float(rms)}
                 if part["kind"] == "gaussian":
                     change |= {} if length is None else {"correlation_length": float(length)}
@@ -151,8 +158,8 @@ def _length(scene: Table) -> float | None:
     return lengths[0] if same else None
 
 
-def _changed(part: Table, own: Mapping[str, float]) -> Table:
-    """A surface's table with other numbers; ``key[j]`` is one of a list."""
+def _changed(part: Table, own: Mapping[str, Any]) -> Table:
+    """A surface's table with other values; ``key[j]`` is one of a list."""
     for name, value in own.items():
         key, _, place = name.partition("[")
         old = part[key]
@@ -161,16 +168,25 @@ def _changed(part: Table, own: Mapping[str, float]) -> Table:
     return part
 
 
+def measured_paths(scene: Table) -> list[str]:
+    """Return the paths of a scene's measured surfaces."""
+    parts = [part for name in ("upper", "lower") for part in scene[name]["surface"]]
+    return [str(part["path"]) for part in parts if part["kind"] == "measured"]
+
+
 def measured_files(scene: Table) -> dict[str, str]:
     """Return the digests of a scene's measured surfaces by path; raise InputError for a missing file."""
-    parts = [part for name in ("upper", "lower") for part in scene[name]["surface"]]
-    paths = [Path(part["path"]) for part in parts if part["kind"] == "measured"]
+    return digests_of(measured_paths(scene))
+
+
+def digests_of(paths: Iterable[str]) -> dict[str, str]:
+    """Return the digests of measured surfaces by path; raise InputError for a missing file."""
     digests = {}
     for path in paths:
         if not os.path.isfile(path):  # no error for long names
-            raise InputError("scene", str(path), "a measured surface's file")
+            raise InputError("scene", path, "a measured surface's file")
         try:
-            digests[str(path)] = file_digest(path)
+            digests[path] = file_digest(Path(path))
         except OSError as refused:
-            raise InputError("scene", str(path), f"a file that can be read ({refused.strerror})") from refused
+            raise InputError("scene", path, f"a file that can be read ({refused.strerror})") from refused
     return digests

@@ -10,14 +10,14 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from refimpl import read_scene
+from refimpl import Scene, read_scene
 from refimpl.errors import InputError, require_number
 from refimpl.planning.plan import METHODS
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.parameters import parameters
 from refimpl.scene.scene_file import read_toml, scene_to_dict
 from verification.sweep import posable
-from verification.sweep.study import AXES, MAX_RUNS, RANDOM, Study, measured_files
+from verification.sweep.study import AXES, FRICTION_AXES, MAX_RUNS, RANDOM, Study
 
 KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
 SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", "quantity")
@@ -64,22 +64,19 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     if normalise is not None and not isinstance(normalise, bool):
         raise InputError("normalise", normalise, "true or false")
     base = read_scene(scene_file)
-    own = tuple(
-        name
-        for name in parameters(base)
-        if (".surface[" in name and not name.endswith(".seed")) or ".material." in name
-    )
-    _refuse_unknown("vary", vary, (*AXES, *own))
+    vary = _by_axis(vary)
+    _refuse_unknown("vary", vary, (*AXES, *varied_names(base)))
     scene = scene_to_dict(base)
     study = Study(
         scene=scene,
         realisations=_whole("realisations", table.get("realisations", 1), at_least=1),
         first_seed=_whole("first_seed", table.get("first_seed", 1), at_least=0),
         normalise=normalise,
-        vary={axis: _values(axis, vary[axis]) for axis in vary},
+        vary={axis: _values(axis, vary[axis], folder) for axis in vary},
         settings=dict(settings),
-        files=(scene_file, *map(Path, measured_files(scene))),
+        files=(scene_file,),
     )
+    study = replace(study, files=(scene_file, *map(Path, study.measured)))
     if "side" not in scene and "size" not in scene:
         x, y = posable.covered_size(study)
         note = (
@@ -88,6 +85,23 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
         study = replace(study, scene=scene | {"size": [x, y]}, notes=(note,))
     _check(study)
     return study
+
+
+def varied_names(scene: Scene) -> tuple[str, ...]:
+    """Return the full names that a study of a scene may vary beside `AXES`: of surfaces and materials.
+
+    >>> varied_names(read_scene("hertz"))[:3]
+    ('upper.material.E', 'upper.material.nu', 'upper.surface[0].radius')
+    """
+    numbers = (name for name in parameters(scene) if ".surface[" in name or ".material." in name)
+    table = scene_to_dict(scene)
+    files = (
+        f"{side}.surface[{k}].path"
+        for side in ("upper", "lower")
+        for k, part in enumerate(table[side]["surface"])
+        if part["kind"] == "measured"
+    )
+    return (*numbers, *files)
 
 
 def _check(study: Study) -> None:
@@ -108,6 +122,9 @@ def _check(study: Study) -> None:
             raise InputError(f"vary.{side}_rms", study.vary[f"{side}_rms"], "a scene with such a roughness")
     if study.realisations > 1 and not study.is_rough:
         raise InputError("realisations", study.realisations, "1: no surface of the scene is random")
+    seeds = [axis for axis in study.vary if axis.endswith(".seed")]
+    if study.realisations > 1 and seeds:
+        raise InputError("realisations", study.realisations, f"1 where {seeds[0]} varies")
     if "correlation_length" in study.vary and not (study.is_rough and study.has_correlation_length):
         lengths = study.vary["correlation_length"]
         allowed = "a scene with a Gaussian surface of one correlation length"
@@ -137,7 +154,19 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
     RequestedTerms(oblique=settings.get("oblique"), slope_correction=settings.get("slope_correction", False))
 
 
-def _values(axis: str, values: object) -> tuple[float, ...]:
+def _by_axis(vary: Mapping[str, Any]) -> dict[str, Any]:
+    """The table with the full names of tau and beta as the axes that they are."""
+    axes = {f"friction.{axis}": axis for axis in FRICTION_AXES}
+    for name, axis in axes.items():
+        if name in vary and axis in vary:
+            raise InputError(f"vary.{name}", vary[name], f"one of {name} and {axis}, which are the same")
+    return {axes.get(name, name): values for name, values in vary.items()}
+
+
+def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:
+    """The values of an axis; files relative to the study's folder, where they are found there."""
+    if axis.endswith(".path"):
+        return _paths(axis, values, folder)
     allowed = "a finite number, or a list of different ones"
     if isinstance(values, int | float) and not isinstance(values, bool):
         values = [values]
@@ -147,8 +176,19 @@ def _values(axis: str, values: object) -> tuple[float, ...]:
         require_number(f"vary.{axis}", value, allowed)
     if len(set(values)) != len(values):
         raise InputError(f"vary.{axis}", values, allowed)
+    if axis.endswith(".seed"):
+        return tuple(_whole(f"vary.{axis}", value, at_least=0, below=2**63) for value in values)
     # 14 and 14.0 are one load, and must be one run; the grid is checked to be whole elsewhere.
     return tuple(values if axis == "grid" else map(float, values))
+
+
+def _paths(axis: str, values: object, folder: Path) -> tuple[str, ...]:
+    names = [values] if isinstance(values, str) else values
+    if not isinstance(names, list) or not names or not all(isinstance(name, str) and name for name in names):
+        raise InputError(f"vary.{axis}", values, "a file's name, or a list of different ones")
+    if len(set(names)) != len(names):
+        raise InputError(f"vary.{axis}", values, "different files")
+    return tuple(str(folder / name) for name in names)
 
 
 def _whole(name: str, value: object, *, at_least: int, below: int | None = None) -> int:

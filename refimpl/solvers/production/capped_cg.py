@@ -29,9 +29,10 @@ class CappedCG(ProjectedCG):
     def __init__(
         self, apply: Apply, precondition: Apply, pressure: Array, cap: float, rounding: float = 0.0
     ) -> None:
-        super().__init__(apply, precondition, pressure, rounding)
+        super().__init__(apply, precondition, np.minimum(pressure, cap), rounding)
         self._cap = cap
         self.capped: Mask = np.zeros(pressure.shape, dtype=bool)
+        self._pressing[self._pressing >= cap * (1 - VANISHING)] = 0.0
         self._move_to_cap(pressure >= cap * (1 - VANISHING))
 
     @property
@@ -58,11 +59,17 @@ class CappedCG(ProjectedCG):
         return 0.5 * (deepest + lowest) if math.isfinite(lowest) else deepest
 
     def residuals(self) -> tuple[float, float]:
-        """Return the complementarity gap of both bounds over the elastic energy, and the penetration."""
+        """Return the complementarity gap of both bounds over the elastic energy, and the penetration.
+
+        At a prescribed approach the first is at least the work done by the error of the mean of ``v`` on the
+        free elements, as in the certificate.
+        """
         f, v, approach = self.pressure, self.separation, self.approach
         energy = 0.5 * inner(f, self.normal_displacement)
         excess = v - approach
         gap = float(np.sum(f * np.maximum(excess, 0)) + np.sum((self._cap - f) * np.maximum(-excess, 0)))
+        if self._approach is not None and self._pressing.any():
+            gap = max(gap, abs(self._separate().mean - approach) * float(f.sum()))
         lowest = float(np.min(v, where=~self.capped, initial=math.inf))
         missed = 0.0 if self._target is None else abs(inner(self._K, f) - self._target) / self._target
         rounding = self._rounding * float(f.max())

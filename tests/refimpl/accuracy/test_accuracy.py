@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -50,9 +51,11 @@ def test_the_bar_is_met_and_holds_the_error(seed: int) -> None:
 
 def test_a_tighter_accuracy_takes_a_finer_grid() -> None:
     scene = sliding_ball(0.3e-6, 1)
-    rough, fine = rf.solve(scene, accuracy=0.1), rf.solve(scene, accuracy=0.02)
+    rough = rf.solve(scene, accuracy=0.1)
+    begun = time.perf_counter()
+    fine = rf.solve(scene, accuracy=0.02)
+    assert 0 < fine.cost.seconds <= time.perf_counter() - begun
     assert rough.grid.shape[0] < fine.grid.shape[0]
-    assert fine.cost.seconds > 0
     assert set(rough.cost.iterations) < set(fine.cost.iterations)
 
 
@@ -73,7 +76,6 @@ def test_the_cost_is_that_of_all_grids() -> None:
     assert found.cost.applications == expected.applications
     assert found.cost.iterations == expected.iterations
     assert found.cost.point_logs == pytest.approx(expected.point_logs)
-    assert found.cost.seconds > 0
 
 
 def test_another_quantity_can_be_asked_for() -> None:

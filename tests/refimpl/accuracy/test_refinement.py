@@ -130,6 +130,21 @@ def test_what_the_active_set_of_tau_leaves_open_ends_the_refinement_unless_finer
     assert (relative_bound(found.results, "max_pressure") <= 0.01) is (power < 0)
 
 
+@pytest.mark.parametrize(("share", "finest"), [(0.02, 384), (0.005, 2048)])
+def test_data_that_leave_more_open_than_the_accuracy_end_at_four_elements_between_their_points(
+    share: float, finest: int
+) -> None:
+    """Ninety-six points a side; where the data leave less, what is left is the grid's, and finer grids do."""
+
+    def result_at(M: int) -> GridFeatures:
+        own = {"contact_area": {"data": share * AREA_LIMIT / min(M / 96, 1.0)}}
+        return replace(made_up(M), parts=own)
+
+    found = refine_until(result_at, 0.0055, "contact_area", grid_sizes=(384, 2048), finest_by_data=4.0 * 96)
+    assert found.results[-1].grid.shape[0] == finest
+    assert ("points of the data" in found.refusal) is (share > 0.0055)
+
+
 def test_nothing_in_contact_ends_the_refinement() -> None:
     apart = replace(made_up(64), numbers=dict.fromkeys(REPORTED, 0.0), edge=0.0)
     assert len(refine_until(lambda M: apart, 0.01, "contact_area").results) == len(FIRST_GRIDS)
@@ -146,7 +161,8 @@ def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_note(monkeypatch: py
         side=50e-6,
     )
     # the module of the function in use, whatever has imported it again
-    monkeypatch.setitem(rf.solve.__globals__, "refine_until", partial(refine_until, grid_sizes=(64,)))
+    used = rf.solve.__globals__["refined"].__globals__
+    monkeypatch.setitem(used, "refine_until", partial(refine_until, grid_sizes=(64,)))
     found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
     assert found.status is rf.Status.ACCURACY_NOT_REACHED
     assert "max_pressure is not bounded, let alone to 0.05" in " ".join(found.warnings)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.driver import on_grid, refined
 from refimpl.model.problem import Problem
 from refimpl.operators.fft import Counter
 from refimpl.solvers.production.nested_solver import solve_fft
@@ -88,10 +89,9 @@ def test_a_restored_term_costs_what_its_solve_cost(monkeypatch: pytest.MonkeyPat
         spent.append(counter.point_logs)
         return found
 
-    module = sys.modules["refimpl.driver.solve"]  # the package's attribute of that name is the function
-    monkeypatch.setattr(module, "solve_fft", counted)
+    monkeypatch.setattr(on_grid, "solve_fft", counted)
     changes = iter([{"oblique": SimpleNamespace(larger=1.0)}, *[{}] * 20])
-    monkeypatch.setattr(module, "effects_in", lambda *args: next(changes))
+    monkeypatch.setattr(refined, "effects_in", lambda *args: next(changes))
     found = rf.solve(rf.read_scene("table1-rough"), accuracy=0.2)
     assert found.cost.point_logs == pytest.approx(sum(spent), rel=1e-12)
     assert len(spent) == 3  # the first two grids, the first of them twice

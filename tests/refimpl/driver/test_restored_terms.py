@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import refimpl as rf
-from refimpl.driver import solve as driver
+from refimpl.driver import refined
 from refimpl.driver.options import Options
 from refimpl.planning import terms
 from refimpl.planning.term_effects import Effect
@@ -34,7 +34,7 @@ def test_the_sum_of_all_effects_is_held_to_the_budget(
         sizes = {"coupled": share, "oblique": share + 0.01}
         return {name: Effect(sizes.get(name, 0.0) * plan.budget, 0.0) for name in names}
 
-    monkeypatch.setattr(driver, "effects_in", effects)
+    monkeypatch.setattr(refined, "effects_in", effects)
     found = rf.solve(SCENE, accuracy=0.05)
     assert found.plan.includes("oblique") is restored
     assert not found.plan.includes("coupled")

@@ -50,6 +50,21 @@ def test_exact_data_give_the_parameters_back(smooth: rf.Scene) -> None:
     assert found.solves <= 7 * len(LOADS)
 
 
+def test_a_fit_without_a_first_guess_converges_where_pressures_are_far_below_the_modulus() -> None:
+    """A first guess of tau above the pressures of 1 mN shears all contact off: no solve converges there."""
+    soft = rf.Material(E=3e9, nu=0.2)
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(0.1)),
+        lower=rf.Body(soft, rf.Flat()),
+        friction=rf.Friction(tau=1e6, beta=0.1),
+        load=1.0,
+        side=1e-3,
+    )
+    found = identify(_blind(scene), _rows(scene, 0.01, (0.001, 0.01, 0.1, 1.0)), M, design=False)
+    assert found.values["tau"].value == pytest.approx(1e6, rel=1e-3)
+    assert found.values["beta"].value == pytest.approx(0.1, rel=1e-2)
+
+
 def test_slopes_are_those_of_finite_differences(smooth: rf.Scene) -> None:
     scene = replace(smooth, sliding_direction=0.3)
     solution = rf.solve(scene, M, tolerance=1e-11)
@@ -135,6 +150,28 @@ def test_coulomb_data_prefer_coulombs_law(smooth: rf.Scene) -> None:
     assert found.method == "profile likelihood"
 
 
+def test_data_of_constant_shear_prefer_constant_shear(smooth: rf.Scene) -> None:
+    scene = replace(smooth, friction=rf.Friction(tau=15e6, beta=0.0))
+    found = identify(_blind(smooth), _rows(scene, 0.01), M, design=False)
+    assert found.laws[0].name == "constant shear"
+    assert found.laws[0].parameters["tau"] == pytest.approx(15e6, rel=1e-3)
+
+
+def test_data_of_a_limited_law_prefer_the_limited_law(smooth: rf.Scene) -> None:
+    """Shear stresses of 16 to 28 MPa, cut at 20 MPa: pressures hardly change by the cut."""
+    rows = []
+    for load in (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 120.0, 160.0):
+        solution = rf.solve(replace(smooth, load=load), 96)
+        stress = np.minimum(15e6 + 0.08 * solution.pressure, 20e6)[solution.contact]
+        mu = float(stress.sum()) * solution.grid.element_area / load
+        rows.append(Row(load, mu, 0.001 * mu))
+    found = identify(_blind(smooth), rows, 96, design=False)
+    laws = {law.name: law for law in found.laws}
+    linear, limited = laws["tau + beta f"], laws["min(tau + beta f, r_max)"]
+    assert limited.parameters["r_max"] == pytest.approx(20e6, rel=0.05)
+    assert limited.chi_square < 0.1 * linear.chi_square
+
+
 def test_solves_are_kept(smooth: rf.Scene) -> None:
     memory: dict[str, object] = {}
 
@@ -153,3 +190,58 @@ def test_friction_has_no_tolerance(smooth: rf.Scene) -> None:
         identify(smooth, _rows(smooth, 0.02), M, tolerances={"friction.tau": 0.1})
     with pytest.raises(InputError, match="realisations"):
         identify(smooth, _rows(smooth, 0.02), M, realisations=5)
+
+
+def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
+    return replace(
+        smooth, lower=replace(smooth.lower, material=rf.Material(E=118e9, nu=0.3, hardness=hardness))
+    )
+
+
+def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
+    """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
+    rows = _rows(_yielding(smooth, 100e6), 0.002, (2.0, 5.0, 10.0, 20.0, 40.0, 80.0), 64)
+    found = identify(_yielding(_blind(smooth), 130e6), rows, 64, fit=["hardness"], design=False)
+    hardness = found.values["lower.material.hardness"]
+    assert hardness.value == pytest.approx(100e6, rel=0.02)
+    assert found.values["tau"].value == pytest.approx(15e6, rel=0.02)
+    assert hardness.low < 100e6 < hardness.high
+    assert found.covariance.shape == (3, 3)
+    assert found.degrees == 3
+    assert all(len(part) == 3 for part in found.shares.values())
+
+
+def test_a_hardness_above_all_pressures_is_not_determined(smooth: rf.Scene) -> None:
+    scene = _yielding(smooth, 10e9)
+    with pytest.raises(ArithmeticError, match=r"mu depends on lower\.material\.hardness at no measured load"):
+        identify(scene, _rows(scene, 0.01), M, fit=["hardness"])
+
+
+def test_parameters_to_fit_are_checked(smooth: rf.Scene) -> None:
+    rows, both = _rows(smooth, 0.01), _yielding(smooth, 1e8)
+    both = replace(both, upper=replace(both.upper, material=both.lower.material))
+    for scene, names, message in (
+        (smooth, ["hardness"], "a scene with a hardness"),
+        (smooth, ["tau"], "one of hardness, roughness"),
+        (smooth, "hardness", "a list of names"),
+        (both, ["hardness"], "two hardnesses that differ"),
+        (_yielding(smooth, 1e8), ["hardness", "lower.material.hardness"], "each parameter once"),
+    ):
+        with pytest.raises(InputError, match=message):
+            identify(scene, rows, M, fit=names)
+    with pytest.raises(InputError, match="at least 3 different loads"):
+        identify(_yielding(smooth, 1e8), rows[:2], M, fit=["hardness"])
+    with pytest.raises(InputError, match="parameter that is fitted"):
+        identify(
+            _yielding(smooth, 1e8), rows, M, fit=["hardness"], tolerances={"lower.material.hardness": 0.1}
+        )
+
+
+def test_a_profile_with_a_free_third_parameter() -> None:
+    """Independent parameters, the third below zero: its interval ends there as well, tau's at its bound."""
+    profile = Profile(np.array([-1.0, 20.0, -3.0]), np.eye(3))
+    assert profile.optimum == pytest.approx([0.0, 20.0, -3.0])
+    assert profile.interval(np.array([0.0, 0.0, 1.0])) == pytest.approx((-4.959964, -1.040036), abs=1e-5)
+    assert profile.interval(np.array([1.0, 0.0, 0.0])) == pytest.approx((0.0, 4.841459**0.5 - 1), abs=1e-5)
+    # sum of the second and the third: 17 +- 1.96 sqrt(2)
+    assert profile.interval(np.array([0.0, 1.0, 1.0])) == pytest.approx((14.2282, 19.7718), abs=1e-3)

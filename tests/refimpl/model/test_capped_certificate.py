@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.model.certificate import State, approach_from, certify
+from refimpl.model.certificate import State, approach_from, certify, missed_approach
 from refimpl.operators.dense import DenseInfluence
+from refimpl.planning.plan import Method
 from tests.refimpl.solvers.production.levels import BALL
 
 HARD = replace(
@@ -62,6 +63,28 @@ def test_the_approach_of_a_state_by_hand() -> None:
     assert approach_from(np.array([[4.0, 4.0, 0.0]]), v, 4.0) == 3.5
     assert approach_from(np.array([[4.0, 4.0]]), v[:, :2], 4.0) == 2.0
     assert approach_from(np.array([[0.0, 0.0]]), v[:, :2], 4.0) == 1.0
+
+
+def test_any_approach_between_capped_and_unloaded_elements_is_the_states() -> None:
+    """Between 2 at H and 5 without load; beyond them the distance counts, with a free element the mean."""
+    v, f = np.array([[1.0, 2.0, 5.0]]), np.array([[4.0, 4.0, 0.0]])
+    assert [missed_approach(f, v, 4.0, d) for d in (1.5, 2.5, 4.5, 6.0)] == [0.5, 0.0, 0.0, 1.0]
+    assert missed_approach(np.array([[4.0, 3.0, 0.0]]), v, 4.0, 2.5) == 0.5
+    assert missed_approach(np.array([[0.0, 0.0, 0.0]]), v, 4.0, 0.25) == 0.75
+
+
+@pytest.mark.parametrize("method", ["dense", "fft"])
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_punch_that_yields_everywhere_is_solved_at_an_approach(method: Method, periodic: bool) -> None:
+    gap = np.full((4, 4), 3e-6)
+    gap[1:3, 1:3] = 0.0
+    soft = rf.Material(1e9, 0.3, hardness=1e6)
+    flat = rf.Body(rf.Material(1e9, 0.3), rf.ArraySurface(gap))
+    scene = rf.Scene(flat, rf.Body(soft, rf.Flat()), rf.Friction(), load=1.0, side=4e-6, periodic=periodic)
+    touch = 1e-7 - (float(gap.mean()) if periodic else 0.0)
+    s = rf.solve(scene, 4, method=method, approach=touch, oblique=False)
+    assert s.status is rf.Status.CONVERGED
+    np.testing.assert_array_equal(s.pressure, np.where(gap == 0, 1e6, 0.0))
 
 
 def test_slopes_without_the_indentation_are_not_those_of_the_common_surface() -> None:

@@ -271,6 +271,17 @@ def test_a_term_that_turns_out_to_matter_is_restored(monkeypatch: pytest.MonkeyP
     assert "restored" in s.plan.term("coupled").reason
 
 
+def test_a_grid_beyond_the_free_memory_is_refused_with_both_in_gb(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Memory exactly as large as what is free suffices; the longer side is named."""
+    grid = rf.Grid((40, 96), (1e-3, 2.4e-3))
+    monkeypatch.setattr(plan, "estimated_memory", lambda *_, **__: 2_510_000_000)
+    monkeypatch.setattr(plan, "free_memory", lambda: 2_510_000_000)
+    assert plan.memory_of("fft", grid) == 2_510_000_000
+    monkeypatch.setattr(plan, "free_memory", lambda: 1_250_000_000)
+    with pytest.raises(rf.InputError, match=r"grid = 96: .* estimated 2.51 GB fit into the free 1.25 GB"):
+        plan.memory_of("fft", grid)
+
+
 @pytest.mark.parametrize("grid", [SMOOTH.grid(48), RECTANGLE], ids=str)
 def test_effects_are_estimated_as_on_the_grid_of_the_decision(grid: Grid) -> None:
     """On a coarser grid a change of few elements would come and go; a finer one is as good as it is."""

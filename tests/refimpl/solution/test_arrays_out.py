@@ -100,7 +100,7 @@ def test_a_dataset_has_coordinates_units_and_numbers(rough: rf.Solution) -> None
 
 def test_without_xarray_the_extra_is_named(rough: rf.Solution, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(InputError, match=r"rough-friction\[arrays\]"):
+    with pytest.raises(InputError, match=r"\.\[arrays\]"):
         rough.to_xarray()
 
 

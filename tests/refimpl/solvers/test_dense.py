@@ -167,6 +167,30 @@ def test_pivoting_starts_from_the_contact_that_was_found_last(approach: float | 
     assert solver.solves - solves == (solver.picard - passes) * (1 if approach is not None else 2)
 
 
+@pytest.mark.parametrize("oblique", [False, True])
+def test_the_plastic_indentation_is_measured_from_elements_below_the_hardness(oblique: bool) -> None:
+    """Between 0 and H all have v = d; an element at H is (d - v) cos cos deep, whatever the load on it."""
+    heights = np.random.default_rng(7).uniform(0, 2e-5, (5, 5))
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(30e9, 0.3), rf.Flat()),
+        lower=rf.Body(rf.Material(1e9, 0.2, hardness=20e6), heights),
+        friction=rf.Friction(tau=1e6, beta=0.2),
+        load=5.0,
+        side=SIDE,
+        sliding_direction=0.7,
+    )
+    problem = discretise(scene, rf.Grid.square(SIDE, 5), Terms(oblique=oblique, plastic=True))
+    result, state = dense.solve_dense(problem)
+    free = (state.pressure > 0) & ~state.plastic
+    assert min(free.sum(), state.plastic.sum()) > 1
+    between = state.v[free]
+    assert np.ptp(between) < 1e-11 * between.mean()
+    assert result.indentation is not None
+    depth = (between.mean() - state.v) * state.slopes.obliqueness
+    assert result.indentation[state.plastic] == pytest.approx(depth[state.plastic], rel=1e-8)
+    assert not result.indentation[~state.plastic].any()
+
+
 def test_every_linear_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
 

@@ -28,7 +28,35 @@ def test_the_table_fits_100_columns(
     assert max(map(len, text.splitlines())) <= 100
     for name in LABELS.values():
         assert name in text
-    assert "nothing is solved" in text
+    opening = "solved are only 32 x 32 and 64 x 64 elements, for the forecast"
+    assert ("nothing is solved" if "--grid" in size else opening) in text
+
+
+def test_the_forecast_names_the_grid_that_the_refinement_ends_on(tmp_path: Path, capsys: Capture) -> None:
+    """Four octaves of sizes, four an octave: one step off is 17 to 25 per cent."""
+    path = tmp_path / "plan.json"
+    assert main(["solve", "table1-smooth", "--accuracy", "0.01", "--explain", "--json", str(path)]) == 0
+    assert "friction_coefficient to 0.01 takes" in capsys.readouterr().out
+    expected = json.loads(path.read_text())["forecast"]
+    last = refimpl.solve(refimpl.read_scene("table1-smooth"), accuracy=0.01).problem.grid.shape[0]
+    assert expected["solved"] == [[32, 32], [64, 64]]
+    assert expected["refusal"] == ""
+    assert expected["grid"][0] == pytest.approx(last, rel=0.26)
+    assert expected["memory"] > 0
+    assert expected["seconds"] > 0
+
+
+def test_the_forecast_says_that_the_domain_cuts_the_contact_off(tmp_path: Path, capsys: Capture) -> None:
+    """Hertz radius 165 um on a half side of 50 um."""
+    path = tmp_path / "small.toml"
+    path.write_text(
+        "load = 5.0\nside = 1e-4\n[upper]\nmaterial = {E = 200e9, nu = 0.3}\n"
+        "surface = [{kind = 'sphere', radius = 0.1}]\n[lower]\nmaterial = {E = 118e9, nu = 0.34}\n"
+        "surface = [{kind = 'flat'}]\n[friction]\ntau = 15e6\nbeta = 0.08\n"
+    )
+    assert main(["solve", str(path), "--accuracy", "0.01", "--explain"]) == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert "is not to be reached: the domain cuts the contact off" in out
 
 
 def test_it_says_what_a_frictionless_smooth_scene_does_without(capsys: Capture) -> None:

@@ -12,14 +12,13 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from PIL import Image
 
 import refimpl
 from refimpl.accuracy.refinement import QUANTITIES
 from refimpl.planning.plan import METHODS
 from tests.verification.cli.test_cli import Capture, refused
-from verification.cli import main, plot, solve
+from verification.cli import main, solve
 from verification.cli.plot import hertz_of
 
 SCENE = """
@@ -380,23 +379,6 @@ def test_no_two_outputs_are_one_file(
 @pytest.mark.parametrize("option", ["--plot", "--vtk"])
 def test_only_text_goes_to_standard_output(option: str, capsys: Capture) -> None:
     assert option in refused(capsys, "solve", "hertz", "--grid", "8", option, "-")
-
-
-def test_maps_and_profiles_have_x_to_the_right(scene: str) -> None:
-    solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
-    pressure = np.zeros((8, 8))
-    pressure[6, 4] = 3e6  # i = 6 along x, j = 4 along y: on the line through the centre along x
-    marked = dataclasses.replace(solution, pressure=pressure, max_pressure=3e6)
-    over, along_x, along_y = Figure().subplots(1, 3)
-    plot._map(over, marked, "pressure", "viridis")
-    shown = over.images[0].get_array()
-    assert shown is not None
-    row, column = np.unravel_index(np.argmax(shown), shown.shape)
-    assert (int(row), int(column)) == (4, 6)  # y down the rows, x along the columns
-    plot._profile(along_x, marked, None, axis=0)
-    plot._profile(along_y, marked, None, axis=1)
-    assert np.argmax(along_x.lines[0].get_ydata()) == 6
-    assert np.max(along_y.lines[0].get_ydata()) == 0
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,13 @@ What a peer does when it is set up wrongly is shown here too, and that the suite
 
 from __future__ import annotations
 
+import importlib
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from verification.adapters import aspher, contactmechanics, table, tamaas, traps
+from verification.adapters import aspher, contactmechanics, slippy, table, tamaas, traps
 from verification.adapters.peer import Peer, PeerAnswer, closure
 from verification.contestants import gaps, referee, suite
 from verification.contestants.asking import ask
@@ -70,7 +71,7 @@ NAMES = (
 )
 CANNOT = {
     ("tamaas", "free, approach"): "an approach in free space",
-    ("tamaas", "free, punch"): "converged = False",  # its error is relative to the heights: there are none
+    ("tamaas", "free, punch"): "did not converge",  # its error is relative to the heights: there are none
     ("aspher", "free, approach"): "approach",
     ("aspher", "periodic, approach"): "approach",
     ("aspher", "periodic, nearly full"): "approach",
@@ -105,8 +106,61 @@ def test_peer_gives_table_1_in_free_space(peer: Peer) -> None:
 def test_absent_peer_is_unavailable() -> None:
     absent = Peer("no-such-solver", "none", "", Abilities(), lambda problem: PeerAnswer([], True))
     assert absent.version == "no-such-solver (not installed)"
-    with pytest.raises(Unavailable, match=r"pip install 'rough-friction\[none\]'"):
+    with pytest.raises(Unavailable, match=r"pip install -c constraints.txt -e '\.\[none\]' in a checkout"):
         absent(sphere(4))
+
+
+@needs(tamaas.solve)
+@pytest.mark.parametrize(("M", "off"), [(9, 0.19), (15, 0.12), (33, 0.06), (16, 0.0)])
+def test_tamaas_takes_the_highest_waves_of_odd_periodic_grids_for_shorter_ones(M: int, off: float) -> None:
+    """Wave ((M - 1)/2, 1), whose displacement is that of ((M + 1)/2, 1); see `tamaas.solve.wrong`."""
+    tm: Any = importlib.import_module("tamaas")
+    model = tm.ModelFactory.createModel(tm.model_type.basic_2d, [1.0, 1.0], [M, M])
+    model.E, model.nu = 1.0, 0.0
+    k, i = (M - 1) // 2, np.arange(M)
+    model.traction[:] = pressure = np.cos(2 * np.pi * (k * i[:, None] + i) / M)
+    model.solveNeumann()
+    exact = pressure / (np.pi * np.hypot(k, 1))  # 2/q
+    found = np.linalg.norm(np.asarray(model.displacement) - exact) / np.linalg.norm(exact)
+    assert found == pytest.approx(off, abs=0.005)
+
+
+def test_slippy_is_unavailable_without_its_interpreter(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(slippy.INTERPRETER, raising=False)
+    assert slippy.solve.installed is None
+    with pytest.raises(Unavailable, match="slippy is not installed: an interpreter"):
+        slippy.solve(sphere(4))
+    monkeypatch.setenv(slippy.INTERPRETER, "/no/such/python")
+    assert slippy.solve.installed is None
+
+
+@pytest.mark.skipif(
+    slippy.solve.installed is None, reason=f"{slippy.INTERPRETER} names no interpreter with it"
+)
+@pytest.mark.parametrize("periodic", [False, True])
+def test_slippy_gives_what_our_solver_gives(periodic: bool) -> None:
+    problem = small("periodic" if periodic else "free")
+    pressure = ask(slippy.solve, problem)
+    np.testing.assert_allclose(
+        pressure, np.asarray(own(problem).pressure), rtol=0, atol=1e-5 * pressure.max()
+    )
+
+
+def test_designs_are_one_row_each_with_their_failures() -> None:
+    def row(number: str, status: str, error: float | None) -> dict[str, Any]:
+        name = f"contestant/design-plain-{number}"
+        same = {"tolerance": 1.01, "seconds": 0.5, "residual": error, "note": "why"}
+        return {"id": name, "status": status, "error": error, **same}
+
+    single = {"id": "contestant/pins", "status": "pass"}
+    found = table.summarised(
+        [single, row("01", "pass", 0.5), row("02", "fail", 7.0), row("03", "unavailable", None)]
+    )
+    assert found[0] == single
+    assert found[1]["id"] == "contestant/design-plain"
+    assert (found[1]["status"], found[1]["error"], found[1]["seconds"]) == ("fail", 7.0, 1.5)
+    assert found[1]["note"] == "fail: 02"
+    assert table.summarised([row("01", "pass", 0.5), row("02", "unavailable", None)])[0]["status"] == "pass"
 
 
 def test_present_peer_keeps_to_its_abilities() -> None:
@@ -170,8 +224,9 @@ def test_table_has_every_entrant_and_recomputes_residuals(monkeypatch: pytest.Mo
             continue
         by_id = {row["id"]: row for row in entrant["results"]}
         peak, sliding = by_id["contestant/hertz-peak"], by_id["contestant/sliding-residual"]
+        assert peak["status"] != "error", peak["note"]
         assert peak["seconds"] > 0
-        if entrant["name"] == "Tamaas, registered only":
+        if entrant["name"] in ("Tamaas, registered only", "SlipPY, its default in free space"):
             assert peak["status"] == "fail"
             assert peak["residual"] > 1e-3
         else:

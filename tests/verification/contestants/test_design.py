@@ -8,16 +8,40 @@ import pytest
 
 from verification.contestants import own
 from verification.contestants.campaign import caught
-from verification.contestants.design import OBLONG, PLAIN, SLIDING, rows
+from verification.contestants.covering import covering
+from verification.contestants.design import in_turn, posed, rows, shape_of
+from verification.contestants.dimensions import CHANGED, DESIGNS
 from verification.contestants.random_faults import SEEDS, random_fault
 from verification.contestants.suite import select
 
 
-@pytest.mark.parametrize(("name", "dimensions"), [("plain", PLAIN), ("sliding", SLIDING), ("oblong", OBLONG)])
-def test_every_pair_of_levels_occurs(name: str, dimensions: dict[str, tuple[object, ...]]) -> None:
-    for one, other in itertools.combinations(dimensions, 2):
-        found = {(row[one], row[other]) for row in rows()[name]}
-        assert found == set(itertools.product(dimensions[one], dimensions[other]))
+@pytest.mark.parametrize("name", DESIGNS)
+def test_every_combination_of_levels_occurs(name: str) -> None:
+    """All pairs, of ``triples`` all triples; but no flat periodic gap at an approach."""
+    dimensions, strength = DESIGNS[name].dimensions, 3 if name == "triples" else 2
+    made = covering(dimensions, DESIGNS[name].seed, strength=strength, tries=DESIGNS[name].tries)
+    assert len(made) == len(rows()[name])
+    for chosen in itertools.combinations(dimensions, strength):
+        found = {tuple(row[each] for each in chosen) for row in made}
+        assert found == set(itertools.product(*(dimensions[each] for each in chosen)))
+
+
+def test_problems_in_turn_differ_in_one_dimension() -> None:
+    sizes = [row["elements"] for row in rows()["memory"]]
+    assert len({*sizes}) == len(sizes)
+    for row in rows()["memory"]:
+        first, second, third = in_turn(row)
+        assert first == third
+        changed = {name for name in {*first, *second} if second.get(name) != first.get(name)}
+        assert len(changed) == 1 or changed == {"modulus", "coupling"}  # which leaves c0 as it is
+    assert {row["changed"] for row in rows()["memory"]} == {*CHANGED}
+
+
+def test_designs_reach_from_one_element_to_512() -> None:
+    sizes = [row["elements"] for design in rows().values() for row in design]
+    assert (min(sizes), max(sizes)) == (1, 512)
+    assert shape_of(rows()["tiny"][0]) == (1, 1)
+    assert all(posed(row, 1, 1e-8).hardness for row in rows()["capped"][:3])
 
 
 def test_our_solver_meets_its_claim_in_every_problem() -> None:
@@ -27,4 +51,4 @@ def test_our_solver_meets_its_claim_in_every_problem() -> None:
 
 def test_a_random_fault_is_caught() -> None:
     fault = next(f for f in map(random_fault, SEEDS) if f.effect.startswith("load times"))
-    assert caught(fault) is not None
+    assert caught(fault, ["plain"]) is not None

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from verification.contestants import compact, own
-from verification.contestants.random_faults import COUNTED, SEEDS, error, probe, random_fault
+from verification.contestants import compact
+from verification.contestants.campaign import run, summary
+from verification.contestants.fault_error import error, probes
+from verification.contestants.random_faults import COUNTED, SEEDS, random_fault
 from verification.contestants.suite import suite
 
 NAMED = [c for c in suite() if not c.slug.startswith("design-")]
@@ -29,12 +34,58 @@ def test_at_least_two_hundred_faults_with_their_seeds() -> None:
     ]
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_probes_are_solved_alike_by_both_right_solvers(seed: int) -> None:
-    posed = probe(np.random.default_rng(seed))
-    ours, theirs = (np.asarray(solver(posed).pressure) for solver in (own.solve, compact.solve))
-    np.testing.assert_allclose(theirs, ours, atol=1e-3 * ours.max())
+def test_probes_are_of_every_kind_and_both_right_solvers_agree_on_them() -> None:
+    found = [*probes()]
+    kinds = {
+        (p.problem.periodic, p.problem.coupling is not None, p.problem.shape[0] != p.problem.shape[1])
+        for p in found
+    }
+    assert {(False, True, True), (True, True, True), (False, False, False), (True, True, False)} <= kinds
+    assert len(found) > 60
+    probe = found[7]
+    assert probe.error(np.asarray(compact.solve(probe.problem).pressure)).peak < 1e-4
 
 
-def test_a_fault_has_an_error() -> None:
-    assert error(next(f for f in map(random_fault, SEEDS) if f.effect.startswith("load times"))) > COUNTED
+def test_an_error_is_relative_to_the_peak_and_counted_in_claims() -> None:
+    """A thousandth of everything, squared, is 100 claims of 1e-8; a periodic mean adds as many."""
+    probe = next(p for p in probes() if not p.problem.periodic)
+    found = probe.error(1.001 * probe.exact)
+    assert found.peak == pytest.approx(1e-3)
+    assert found.claims == pytest.approx(100, rel=1e-6)
+    periodic = next(p for p in probes() if p.problem.periodic)
+    assert periodic.error(1.001 * periodic.exact).claims == pytest.approx(200, rel=1e-6)
+
+
+def test_faults_have_errors() -> None:
+    load = next(f for f in map(random_fault, SEEDS) if f.effect.startswith("load times"))
+    assert error(load).peak > COUNTED
+    reflected = next(f for f in map(random_fault, SEEDS) if f.effect == "direction reflected in x")
+    assert error(reflected).peak > COUNTED
+
+
+def test_a_campaign_goes_on_where_its_log_ends(tmp_path: Path) -> None:
+    log = tmp_path / "log.jsonl"
+    seeds = [s for s in SEEDS if random_fault(s).effect.startswith("load times")][:2]
+    (first,) = run(seeds[:1], log)
+    assert first["error"] > COUNTED
+    assert first["caught"].startswith("design-")
+    known = [first | {"effect": "kept from the log"}]
+    log.write_text("".join(json.dumps(record) + "\n" for record in known), encoding="utf-8")
+    records = run(seeds, log)
+    assert [r["effect"] for r in records] == ["kept from the log", random_fault(seeds[1]).effect]
+    assert len(log.read_text(encoding="utf-8").splitlines()) == 2
+
+
+def test_the_summary_counts_and_names_survivors() -> None:
+    one = {"seed": 1, "effect": "e", "condition": "c", "error": 0.5, "claims": 1e6, "designs": []}
+    found = summary(
+        [
+            one | {"caught": "design-plain-01"},
+            one | {"caught": None, "seed": 2},
+            one | {"caught": "design-other-03"},
+            one | {"error": 1e-6, "claims": 0.1, "caught": None, "seed": 3},
+        ]
+    )
+    assert (found["counted"], found["caught"], found["caught_first"]) == (3, 2, 1)
+    assert [r["seed"] for r in found["survivors"]] == [2]
+    assert [r["seed"] for r in found["lesser_survivors"]] == [3]

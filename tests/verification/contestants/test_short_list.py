@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from verification.contestants.design import rows
-from verification.contestants.short_list import levels, short_list
+from verification.contestants.short_list import short_list
+from verification.contestants.traits import Trait, levels
+
+
+def trait(slug: str, name: str) -> Trait | None:
+    return (levels(slug) or {}).get(name)
+
 
 SLUGS = [f"design-{name}-{n:02}" for name, design in rows().items() for n in range(1, len(design) + 1)]
 
@@ -11,14 +17,38 @@ SLUGS = [f"design-{name}-{n:02}" for name, design in rows().items() for n in ran
 def test_two_dimensions_are_named_together() -> None:
     known = {slug: levels(slug) or {} for slug in SLUGS}
     failed = {s: row["borders"] == "periodic" and row["parity"] == "even" for s, row in known.items()}
-    assert short_list(failed)[0] == "borders = periodic and parity = even"
+    assert short_list(failed)[0] == "parity = even and borders = periodic"
 
 
 def test_a_sector_is_named() -> None:
-    failed = {slug: (levels(slug) or {}).get("sector") == 6 for slug in SLUGS}
+    failed = {slug: trait(slug, "sector") == "6" for slug in SLUGS}
     assert short_list(failed)[0] == "sector = 6"
 
 
 def test_no_failure_has_no_list() -> None:
     assert short_list(dict.fromkeys(SLUGS, False)) == []
     assert levels("hertz-load") is None
+
+
+def test_a_threshold_is_named() -> None:
+    failed = {slug: float(trait(slug, "beta") or 0.0) > 1.4 for slug in SLUGS}
+    assert short_list(failed)[0] == "beta above 1.3"
+
+
+def test_dimensions_count_among_the_problems_that_have_them() -> None:
+    """A memory fails where one dimension changes, and here and there among the other designs."""
+    failed = {slug: trait(slug, "changed") == "edge" or slug.endswith("-17") for slug in SLUGS}
+    failed["design-memory-17"] = trait("design-memory-17", "changed") == "edge"
+    assert short_list(failed)[0] == "changed = edge"
+
+
+def test_three_dimensions_are_listed_not_three_thresholds_of_one() -> None:
+    small = {slug: float(trait(slug, "pressure over E*") or 0.0) > 1.0 for slug in SLUGS}
+    assert short_list(small)[0] == "pressure over E* above 0.5"
+    tiny = {slug: trait(slug, "elements") == 1.0 for slug in SLUGS}
+    assert short_list(tiny)[0] == "elements below 2"
+    assert not any("elements" in each for each in short_list(tiny)[1:])
+
+
+def test_all_problems_are_everywhere() -> None:
+    assert short_list(dict.fromkeys(SLUGS, True)) == ["everywhere"]

@@ -187,6 +187,11 @@ def test_data_keep_nine_digits_but_the_verdict_keeps_all() -> None:
         jsonable({1, 2})
 
 
+def test_a_map_is_recorded_with_four_digits_and_a_short_table_with_nine() -> None:
+    assert jsonable(np.full((40, 25), 2 / 3)) == [[0.6667] * 25] * 40
+    assert jsonable(np.full((40, 24), 2 / 3)) == [[0.666666667] * 24] * 40
+
+
 @pytest.mark.parametrize("failure", [RuntimeError, SystemExit, Unavailable])
 def test_a_note_can_be_written_to_any_utf_8_file_and_has_an_end(failure: type[BaseException]) -> None:
     def undecodable() -> Measured:

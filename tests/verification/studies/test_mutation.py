@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from reports.studies import exhibit
+from verification.framework.files import write_result
 from verification.mutation import campaign, mutants, score, session
 from verification.mutation.__main__ import main
 from verification.mutation.campaign import Fault, read_faults
@@ -172,6 +173,24 @@ def test_verdicts_on_a_small_tree(tmp_path: Path) -> None:
     assert (tmp_path / "half.py").read_text().endswith("x / 2\n")
 
 
+def test_a_test_that_finds_no_end_is_named(tmp_path: Path) -> None:
+    """Long before the limit of the whole trial: here after one of 30 seconds."""
+    (tmp_path / "half.py").write_text("def half(x):\n    return x / 2\n")
+    (tmp_path / "test_half.py").write_text("from half import half\ndef test_it(): assert half(2) == 1\n")
+    script = JUDGE.replace("source, 2)", "source, 30)").replace(
+        "suite.baseline()", "from verification.mutation import judge; judge.LONGEST = 1; suite.baseline()"
+    )
+    asked = [
+        sys.executable,
+        "-c",
+        script,
+        str(tmp_path),
+        json.dumps(["def half(x):\n    while True: pass\n"]),
+    ]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+    assert json.loads(done.stdout) == [["killed", "test_half.py::test_it"]]
+
+
 def test_what_the_parent_has_of_the_tree_is_forgotten(tmp_path: Path) -> None:
     """A mutant of the judge's own package, which the parent runs, is seen by the child all the same."""
     for package in ("refimpl", "verification", "verification/framework"):
@@ -255,7 +274,7 @@ from pathlib import Path
 from verification.mutation.campaign import Fault, run
 faults = [Fault("x", "half.py", b, o, n) for b, o, n in json.loads(sys.argv[2])]
 areas = {"x": {"modules": ["."], "tests": ["tests"]}}
-found = run(faults, areas, Path(sys.argv[1]) / "log", Path(sys.argv[1]), far=True)
+found = run(faults, areas, Path(sys.argv[1]) / "log", Path(sys.argv[1]), far=True, **json.loads(sys.argv[3]))
 print(json.dumps([[record["outcome"], record["test"], record["failing"]] for record in found]))
 """
 
@@ -267,7 +286,7 @@ def test_a_campaign_on_a_small_tree(tmp_path: Path) -> None:
     test = "from half import half\ndef test_broken(): assert False\ndef test_four(): assert half(4) == 2\n"
     (tmp_path / "tests" / "test_half.py").write_text(test)
     faults = [["same", "x / 2", "0.5 * x"], ["wrong", "x / 2", "x / 3"]]
-    asked = [sys.executable, "-c", CAMPAIGN, str(tmp_path), json.dumps(faults)]
+    asked = [sys.executable, "-c", CAMPAIGN, str(tmp_path), json.dumps(faults), "{}"]
     for _ in range(2):
         done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
         assert json.loads(done.stdout) == [
@@ -276,6 +295,42 @@ def test_a_campaign_on_a_small_tree(tmp_path: Path) -> None:
         ]
         assert len((tmp_path / "log").read_text().splitlines()) == 2
     assert (tmp_path / "half.py").read_text().endswith("x / 2\n")
+
+
+def test_a_campaign_goes_on_where_it_ended_with_the_test_that_noticed_before(tmp_path: Path) -> None:
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "half.py").write_text("def half(x):\n    return x / 2\n")
+    test = "from half import half\ndef test_four(): assert half(4) == 2\n"
+    for name in ("test_half.py", "test_other.py"):
+        (tmp_path / "tests" / name).write_text(test)
+    faults = [["third", "x / 2", "x / 3"], ["less", "x / 2", "x - 1"], ["more", "x / 2", "x + 1"]]
+    first = [{"breaks": "less", "test": "tests/test_other.py::test_four"}]
+    counts = []
+    for tries in (1, 2, 0):
+        options = json.dumps({"first": first, "tries": tries})
+        asked = [sys.executable, "-c", CAMPAIGN, str(tmp_path), json.dumps(faults), options]
+        done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+        counts.append([test for _, test, _ in json.loads(done.stdout)])
+    one, other = "tests/test_half.py::test_four", "tests/test_other.py::test_four"
+    assert counts == [[one], [one, other, one], [one, other, one]]
+
+
+def test_first_judgements_of_a_log_and_of_a_result(tmp_path: Path) -> None:
+    rows = [
+        {"breaks": "a sign", "first": "unnoticed", "outcome": "noticed", "test": "test_a.py::test_b"},
+        {"breaks": "a unit", "first": "not judged", "outcome": "noticed", "test": "test_c.py::test_d"},
+    ]
+    write_result({"list": rows}, tmp_path / "earlier.json")
+    assert campaign.first_judgements(tmp_path / "earlier.json") == [{**rows[0], "outcome": "unnoticed"}]
+    (tmp_path / "log.jsonl").write_text(json.dumps(rows[1]) + "\n")
+    assert campaign.first_judgements(tmp_path / "log.jsonl") == [rows[1]]
+
+
+def test_a_survivor_has_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(campaign, "explanations", lambda: {("a.py", "x < 1", "x <= 1"): "x is never 1"})
+    base = {"area": "x", "file": "a.py", "test": None, "outcome": "unnoticed"}
+    records = [{**base, "breaks": f"Lt_{new}, line 3: x < 1 -> x {new} 1"} for new in ("<=", ">")]
+    assert [one["reason"] for one in campaign.summary(records)["list"]] == ["x is never 1", None]
 
 
 def test_a_fault_that_does_not_fit_is_refused() -> None:

@@ -307,7 +307,7 @@ def test_hardness_varies_by_its_full_name(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("field", "axis", "values"),
     [
-        ("vary.lower.surface[0].seed", "lower.surface[0].seed", [1, 2]),
+        ("vary.lower.surface[0].seed", "lower.surface[0].seed", [-1, 2]),
         ("vary.lower.surface[1].hurst", "lower.surface[1].hurst", [0.3]),
         ("vary.lower.surface[0].rms", "lower.surface[0].rms", [1e-7]),
         ("vary.lower_rms", "lower_rms", [1e-7]),

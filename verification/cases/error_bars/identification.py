@@ -10,24 +10,25 @@ import refimpl as rf
 from refimpl.identification import Identification, Row, identify
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
-from verification.coverage.identification import FIT_GRID, KINDS, LEVEL, SEEDS, study, summary
+from verification.coverage.identification import LEVEL, SETS, TwinSet, study, summary
+from verification.coverage.twins import KINDS, SHARP_FIT_GRID
 from verification.framework.case import Measured
 from verification.framework.registry import case
 
-NUMBERS = ("tau", "beta", "mu")
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
+MOST_SOLVES = 60
 
 
-def _coverage(seeds: range) -> Measured:
-    found = summary(study(seeds))
+def _coverage(twins: TwinSet, seeds: range | None = None) -> Measured:
+    found = summary(study(twins, seeds=seeds))
     coverage = found["coverage"]
     assert isinstance(coverage, dict)
-    least = min(coverage[name] for name in NUMBERS)
+    least = min(coverage.values())
     wrong = int(str(found["wide_without_warning"])) + int(str(found["narrow_with_warning"]))
     failed = int(str(found["failures"]))
     value = 0.0 if wrong or failed else least
-    note = f"{len(seeds)} twins on {FIT_GRID} elements a side; {wrong} warnings wrong, {failed} not solved"
+    note = f"{found['twins']} twins, {found['narrow']} narrow; {wrong} warnings wrong, {failed} not solved"
     return Measured(value=value, data=found, note=note)
 
 
@@ -43,7 +44,7 @@ def _coverage(seeds: range) -> Measured:
     tags=("identification",),
 )
 def twins() -> Measured:
-    return _coverage(SEEDS)
+    return _coverage(SETS["drawn"])
 
 
 @case(
@@ -57,7 +58,57 @@ def twins() -> Measured:
     tags=("identification",),
 )
 def twins_sample() -> Measured:
-    return _coverage(range(SEEDS.stop, SEEDS.stop + len(KINDS)))
+    stop = SETS["drawn"].seeds.stop
+    return _coverage(SETS["drawn"], range(stop, stop + len(KINDS)))
+
+
+@case(
+    "identification/sharp-twins",
+    title="95 % intervals of tau below 5 %, without a warning",
+    claim="Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
+    f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is known "
+    "within 5 % has the warning.",
+    source="as identification/twins, other seeds",
+    metric="at_least",
+    tolerance=0.88,
+    tolerance_reason="95 %, less two standard deviations of 60 twins (5.6 %) and rounding",
+    tier="full",
+    tags=("identification",),
+)
+def sharp_twins() -> Measured:
+    return _coverage(SETS["sharp"])
+
+
+@case(
+    "identification/hardness",
+    title="95 % intervals of tau, beta, the hardness and a new load's mu",
+    claim="Where balls yield at their larger loads, friction determines the hardness beside tau and beta, "
+    "from first guesses off by up to 40 %.",
+    source="twins whose friction and hardness are known",
+    metric="at_least",
+    tolerance=0.87,
+    tolerance_reason="95 %, less two standard deviations of 40 twins (6.9 %) and rounding",
+    tier="full",
+    tags=("identification",),
+)
+def hardness() -> Measured:
+    return _coverage(SETS["hardness"])
+
+
+@case(
+    "identification/roughness",
+    title="95 % intervals of tau, beta, the rms height and a new load's mu, from statistics of a surface",
+    claim="Where a rough ball is known by its statistics, but for the height, four other realisations "
+    "determine tau, beta and the rms height within their intervals.",
+    source="twins whose friction and rms height are known, of a realisation that no fit draws",
+    metric="at_least",
+    tolerance=0.85,
+    tolerance_reason="95 %, less two standard deviations of 24 twins (8.9 %) and rounding",
+    tier="full",
+    tags=("identification",),
+)
+def roughness() -> Measured:
+    return _coverage(SETS["roughness"])
 
 
 @case(
@@ -88,22 +139,46 @@ def effects() -> Measured:
     largest = int(np.argmax(np.abs(found["outlier"].residuals)))
     revealed = max(found["another surface"].probability, found["outlier"].probability)
     value = revealed if largest == OUTLIER_ROW and found["right"].probability > 0.05 else 1.0
-    data = {
-        name: {
-            "tau": one.values["tau"].value,
-            "beta": one.values["beta"].value,
-            "chi_square": one.chi_square,
-            "probability": one.probability,
-            "residuals": list(one.residuals),
-        }
-        for name, one in found.items()
-    }
+    data: dict[str, object] = {"load (N)": [row.load for row in rows]}
+    data |= {name: list(one.residuals) for name, one in found.items()}
+    data["numbers"] = {name: _effect(one) for name, one in found.items()}
     return Measured(value=value, data=data, note=f"largest residual of the outlier's data: row {largest + 1}")
 
 
-def _noisy_rows(scene: rf.Scene) -> list[Row]:
+def _effect(found: Identification) -> dict[str, float]:
+    tau = found.values["tau"]
+    return {
+        "tau (MPa)": tau.value / 1e6,
+        "tau, low (MPa)": tau.low / 1e6,
+        "tau, high (MPa)": tau.high / 1e6,
+        "beta": found.values["beta"].value,
+        "chi-square": found.chi_square,
+        "probability": found.probability,
+        "row of the largest residual": int(np.argmax(np.abs(found.residuals))) + 1,
+    }
+
+
+@case(
+    "identification/solves",
+    title="Forward solves of a fit to eight loads on 256 x 256, with friction and slopes",
+    claim=f"A fit without a first guess takes at most {MOST_SOLVES} solves.",
+    source="scene table1-rough, noise 1 %, seed 7; the limit is this project's own",
+    metric="at_most",
+    tolerance=MOST_SOLVES,
+    tolerance_reason="seven passes over eight rows, and further loads",
+    tags=("identification",),
+)
+def solves() -> Measured:
+    scene = rf.read_scene("table1-rough")
+    rows = _noisy_rows(scene, 8)
+    found = identify(replace(scene, friction=rf.Friction()), rows, FINE, loads=(1.0, 100.0))
+    note = f"{found.passes} passes; tau {found.values['tau'].value / 1e6:.2f} MPa, true 15"
+    return Measured(value=float(found.solves), data={"passes": found.passes}, note=note)
+
+
+def _noisy_rows(scene: rf.Scene, count: int = 10) -> list[Row]:
     rng, rows = np.random.default_rng(7), []
-    for load in map(float, np.geomspace(2, 80, 10)):
+    for load in map(float, np.geomspace(2, 80, count)):
         mu = rf.solve(replace(scene, load=load), FINE).friction_coefficient
         u = 0.01 * mu
         rows.append(Row(load, mu + u * float(rng.normal()), u))

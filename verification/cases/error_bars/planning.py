@@ -21,9 +21,7 @@ from verification.framework.registry import case
 SOURCE = "the planner's own promise (README): what a scene does not require is neither built nor applied"
 BARE = Terms(coupled=False, oblique=False, tilted=False)
 M = 64
-RETURNED = (
-    4 * 8
-)  # bytes per element: both deformed surfaces, gap and indentation, which bare solves lack
+RETURNED = 4 * 8  # bytes per element: both deformed surfaces, gap and indentation, which bare solves lack
 
 
 @cache

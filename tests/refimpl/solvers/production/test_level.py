@@ -289,6 +289,24 @@ def test_only_states_of_taus_rule_must_keep_off_a_windows_edge(tau: float, too_s
     assert solver.window_too_small is too_small
 
 
+@pytest.mark.parametrize(
+    ("place", "too_small"), [((0, 3), True), ((2, 7), True), ((1, 1), False), ((2, 6), False)]
+)
+def test_shear_off_the_contact_must_keep_off_the_edge_as_well(
+    place: tuple[int, int], too_small: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the set of tau is behind the contact, elements that no longer press are sheared still."""
+    pressure = np.zeros((4, 8))
+    pressure[1:3, 2:6] = 1.0
+    problem = problem_of(coupled(0.3, tau=1e6), 16)
+    solver = level_solver(problem, Window(4, 8, 4, 12), pressure=pressure)
+    traction = np.zeros((4, 8))
+    monkeypatch.setattr(type(solver.lagged), "traction", property(lambda lagged: traction))
+    assert not solver.window_too_small
+    traction[place] = 2e5
+    assert solver.window_too_small is too_small
+
+
 @pytest.mark.parametrize("slope_correction", [False, True])
 def test_the_residual_is_what_the_certificate_finds(slope_correction: bool) -> None:
     """Also of facet tractions, at the slopes of the update before: these are returned with the state.

@@ -1,0 +1,88 @@
+"""One grid of a scene: discretised, solved and certified."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from refimpl.grid import Array, Grid, Window
+from refimpl.model.certificate import State, certify
+from refimpl.model.problem import Problem
+from refimpl.model.state import SolverResult, Status
+from refimpl.operators.fft import Counter
+from refimpl.operators.influence import whole_grid_influence
+from refimpl.planning.plan import Method, Plan
+from refimpl.scene.discretise import Discretiser
+from refimpl.solution.cost import Cost, total_cost
+from refimpl.solution.solved import Solved
+from refimpl.solvers.dense import solve_dense
+from refimpl.solvers.paper import solve_paper
+from refimpl.solvers.production.coarse_grids import InitialGuess
+from refimpl.solvers.production.nested_solver import solve_fft
+
+Progress = Callable[[str], None]
+
+
+def solve_on_grid(
+    plan: Plan,
+    discretiser: Discretiser,
+    tolerance: float,
+    progress: Progress | None,
+    guess: InitialGuess | None,
+) -> Solved:
+    """Discretise, solve and certify on one grid."""
+    started = time.perf_counter()
+    counter = Counter() if progress is None else _ReportingCounter(plan.grid, progress)
+    problem = discretiser.problem(plan.grid, plan.switches)
+    result, state = _solve_problem(problem, plan.method, tolerance, counter, guess)
+    cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, result.iterations)
+    solved = Solved(problem, plan, result, state, tolerance, cost, discretiser.scene)
+    hardness = problem.pair.softer_hardness or math.inf
+    if plan.requested.plastic is not None or plan.includes("plastic") or state.max_pressure <= hardness:
+        return solved
+    capped = solve_on_grid(plan.restore(problem, "plastic"), discretiser, tolerance, progress, guess)
+    return replace(capped, cost=total_cost([cost, capped.cost]))
+
+
+def _solve_problem(
+    problem: Problem, method: Method, tolerance: float, counter: Counter, guess: InitialGuess | None
+) -> tuple[SolverResult, State]:
+    if problem.approach is not None and problem.approach <= 0:
+        return _without_contact(problem)
+    if method == "dense":
+        return solve_dense(problem)
+    if method == "paper":
+        result, state, _ = solve_paper(problem, tolerance, counter)
+        return result, state
+    return solve_fft(problem, tolerance, counter, guess)
+
+
+def _without_contact(problem: Problem) -> tuple[SolverResult, State]:
+    """The state of surfaces that do not touch at the approach: nothing is loaded."""
+    zero = np.zeros(problem.gap.shape)
+    slopes = problem.slopes(zero, zero)
+    operator = whole_grid_influence(problem.grid, problem.direction, Window(0, 1, 0, 1))
+    result = SolverResult(zero, zero, slopes, Status.NO_CONTACT, zero > 0)
+    return result, certify(problem, operator, zero, zero, slopes)
+
+
+class _ReportingCounter(Counter):
+    """A counter that reports the progress on one grid."""
+
+    def __init__(self, grid: Grid, report: Progress) -> None:
+        super().__init__()
+        self._grid, self._report = grid, report
+
+    def add(self, what: str, points: int) -> None:
+        """Count an application, and report the number so far."""
+        super().add(what, points)
+        self._report(f"{self._grid} elements, {sum(self.tally.values())} transforms")
+
+
+def initial_guess(problem: Problem, pressure: Array, clearance: Array, approach: float) -> InitialGuess:
+    """The initial guess for a grid that is not coarser, from a state and its reported approach (m)."""
+    return InitialGuess(pressure, clearance + (approach + problem.datum) - problem.gap, None)

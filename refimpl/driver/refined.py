@@ -1,0 +1,164 @@
+"""A scene on finer and finer grids, until an error bar is as short as requested."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.refinement import (
+    FIRST_GRIDS,
+    GRID_SIZES,
+    leaves,
+    out_of_reach,
+    predicted_size,
+    refine_until,
+    relative_bound,
+    size_of,
+    uncertainty,
+)
+from refimpl.driver.limits import Allowance
+from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
+from refimpl.driver.options import Options
+from refimpl.grid import Grid
+from refimpl.model.state import Status
+from refimpl.planning.plan import Plan
+from refimpl.planning.term_effects import effects_in
+from refimpl.scene.discretise import Discretiser
+from refimpl.scene.scene import Scene
+from refimpl.solution.cost import Cost, total_cost
+from refimpl.solution.data_error import finest_by_data
+from refimpl.solution.limits import Notice
+from refimpl.solution.plausibility import notes
+from refimpl.solution.solution import Solution, assemble
+from refimpl.solution.solved import Solved
+
+_CONVERGED = (Status.CONVERGED, Status.CYCLED)
+
+
+def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None) -> Solution:
+    """The finest grid's solution of a refinement, with the uncertainty from all grids and the summed cost.
+
+    When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
+    `ACCURACY_NOT_REACHED` with a warning that states the accuracy reached.
+    """
+    scene, quantity = options.scene, options.target_quantity
+    assert options.accuracy is not None
+    grids = _Refinement(scene, plan, discretiser, options, progress)
+    try:
+        ended = refine_until(
+            grids.features_at,
+            options.accuracy,
+            quantity,
+            slenderness=scene.slenderness,
+            finest_by_data=finest_by_data(scene),
+        )
+    except KeyboardInterrupt as interrupt:
+        if grids.last is not None:
+            interrupt.args = (_interrupted(scene, grids, discretiser),)
+        raise
+    solved, cost = grids.solved(), total_cost(grids.costs)
+    remarks = notes(scene, solved, discretiser.notes)
+    if not ended.results[-1].touching:
+        return assemble(scene, solved, uncertainty([ended.results[-1]]), remarks, cost=cost)
+    shortfall = None
+    if ended.refusal:
+        bound = relative_bound(ended.results, quantity)
+        reached = f"known to {bound:.2g}, not" if math.isfinite(bound) else "not bounded, let alone"
+        shortfall = Notice(f"{quantity} is {reached} to {options.accuracy:.2g}: {ended.refusal}")
+    return assemble(scene, solved, uncertainty(ended.results), remarks, shortfall=shortfall, cost=cost)
+
+
+def _interrupted(scene: Scene, grids: _Refinement, discretiser: Discretiser) -> Solution:
+    """The last finished grid's solution of a refinement that was interrupted."""
+    solved = grids.solved()
+    line = Notice("interrupted: the finest grid that was finished")
+    remarks = notes(scene, solved, discretiser.notes)
+    bars = uncertainty([solved.features])
+    return assemble(scene, solved, bars, remarks, shortfall=line, cost=total_cost(grids.costs))
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """Last grid that an accuracy is expected to take, seconds and memory (bytes) of that one.
+
+    ``solved`` are the grids that the forecast itself took; ``refusal`` says why no grid is expected to do, or
+    is empty.
+    """
+
+    grid: Grid
+    seconds: float
+    memory: float
+    solved: tuple[Grid, ...]
+    refusal: str
+
+
+def forecast(options: Options, plan: Plan, discretiser: Discretiser) -> Forecast:
+    """Solve the grids that open a refinement, and say by their bars what it would end with."""
+    scene, quantity, accuracy = options.scene, options.target_quantity, options.accuracy
+    assert accuracy is not None
+    grids = _Refinement(scene, plan, discretiser, options, None)
+    results = [grids.features_at(M * scene.slenderness) for M in FIRST_GRIDS]
+    size, refusal = size_of(results[-1]), ""
+    if results[-1].touching and relative_bound(results, quantity) > accuracy:
+        finest = finest_by_data(scene) if leaves("data", results[-1], accuracy, quantity) else math.inf
+        finer = [M * scene.slenderness for M in GRID_SIZES if size < M * scene.slenderness <= finest]
+        enough = predicted_size(results, accuracy, quantity, finer)
+        size = enough or max(finer, default=size)
+        if enough is None:
+            refusal = out_of_reach(results, accuracy, quantity) or f"{size} elements a side do not suffice"
+    expected = grids.plan.on(scene.refined(size))
+    seconds = grids.allowance.expected_seconds(expected.grid)
+    return Forecast(expected.grid, seconds, expected.memory, tuple(r.grid for r in results), refusal)
+
+
+class _Refinement:
+    """Solves of one scene on finer and finer grids; terms that turn out to matter are restored for good."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        plan: Plan,
+        discretiser: Discretiser,
+        options: Options,
+        progress: Progress | None,
+    ) -> None:
+        self.scene, self.plan = scene, plan
+        self.costs: list[Cost] = []
+        self.last: Solved | None = None
+        self._discretiser, self._progress = discretiser, progress
+        self._tolerance, self.allowance = options.residual_tolerance, Allowance(options.limits)
+
+    def features_at(self, M: int) -> GridFeatures:
+        """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget."""
+        start = self.last if self.last is not None and self.last.status in _CONVERGED else None
+        guess = None
+        if start is not None:
+            state = start.state
+            guess = initial_guess(
+                start.problem, state.pressure, state.clearance, state.approach - start.problem.datum
+            )
+        plan = self.plan.on(self.scene.refined(M))
+        self.allowance.check(plan.grid, plan.memory)
+        if self._progress is not None and self.last is not None:
+            expected = self.allowance.expected_seconds(plan.grid)
+            self._progress(f"{plan.grid} elements next: about {expected:.2g} s, {plan.memory / 1e9:.2g} GB")
+        solved = solve_on_grid(plan, self._discretiser, self._tolerance, self._progress, guess)
+        self.plan = solved.plan  # with the cap, if it was restored
+        self.costs.append(solved.cost)
+        self.last = solved
+        self.allowance.record(plan.grid, solved.cost.seconds)
+        effects = effects_in(
+            plan.neglected, solved.problem, solved.state.pressure, plan.contact, plan.decided_on
+        )
+        sizes = {name: effect.larger for name, effect in effects.items()}
+        if sum(sizes.values()) > self.plan.budget:
+            largest = max(sizes, key=lambda name: sizes[name])
+            self.plan = self.plan.restore(solved.problem, largest)
+            return self.features_at(M)
+        return solved.features
+
+    def solved(self) -> Solved:
+        """Return what was solved last."""
+        assert self.last is not None
+        return self.last

@@ -1,0 +1,157 @@
+"""The half-space's error: local errors from the table, three parts of each number, and what to do."""
+
+from __future__ import annotations
+
+import json
+import math
+from importlib import resources
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.grid import Array
+from refimpl.scene.discretise import discretise
+from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error, local_error
+
+SIZE, ELEMENTS = (3e-3, 2e-3), (9, 6)
+SOFT, STIFF = (
+    rf.Material(E=3e9, nu=0.3),
+    rf.Material(E=45e9, nu=0.0),
+)  # compliances 0.91 / 3 and 1 / 45: 91 to 20/3
+NUMBERS = (
+    "approach",
+    "normal_force",
+    "friction_coefficient",
+    "contact_area",
+    "max_pressure",
+    "binormal_force",
+)
+
+
+def largest_in_the_table(degrees: float, nu: float) -> float:
+    """Of crest, flank and valley of the standard ridge: the largest error of all ten coefficients."""
+    text = resources.files("refimpl").joinpath("data", "coefficient_error_3d.json").read_text("utf-8")
+    asked = {"slope_deg": degrees, "nu": nu, "wavelength": 20.0, "kind": "ridge", "width": "projected"}
+    found = [p["error"] for p in json.loads(text)["points"] if all(p[k] == v for k, v in asked.items())]
+    return max(abs(float(error)) for errors in found for error in errors)
+
+
+def inclined(degrees: float, towards: float) -> Array:
+    """A plane that rises by the angle, towards a direction (rad) from x."""
+    grid = rf.Grid(ELEMENTS, SIZE)
+    along = math.cos(towards) * grid.x[:, None] + math.sin(towards) * grid.y[None, :]
+    return math.tan(math.radians(degrees)) * along
+
+
+def scene(upper: Any, lower: Any, *, of_upper: rf.Material = STIFF, of_lower: rf.Material = SOFT) -> rf.Scene:
+    law = rf.Friction(tau=4e5, beta=0.12)
+    bodies = rf.Body(of_upper, upper), rf.Body(of_lower, lower)
+    return rf.Scene(*bodies, law, load=6.0, size=SIZE, sliding_direction=0.4)
+
+
+def test_each_body_counts_by_its_slope_and_its_share_of_the_compliance() -> None:
+    """91 / (91 + 20/3) = 0.93174 of the lower body's error at 10 degrees, the rest of the upper's at 15."""
+    problem = discretise(scene(inclined(15.0, 2.0), inclined(10.0, 0.7)), rf.Grid(ELEMENTS, SIZE))
+    expected = 0.93174 * largest_in_the_table(10.0, 0.3) + 0.06826 * largest_in_the_table(15.0, 0.0)
+    assert local_error(problem) == pytest.approx(np.full(ELEMENTS, expected), rel=1e-4)
+
+
+def test_between_the_nodes_of_the_table_the_error_is_almost_linear() -> None:
+    """Half a degree apart: at 10.2 degrees, by two fifths of the half degree's difference."""
+    at = {}
+    for degrees in (10.0, 10.2, 10.5):
+        flat = scene(rf.Flat(), inclined(degrees, 0.7))
+        (at[degrees],) = set(np.round(local_error(discretise(flat, rf.Grid(ELEMENTS, SIZE))).ravel(), 12))
+    assert 0 < at[10.0] < at[10.2] < at[10.5]
+    assert at[10.2] - at[10.0] == pytest.approx(0.4 * (at[10.5] - at[10.0]), rel=1e-6)
+
+
+def test_beyond_the_table_nothing_is_known_and_a_rigid_body_has_no_error() -> None:
+    rigid = rf.Material(E=math.inf, nu=0.3)
+    steep = scene(inclined(31.0, 0.7), rf.Flat())
+    assert np.isinf(local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE)))).all()
+    steep = scene(inclined(31.0, 0.7), inclined(10.0, 0.7), of_upper=rigid)
+    expected = largest_in_the_table(10.0, 0.3)
+    assert local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE))) == pytest.approx(
+        np.full(ELEMENTS, expected)
+    )
+
+
+def rough() -> rf.Scene:
+    heights = np.random.default_rng(5).uniform(0, 4e-5, (2, *ELEMENTS))
+    return scene(heights[0], heights[1])
+
+
+@pytest.mark.parametrize("approach", [None, 1.6e-5])
+def test_parts_of_every_number(approach: float | None) -> None:
+    """Under a load, numbers change at that load, and N at the approach before; at an approach, all there."""
+    solution = rf.solve(rough(), ELEMENTS, method="dense", approach=approach, oblique=False)
+    found = half_space_error(rough(), solution)
+    first, corrected = found.first_order, found.corrected
+    assert set(first) == set(found.second_order) == set(found.finite_strain) == set(NUMBERS)
+    for name in ("friction_coefficient", "contact_area", "max_pressure", "binormal_force"):
+        assert first[name] == getattr(corrected, name) - getattr(solution, name)
+    if approach is None:
+        assert corrected.normal_force == pytest.approx(solution.normal_force, rel=1e-8)
+        assert first["approach"] * first["normal_force"] < 0  # bodies that recede take less at one approach
+        assert abs(first["normal_force"]) > 1e-3 * solution.normal_force
+    else:
+        assert first["approach"] == pytest.approx(0, abs=1e-12 * solution.approach)
+        assert first["normal_force"] == corrected.normal_force - solution.normal_force
+    assert found.finite_strain == pytest.approx({name: 0.2 * abs(first[name]) for name in NUMBERS})
+    factors = {name: found.second_order[name] / abs(getattr(solution, name)) for name in NUMBERS[1:5]}
+    half = 0.5 * factors["contact_area"]  # 0.5 tan^2 of the steepest slopes, the others 0.2 of them
+    assert factors == pytest.approx(
+        {"normal_force": 0.8 * half, "friction_coefficient": 0.8 * half, "contact_area": 2 * half,
+         "max_pressure": 0.8 * half}
+    )  # fmt: skip
+    sunk = solution.approach + solution.problem.datum
+    assert found.second_order["approach"] == pytest.approx(0.4 * half * sunk)
+    assert found.second_order["binormal_force"] == pytest.approx(0.8 * half * solution.friction_force)
+
+
+def made_up(first: float, second: float, strain: float) -> HalfSpaceError:
+    """Parts of the contact area; of the other numbers a tenth of them."""
+
+    def parts(value: float) -> dict[str, float]:
+        return {name: value if name == "contact_area" else 0.1 * value for name in NUMBERS}
+
+    return HalfSpaceError(parts(first), parts(second), parts(strain), np.zeros(ELEMENTS), None)  # type: ignore[arg-type]
+
+
+SOLVED: Any = SimpleNamespace(
+    friction_coefficient=0.5, contact_area=2.0, max_pressure=7.0, approach=-1.0, normal_force=3.0,
+    problem=SimpleNamespace(datum=4.0),
+)  # fmt: skip
+
+
+def test_the_stated_error_is_the_sum_of_the_parts_sizes() -> None:
+    assert made_up(-0.03, 0.02, 0.006).stated("contact_area") == pytest.approx(0.056)
+    assert made_up(-0.03, 0.02, 0.006).stated("approach") == pytest.approx(0.0056)
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ((-0.03, 0.008, 0.001), "keep the half-space: no number is off by more than 1.9%"),
+        (
+            (-0.05, 0.02, 0.01),
+            "contact area may be off by 4.0%: take the corrected numbers, which leave 1.5%",
+        ),
+        (
+            (-0.05, 0.03, 0.012),
+            "contact area may be off by 4.6%, and 2.1% is left by the first-order correction",
+        ),
+    ],
+)
+def test_what_to_do(parts: tuple[float, float, float], says: str) -> None:
+    """Per cents of an area of 2; 2 % is what the paper accepts."""
+    assert advice(made_up(*parts), SOLVED).startswith(says)
+
+
+def test_a_number_that_is_zero_has_no_relative_error() -> None:
+    without: Any = SimpleNamespace(**{**vars(SOLVED), "friction_coefficient": 0.0})
+    assert advice(made_up(-0.03, 0.008, 0.001), without).startswith("keep the half-space")

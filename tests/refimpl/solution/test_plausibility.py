@@ -1,0 +1,143 @@
+"""Notes on inputs that are seldom meant: each on both sides of its limit, and about the body it is of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import refimpl as rf
+from refimpl.solution.plausibility import implausible
+
+SIZE = (3e-3, 2e-3)
+STEEL, BRASS = rf.Material(210e9, 0.28, hardness=6e9), rf.Material(105e9, 0.35, hardness=2e9)
+ROUGH = rf.GaussianRoughness(rms=1e-6, correlation_length=2e-4, seed=4)
+SCENE = rf.Scene(
+    upper=rf.Body(STEEL, rf.Flat()),
+    lower=rf.Body(BRASS, ROUGH),
+    friction=rf.Friction(tau=3e7, beta=0.1),
+    load=11.0,
+    size=SIZE,
+)
+
+
+def notes(scene: rf.Scene, *, mean_pressure: float = 1e9) -> list[str]:
+    plan: Any = SimpleNamespace(contact=SimpleNamespace(mean_pressure=mean_pressure))
+    return list(implausible(scene, plan))
+
+
+def with_body(body: str, one: rf.Body, scene: rf.Scene = SCENE) -> rf.Scene:
+    changes: dict[str, Any] = {body: one}
+    return replace(scene, **changes)
+
+
+def changed(body: str, **material: Any) -> rf.Scene:
+    one: rf.Body = getattr(SCENE, body)
+    return with_body(body, rf.Body(replace(one.material, **material), one.surface))
+
+
+def self_affine(short_cut: float) -> rf.SelfAffineRoughness:
+    return rf.SelfAffineRoughness(
+        hurst=0.7, rms=1e-6, roll_off=40e-3, long_cut=50e-3, short_cut=short_cut, seed=2
+    )
+
+
+def test_what_is_usual_is_not_remarked_on() -> None:
+    assert notes(SCENE) == []
+
+
+@pytest.mark.parametrize("body", ["lower", "upper"])
+@pytest.mark.parametrize(
+    ("E", "says"),
+    [
+        (0.99e6, "did you mean GPa (200 GPa is 200e9)?"),
+        (1.01e6, None),
+        (1.99e12, None),
+        (2.01e12, "a rigid body is E = rigid"),
+        (math.inf, None),
+    ],
+)
+def test_moduli_from_gels_to_twice_diamond(body: str, E: float, says: str | None) -> None:
+    scene = changed(body, E=E, hardness=None)
+    found = notes(replace(scene, friction=rf.Friction(tau=1e3, beta=0.1)))
+    expected = [f"{body}.E, {E:.4g} Pa, is outside 1e+06 to 2e+12 Pa: {says}"]
+    assert found == ([] if says is None else expected)
+
+
+@pytest.mark.parametrize("body", ["lower", "upper"])
+def test_hardness_between_tau_and_a_tenth_of_the_modulus(body: str) -> None:
+    """tau is 30 MPa; a tenth of 210 and 105 GPa is 21 and 10.5 GPa."""
+    tenth = {"upper": 21e9, "lower": 10.5e9}[body]
+    assert notes(changed(body, hardness=0.999 * tenth)) == []
+    (note,) = notes(changed(body, hardness=1.001 * tenth))
+    assert note.startswith(f"{body}.hardness, {1.001 * tenth:.4g} Pa, is above a tenth of E")
+    assert notes(changed(body, hardness=3.003e7)) == []
+    (note,) = notes(changed(body, hardness=2.997e7))
+    assert note == f"{body}.hardness, 2.997e+07 Pa, is below tau, 3e+07 Pa: are both in Pa?"
+    assert notes(changed(body, hardness=None)) == []
+
+
+def test_tau_of_ten_mean_pressures() -> None:
+    assert notes(SCENE, mean_pressure=3.01e6) == []
+    (note,) = notes(SCENE, mean_pressure=2.5e6)
+    assert note.startswith("tau, 3e+07 Pa, is 12 times the mean contact pressure")
+    assert "MPa" in note
+    assert notes(SCENE, mean_pressure=0.0) == []
+
+
+@pytest.mark.parametrize("body", ["lower", "upper"])
+@pytest.mark.parametrize(
+    ("surface", "says"),
+    [
+        (rf.Sphere(3.01e-3), None),
+        (rf.Sphere(2.99e-3), "radius 0.00299 m is below the domain's 0.003 m: a paraboloid"),
+        (rf.Sphere(-2.99e-3), "radius -0.00299 m is below the domain's 0.003 m"),
+        (replace(ROUGH, correlation_length=1.99e-3), None),
+        (replace(ROUGH, correlation_length=2.01e-3), "correlation_length 0.00201 m is beyond the domain's"),
+        (replace(ROUGH, correlation_length=(1e-4, 2.5e-3)), "correlation_length[1] 0.0025 m is beyond"),
+        (replace(ROUGH, correlation_length=(2.5e-3, 1e-4)), "correlation_length[0] 0.0025 m is beyond"),
+        (self_affine(1.9e-3), None),
+        (
+            self_affine(2.1e-3),
+            "short_cut 0.0021 m is beyond the domain's 0.002 m: did you mean um",
+        ),
+    ],
+)  # fmt: skip
+def test_lengths_beyond_the_domain(body: str, surface: rf.Surface, says: str | None) -> None:
+    one: rf.Body = getattr(SCENE, body)
+    found = notes(with_body(body, rf.Body(one.material, surface)))
+    assert len(found) == (says is not None)
+    assert all(note.startswith(f"{body}: {says}") for note in found)
+
+
+def test_heights_beyond_the_domain() -> None:
+    """Without a hardness: with one the plasticity index would be remarked on as well."""
+    flat = rf.Body(replace(BRASS, hardness=None), replace(ROUGH, rms=2.1e-3))
+    upper = rf.Body(replace(STEEL, hardness=None), rf.Flat())
+    (note,) = notes(replace(SCENE, lower=flat, upper=upper))
+    assert note == "lower: rms 0.0021 m is beyond the domain's 0.002 m: did you mean um?"
+    assert notes(replace(SCENE, lower=replace(flat, surface=replace(ROUGH, rms=1.9e-3)), upper=upper)) == []
+
+
+def test_the_plasticity_index_is_that_of_both_bodies_slopes() -> None:
+    """Slopes sqrt(2 * 2.3) rms / l of each body add in squares: 0.10724 and 0.14299 make 0.17873. With
+    1 / E* = (1 - 0.28^2) / 210 + (1 - 0.35^2) / 105 = 0.012746 per GPa 1000 at an H of 14.02 MPa.
+    """
+    rough = replace(
+        SCENE,
+        upper=rf.Body(STEEL, replace(ROUGH, rms=1e-5)),
+        lower=rf.Body(BRASS, replace(ROUGH, rms=1e-5, correlation_length=1.5e-4)),
+        friction=rf.Friction(tau=1e6, beta=0.1),
+    )
+    for body, other in (("lower", "upper"), ("upper", "lower")):
+        one: rf.Body = getattr(rough, body)
+        less, more = (replace(one, material=replace(one.material, hardness=H)) for H in (13.9e6, 14.2e6))
+        (note,) = notes(with_body(body, less, rough))
+        assert note.startswith("plasticity index 1.01e+03 is beyond 1000: units of E, hardness")
+        assert notes(with_body(body, more, rough)) == []
+        alone: rf.Body = getattr(rough, other)
+        without = replace(alone, material=replace(alone.material, hardness=None))
+        assert len(notes(with_body(other, without, with_body(body, less, rough)))) == 1

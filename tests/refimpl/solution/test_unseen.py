@@ -1,0 +1,185 @@
+"""What no point of the data says, and what lies beyond the domain: shares of error bars by closed forms."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.grid import Array, Grid, Mask
+from refimpl.model.problem import Terms
+from refimpl.scene.discretise import discretise
+from refimpl.solution.data_error import data_error
+from refimpl.solution.unseen import unseen_parts
+from refimpl.solvers.dense import solve_dense
+from refimpl.surfaces import Surface
+
+LENGTHS = (4e-3, 2e-3)
+
+
+@dataclass(frozen=True)
+class Wave(Surface):
+    """A cosine along an axis (0 or 1): lengths in m; with a pitch it stands for a measured map."""
+
+    amplitude: float
+    wavelength: float
+    axis: int = 0
+    data: float | None = None
+    kind: ClassVar[str] = "wave"
+
+    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        along = ((grid.x + offset[0])[:, None], (grid.y + offset[1])[None, :])[self.axis]
+        return np.broadcast_to(self.amplitude * np.cos(2 * np.pi * along / self.wavelength), grid.shape)
+
+    def pitch(self, lengths: tuple[float, float]) -> float | None:
+        return self.data
+
+
+def waves(upper: Surface, lower: Surface, *, periodic: bool = True) -> rf.Scene:
+    return rf.Scene(
+        upper=rf.Body(rf.Material(30e9, 0.3), upper),
+        lower=rf.Body(rf.Material(2e9, 0.2), lower),
+        friction=rf.Friction(tau=3e5, beta=0.15),
+        load=7.0,
+        size=LENGTHS,
+        periodic=periodic,
+    )
+
+
+MEASURED = Wave(3e-6, wavelength=4e-3, data=0.25e-3)  # 16 points a wave
+
+
+@pytest.mark.parametrize(
+    ("elements", "share"),
+    [
+        ((4, 2), 0.12269),  # 1 - sin 45 / (4 sin 11.25) = 0.09387 and 1.5 * 0.01921
+        ((8, 4), 0.04804),  # 1 - sin 22.5 / (2 sin 11.25) = 1 - cos 11.25: 2.5 * 0.01921
+        ((16, 8), 0.02882),  # at the pitch nothing is missed
+        ((64, 32), 0.02882),  # nor on finer elements
+    ],
+)
+def test_a_wave_of_16_points(elements: tuple[int, int], share: float) -> None:
+    """Differences over d have the rms gradient sqrt(2) a sin(pi d / l) / d: in a / (4 p) 4 sin(11.25 degrees)
+    at the pitch p, sin(45) at 4 p, and in the last octave sin(22.5) / (2 sin(11.25)) = cos(11.25) = 0.98079.
+    """
+    scene = waves(rf.Flat(), MEASURED)
+    assert data_error(scene, Grid(elements, LENGTHS, True)) == pytest.approx(share, abs=6e-6)
+    upside = waves(MEASURED, rf.Flat())
+    assert data_error(upside, Grid(elements, LENGTHS, True)) == pytest.approx(share, abs=6e-6)
+
+
+def test_roughness_by_formula_beside_the_data_makes_them_matter_less() -> None:
+    """At d = 2 p, in (a / d)^2: 2 sin^2(22.5) = 0.29289 of the data on the grid and in the octave above,
+    8 sin^2(11.25) = 0.30448 at the pitch; beside it 2 (b / a)^2 sin^2(45) = 0.25 of a wave across, b = a / 2.
+    1 - sqrt(0.54289 / 0.55448) = 0.01051, twice and a half.
+    """
+    across = Wave(1.5e-6, wavelength=2e-3, axis=1)
+    scene = waves(across, MEASURED)
+    assert data_error(scene, Grid((8, 4), LENGTHS, True)) == pytest.approx(0.02626, abs=6e-6)
+
+
+def test_several_maps_are_seen_at_the_pitch_of_each() -> None:
+    """Across: 8 points a wave, b = a / 2, on elements d = 2 p = 1 q: at its pitch q and on the grid
+    2 / 4 sin^2(22.5) = 0.07322, above 2 / 16 sin^2(45) = 0.0625. 1 - sqrt(0.36612 / 0.37770) = 0.01546 on the
+    grid, 1 - sqrt(0.35539 / 0.37770) = 0.02998 of the octave above.
+    """
+    across = Wave(1.5e-6, wavelength=4e-3, axis=1, data=0.5e-3)
+    lengths = (4e-3, 4e-3)
+    scene = waves(across, MEASURED)
+    assert data_error(scene, Grid((8, 8), lengths, True)) == pytest.approx(0.01546 + 1.5 * 0.02998, abs=2e-5)
+
+
+@pytest.mark.parametrize("formula", [rf.Sphere(0.2), Wave(3e-6, wavelength=1e-3)])
+def test_formulas_leave_nothing_open(formula: Surface) -> None:
+    assert data_error(waves(rf.Flat(), formula), Grid((8, 4), LENGTHS, True)) == 0
+
+
+def test_a_level_map_leaves_nothing_open() -> None:
+    level = Wave(0.0, wavelength=4e-3, data=0.25e-3)
+    assert data_error(waves(rf.Flat(), level), Grid((8, 4), LENGTHS, True)) == 0
+
+
+def test_a_map_of_two_points_has_no_octave_above() -> None:
+    """All of its gradient may be between the points: 1.5 of the area."""
+    two = Wave(3e-6, wavelength=8e-3, data=2e-3)
+    scene = waves(rf.Flat(), two, periodic=False)
+    assert data_error(scene, Grid((8, 4), LENGTHS, False)) == pytest.approx(1.5)
+
+
+GRID = Grid((8, 4), LENGTHS, False)
+SHORT = Wave(3e-6, wavelength=1.6e-3, data=0.5e-3)
+
+
+@pytest.fixture(params=[None, 4e-6], ids=["load", "approach"])
+def approach(request: pytest.FixtureRequest) -> float | None:
+    found: float | None = request.param
+    return found
+
+
+def test_shares_of_every_number(approach: float | None) -> None:
+    """Areas and the approach move as the data leave open, the maximum pressure twice as much, and of friction
+    the part that is tau A: F = tau A + beta N without slopes. Q is zero, what is prescribed has no part.
+    """
+    scene = waves(rf.Flat(), SHORT, periodic=False)
+    problem = discretise(scene, GRID, Terms(oblique=False), approach=approach)
+    _, state = solve_dense(problem)
+    share, found = data_error(scene, GRID), unseen_parts(problem, state, scene)
+    assert 0.1 < share < 1
+    sheared = 3e5 * state.contact_area
+    expected = {
+        "friction_coefficient": share * sheared / state.forces.normal,
+        "contact_area": share * state.contact_area,
+        "contact_area_corrected": share * state.contact_area_corrected,
+        "max_pressure": 2 * share * state.pressure.max(),
+        "friction_force": share * sheared,
+        "approach": share * state.approach,
+    }
+    if approach is None:
+        assert found.pop("normal_force", None) is None
+    else:
+        del expected["approach"]
+    assert {name: parts["data"] for name, parts in found.items()} == pytest.approx(expected, rel=1e-12)
+    assert {parts["border"] for parts in found.values()} == {0.0}
+
+
+def ball(approach: float, elements: tuple[int, int]) -> tuple[Mask, dict[str, dict[str, float]], float]:
+    """Contact of a ball on the domain's middle, the parts of its bars, and its contact area (m^2)."""
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(30e9, 0.3), rf.Sphere(0.05)),
+        lower=rf.Body(rf.Material(2e9, 0.2), rf.Flat()),
+        friction=rf.Friction(tau=3e5, beta=0.15),
+        load=7.0,
+        size=LENGTHS,
+    )
+    problem = discretise(scene, Grid(elements, LENGTHS, False), Terms(oblique=False), approach=approach)
+    _, state = solve_dense(problem)
+    return state.contact, unseen_parts(problem, state, scene), state.contact_area
+
+
+def test_a_contact_that_the_border_cuts_goes_on_beyond_it() -> None:
+    """8 of the 48 widths round 16 x 8 elements are in contact. As dense, it goes on over 8 / 48 of another
+    domain of 8 mm^2: 4/3 mm^2 beside the 52 elements of 1/16 mm^2 found.
+    """
+    contact, parts, area = ball(18e-6, (16, 8))
+    assert (int(contact.sum()), int(contact[:, 0].sum()), int(contact[:, -1].sum())) == (52, 4, 4)
+    assert area == pytest.approx(3.25e-6)
+    assert parts["contact_area"] == pytest.approx({"border": 4 / 3 * 1e-6, "data": 0.0})
+    mu = parts["friction_coefficient"]["border"]  # tau A / N + beta, by 0.41 of itself
+    assert mu > 0.15 * (4 / 3) / 3.25
+
+
+def test_a_contact_that_goes_on_by_half_of_itself_has_no_bar() -> None:
+    """8 of 24 widths of elements round the domain: 8 / 24 of 8 mm^2 beyond the 4 mm^2 found."""
+    contact, parts, _ = ball(23e-6, (8, 4))
+    assert (int(contact.sum()), int(contact[1:-1, 1:-1].sum())) == (16, 8)
+    assert parts["contact_area"]["border"] == math.inf
+
+
+def test_a_contact_within_the_domain_has_no_part() -> None:
+    contact, parts, _ = ball(4e-6, (16, 8))
+    assert contact.any()
+    assert parts == {}

@@ -1,0 +1,76 @@
+"""The notebooks run, print the numbers stated here in their last cell, and are committed without outputs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.documents import ROOT, agree
+
+FOLDER = ROOT / "docs" / "notebooks"
+STATED = {
+    "ball_on_rough_flat": """
+        mu = 0.108 on 256 x 256, converged
+        fine mu = 0.1069, within the bar: True
+        A = 0.1243 mm^2 in 27 patches
+    """,
+    "checking_a_solver": """
+        right: 3 of 3 pass
+        too_stiff: 0 of 3 pass
+        transposed: 1 of 3 pass
+        both solvers agree: True, load 0.2000 N
+    """,
+    "friction_against_direction": """
+        24 of 24 converged
+        mu from 0.1176 to 0.1227
+        Q/P from -0.0025 to +0.0025
+        across over along, both ways: +0.01%
+    """,
+    "two_maps_along_a_track": """
+        21 of 21 converged
+        mu from 0.117 to 0.136, mean 0.1265
+        Sq = 0.249 um, median bar 5.2%
+    """,
+    "yield_study": """
+        psi from 0.22 to 4.31, plastic share from 0.00 to 0.90
+        mu 0.1591 at 0.2 GPa, Eq. (11) 0.1550
+        mu 0.1091 at 0.8 GPa, elastic 0.1092
+    """,
+}
+
+
+def cells(name: str) -> list[dict[str, Any]]:
+    notebook = json.loads((FOLDER / f"{name}.ipynb").read_text(encoding="utf-8"))
+    found: list[dict[str, Any]] = notebook["cells"]
+    return found
+
+
+def test_no_notebook_is_left_out() -> None:
+    assert {path.stem for path in FOLDER.glob("*.ipynb")} == set(STATED)
+    page = (ROOT / "docs/notebooks.md").read_text(encoding="utf-8")
+    assert [name for name in STATED if f"(notebooks/{name}.ipynb)" not in page] == []
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_it_is_committed_without_outputs(name: str) -> None:
+    code = [cell for cell in cells(name) if cell["cell_type"] == "code"]
+    assert code
+    assert [cell["id"] for cell in code if cell["outputs"] or cell["execution_count"] is not None] == []
+    assert cells(name)[0]["source"][0].startswith("# ")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", STATED)
+def test_it_runs_and_prints_its_numbers(name: str, tmp_path: Path) -> None:
+    nbformat = pytest.importorskip("nbformat", reason="the extra notebooks, which dev includes")
+    nbclient = pytest.importorskip("nbclient", reason="the extra notebooks, which dev includes")
+    pytest.importorskip("ipykernel", reason="the extra notebooks, which dev includes")
+    notebook = nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
+    nbclient.NotebookClient(
+        notebook, timeout=600, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}
+    ).execute()
+    printed = "".join(output["text"] for output in notebook.cells[-1].outputs if output["name"] == "stdout")
+    assert agree(printed, STATED[name]), printed

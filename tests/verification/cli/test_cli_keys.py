@@ -1,0 +1,122 @@
+"""The reference of all keys: what it states is what files may hold, and the committed page is the code's."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from refimpl import InputError
+from refimpl.scene import key_texts, keys
+from refimpl.scene.keys import REQUIRED, SAMPLES, allowed_by, sample_scene, scene_keys
+from refimpl.scene.scene_file import _OPTIONAL_KEYS, _SCENE_KEYS, scene_from_dict
+from refimpl.surfaces import surface_from_dict
+from tests.documents import ROOT
+from verification.cli import main
+from verification.cli.keys import also_in, page
+from verification.sweep.keys import study_keys
+from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict
+
+TABLES = scene_keys()
+PAGE = ROOT / "docs" / "scene-file.md"
+
+
+def test_the_committed_page_is_the_codes(tmp_path: Path) -> None:
+    made = tmp_path / "page.md"
+    assert main(["keys", "--markdown", str(made)]) == 0
+    assert made.read_text(encoding="utf-8") == PAGE.read_text(encoding="utf-8")
+
+
+def test_all_keys_that_a_file_may_have_are_there() -> None:
+    assert {key.name for key in TABLES["scene"]} == set(_SCENE_KEYS)
+    assert {key.name for key in study_keys()["study"]} == set(KEYS)
+    assert {key.name for key in study_keys()["solve"]} == set(SOLVE_KEYS)
+    with pytest.raises(InputError) as refused:  # the reader's own list of the keys of that kind
+        surface_from_dict({"kind": "self_affine", "none": 1})
+    listed = refused.value.allowed.partition(": ")[2].split(", ")
+    assert [key.name for key in TABLES["surface, self_affine"]] == listed
+
+
+def test_a_few_rows_by_hand() -> None:
+    found = {key.name: key for key in TABLES["material"]}
+    assert (found["E"].kind, found["E"].unit, found["E"].default) == ("number", "Pa", REQUIRED)
+    assert found["nu"].allowed == "a Poisson's ratio in (-1, 0.5]"
+    measured = {key.name: key for key in TABLES["surface, measured"]}
+    assert (measured["max_missing"].kind, measured["max_missing"].default) == ("number", "0.05")
+    assert measured["channel"].kind == "text or whole number"
+    assert measured["level"].allowed.endswith("or a polynomial's total degree, 0 to 10")
+    settings = {key.name: key for key in study_keys()["solve"]}
+    assert (settings["method"].kind, settings["method"].default) == ("text", '"fft"')
+
+
+def test_required_keys_are_those_that_cannot_be_missing() -> None:
+    for kind, samples in SAMPLES.items():
+        for key in TABLES[f"surface, {kind}"]:
+            table = {"kind": kind, **samples[0]}
+            table.pop(key.name, None)
+            if key.default == REQUIRED:
+                with pytest.raises(InputError):
+                    surface_from_dict(table)
+    for name in ("load", "upper", "lower"):
+        scene = sample_scene()
+        del scene[name]
+        with pytest.raises(InputError):
+            scene_from_dict(scene, Path())
+
+
+def test_stated_defaults_are_what_is_used() -> None:
+    """A file with every default written out is the file without them."""
+    for kind, samples in SAMPLES.items():
+        stated = {
+            key.name: json.loads(key.default)
+            for key in TABLES[f"surface, {kind}"]
+            if key.default not in (REQUIRED, "-") and key.name not in samples[0]
+        }
+        bare = {"kind": kind, **samples[0]}
+        assert surface_from_dict(stated | bare) == surface_from_dict(bare)
+    keys = {key.name: key.default for key in TABLES["scene"] if key.name in _OPTIONAL_KEYS}
+    stated = {name: json.loads(default) for name, default in keys.items() if default != "-"}
+    assert stated == {"sliding_direction": 0.0, "sliding_offset": 0.0, "periodic": False}
+    bare = study_from_dict({"scene": "table1-rough", "vary": {"grid": 8}})
+    whole = {"realisations": 1, "first_seed": 1, "vary": {"grid": 8}, "solve": {}}
+    assert study_from_dict({"scene": "table1-rough", **whole}) == bare
+
+
+def test_where_else_a_name_may_stand() -> None:
+    assert also_in("scene")["load"] == "vary, tolerances"
+    assert also_in("scene")["sliding_offset"] == "vary"
+    assert also_in("self_affine")["short_cut"] == "vary"
+    assert also_in("self_affine")["rms_gradient"] == "vary, tolerances"
+    assert "acf_level" not in also_in("gaussian")
+    assert also_in("measured") == {}
+
+
+def test_a_key_without_a_text_and_a_text_without_a_key_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(key_texts.SURFACES["gaussian"], "lay")
+    with pytest.raises(LookupError, match="lay"):
+        scene_keys()
+    monkeypatch.setitem(key_texts.SURFACES["gaussian"], "lay", ("rad", "angle"))
+    monkeypatch.setitem(key_texts.FRICTION, "gamma", ("", "none"))
+    with pytest.raises(LookupError, match="gamma"):
+        scene_keys()
+
+
+def test_a_wrong_value_that_is_taken_is_reported() -> None:
+    with pytest.raises(LookupError, match="load"):
+        allowed_by(lambda table: table, {}, "load")
+    assert keys.as_toml("x") == '"x"'
+
+
+def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["keys", "hurst"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("[surface, self_affine]\n  hurst")
+    assert "0 < H <= 1" in printed
+    assert main(["keys", "no-such-word"]) == 1
+    assert capsys.readouterr().out == "no key has this word\n"
+    assert main(["keys", "tau", "--json", "-"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [key["unit"] for key in document["friction"] if key["name"] == "tau"] == ["Pa"]
+    assert main(["keys", "--markdown", "-"]) == 0
+    assert capsys.readouterr().out == page()

@@ -1,0 +1,270 @@
+"""Reference data: bounds are true, files are whole and reproducible, changes in them are found."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from refimpl.grid import Array
+from verification.cli import main
+from verification.contestants import own, referee
+from verification.contestants.beds import Bed
+from verification.contestants.checks.sliding_pins import FREE, PERIODIC
+from verification.contestants.gaps import rough_bump, waves
+from verification.contestants.protocol import ContactProblem
+from verification.contestants.reference import agreement, files
+from verification.contestants.reference.certified import (
+    APPARENTLY_CONTACT,
+    APPARENTLY_SEPARATED,
+    CONTACT,
+    SEPARATED,
+    Certified,
+    NotCertified,
+    _codes,
+    certified,
+)
+from verification.contestants.reference.files import SUMS, checksums
+from verification.contestants.reference.periodic_bound import periodic_bound
+from verification.contestants.reference.posed import problems
+
+E = 2e9
+SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*", "periodic-elimination")
+ONLY = [word for name in SMALL for word in ("--only", f"contestant/{name}")]
+
+
+def within(found: Certified, exact: Array) -> None:
+    """The exported pressures and all bounds hold against the exact ones."""
+    off = found.pressure - exact
+    dA = found.problem.element_area
+    rounding = 1e-15 * float(exact.max())
+    assert float(np.abs(off).max()) <= found.bounds.pressure + rounding
+    assert float(np.sqrt((off**2).sum() * dA)) <= found.bounds.pressure_l2 + rounding
+    assert abs(float(off.sum())) * dA <= found.bounds.load + rounding * exact.size * dA
+    assert ((found.contact == CONTACT) <= (exact > 0)).all()
+    assert ((found.contact == SEPARATED) <= (exact == 0)).all()
+
+
+def bed_problem(bed: Bed, *, by_load: bool) -> ContactProblem:
+    M, gap = len(bed.pressure), bed.gap
+    control = (
+        {"load": bed.load} if by_load else {"approach": bed.touch - (gap.mean() if bed.periodic else 0.0)}
+    )
+    least = float(gap.min())  # rounding may leave the lowest pin some 1e-19 m from zero
+    return ContactProblem(
+        gap - least, 1 / M, bed.modulus, periodic=bed.periodic, coupling=bed.coupling, **control
+    )
+
+
+@pytest.mark.parametrize("by_load", [True, False])
+@pytest.mark.parametrize("bed", [FREE[0], FREE[2], PERIODIC[0], PERIODIC[2]])
+def test_pressures_that_were_chosen_lie_within_the_bounds(bed: Bed, by_load: bool) -> None:
+    found = certified(bed_problem(bed, by_load=by_load))
+    # the pins' gaps are rounded (1e-16 of 0.5 m), which moves pressures by 1e-12 of the peak
+    slack = replace(found.bounds, pressure=found.bounds.pressure + 1e-11 * bed.pressure.max())
+    assert float(np.abs(found.pressure - bed.pressure).max()) <= slack.pressure
+    assert found.bounds.pressure < 1e-7 * bed.pressure.max()
+    assert np.array_equal(found.contact == CONTACT, bed.pressure > 0)
+    assert np.array_equal(found.contact == SEPARATED, bed.pressure == 0)
+
+
+@pytest.mark.parametrize("depth", [-0.016, -0.006, -0.0005])
+def test_at_a_periodic_approach_elimination_lies_within_the_bounds(depth: float) -> None:
+    problem = ContactProblem(
+        _lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, approach=depth, periodic=True
+    )
+    found = certified(problem)
+    within(found, referee.eliminated(problem))
+    assert 0 < found.bounds.pressure < 1e-8 * found.pressure.max()
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+def test_a_loose_solution_lies_within_its_periodic_bounds(tolerance: float) -> None:
+    """Its error is large, so that a bound without a margin would show."""
+    problem = ContactProblem(
+        _lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, approach=-0.006, periodic=True
+    )
+    loose, exact = own.solved(problem, tolerance), referee.eliminated(problem)
+    bound = periodic_bound(problem, loose)
+    assert bound is not None
+    error = np.asarray(loose.pressure) - exact
+    assert float(np.abs(error).max()) <= bound.pressure
+    assert abs(float(error.sum())) * problem.element_area <= bound.load
+    moved = referee.by_pressure(problem, error)
+    assert float(np.vdot(error, moved)) * problem.element_area <= bound.energy
+    assert (bound.in_contact <= (exact > 0)).all()
+    assert (bound.out_of_contact <= (exact == 0)).all()
+
+
+def test_where_planes_overlap_no_periodic_bound_is_claimed() -> None:
+    """Full contact: any mean pressure is a solution at approach 0, none beyond."""
+    problem = ContactProblem(_lowest(0.001 * waves(8, 5, shortest=2)), 1 / 8, E, load=2e8, periodic=True)
+    solution = own.solved(problem, 1e-10)
+    at_planes = replace(problem, load=None, approach=0.0)
+    assert solution.pressure.min() > 0
+    assert periodic_bound(at_planes, solution) is None
+
+
+def test_a_free_problem_has_no_periodic_bound() -> None:
+    problem = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, approach=0.01)
+    assert periodic_bound(problem, own.solved(problem, 1e-10)) is None
+
+
+def test_what_cannot_be_certified_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("verification.contestants.reference.certified.USABLE", 1e-20)
+    problem = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, load=1e5)
+    with pytest.raises(NotCertified, match="pressures are known to"):
+        certified(problem)
+
+
+def test_without_contact_pressures_are_exactly_zero() -> None:
+    apart = ContactProblem(np.array([[0.0, 0.1], [0.2, 0.3]]), 1.0, E, approach=-0.05)
+    found = certified(apart)
+    assert not found.pressure.any()
+    assert found.bounds.pressure == 0
+    assert (found.contact == SEPARATED).all()
+
+
+def test_uniform_periodic_pressures_have_no_residual_and_their_bounds() -> None:
+    found = certified(ContactProblem(np.zeros((6, 6)), 0.5, E, load=9e3, periodic=True))
+    assert found.residual is None
+    assert float(np.abs(found.pressure - 1e3).max()) <= found.bounds.pressure + 1e-12
+    assert (found.contact == CONTACT).all()
+
+
+def test_codes_of_elements() -> None:
+    touching = np.array([True, True, False, False])
+    inside, outside = np.array([True, False, False, False]), np.array([False, False, True, False])
+    assert list(_codes(touching, inside, outside)) == [
+        CONTACT, APPARENTLY_CONTACT, SEPARATED, APPARENTLY_SEPARATED,
+    ]  # fmt: skip
+
+
+def test_a_problem_is_posed_once_and_grids_are_small() -> None:
+    found = list(problems(["contestant/wide-pins", "contestant/hertz-*"]))
+    names = [named.name for named in found]
+    assert len(names) == len(set(names))
+    assert "hertz-load" in names
+    assert not any(name.startswith("wide-pins") for name in names)  # 160 elements a side
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small export."""
+    path = tmp_path_factory.mktemp("export") / "data"
+    assert main(["verify", "--export", str(path), *ONLY]) == 0
+    return path
+
+
+def test_equal_versions_write_equal_bytes(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = tmp_path / "again"
+    assert main(["verify", "--export", str(again), *ONLY, "--json", "-"]) == 0
+    assert json.loads(capsys.readouterr().out)["version"] == files.version_of(folder)
+    for path in folder.rglob("*"):
+        if path.is_file():
+            assert path.read_bytes() == (again / path.relative_to(folder)).read_bytes(), path.name
+
+
+def test_the_index_has_its_schema(folder: Path) -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json.loads((folder / "schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    index = json.loads((folder / "index.json").read_text())
+    jsonschema.validate(index, schema)
+    del index["problems"][0]["answer"]["bounds"]["load"]
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(index, schema)
+
+
+def test_arrays_have_the_shapes_of_the_index_and_solve_the_problems(folder: Path) -> None:
+    for entry in agreement.index_of(folder)["problems"]:
+        problem = agreement.problem_of(folder, entry)
+        pressure = agreement.array_of(folder, entry, "pressure")
+        answer = entry["answer"]
+        assert pressure.sum() * problem.element_area == pytest.approx(answer["load"], rel=1e-12)
+        assert np.count_nonzero(pressure) == answer["elements_in_contact"]
+        if pressure.any():
+            assert referee.residual(problem, pressure).worst < 1e-11
+        if pressure.any() and problem.hardness is None:
+            assert referee.approach_of(problem, pressure) == pytest.approx(answer["approach"], rel=1e-9)
+
+
+def test_the_table_repeats_the_index(folder: Path) -> None:
+    head, *rows = (folder / "index.csv").read_text().splitlines()
+    assert tuple(head.split(",")) == files.COLUMNS
+    for row, entry in zip(rows, agreement.index_of(folder)["problems"], strict=True):
+        cells = dict(zip(files.COLUMNS, row.split(","), strict=True))
+        assert cells["name"] == entry["name"]
+        assert float(cells["lx"]) == entry["problem"]["lengths"][0]
+        assert float(cells["value"]) == entry["problem"]["value"]
+        assert float(cells["bound_load"]) == entry["answer"]["bounds"]["load"]
+
+
+def test_an_export_agrees_with_itself(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert agreement.main([str(folder)]) == 0
+    assert "every problem agrees" in capsys.readouterr().out
+
+
+def _changed(folder: Path, tmp_path: Path, name: str, factor: float) -> Path:
+    """A copy whose array is multiplied by a factor."""
+    copy = tmp_path / "copy"
+    copy.mkdir()
+    for path in sorted(folder.rglob("*")):
+        target = copy / path.relative_to(folder)
+        target.mkdir() if path.is_dir() else target.write_bytes(path.read_bytes())
+    array = np.fromfile(copy / name, "<f8")
+    (factor * array).astype("<f8").tofile(copy / name)
+    return copy
+
+
+def test_a_changed_file_is_found(folder: Path, tmp_path: Path) -> None:
+    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1 + 1e-15)
+    found = list(agreement.disagreements(copy, ["pins"]))
+    assert found == [f"data/pins.pressure.f64: its checksum is not the one in {SUMS}"]
+
+
+def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(folder: Path, tmp_path: Path) -> None:
+    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1 + 1e-7)
+    (copy / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in checksums(copy).items()))
+    (found,) = agreement.disagreements(copy, ["pins"])
+    assert found.startswith("pins: pressure differs by")
+
+
+def test_the_citation_names_the_content(folder: Path) -> None:
+    assert f'version: "{files.version_of(folder)}"' in (folder / "CITATION.cff").read_text()
+    assert files.version_of(folder).startswith("sha256:")
+
+
+def test_a_folder_that_holds_something_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine.txt").write_text("keep")
+    only = ["--only", "contestant/pins"]
+    assert main(["verify", "--export", str(tmp_path), *only]) == 2
+    assert main(["verify", "--export", str(tmp_path / "no" / "such"), *only]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--self-test"]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/no-such"]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/wide-pins"]) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    assert "a new or an empty directory" in capsys.readouterr().err
+
+
+def test_an_interrupted_export_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files.Export, "close", lambda self: (_ for _ in ()).throw(KeyboardInterrupt))
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/pins"]) == 130
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_no_export_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert agreement.main([]) == 2
+    assert agreement.main([str(tmp_path)]) == 2
+    (tmp_path / "index.json").write_text('{"format": "another"}')
+    assert agreement.main([str(tmp_path)]) == 2
+    assert "an index whose format is" in capsys.readouterr().err
+
+
+def _lowest(heights: Array) -> Array:
+    return np.asarray(heights - heights.min())

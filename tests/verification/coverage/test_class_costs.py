@@ -1,0 +1,50 @@
+"""Costs by class: the cheapest grid known afterwards, a summary by hand, and README's words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import refimpl as rf
+from reports.result_files import read_result
+from verification.coverage.class_costs import SIZES, costs, summary
+
+COMMITTED = Path(__file__).parents[3] / "reports" / "results" / "class_costs.json"
+
+
+def row(cost: float | None, forecast: int | None, last: int, *, met: bool = True) -> dict[str, object]:
+    return {"cost": cost, "forecast": forecast, "last": last, "met": met}
+
+
+def test_a_summary_by_hand() -> None:
+    """Three costs, of 1, 3 and 2; forecasts over last grids of 0.5, 3 and 1, none where not met."""
+    rows = [row(1.0, 64, 128), row(3.0, 384, 128), row(2.0, 96, 96), row(None, 256, 512, met=False)]
+    assert summary(rows) == {
+        "scenes": 4,
+        "met": 0.75,
+        "compared": 3,
+        "median_cost": 2.0,
+        "cost_at_most_2": pytest.approx(2 / 3),
+        "median_forecast_over_last": 1.0,
+        "forecast_within_2": pytest.approx(2 / 3),
+    }
+
+
+def test_a_smooth_ball_costs_about_the_cheapest_grid() -> None:
+    """The smooth ball of Table 1: mu to 0.02 takes few elements, and the forecast names the last grid."""
+    by_number = {found["number"]: found for found in costs(rf.read_scene("table1-smooth"))}
+    mu = by_number["friction_coefficient"]
+    assert mu["met"]
+    assert mu["cheapest"] in SIZES
+    assert mu["last"] >= mu["cheapest"]
+    assert 0.5 <= mu["forecast"] / mu["last"] <= 2
+    assert mu["cost"] > 0  # below 1 where the last grid starts from the opening's answer
+
+
+def test_the_readmes_words_follow_from_the_committed_table() -> None:
+    found = [one for one in read_result(COMMITTED)["table"] if one["median_cost"] is not None]
+    medians = [one["median_cost"] for one in found]
+    assert f"{min(medians):.1f}" == "0.7"
+    assert f"{max(medians):.1f}" == "1.6"
+    assert min(one["forecast_within_2"] for one in found) >= 0.94

@@ -1,0 +1,68 @@
+"""`rough-friction verify --export`: the suite's problems with certified pressures, as files."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from verification.cli.output import columns, emit
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The option that names the folder."""
+    parser.add_argument(
+        "--export",
+        metavar="DIR",
+        type=Path,
+        help="run no case; write the problems of the suite for other solvers (of the cases that --only\n"
+        "selects, up to 64 elements a side) with certified pressures and proven bounds",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the folder; status 1 when a problem could not be certified (it is named, and not written)."""
+    from refimpl.errors import InputError
+    from verification.contestants import suite
+    from verification.contestants.reference.certified import NotCertified, certified
+    from verification.contestants.reference.files import Export
+    from verification.contestants.reference.posed import problems
+    from verification.framework.files import Progress
+    from verification.framework.threads import limited_to_one_thread
+
+    try:
+        progress = Progress(len(suite.select(options.only)))
+    except LookupError as nothing:
+        raise InputError("--only", options.only, f"the id of a case ({nothing})") from nothing
+    bounds, uncertified, last = [], [], ""
+    with limited_to_one_thread(), Export(options.export) as export:
+        for named in problems(options.only):
+            if named.case != last:
+                progress.tick(named.case)
+                last = named.case
+            try:
+                found = certified(named.problem)
+            except NotCertified as reason:
+                export.report_uncertified(named.name, str(reason))
+                uncertified.append([named.name, str(reason)])
+                continue
+            export.add(named.name, named.case, found)
+            bounds.append(found.bounds.pressure / (float(found.pressure.max()) or 1.0))
+        progress.close()
+        if not bounds:
+            raise InputError("--only", options.only, "cases with a problem of at most 64 elements a side")
+        version = export.close()
+    document = {
+        "folder": str(options.export),
+        "version": version,
+        "suite": suite.identity(),
+        "problems": len(bounds),
+        "largest_relative_bound": max(bounds),
+        "not_certified": dict(uncertified),
+    }
+    summary = (
+        f"{len(bounds)} problems in {options.export}; pressures are proven to {max(bounds):.2g} of the peak\n"
+        f"version {version}"
+    )
+    table = "\n\n".join(filter(None, [columns(uncertified), summary]))
+    emit(document, options.json, table)
+    return 1 if uncertified else 0

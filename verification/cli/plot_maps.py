@@ -1,0 +1,186 @@
+"""Maps of a solution: pressure with plastic zones, shear, gap, and the whole domain."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from verification.cli.plot_style import BLACK, BLUE, ORANGE, PINK
+from verification.cli.plot_view import pooled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from refimpl import Solution
+    from refimpl.grid import Array, Mask
+    from verification.cli.plot_view import View
+
+NO_CONTACT = "#FFFFFF"
+_WIDEST_GAP = 99.5  # percentile of the gap in the window at which its colours end
+
+
+def pressure_map(axes: Axes, solution: Solution, view: View) -> None:
+    """Pressure in contact; elements at the hardness are outlined."""
+    values = view.cut(solution.pressure) / view.pressure.size
+    image = _image(axes, values, view, "viridis", vmin=0.0)
+    _bar(axes, image, f"pressure p ({view.pressure.name})")
+    plastic = view.cut(solution.plastic)
+    if plastic.any():
+        outline(axes, plastic, view, ORANGE)
+    sections(axes, solution, view)
+
+
+def shear_map(axes: Axes, solution: Solution, view: View) -> None:
+    """Local friction in contact; elements without adhesive shear in a colour of their own."""
+    from verification.cli.plot_style import PRESSURES, unit_at_scale
+
+    unit = unit_at_scale(float(solution.traction.max()), PRESSURES)
+    values = view.cut(solution.traction) / unit.size
+    image = _image(axes, values, view, "cividis", vmin=0.0)
+    _bar(axes, image, f"shear r ({unit.name})")
+    excluded = view.cut(solution.excluded & solution.contact)
+    if excluded.any():
+        _overlay(axes, excluded, view, PINK)
+        outline(axes, excluded, view, PINK)  # single elements of a fine grid are too small to be seen
+    if not solution.traction.any():
+        axes.text(0.5, 0.5, "no friction", ha="center", va="center", transform=axes.transAxes)
+    _arrow(axes, solution.sliding_direction)
+
+
+def gap_map(axes: Axes, solution: Solution, view: View) -> None:
+    """Gap between the deformed surfaces; the contact in a colour of its own."""
+    import numpy as np
+
+    gap = np.maximum(view.cut(solution.gap), 0.0) / view.gap.size
+    top = float(np.percentile(gap, _WIDEST_GAP))
+    image = _image(axes, gap, view, "Blues", lowest=True, vmin=0.0, vmax=top or 1.0)
+    _bar(axes, image, f"gap ({view.gap.name})", extend="max" if gap.max() > top else "neither")
+    _overlay(axes, view.cut(solution.contact), view, ORANGE)
+
+
+def domain_map(axes: Axes, solution: Solution, view: View) -> None:
+    """Whole domain: the contact, and the window of the other maps."""
+    from matplotlib.patches import Rectangle
+
+    contact, step = pooled(solution.contact, most=160)
+    unit = view.length.size
+    width, height = (length / unit for length in solution.grid.lengths)
+    dx, dy = (step * d / unit for d in solution.grid.spacings)
+    reach = (0, contact.shape[0] * dx, 0, contact.shape[1] * dy)
+    axes.imshow(_coloured(contact, BLUE), origin="lower", extent=reach, interpolation="nearest")
+    origin = view.origin[0] / unit, view.origin[1] / unit
+    frame = Rectangle(origin, view.size[0] / unit, view.size[1] / unit, fill=False, ec=BLACK, lw=0.8)
+    axes.add_patch(frame)
+    axes.set(xlim=(0, width), ylim=(0, height), xticks=[0, width], yticks=[0, height])
+    axes.set_xticklabels(["0", f"{width:.4g}"])
+    axes.set_yticklabels(["0", f"{height:.4g}"])
+    axes.set_aspect("equal" if max(width, height) <= 4 * min(width, height) else "auto")
+    axes.set_title(f"whole domain ({view.length.name})")
+
+
+def sections(axes: Axes, solution: Solution, view: View) -> None:
+    """Lines of both profiles, through the peak."""
+    x, y = peak_place(solution, view)
+    for line in (axes.axhline(y), axes.axvline(x)):
+        line.set(color=BLACK, linestyle=(0, (4, 3)), linewidth=0.6)
+
+
+def peak_place(solution: Solution, view: View) -> tuple[float, float]:
+    """Return x and y of the peak's element in the unit of length."""
+    i, j = view.peak
+    return float(solution.grid.x[i]) / view.length.size, float(solution.grid.y[j]) / view.length.size
+
+
+def outline(axes: Axes, where: Mask, view: View, colour: str) -> None:
+    """Draw the edges between elements inside and outside of a set."""
+    import numpy as np
+    from matplotlib.collections import LineCollection
+
+    where, step = pooled(where)
+    left, _, bottom, _ = view.extent
+    dx, dy = (step * size / count for size, count in zip(_spans(view), _counts(view), strict=True))
+    padded = np.pad(where, 1)
+    upright = np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1])
+    level = np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1])
+    lines = [[(i, j), (i, j + 1)] for i, j in upright] + [[(i, j), (i + 1, j)] for i, j in level]
+    if lines:
+        placed = np.array(lines, dtype=float) * (dx, dy) + (left, bottom)
+        axes.add_collection(LineCollection(list(placed), colors=colour, linewidths=0.7))
+
+
+def _spans(view: View) -> tuple[float, float]:
+    left, right, bottom, top = view.extent
+    return right - left, top - bottom
+
+
+def _counts(view: View) -> tuple[int, int]:
+    return view.last[0] - view.first[0], view.last[1] - view.first[1]
+
+
+def _extent(shape: tuple[int, ...], step: int, view: View) -> tuple[float, float, float, float]:
+    """Extent of blocks of elements, the last of which go on beyond the window."""
+    left, _, bottom, _ = view.extent
+    dx, dy = (span / count for span, count in zip(_spans(view), _counts(view), strict=True))
+    return left, left + shape[0] * step * dx, bottom, bottom + shape[1] * step * dy
+
+
+def _image(
+    axes: Axes, values: Array, view: View, colours: str, *, lowest: bool = False, **limits: Any
+) -> Any:
+    """A field over the window; zeros of pressure and shear are left white."""
+    import numpy as np
+
+    blocks, step = pooled(values, lowest=lowest)
+    shown = blocks if lowest else np.ma.masked_equal(blocks, 0.0)
+    image = axes.imshow(
+        shown.T, origin="lower", extent=_extent(blocks.shape, step, view), cmap=colours,
+        aspect="auto" if view.is_slender else "equal", interpolation="nearest", **limits,
+    )  # fmt: skip
+    left, right, bottom, top = view.extent
+    axes.set(xlim=(left, right), ylim=(bottom, top))
+    axes.set(xlabel=f"x ({view.length.name})", ylabel=f"y ({view.length.name})")
+    return image
+
+
+def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
+    """A colour bar as tall as the map; its quantity and unit are the map's title."""
+    axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.05, 1.0)), extend=extend)
+    axes.set_title(title, loc="left")
+
+
+def _overlay(axes: Axes, where: Mask, view: View, colour: str) -> None:
+    blocks, step = pooled(where)
+    axes.imshow(
+        _coloured(blocks, colour), origin="lower", extent=_extent(blocks.shape, step, view),
+        aspect="auto" if view.is_slender else "equal", interpolation="nearest",
+    )  # fmt: skip
+    left, right, bottom, top = view.extent
+    axes.set(xlim=(left, right), ylim=(bottom, top))
+
+
+def _coloured(where: Mask, colour: str) -> Array:
+    """An image of the marked elements in one colour, transparent elsewhere."""
+    import numpy as np
+    from matplotlib.colors import to_rgb
+
+    image = np.zeros((*where.T.shape, 4))
+    image[where.T] = (*to_rgb(colour), 1.0)
+    return image
+
+
+def _arrow(axes: Axes, direction: float) -> None:
+    """Direction in which the upper body slides, above the map's right end."""
+    from matplotlib.text import OffsetFrom
+
+    half = 9.0  # points, of the arrow's length
+    dx, dy = half * math.cos(direction), half * math.sin(direction)
+    middle = -half, 8.0  # points, from the map's upper right corner
+    corner = OffsetFrom(axes, (1.0, 1.0), unit="points")
+    axes.annotate(
+        "", (middle[0] + dx, middle[1] + dy), (middle[0] - dx, middle[1] - dy), xycoords=corner,
+        textcoords=corner, annotation_clip=False, arrowprops={"arrowstyle": "->", "lw": 0.9},
+    )  # fmt: skip
+    axes.annotate(
+        "upper body slides", (1.0, 1.0), (-2.5 * half, 8.0), xycoords="axes fraction",
+        textcoords="offset points", ha="right", va="center", fontsize=7,
+    )  # fmt: skip

@@ -1,0 +1,141 @@
+"""Tables of a run of the suite for a paper, beside the published codes: CSV, LaTeX, Markdown, by the suffix.
+
+The published codes' results are those of `reports/results/cross_code.json`, in the version of the suite that
+the file names; ours are in it too.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from verification.framework.provenance import ROOT
+
+if TYPE_CHECKING:
+    from verification.framework.case import Result
+
+SUFFIXES = (".csv", ".tex", ".md")
+PUBLISHED = ROOT / "reports" / "results" / "cross_code.json"
+COLUMNS = ("code", "version", "checksum", "suite", "case", "status", "error", "tolerance", "metric")
+_SPECIAL = {c: f"\\{c}" for c in "&%$#_{}"} | {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\^{}",
+}
+
+Rows = Sequence[Sequence[str]]
+
+
+def require_suffix(path: Path) -> None:
+    """Raise `InputError` for a file that is no table that can be written."""
+    from refimpl.errors import InputError
+
+    if path.suffix not in SUFFIXES:
+        raise InputError("--table", str(path), f"a file name that ends in one of {', '.join(SUFFIXES)}")
+
+
+def run_entry(identity: Mapping[str, Any], suite: str, results: Iterable[Result]) -> dict[str, Any]:
+    """Return the run as an entry like those of the published codes; designs are a row each."""
+    from verification.adapters.table import summarised
+
+    found = [asdict(result) | {"residual": None} for result in results]
+    statuses = [row["status"] for row in found]
+    counts = {name: statuses.count(name) for name in ("pass", "fail", "error", "unavailable")}
+    return dict(identity) | {"suite": suite, "counts": counts, "results": summarised(found)}
+
+
+def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
+    """Entries of the published codes, without set-ups that are wrong on purpose; none without the file."""
+    from reports.result_files import read_result
+
+    if not path.is_file():
+        return []
+    document: Any = read_result(path)
+    suite = document.get("suite", {}).get("version", "unnumbered")
+    metrics = {case["id"]: case["metric"] for case in document["cases"]}
+    entries = [e for e in document["entrants"] if e["installed"] and e["role"] != "trap"]
+    for entry in entries:
+        entry["suite"] = suite
+        entry["results"] = [row | {"metric": metrics[row["id"]]} for row in entry["results"]]
+    return entries
+
+
+def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
+    """The table of these entries, the first being the run."""
+    return {".csv": _csv, ".tex": _latex, ".md": _markdown}[suffix](entries)
+
+
+def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
+    """A row for each code and case: all numbers."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for entry in entries:
+        head = [entry["name"], entry.get("version"), entry.get("checksum"), entry["suite"]]
+        for row in entry["results"]:
+            numbers = [row["status"], row["error"], row["tolerance"], row.get("metric")]
+            writer.writerow([*head, row["id"], *numbers])
+    return buffer.getvalue()
+
+
+def overview(entries: Sequence[Mapping[str, Any]]) -> tuple[Sequence[str], Rows]:
+    """Head and rows: who each code is, and how many cases it passed."""
+    head = ("code", "version", "checksum", "suite", "passed", "failed", "errors", "not applicable")
+    rows = []
+    for entry in entries:
+        counts = entry["counts"]
+        judged = counts["pass"] + counts["fail"] + counts["error"]
+        who = [str(entry.get(name) or "-") for name in ("name", "version", "checksum", "suite")]
+        passed = f"{counts['pass']} of {judged}"
+        rows.append([*who, passed, *(str(counts[name]) for name in ("fail", "error", "unavailable"))])
+    return head, rows
+
+
+def verdicts(entries: Sequence[Mapping[str, Any]]) -> tuple[Sequence[str], Rows]:
+    """Head and rows: each case's verdict by code, with the error as a share of the tolerance."""
+    by_code = [{row["id"]: row for row in entry["results"]} for entry in entries]
+    cases = dict.fromkeys(case for rows in by_code for case in rows)
+    head = ("case", *(str(entry["name"]) for entry in entries))
+    return head, [[case.partition("/")[2], *(_verdict(rows.get(case)) for rows in by_code)] for case in cases]
+
+
+def _verdict(row: Mapping[str, Any] | None) -> str:
+    if row is None or row["status"] == "unavailable":
+        return "-"
+    error, tolerance = row["error"], row["tolerance"]
+    if error is None or row.get("metric") == "at_least" or not tolerance:
+        return str(row["status"])
+    return f"{row['status']} {error / tolerance:.2g}"
+
+
+def _markdown(entries: Sequence[Mapping[str, Any]]) -> str:
+    def table(head: Sequence[str], rows: Rows) -> str:
+        lines = [head, ["---"] * len(head), *rows]
+        return "\n".join(f"| {' | '.join(c.replace('|', chr(92) + '|') for c in line)} |" for line in lines)
+
+    return f"{table(*overview(entries))}\n\n{NOTE}\n\n{table(*verdicts(entries))}\n"
+
+
+def _latex(entries: Sequence[Mapping[str, Any]]) -> str:
+    def table(head: Sequence[str], rows: Rows) -> str:
+        lines = [f"{' & '.join(map(_escaped, line))} \\\\" for line in (head, *rows)]
+        body = "\n".join([lines[0], r"\hline", *lines[1:]])
+        return f"\\begin{{tabular}}{{{'l' * len(head)}}}\n{body}\n\\end{{tabular}}"
+
+    return f"{table(*overview(entries))}\n\n% {NOTE}\n{table(*verdicts(entries))}\n"
+
+
+NOTE = "Verdicts with the error as a share of the tolerance; up to 1 is a pass, - is not applicable."
+
+
+def _escaped(text: str) -> str:
+    """Text as LaTeX prints it.
+
+    >>> _escaped("a_b & 5 %")
+    'a\\\\_b \\\\& 5 \\\\%'
+    """
+    return "".join(_SPECIAL.get(c, c) for c in text)

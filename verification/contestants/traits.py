@@ -1,0 +1,97 @@
+"""Traits of a problem of the covering designs: the levels of its row, and what follows from them.
+
+Names are the design's dimensions. Numbers are compared with thresholds; texts and truths are equal or not.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+from verification.contestants.design import HEIGHT, Row, in_turn, rows, shape_of
+from verification.contestants.dimensions import PRESSURES
+from verification.contestants.iterations import ITERATIONS
+
+Trait = float | str | bool
+
+
+def row_of(slug: str) -> Row | None:
+    """Return the row of a problem of the designs by its slug; or None."""
+    head, _, number = slug.rpartition("-")
+    design = head.removeprefix("design-")
+    if not head.startswith("design-") or design not in rows():
+        return None
+    return rows()[design][int(number) - 1]
+
+
+def levels(slug: str) -> dict[str, Trait] | None:
+    """Return the traits of a problem by its slug; or None for a case of no design.
+
+    >>> levels("design-plain-01")["parity"]
+    'odd'
+
+    A dimension that a problem does not have, such as beta without friction, is no trait.
+    """
+    row = row_of(slug)
+    if row is None:
+        return None
+    n, g, E = int(row["elements"]), float(row["slope"]), float(row["modulus"])
+    wide, deep = shape_of(row)
+    traits: dict[str, Trait] = {
+        "elements": float(n),
+        "parity": "even" if n % 2 == 0 else "odd",
+        "power of two": n & (n - 1) == 0,
+        "edge": float(row["edge"]),
+        "modulus": E,
+        "control": row["control"],
+        "borders": row["borders"],
+        "contact": row["contact"],
+        "slope": g,
+        "surface": row["surface"],
+        "heights": HEIGHT * g * n * float(row["edge"]),
+        "pressure": PRESSURES[row["contact"]] * E * g,
+        "pressure over E*": PRESSURES[row["contact"]] * g,
+        "beyond the gap": row["contact"] == "full"
+        and row["control"] == "approach"
+        and row["borders"] == "free",
+        "rectangle": wide != deep,
+        "oblong elements": row.get("shape") in ("both", "oblong elements"),
+        "sliding": _slides(row),
+        "hardness": "cap" in row,
+        "shape met before": slug not in _first_of_their_shapes(),
+    }
+    if (iterations := ITERATIONS.get(slug)) is not None:
+        traits["iterations"] = float(iterations)
+    if "changed" in row:
+        traits["changed"] = str(row["changed"])
+    return traits | (_of_sliding(row) if _slides(row) else {})
+
+
+@cache
+def _first_of_their_shapes() -> frozenset[str]:
+    """Slugs of the problems before which none of their shape and borders is posed; of no problems in turn."""
+    first: dict[tuple[tuple[int, int], str], str] = {}
+    for design, found in rows().items():
+        for number, row in enumerate(found, start=1):
+            first.setdefault((shape_of(row), row["borders"]), f"design-{design}-{number:02}")
+    return frozenset(slug for slug in first.values() if "-memory-" not in slug)
+
+
+def _slides(row: Row) -> bool:
+    return any(each.get("beta") or each.get("tau") for each in in_turn(row))
+
+
+def _of_sliding(row: Row) -> dict[str, Trait]:
+    angle = (int(row["sector"]) + 0.5) * math.pi / 4
+    coupling: Any = row["coupling"]
+    return {
+        "sector": f"{row['sector']}",
+        "cos of the direction": "negative" if math.cos(angle) < 0 else "positive",
+        "sin of the direction": "negative" if math.sin(angle) < 0 else "positive",
+        "beta": float(row["beta"]),
+        "tau": float(row["tau"]),
+        "coupling": abs(float(coupling)),
+        "sign of c0": "positive" if coupling > 0 else "negative",
+        "c0": abs(float(coupling)) / (math.pi * float(row["modulus"])),
+    }

@@ -1,0 +1,133 @@
+"""Cost of an accuracy by class of scene: ``python -m verification.coverage.class_costs --json FILE``.
+
+A number is requested by ``accuracy=``, and the transforms' ``n log n`` of all grids solved are compared with
+those of the cheapest grid that would have done, which is known only afterwards: the coarsest one from which
+on the error is within the accuracy, against 512 elements along the longer side. Beside it stands what the
+grids that open a refinement forecast.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import refimpl as rf
+from refimpl.accuracy.refinement import GRID_SIZES, Quantity
+from refimpl.driver.options import Options
+from refimpl.driver.refined import forecast
+from refimpl.scene.discretise import Discretiser
+from verification.cli.output import columns
+from verification.coverage.class_scenes import CLASSES, MEASURED, Kind, read_heights, scene, windows_of
+from verification.coverage.classes import REFERENCE, reference
+from verification.framework.case import jsonable
+from verification.framework.files import Progress, write_result
+from verification.framework.provenance import provenance
+
+ASKED: dict[Quantity, float] = {"friction_coefficient": 0.02, "contact_area_corrected": 0.05}
+SIZES = [M for M in GRID_SIZES if M < REFERENCE]
+
+
+def costs(one: rf.Scene, *, most: int = REFERENCE) -> list[dict[str, Any]]:
+    """Return, for each number requested, the cost over that of the cheapest grid, and the forecast's grid.
+
+    The cost is None where the accuracy was not reached, or no grid below the reference would have done.
+    """
+    finest = rf.solve(one, grid=REFERENCE)
+    single = {M: rf.solve(one, grid=M) for M in SIZES}
+    rows: list[dict[str, Any]] = []
+    for name, accuracy in ASKED.items():
+        exact, _ = reference(finest, name)
+        fit = {M: abs(float(getattr(s, name)) - exact) <= accuracy * abs(exact) for M, s in single.items()}
+        cheapest = next((M for M in SIZES if all(fit[N] for N in SIZES if N >= M)), None)
+        options = Options(scene=one, accuracy=accuracy, quantity=name)
+        discretiser = Discretiser(one, None)
+        expected = forecast(options, options.plan(discretiser), discretiser)
+        climbed = rf.solve(one, accuracy=accuracy, quantity=name, max_grid=most)
+        met = climbed.status is not rf.Status.ACCURACY_NOT_REACHED and climbed.converged
+        last = max(climbed.problem.grid.shape)
+        work = climbed.cost.point_logs / single[cheapest].cost.point_logs if met and cheapest else None
+        foreseen = None if expected.refusal else max(expected.grid.shape)
+        rows.append(
+            {
+                "number": name,
+                "cost": work,
+                "cheapest": cheapest,
+                "last": last,
+                "met": met,
+                "forecast": foreseen,
+            }
+        )
+    return rows
+
+
+def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return medians of the cost and of the forecast over the last grid, and shares: met, cost at most 2."""
+    paid = [row["cost"] for row in rows if row["cost"] is not None]
+    ratios = [row["forecast"] / row["last"] for row in rows if row["met"] and row["forecast"]]
+    return {
+        "scenes": len(rows),
+        "met": sum(row["met"] for row in rows) / len(rows),
+        "compared": len(paid),
+        "median_cost": float(np.median(paid)) if paid else None,
+        "cost_at_most_2": sum(cost <= 2 for cost in paid) / len(paid) if paid else None,
+        "median_forecast_over_last": float(np.median(ratios)) if ratios else None,
+        "forecast_within_2": sum(0.5 <= ratio <= 2 for ratio in ratios) / len(ratios) if ratios else None,
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Solve the scenes of all classes, write the document and print its table."""
+    parser = argparse.ArgumentParser(prog="python -m verification.coverage.class_costs", description=__doc__)
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--scenes", type=int, default=20, help="of each class")
+    parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
+    parser.add_argument("--json", type=Path, required=True)
+    options = parser.parse_args(arguments)
+    classes: dict[str, Kind] = dict(CLASSES)
+    if options.map is not None:
+        classes |= {MEASURED: windows_of(read_heights(options.map))}
+    progress, rows = Progress(len(classes) * options.scenes), list[dict[str, Any]]()
+    for kind in classes:
+        for seed in range(options.first, options.first + options.scenes):
+            found = costs(scene(kind, seed, classes))
+            rows += [{"class": kind, "seed": seed, **row} for row in found]
+            progress.tick(f"{kind}, {seed}")
+    progress.close()
+    table = [
+        {
+            "class": kind,
+            "number": name,
+            **summary([r for r in rows if (r["class"], r["number"]) == (kind, name)]),
+        }
+        for name in ASKED
+        for kind in classes
+    ]
+    document = {
+        "provenance": provenance(),
+        "first": options.first,
+        "asked": ASKED,
+        "table": table,
+        "rows": rows,
+    }
+    write_result(jsonable(document), options.json)
+    print(columns(lines(table), indent=""))
+
+
+def lines(table: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    """Return the lines of the printed table."""
+    head = [name.replace("_", " ") for name in table[0]]
+    return [head, *([_shown(value) for value in row.values()] for row in table)]
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return ""
+    return f"{value:.2f}" if isinstance(value, float) else str(value)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,144 @@
+"""Every key of a study's file, in the form of `refimpl.scene.keys`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import get_type_hints
+
+from refimpl.driver.options import Options
+from refimpl.planning.terms import RequestedTerms
+from refimpl.scene.key_texts import FRICTION, SCENE
+from refimpl.scene.keys import (
+    REQUIRED,
+    SAMPLES,
+    Key,
+    Table,
+    allowed_by,
+    as_toml,
+    default_of,
+    sample_scene,
+    type_in_words,
+)  # fmt: skip
+from refimpl.scene.parameters import moving, parameters
+from refimpl.scene.scene_file import scene_from_dict
+from verification.sweep.study import AXES
+from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict, varied_names
+
+_BASE: Table = {"scene": "table1-rough", "vary": {"grid": [8]}, "solve": {}}
+_KINDS = {
+    "scene": "text",
+    "realisations": "whole number",
+    "first_seed": "whole number",
+    "normalise": "true or false",
+    "vary": "table",
+    "solve": "table",
+}
+_TEXTS: Mapping[str, tuple[str, str]] = {
+    "scene": ("", "the base scene: a shipped one, or a file relative to the study's; the key is required"),
+    "realisations": ("", "number of realisations of random roughness at every point of the study"),
+    "first_seed": (
+        "",
+        "realisation k, from 0, has the seeds `first_seed + 2 k` (upper) and `first_seed + 2 k + 1` (lower)",
+    ),
+    "normalise": ("", "that of Gaussian parts; not set: as the scene says"),
+    "vary": ("", "what varies: every combination of the values is a point of the study"),
+    "solve": ("", "settings of the solver"),
+}
+_AXES: Mapping[str, tuple[str, str]] = {
+    "grid": ("", "elements along the longer side; needed unless `[solve]` has an accuracy"),
+    "upper_rms": ("m", "rms height of the upper body's roughness; 0 removes that roughness"),
+    "lower_rms": ("m", "rms height of the lower body's roughness; 0 removes that roughness"),
+    "correlation_length": ("m", "that of all Gaussian parts"),
+    **{name: SCENE[name] for name in ("load", "sliding_direction", "sliding_offset")},
+    **FRICTION,
+}
+_SETTINGS: Mapping[str, tuple[str, str]] = {
+    "method": ("", "production solver, plain reference for small grids, or the paper's scheme"),
+    "oblique": ("", "slope terms; not set: the scene decides"),
+    "slope_correction": ("", "exact tractions of oblique facets in Eq. (7)"),
+    "tolerance": ("", "tolerance of the certificate; not set: 1e-8, of the paper's scheme 1e-4"),
+    "accuracy": ("", "refine every run until the error bar is this share of `quantity`, in place of a grid"),
+    "quantity": (
+        "",
+        "number that the accuracy is about; not set: `friction_coefficient`, without friction `contact_area`",
+    ),
+}
+
+
+def study_keys() -> dict[str, tuple[Key, ...]]:
+    """Return the keys of the tables of a study's file: study, vary, solve."""
+    return {"study": _study(), "vary": _vary(), "solve": _solve()}
+
+
+def uses(kind: str) -> dict[str, str]:
+    """Return, by full name, whether a study may vary a parameter and whether it may have a tolerance.
+
+    The scene has that kind of surface on its lower body, and no number that is zero.
+
+    >>> uses("sphere")["lower.surface[0].radius"], uses("gaussian")["lower.surface[0].seed"]
+    ('vary, tolerances', 'vary')
+    """
+    found = {}
+    for choice in range(len(SAMPLES[kind])):
+        scene = scene_from_dict(sample_scene(kind, choice), Path())
+        tables = {"vary": set(varied_names(scene)), "tolerances": set(moving(scene))}
+        for name in parameters(scene):
+            found[name] = ", ".join(table for table, names in tables.items() if name in names)
+    return found
+
+
+def _study() -> tuple[Key, ...]:
+    """The keys of the file itself; defaults are those of the study that a file of two lines becomes."""
+    made = study_from_dict({"scene": _BASE["scene"], "vary": _BASE["vary"]})
+    defaults = {name: as_toml(getattr(made, name)) for name in ("realisations", "first_seed", "normalise")}
+    defaults |= {"scene": REQUIRED, "vary": "-", "solve": "-"}
+    _complete("study", _TEXTS, KEYS)
+    return tuple(
+        Key(
+            name,
+            _KINDS[name],
+            unit,
+            defaults[name],
+            allowed_by(study_from_dict, _BASE, name, 0 if name == "scene" else "?"),
+            meaning,
+        )
+        for name, (unit, meaning) in _TEXTS.items()
+    )
+
+
+def _vary() -> tuple[Key, ...]:
+    _complete("vary", _AXES, AXES)
+    return tuple(
+        Key(name, "number or list of numbers", unit, "-", _refusal("vary", name), meaning)
+        for name, (unit, meaning) in _AXES.items()
+    )
+
+
+def _solve() -> tuple[Key, ...]:
+    _complete("solve", _SETTINGS, SOLVE_KEYS)
+    found = {f.name: f for made in (RequestedTerms, Options) for f in fields(made)}
+    hints: dict[str, object] = get_type_hints(Options) | get_type_hints(RequestedTerms)
+    return tuple(
+        Key(name, type_in_words(hints[name]), unit, default_of(found[name]), _refusal("solve", name), meaning)
+        for name, (unit, meaning) in _SETTINGS.items()
+    )
+
+
+def _refusal(table: str, key: str) -> str:
+    """What the refusal of a wrong entry of a table of the study allows."""
+    known = {"accuracy": 0.1} if key == "quantity" else {}
+    base = {} if known else _BASE["vary"]
+
+    def read(entries: Table) -> object:
+        changed = {"vary": base, "solve": known} | {table: (base if table == "vary" else known) | entries}
+        return study_from_dict(_BASE | changed)
+
+    return allowed_by(read, {}, key)
+
+
+def _complete(table: str, texts: Mapping[str, object], names: tuple[str, ...]) -> None:
+    """Refuse, by a LookupError, texts that are not of exactly these keys."""
+    if set(texts) != set(names):
+        raise LookupError(f"{table}: no text, or no key, for {sorted(set(texts) ^ set(names))}")
