@@ -115,6 +115,13 @@ class Grid:
         return np.zeros(self.shape)
 
     @property
+    def taper(self) -> Array:
+        """Weights of a field before its spectrum is taken: ones if periodic, cosine bells if free."""
+        if self.periodic:
+            return np.ones(self.shape)
+        return np.outer(*(np.hanning(n + 2)[1:-1] for n in self.shape))
+
+    @property
     def window(self) -> Window:
         """The whole grid."""
         return Window.full(self.shape)

@@ -9,6 +9,7 @@ share of the first order, from neo-Hookean bodies.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -16,17 +17,15 @@ import numpy as np
 
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
-from refimpl.model.problem import Problem
 from refimpl.scene.discretise import discretise
 from refimpl.scene.scene import Body, Scene
 from refimpl.solution.boundary_perturbation import gap_changes
-from refimpl.solution.influence_error_3d import element_error, steepest_tabulated
 from refimpl.solution.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import ArraySurface
 
 ACCEPTED = 0.02  # relative: the paper's "less than 2 %"
-_NODES = 61  # slopes from 0 to 30 degrees, half a degree apart
+JUDGED_TO = 20.0  # degrees: the steepest of the 56 contacts that the advice was judged on
 UNDER_LOAD = ("approach", "friction_coefficient", "contact_area", "max_pressure", "binormal_force")
 
 
@@ -110,28 +109,6 @@ def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solutio
     return found
 
 
-def local_error(problem: Problem) -> Array:
-    """Return the coefficient error at every element's undeformed slopes, the grid's shape.
-
-    The larger of both neighbours in line, of the element itself and of those across, for each body at its own
-    slope, weighted by the bodies' compliances; infinite beyond the table's slopes. Raises `InputError` for a
-    negative Poisson's ratio, which the table of square elements does not have.
-    """
-    found = problem.grid.zeros
-    shares = 1 - problem.pair.upper_share, problem.pair.upper_share
-    bodies = problem.pair.lower, problem.pair.upper
-    angles = np.linspace(0.0, steepest_tabulated(), _NODES)
-    for share, body, heights in zip(shares, bodies, problem.heights, strict=True):
-        if share == 0:
-            continue
-        along_x, along_y = problem.grid.gradient(heights)
-        slope = np.arctan(np.hypot(along_x, along_y))
-        errors = [element_error(angle, body) for angle in angles]
-        largest = [max(e.self_coefficient, e.in_line, e.across) for e in errors]
-        found += share * np.interp(slope, angles, largest, right=np.inf)
-    return found
-
-
 def advice(error: HalfSpaceError, solution: Solution) -> str:
     """Return what to do about the half-space's error: nothing, correct to first order, or finite elements.
 
@@ -151,6 +128,9 @@ def advice(error: HalfSpaceError, solution: Solution) -> str:
     }
     worst = max(stated, key=lambda name: stated[name])
     left = max(rest.values())
+    slope = math.degrees(math.atan(math.sqrt(steepness(solution.problem, solution.contact))))
+    if slope > JUDGED_TO:
+        return f"slopes of {slope:.2g} degrees, beyond the {JUDGED_TO:g} judged: use finite elements"
     if stated[worst] <= ACCEPTED:
         return f"keep the half-space: no number is off by more than {stated[worst]:.1%}"
     shown = f"{worst.replace('_', ' ')} may be off by {stated[worst]:.1%}"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from appendix_a.errors import InputError
-from appendix_a.fem.coefficient_map import CoefficientMap
+from appendix_a.fem.coefficient_map import CoefficientMap, interpolation_error
 from appendix_a.fem.map2d import OFFSETS, compute
 from appendix_a.fem.sinusoid import departures
 from appendix_a.leading_order import coupling
@@ -128,3 +128,34 @@ def test_a_map_too_short_to_interpolate_is_refused(field: str, changed: dict[str
                            error_percentage_points=np.zeros(shape[:3]))  # fmt: skip
     with pytest.raises(InputError, match=field):
         table.percent(2.0, 20.0, 0.1, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("field", "kept"),
+    [("slope_deg", slice(0, 2)), ("wavelength", slice(0, 1)), ("position", slice(0, 3))],
+)
+def test_a_file_with_incomplete_axes_is_refused_on_reading(tmp_path, field, kept):
+    table = invented()
+    number = ("slope_deg", "wavelength", "position").index(field)
+    where = tuple(kept if k == number else slice(None) for k in range(3))
+    parts = {name: getattr(table, name)[where] for name in ("kappa_part", "constant_part")}
+    short = replace(
+        table,
+        **{field: getattr(table, field)[kept]},
+        **parts,
+        error_percentage_points=table.error_percentage_points[where],
+    )
+    short.write(tmp_path / "map.json")
+    with pytest.raises(InputError) as refused:
+        CoefficientMap.read(tmp_path / "map.json")
+    assert refused.value.field == field
+
+
+def test_the_stated_interpolation_error_covers_what_was_found_between_the_nodes():
+    # finite elements at points between the nodes, in percentage points of the flat coefficient: next, all
+    found = {(25.0, 11.0): (0.44, 0.44), (23.17, 10.1): (0.152, 0.765), (25.74, 21.9): (0.021, 0.541),
+             (29.12, 43.2): (0.021, 0.208), (27.22, 88.0): (0.029, 0.062)}  # fmt: skip
+    for (slope, wavelength), errors in found.items():
+        stated = interpolation_error(slope, wavelength)
+        assert all(error <= bound for error, bound in zip(errors, stated, strict=True))
+    assert interpolation_error(6.5, 64.0)[0] < 0.02

@@ -21,6 +21,7 @@ MAP_RANGES = {
 }
 FACE_SLACK_DEG = 1e-11  # 90 - gamma rounds; `appendix_a.wedge` allows for more
 NARROW = "a smaller slope angle in degrees: so narrow a wedge has no bound on its cost at these r"
+AXIS_OPTIONS = {"slope_deg": "slopes-deg", "wavelength": "wavelengths", "position": "positions"}
 MAP_AXES = ("slope_deg", "wavelength", "position", "offset")
 
 WAVE = "--slope-deg 6.5 --wavelength 100 --position 0.25 --nu 0.3 --offsets=-3,3"
@@ -29,12 +30,16 @@ EXAMPLES = {
     "wedge": "--gamma-deg 10 --r 0.25,0.5,2 --theta-deg 0,30 --json -",
     "fem": WAVE,
     "surface": "table1-rough --grid 64",
-    "map": "--slopes-deg 2.5,6.5 --wavelengths 50 --positions 0 --json map.json",
+    "map": "--slopes-deg 2.5,5,10,15 --wavelengths 16,32,64,128 \\\n    --positions 0,0.5 --json map.json",
+    "look-up": "--slope-deg 6.5 --wavelength 64 --position 0.25 --nu 0.3",
+    "element": "--slope-deg 6.5 --nu 0.3 --E 118e9 --upper-nu 0.3 --upper-E 200e9",
 }
 
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand and its own subcommands."""
+    from verification.cli import appendix_tables
+
     parser = commands.add_parser(
         "appendix-a",
         help="the plane problems of Appendix A",
@@ -47,6 +52,12 @@ def add_parser(commands: Parsers) -> None:
     _add_wedge(problems)
     _add_fem(problems)
     _add_map(problems)
+    appendix_tables.add_look_up(
+        _problem(problems, "look-up", appendix_tables.look_up, appendix_tables.LOOK_UP)
+    )
+    appendix_tables.add_element(
+        _problem(problems, "element", appendix_tables.element, appendix_tables.ELEMENT)
+    )
     _add_surface(problems)
 
 
@@ -94,12 +105,10 @@ def _add_map(problems: Parsers) -> None:
 
 
 def _add_surface(problems: Parsers) -> None:
-    text = "how far a half-space may be trusted on a scene's surfaces; three solves"
-    parser = _problem(problems, "surface", surface, text)
-    add = parser.add_argument
-    add("scene", metavar="SCENE", help="a scene file, or the name of a shipped scene")
-    add("--grid", type=int, default=128, help="elements along the longer side (default 128)")
-    add("--plot", metavar="PNG", type=Path, help="write a map of the local coefficient error")
+    from verification.cli import half_space
+
+    text = "how far a half-space may be trusted on one's own surface; three solves"
+    half_space.add_options(_problem(problems, "surface", half_space.surface, text))
 
 
 def _wavy_options(parser: argparse.ArgumentParser) -> None:
@@ -152,11 +161,16 @@ def _epilog(*names: str) -> str:
 def strip(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
     from appendix_a.strip import first_order
+    from verification.cli.appendix_tables import first_order_caution
 
     with _by_option():
         wavy, flat = first_order(*_wave(options), offsets=options.offsets)
-    document = {"offsets": options.offsets, "wavy": wavy.tolist(), "flat": flat.tolist()}
-    emit(document, options.json, _displacements(document, "to first order in the slope"))
+    caution = first_order_caution(*_wave(options))
+    document = {
+        "offsets": options.offsets, "wavy": wavy.tolist(), "flat": flat.tolist(), "caution": caution,
+    }  # fmt: skip
+    remark = "to first order in the slope" + (f"\n{caution}" if caution else "")
+    emit(document, options.json, _displacements(document, remark))
     return 0
 
 
@@ -181,6 +195,7 @@ def fem(options: argparse.Namespace) -> int:
 
 def coefficient_map(options: argparse.Namespace) -> int:
     """The versioned table of the error of flat coefficients, every Poisson ratio in it."""
+    from appendix_a.fem.coefficient_map import check_complete
     from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
     from refimpl.errors import InputError
     from verification.framework.files import Progress
@@ -196,6 +211,8 @@ def coefficient_map(options: argparse.Namespace) -> int:
         for value in axes[name]:
             if not low <= value <= high:
                 raise InputError(f"--{name}", value, f"{low:g} to {high:g} {unit}")
+    with _by_option(**{field: (name, axes[name], "") for field, name in AXIS_OPTIONS.items()}):
+        check_complete(*axes.values())
     progress = Progress(len(axes["slopes-deg"]) * len(axes["wavelengths"]))
     try:
         with _by_option():
@@ -216,21 +233,17 @@ def coefficient_map(options: argparse.Namespace) -> int:
     return 0
 
 
-def surface(options: argparse.Namespace) -> int:
-    """The half-space's error on a scene's surfaces."""
-    from verification.cli import half_space
-
-    return half_space.surface(options)
-
-
 def _wave(options: argparse.Namespace) -> tuple[float, float, float, float]:
     return options.slope_deg, options.wavelength, options.position, options.nu
 
 
 def _displacements(document: Mapping[str, Any], remark: str) -> str:
     series = zip(document["offsets"], document["wavy"], document["flat"], strict=True)
-    rows = [[f"{x:g}", f"{wavy:.6f}", f"{flat:.6f}"] for x, wavy, flat in series]
-    table = columns([["offset", "wavy", "flat"], *rows], indent="")
+    rows = [
+        [f"{x:g}", f"{wavy:.6f}", f"{flat:.6f}", f"{100 * (wavy - flat) / flat:+.3f}" if flat else "-"]
+        for x, wavy, flat in series
+    ]
+    table = columns([["offset", "wavy", "flat", "wavy over flat (%)"], *rows], indent="")
     return f"{table}\n\nin units of p a / E, relative to the centre; {remark}"
 
 
@@ -266,7 +279,7 @@ def _refuse_angles(options: argparse.Namespace) -> None:
 
 
 @contextmanager
-def _by_option(**other: tuple[str, float, str]) -> Iterator[None]:
+def _by_option(**other: tuple[str, object, str]) -> Iterator[None]:
     """Refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by field."""
     from appendix_a.errors import InputError
 
@@ -274,5 +287,6 @@ def _by_option(**other: tuple[str, float, str]) -> Iterator[None]:
         yield
     except InputError as refused:
         value = refused.value.tolist() if hasattr(refused.value, "tolist") else refused.value
-        name, value, allowed = other.get(refused.field, (refused.field, value, refused.allowed))
+        name, value, allowed = other.get(refused.field, (refused.field, value, ""))
+        allowed = allowed or refused.allowed
         raise InputError(f"--{name.replace('_', '-')}", value, allowed) from refused

@@ -1,17 +1,17 @@
-"""`rough-friction appendix-a surface`: how far a half-space may be trusted on a scene's surfaces."""
+"""`rough-friction appendix-a surface`: how far a half-space may be trusted on one's own surface."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns, emit
+from verification.cli.output import check_outputs, columns, emit, files_of, output_file, wrapped
 
 if TYPE_CHECKING:
-    from refimpl import Solution
-    from refimpl.grid import Array
-    from refimpl.sensitivities.half_space import HalfSpaceError
+    from refimpl import Scene
+    from refimpl.sensitivities.surface_verdict import SurfaceVerdict
 
 ROWS = (  # name, label, factor, unit
     ("friction_coefficient", "mu", 1.0, ""),
@@ -20,80 +20,113 @@ ROWS = (  # name, label, factor, unit
     ("approach", "approach", 1e6, "um"),
     ("normal_force", "N at this approach", 1.0, "N"),
 )
-COARSE = 0.02  # the paper's "less than 2 %"
+ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surface file, which states no material
+FILE_OPTIONS = (*ALONE, "pressure", "unit", "pixel_size")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    add = parser.add_argument
+    add("scene", metavar="SCENE|FILE", help="a scene (.toml, or a shipped one's name), or a surface's file")
+    add("--grid", type=int, default=128, help="elements along the longer side (default 128)")
+    add("--plot", metavar="FILE", type=output_file, help="map of the local coefficient error, .png or .svg")
+    alone = parser.add_argument_group(
+        "a surface's file", "its body is pressed by a rigid flat: the whole error of one body, none cancels"
+    )
+    add = alone.add_argument
+    add("--E", type=float, help="Young's modulus (Pa, default 200e9)")
+    add("--nu", type=float, help="Poisson's ratio (default 0.3)")
+    add("--tau", type=float, help="local friction's shear strength (Pa, default 0)")
+    add("--beta", type=float, help="local friction's pressure coefficient (default 0.1)")
+    add("--pressure", type=float, help="nominal pressure (Pa, default E* Sdq / 20)")
+    add("--unit", help="of the heights: m, mm, um, nm, A or pm")
+    add("--pixel-size", metavar="D", type=float, help="edge of a pixel (m)")
 
 
 def surface(options: argparse.Namespace) -> int:
-    """Solve the scene, state the half-space's error in each number, and advise."""
-    import numpy as np
-
-    import refimpl
-    from refimpl.sensitivities.half_space import advice, half_space_error, local_error
+    """Solve, state the half-space's error in each number and on each element, and advise."""
+    from refimpl.sensitivities.surface_verdict import surface_verdict
     from verification.cli.plot_style import check_suffix
 
     check_suffix(options.plot)
-    scene = refimpl.read_scene(options.scene)
-    solution = refimpl.solve(scene, options.grid)
-    error = half_space_error(scene, solution)
-    local = local_error(solution.problem)
-    steep = float(np.mean(local > COARSE))
-    told = advice(error, solution)
-    numbers = {name: _row(name, solution, error) for name, *_ in ROWS}
-    document = {
-        "scene": options.scene,
-        "grid": list(solution.grid.shape),
-        "share_above_2_percent": steep,
-        "largest_local_error": float(local.max()) if np.isfinite(local).all() else None,
-        "numbers": numbers,
-        "advice": told,
-    }
+    scene, note = _posed(options)
+    check_outputs([Path(options.scene), *files_of(scene)], plot=options.plot, json=options.json)
+    verdict = surface_verdict(scene, options.grid)
     if options.plot is not None:
-        _draw(local, solution, options.plot)
-    rows = [["number", "half-space", "corrected", "stated error", ""]]
-    for name, label, factor, unit in ROWS:
-        row = numbers[name]
-        rows.append(
-            [
-                label,
-                f"{row['value'] * factor:.4g}",
-                f"{row['corrected'] * factor:.4g}",
-                f"{row['stated'] * factor:.2g}",
-                unit,
-            ]
+        from verification.cli.plot_local_error import draw_local_error
+
+        draw_local_error(verdict, options.plot)
+    document = _document(options.scene, note, verdict)
+    emit(document, options.json, _text(options.scene, note, verdict))
+    return 0
+
+
+def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
+    """The scene, and what was assumed where a surface's file is all there is."""
+    import refimpl
+    from refimpl.errors import InputError
+    from refimpl.sensitivities.surface_verdict import pressed_on_a_flat
+
+    given = {name: value for name in FILE_OPTIONS if (value := getattr(options, name)) is not None}
+    path = Path(options.scene)
+    if path.suffix == ".toml" or options.scene in refimpl.shipped_scenes():
+        if given:
+            name, value = next(iter(given.items()))
+            allowed = "none beside a scene, which states it"
+            raise InputError(f"--{name.replace('_', '-')}", value, allowed)
+        return refimpl.read_scene(options.scene), ""
+    if not path.is_file():
+        known = ", ".join(refimpl.shipped_scenes())
+        raise InputError(
+            "scene", options.scene, f"a scene's file (.toml), one of {known}, or a surface's file"
         )
-    text = (
-        f"{options.scene}: {solution.grid} elements\n"
-        f"coefficients of a flat are off by more than 2 % on {steep:.1%} of the area\n\n"
-        f"{columns(rows)}\n\nstated error: first order, what it leaves, and finite strain\n{told}"
+    reading = {name: given[name] for name in ("unit", "pixel_size") if name in given}
+    taken = ALONE | {name: given[name] for name in ALONE if name in given}
+    scene = pressed_on_a_flat(
+        refimpl.MeasuredSurface(options.scene, **reading),
+        refimpl.Material(taken["E"], taken["nu"]),
+        grid=options.grid,
+        pressure=given.get("pressure"),
+        friction=refimpl.Friction(taken["tau"], taken["beta"]),
     )
-    emit(document, options.json, text)
-    return 0 if solution.converged else 1
+    nominal = scene.load / (scene.lengths[0] * scene.lengths[1])
+    return scene, (
+        f"one body below a rigid flat: E = {taken['E'] / 1e9:g} GPa, nu = {taken['nu']:g}, "
+        f"tau = {taken['tau'] / 1e6:g} MPa, beta = {taken['beta']:g}, "
+        f"nominal pressure {nominal / 1e6:.4g} MPa; a pair of elastic bodies, whose first orders "
+        "subtract, needs a scene"
+    )
 
 
-def _row(name: str, solution: Solution, error: HalfSpaceError) -> dict[str, float]:
-    value = float(getattr(solution, name))
+def _document(name: str, note: str, verdict: SurfaceVerdict) -> Mapping[str, object]:
+    import numpy as np
+
+    local = verdict.local
     return {
-        "value": value,
-        "corrected": value + error.first_order[name],
-        "stated": error.stated(name),
-        "second_order": error.second_order[name],
-        "finite_strain": error.finite_strain[name],
+        "scene": name,
+        "assumed": note,
+        "grid": list(verdict.solution.grid.shape),
+        "share_above_2_percent": verdict.share_above,
+        "largest_local_error": float(local.max()) if np.isfinite(local).all() else None,
+        "median_local_error": float(np.median(local)) if np.isfinite(np.median(local)) else None,
+        "short_wave_share": verdict.short_waves,
+        "numbers": verdict.numbers(),
+        "advice": verdict.advice,
+        "evidence": verdict.evidence,
     }
 
 
-def _draw(local: Array, solution: Solution, path: Path) -> None:
-    """Write the map of the local coefficient error, the contact outlined."""
-    from verification.cli.plot_style import ORANGE, print_style, write
-
-    with print_style():
-        import matplotlib.pyplot as plt
-
-        figure, axes = plt.subplots(figsize=(4.4, 3.6), layout="constrained")
-        x, y = solution.grid.x * 1e3, solution.grid.y * 1e3
-        shown = axes.pcolormesh(x, y, 100 * local.T, cmap="cividis", shading="nearest", rasterized=True)
-        figure.colorbar(shown, label="error of a flat's coefficients (%)")
-        if solution.contact.any() and min(solution.grid.shape) > 1:
-            axes.contour(x, y, solution.contact.T.astype(float), levels=[0.5], colors=ORANGE, linewidths=0.8)
-        axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
-        axes.set_title("at the undeformed slopes; contact outlined")
-        write(figure, path)
+def _text(name: str, note: str, verdict: SurfaceVerdict) -> str:
+    rows = [["number", "half-space", "corrected", "stated error", ""]]
+    numbers = verdict.numbers()
+    for number, label, factor, unit in ROWS:
+        row = numbers[number]
+        cells = [f"{row['value'] * factor:.4g}", f"{row['corrected'] * factor:.4g}"]
+        rows.append([label, *cells, f"{row['stated'] * factor:.2g}", unit])
+    lines = [f"{name}: {verdict.solution.grid} elements"]
+    if note:
+        lines.append(wrapped(note, "assumed: "))
+    lines.append(f"coefficients of a flat are off by more than 2 % on {verdict.share_above:.1%} of the area")
+    lines += ["", columns(rows), "", "stated error: first order, what it leaves, and finite strain"]
+    lines += [verdict.advice, wrapped(verdict.evidence, "evidence: ")]
+    return "\n".join(lines)
