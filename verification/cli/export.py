@@ -20,10 +20,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the folder; status 1 when a problem could not be certified (it is named, and not written)."""
+    """Write the folder; status 1 when a problem could not be certified (it is named, and not written).
+
+    Those of a kind that no proof covers are named too, and are no failure.
+    """
     from refimpl.errors import InputError
     from verification.contestants import suite
-    from verification.contestants.reference.certified import NotCertified, certified
+    from verification.contestants.reference.certified import NoBound, NotCertified, certified
     from verification.contestants.reference.files import Export
     from verification.contestants.reference.posed import problems
     from verification.framework.files import Progress
@@ -33,6 +36,7 @@ def run(options: argparse.Namespace) -> int:
         progress = Progress(len(suite.select(options.only)))
     except LookupError as nothing:
         raise InputError("--only", options.only, f"the id of a case ({nothing})") from nothing
+    failed = False
     bounds, uncertified, last = [], [], ""
     with limited_to_one_thread(), Export(options.export) as export:
         for named in problems(options.only):
@@ -42,6 +46,7 @@ def run(options: argparse.Namespace) -> int:
             try:
                 found = certified(named.problem)
             except NotCertified as reason:
+                failed = failed or not isinstance(reason, NoBound)
                 export.report_uncertified(named.name, str(reason))
                 uncertified.append([named.name, str(reason)])
                 continue
@@ -65,4 +70,4 @@ def run(options: argparse.Namespace) -> int:
     )
     table = "\n\n".join(filter(None, [columns(uncertified), summary]))
     emit(document, options.json, table)
-    return 1 if uncertified else 0
+    return 1 if failed else 0

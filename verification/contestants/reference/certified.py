@@ -32,6 +32,10 @@ class NotCertified(Exception):
     """A problem whose pressures have no usable bound; the message says why."""
 
 
+class NoBound(NotCertified):
+    """A problem of a kind that no proof covers: a hardness at a periodic approach."""
+
+
 @dataclass(frozen=True)
 class Bounds:
     """Proven bounds on ``|exported - solution|``.
@@ -109,7 +113,9 @@ def _bounded(problem: ContactProblem, pressure: Array, solution: rf.Solution) ->
     if problem.periodic and problem.approach is not None:
         found = periodic_bound(problem, solution)
         if found is None:
-            raise NotCertified("no bound is proven at this periodic approach")
+            raise (NoBound if problem.hardness is not None else NotCertified)(
+                "no bound is proven at this periodic approach"
+            )
         area = math.prod(problem.lengths)
         bounds = Bounds(found.pressure, found.pressure * math.sqrt(area), found.energy, 0.0, found.load)
         return bounds, found.in_contact, found.out_of_contact
