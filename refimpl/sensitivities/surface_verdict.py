@@ -1,4 +1,4 @@
-"""How far a half-space may be trusted on one surface: local coefficient errors, every number, advice."""
+"""Verdict on the half-space for one surface: local coefficient errors, every number, advice."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ ROWS = (  # name, label, factor, unit
     ("approach", "approach", 1e6, "um"),
     ("normal_force", "N at this approach", 1.0, "N"),
 )
-ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surface file, which states no material
+ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surface file
 FILE_OPTIONS = (*ALONE, "pressure", "unit", "pixel_size")
 
 
