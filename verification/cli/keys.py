@@ -206,7 +206,7 @@ def also_in(name: str) -> dict[str, str]:
     """Return, by key of a table of a scene, whether a study may vary it and whether it has a tolerance.
 
     >>> also_in("friction")["tau"], also_in("sphere")["radius"], also_in("gaussian")["seed"]
-    ('vary, tolerances', 'vary, tolerances', '')
+    ('vary, tolerances', 'vary, tolerances', 'vary')
     """
     from refimpl.scene.keys import SAMPLES
     from verification.sweep.keys import uses

@@ -43,7 +43,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "model_form": ("refimpl", "appendix_a"),
     "multilevel": ("refimpl", "verification/multilevel"),
     "mutation": ("refimpl", "appendix_a", "tests"),
-    "mutation_areas": ("refimpl", "appendix_a", "verification", "reports", "tests"),
+    "mutation_areas": ("refimpl", "appendix_a", "verification", "tests"),
     "mutation_fresh": ("refimpl", "appendix_a", "tests"),
     "mutation_judges": ("verification", "tests"),
     "named_faults": ("verification/contestants",),

@@ -132,7 +132,7 @@ def _wave(entrant: Entrant, n: int) -> tuple[Array, Array]:
 
 def _sliding(entrant: Entrant, n: int) -> tuple[Array, Array]:
     side, direction = 2.6 * SPHERE.contact_radius, 2.5
-    state = CoupledHertz(SPHERE, COMPLIANCE, tau=0.3 * SPHERE.peak_pressure, beta=0.8)
+    state = CoupledHertz(SPHERE, COMPLIANCE, tau=0.05 * SPHERE.peak_pressure, beta=0.8)
     x, y = centres(side, n)
     cos, sin = np.cos(direction), np.sin(direction)
     coupling = Coupling(state.tau, state.beta, COMPLIANCE, direction)

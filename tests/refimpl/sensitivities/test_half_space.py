@@ -14,7 +14,9 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.scene.discretise import discretise
-from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error, local_error
+from refimpl.sensitivities import half_space
+from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error
+from refimpl.solution.local_error import local_error
 
 SIZE, ELEMENTS = (3e-3, 2e-3), (9, 6)
 SOFT, STIFF = (
@@ -124,8 +126,14 @@ def made_up(first: float, second: float, strain: float) -> HalfSpaceError:
 
 SOLVED: Any = SimpleNamespace(
     friction_coefficient=0.5, contact_area=2.0, max_pressure=7.0, approach=-1.0, normal_force=3.0,
-    problem=SimpleNamespace(datum=4.0),
+    problem=SimpleNamespace(datum=4.0), contact=None,
 )  # fmt: skip
+
+
+@pytest.fixture
+def shallow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Surfaces of 10 degrees."""
+    monkeypatch.setattr(half_space, "steepness", lambda problem, contact: math.tan(math.radians(10)) ** 2)
 
 
 def test_the_stated_error_is_the_sum_of_the_parts_sizes() -> None:
@@ -147,11 +155,21 @@ def test_the_stated_error_is_the_sum_of_the_parts_sizes() -> None:
         ),
     ],
 )
-def test_what_to_do(parts: tuple[float, float, float], says: str) -> None:
+def test_what_to_do(shallow: None, parts: tuple[float, float, float], says: str) -> None:
     """Per cents of an area of 2; 2 % is what the paper accepts."""
     assert advice(made_up(*parts), SOLVED).startswith(says)
 
 
-def test_a_number_that_is_zero_has_no_relative_error() -> None:
+def test_beyond_the_slopes_that_were_judged_the_advice_is_finite_elements(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At 21 degrees, whatever the parts say."""
+    monkeypatch.setattr(half_space, "steepness", lambda problem, contact: math.tan(math.radians(21)) ** 2)
+    said = advice(made_up(-0.03, 0.008, 0.001), SOLVED)
+    assert "21 degrees" in said
+    assert "finite elements" in said
+
+
+def test_a_number_that_is_zero_has_no_relative_error(shallow: None) -> None:
     without: Any = SimpleNamespace(**{**vars(SOLVED), "friction_coefficient": 0.0})
     assert advice(made_up(-0.03, 0.008, 0.001), without).startswith("keep the half-space")

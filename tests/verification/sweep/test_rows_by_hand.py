@@ -135,7 +135,8 @@ def test_rows_are_solutions_or_not_by_their_status(
     status: rf.Status, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows = [
-        dict.fromkeys((*COORDINATES, *OUTCOMES), 1.0) | {"status": end, "key": key, "grid": 6, "warnings": ""}
+        dict.fromkeys((*COORDINATES, *OUTCOMES), 1.0)
+        | {"status": end, "key": key, "grid": 6, "warnings": "", "parameters": "{}"}
         for end, key in (("converged", "a"), (status.value, "b"))
     ]
     done = Sweep(0, 2, {}, rows, [1.0, 2.0], 3.0)
