@@ -19,8 +19,8 @@ import numpy as np
 LONGEST_NOTE = 1000
 """Characters of somebody else's message that a note keeps."""
 SERIES_DIGITS = 9
-MAP_DIGITS = 4
-"""Digits of recorded numbers; one more for a map than 256 colours show."""
+MAP_DIGITS = 3
+"""Digits of recorded numbers; for a map as many as 256 colours show."""
 MAP_SIZE = 1000
 """Fewest numbers of a map."""
 
@@ -226,7 +226,7 @@ def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
 
 
 def jsonable(item: object) -> object:
-    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 9 digits, maps 4.
+    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 9 digits, maps 3.
 
     A map is a list of lists with at least `MAP_SIZE` numbers.
     Raises TypeError for anything that is not a number, a text, a mapping or a series of such.

@@ -187,8 +187,8 @@ def test_data_keep_nine_digits_but_the_verdict_keeps_all() -> None:
         jsonable({1, 2})
 
 
-def test_a_map_is_recorded_with_four_digits_and_a_short_table_with_nine() -> None:
-    assert jsonable(np.full((40, 25), 2 / 3)) == [[0.6667] * 25] * 40
+def test_a_map_is_recorded_with_three_digits_and_a_short_table_with_nine() -> None:
+    assert jsonable(np.full((40, 25), 2 / 3)) == [[0.667] * 25] * 40
     assert jsonable(np.full((40, 24), 2 / 3)) == [[0.666666667] * 24] * 40
 
 
