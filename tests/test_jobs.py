@@ -103,6 +103,7 @@ def test_a_sweep_is_interrupted_and_goes_on(job: Path) -> None:
     started = subprocess.Popen(
         ["bash", "loads.sh"], cwd=job, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores it
     )  # fmt: skip
     end = time.monotonic() + PATIENCE
     while rows_in(job / "loads.sqlite") < 10 and started.poll() is None and time.monotonic() < end:

@@ -264,13 +264,13 @@ def test_features_change_no_field_beside_the_one_that_is_replaced(features: Grid
 
 def test_the_map_of_coefficients(tmp_path: Path) -> None:
     """Seven digits of every number, along each axis."""
-    shape = (2, 3, 4, 5)
-    numbers = (np.arange(120).reshape(shape) + 1) * 1.1234567
+    shape = (5, 4, 3, 6)
+    numbers = (np.arange(360).reshape(shape) + 1) * 1.1234567
     table = CoefficientMap(
-        slope_deg=(1.0, 2.5),
-        wavelength=(4.0, 8.0, 20.0),
-        position=(0.0, 0.1, 0.2, 0.5),
-        offset=(-3.0, -1.0, 0.5, 2.0, 4.0),
+        slope_deg=(1.0, 2.5, 4.0, 9.0, 15.0),
+        wavelength=(4.0, 8.0, 20.0, 70.0),
+        position=(0.0, 0.25, 0.5),
+        offset=(-3.0, -1.0, 0.5, 2.0, 4.0, 7.0),
         kappa_part=np.round(numbers, 7),
         constant_part=np.round(-numbers / 3, 7),
         error_percentage_points=np.round(numbers[..., 0] / 7, 7),
@@ -280,4 +280,4 @@ def test_the_map_of_coefficients(tmp_path: Path) -> None:
     for field in fields(CoefficientMap):
         assert np.array_equal(getattr(again, field.name), getattr(table, field.name)), field.name
     stated = json.loads((tmp_path / "map.json").read_text())["stated_error_percentage_points"]
-    assert stated == pytest.approx(116 * 1.1234567 / 7)  # the largest
+    assert stated == pytest.approx(355 * 1.1234567 / 7)  # the largest
