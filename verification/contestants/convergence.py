@@ -131,6 +131,7 @@ def _wave(entrant: Entrant, n: int) -> tuple[Array, Array]:
 
 
 def _sliding(entrant: Entrant, n: int) -> tuple[Array, Array]:
+    """Tau is small: at 0.1 and 0.3 of the peak, elements at the edge alternate on some of the grids."""
     side, direction = 2.6 * SPHERE.contact_radius, 2.5
     state = CoupledHertz(SPHERE, COMPLIANCE, tau=0.05 * SPHERE.peak_pressure, beta=0.8)
     x, y = centres(side, n)
