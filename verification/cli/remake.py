@@ -16,16 +16,21 @@ from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
 
+from refimpl.errors import InputError
 from reports.result_files import read_result, read_results, result_paths, write_result
 from verification.cli.output import Parsers, add_json, columns, emit
+from verification.cli.parts_of_a_run import parts, read_run
 from verification.framework.provenance import ROOT
 
+CUT = "cut from a whole run"
+GOOD = ("made", CUT)
 LOG = "remade"
 """Result file with what was made again."""
 EPILOG = """examples:
   rough-friction remake --list
   rough-friction remake --seconds 3600
   rough-friction remake --only reproduction --only table2
+  rough-friction remake --from full.json
 
 A command that is interrupted, fails or takes too long leaves the committed file as it was; studies
 that resume go on from out/remake the next time.
@@ -72,14 +77,19 @@ def add_parser(commands: Parsers) -> None:
     parser.add_argument(
         "--only", metavar="NAME", action="append", help="this file, stale or not; may be repeated"
     )
+    parser.add_argument(
+        "--from",
+        dest="whole",
+        metavar="RUN",
+        type=Path,
+        help="run nothing: cut the files of its cases from a result file of `verify --tier full`",
+    )
     add_json(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """List, or make again; status 1 where a command failed or a stale file is left."""
-    from refimpl.errors import InputError
-
     if not options.seconds > 0:
         raise InputError("--seconds", options.seconds, "a positive number of seconds")
     folder = Path(str(resources.files("reports").joinpath("results")))
@@ -87,6 +97,9 @@ def run(options: argparse.Namespace) -> int:
     for name in options.only or ():
         if name not in known:
             raise InputError("--only", name, f"one of {', '.join(sorted(known))}")
+    if options.whole is not None:
+        done = list(cut(options.whole, known, options.only, folder))
+        return _reported(done, options, folder)
     due = wanted(folder, known, options.only)
     if options.list:
         by_hand = [] if options.only else stale_by_hand(folder, known)
@@ -94,7 +107,11 @@ def run(options: argparse.Namespace) -> int:
         rows += [[name, "by hand", "several commands: see reports/results/README.md"] for name in by_hand]
         emit([asdict(r) for r in due], options.json, columns(rows, indent="") if rows else "nothing is stale")
         return int(bool(due))
-    done = list(remade(due, folder, options.seconds))
+    return _reported(list(remade(due, folder, options.seconds)), options, folder)
+
+
+def _reported(done: Sequence[Remade], options: argparse.Namespace, folder: Path) -> int:
+    """Record what was made, print a line a file, and return the exit status."""
     record(done, folder)
     rows = [[entry.file, f"{entry.seconds:.0f} s", entry.ended] for entry in done]
     emit(
@@ -102,7 +119,7 @@ def run(options: argparse.Namespace) -> int:
         options.json,
         columns(rows, indent="") if rows else "nothing is stale",
     )
-    return int(any(entry.ended != "made" for entry in done))
+    return int(any(entry.ended not in GOOD for entry in done))
 
 
 def recipes(folder: Path) -> dict[str, Recipe]:
@@ -119,11 +136,21 @@ def recipes(folder: Path) -> dict[str, Recipe]:
     return {name: recipe for name, recipe in found.items() if recipe.command}
 
 
+def cut(
+    whole: Path, known: Mapping[str, Recipe], only: Sequence[str] | None, folder: Path
+) -> Iterator[Remade]:
+    """Write the files whose cases a whole run holds; raises InputError for a file that is no such run."""
+    commands = {name: recipe.command for name, recipe in known.items() if not only or name in only}
+    for name, found in parts(read_run(whole), commands):
+        write_result(found, folder / f"{name}.json")
+        yield Remade(name, found["seconds"], CUT, commands[name])
+
+
 def wanted(folder: Path, known: Mapping[str, Recipe], only: Sequence[str] | None) -> list[Recipe]:
-    """Recipes of the named files, or of all that are not current; the quick run last, then by seconds."""
+    """Recipes of the named files, or of the stale and the unknown; the quick run last, then by seconds."""
     from verification.cli.stale import ages
 
-    names = only or [age.name for age in ages(read_results(folder)) if age.state != "current"]
+    names = only or [age.name for age in ages(read_results(folder)) if age.state in ("stale", "unknown")]
     found = [known[name] for name in dict.fromkeys(names) if name in known]
     return sorted(found, key=lambda r: (r.name == "quick", r.seconds is None, r.seconds or 0.0))
 

@@ -1,12 +1,15 @@
-"""`rough-friction verify --stale`: which committed results are older than what they judge."""
+"""`rough-friction verify --stale`: which committed results are older than what they judge.
+
+A file is current, stale, a record of a sample that is looked at once, or of unknown age.
+"""
 
 from __future__ import annotations
 
 import argparse
 import ast
 import subprocess
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any, Literal
@@ -15,56 +18,70 @@ from reports.result_files import read_results
 from verification.cli.output import columns, emit
 from verification.framework.provenance import ROOT, SOURCES, sources
 
-State = Literal["current", "stale", "unknown"]
+State = Literal["current", "stale", "record", "unknown"]
+
+LEFT_OUT = ":!"
+SOLVES = ("refimpl", ":!refimpl/identification")
+"""What a solve, its error bars and its warnings come from; a fit of tau and beta uses them."""
 
 JUDGED: Mapping[str, tuple[str, ...]] = {
-    "accuracy_costs": ("refimpl", "verification/benchmarks"),
+    "accuracy_costs": (*SOLVES, "verification/benchmarks"),
     "appendix_a": ("appendix_a",),
     "appendix_a_3d": ("appendix_a/fem3d",),
     "appendix_a_fem3d": ("appendix_a",),
     "appendix_a_map": ("appendix_a/fem",),
-    "appendix_correction": ("refimpl", "appendix_a"),
-    "benchmarks": ("refimpl", "verification/benchmarks"),
-    "chaos": ("refimpl", "verification/chaos", "verification/sweep"),
-    "contestants": ("refimpl", "verification/contestants"),
-    "coverage": ("refimpl", "verification/coverage"),
-    "class_costs": ("refimpl", "verification/coverage"),
-    "coverage_classes": ("refimpl", "verification/coverage"),
-    "coverage_fresh": ("refimpl", "verification/coverage"),
+    "appendix_correction": (*SOLVES, "appendix_a"),
+    "benchmarks": (*SOLVES, "verification/benchmarks"),
+    "chaos": (*SOLVES, "verification/chaos", "verification/sweep"),
+    "contestants": (*SOLVES, "verification/contestants"),
+    "coverage": (*SOLVES, "verification/coverage"),
+    "class_costs": (*SOLVES, "verification/coverage"),
+    "coverage_classes": (*SOLVES, "verification/coverage"),
+    "coverage_fresh": (*SOLVES, "verification/coverage"),
     "cross_code": ("verification/adapters", "verification/contestants"),
-    "extremes": ("refimpl", "appendix_a", "verification/extremes"),
-    "extremes_drawn": ("refimpl", "verification/extremes"),
+    "extremes": (*SOLVES, "appendix_a", "verification/extremes"),
+    "extremes_drawn": (*SOLVES, "verification/extremes"),
     "fault_matrix": ("refimpl", "appendix_a", "verification/cases", "verification/matrix"),
     "faults_by_hand": ("refimpl", "appendix_a", "verification", "tests"),
-    "fuzz": ("refimpl", "verification/fuzz", "verification/sweep"),
+    "fuzz": (*SOLVES, "verification/fuzz", "verification/sweep"),
     "identification": ("refimpl", "verification/coverage"),
-    "hypothesis": ("refimpl", "verification/properties"),
-    "large_grids": ("refimpl", "verification/benchmarks"),
-    "model_form": ("refimpl", "appendix_a"),
-    "multilevel": ("refimpl", "verification/multilevel"),
+    "hypothesis": (*SOLVES, "verification/properties"),
+    "large_grids": (*SOLVES, "verification/benchmarks"),
+    "model_form": (*SOLVES, "appendix_a"),
+    "multilevel": (*SOLVES, "verification/multilevel"),
     "mutation": ("refimpl", "appendix_a", "tests"),
     "mutation_areas": ("refimpl", "appendix_a", "verification", "tests"),
     "mutation_fresh": ("refimpl", "appendix_a", "tests"),
     "mutation_judges": ("verification", "tests"),
     "named_faults": ("verification/contestants",),
-    "planning": ("refimpl",),
-    "priors": ("refimpl", "verification/coverage"),
-    "pulled": ("refimpl",),
+    "planning": SOLVES,
+    "priors": (*SOLVES, "verification/coverage"),
+    "pulled": SOLVES,
     "quick": ("refimpl", "appendix_a", "verification/cases"),
     "random_order": ("refimpl", "appendix_a", "verification", "tests"),
     "random_faults": ("verification/contestants",),
-    "reproduction": ("refimpl",),
-    "sensitivity": ("refimpl",),
-    "sweeps": ("refimpl", "verification/benchmarks", "verification/sweep"),
-    "table2": ("refimpl", "verification/variational"),
-    "tau_shares": ("refimpl",),
-    "tradeoff": ("refimpl", "verification/tradeoff"),
-    "variational": ("refimpl", "verification/variational"),
+    "reproduction": SOLVES,
+    "sensitivity": SOLVES,
+    "sweeps": (*SOLVES, "verification/benchmarks", "verification/sweep"),
+    "table2": (*SOLVES, "verification/variational"),
+    "tau_shares": SOLVES,
+    "tradeoff": (*SOLVES, "verification/tradeoff"),
+    "variational": (*SOLVES, "verification/variational"),
 }
 """Folders that each committed file judges, with all below them, and the study's own where it has one.
+``:!`` leaves a folder out, as in git.
 
 A file that is not listed judges all code.
 """
+
+
+ONCE = frozenset(
+    (
+        *("class_costs", "coverage_classes", "faults_by_hand", "mutation", "mutation_areas"),
+        *("mutation_fresh", "mutation_judges", "priors", "random_order"),
+    )
+)
+"""Files of a sample that is looked at once: they judge the code of their commit, and stay as a record."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +105,8 @@ def ages(documents: Mapping[str, Any], root: Path = ROOT) -> Iterator[Age]:
     """The age of each document, by name of its file."""
     now = sources()
     for name, document in documents.items():
-        yield age(name, newest_provenance(document), JUDGED.get(name, SOURCES), now, root)
+        found = age(name, newest_provenance(document), JUDGED.get(name, SOURCES), now, root)
+        yield replace(found, state="record") if found.state == "stale" and name in ONCE else found
 
 
 def newest_provenance(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
@@ -132,8 +150,14 @@ def age(
 
 
 def _differing(then: Mapping[str, str], now: Mapping[str, str], judged: tuple[str, ...]) -> list[str]:
-    folders = sorted(f for f in {*then, *now} if any(f"{f}/".startswith(f"{top}/") for top in judged))
+    tops = [top for top in judged if not top.startswith(LEFT_OUT)]
+    out = [top.removeprefix(LEFT_OUT) for top in judged if top.startswith(LEFT_OUT)]
+    folders = sorted(f for f in {*then, *now} if _within(f, tops) and not _within(f, out))
     return [folder for folder in folders if then.get(folder) != now.get(folder)]
+
+
+def _within(folder: str, tops: Iterable[str]) -> bool:
+    return any(f"{folder}/".startswith(f"{top}/") for top in tops)
 
 
 def changed_files(commit: str, judged: tuple[str, ...], root: Path = ROOT) -> list[str] | None:

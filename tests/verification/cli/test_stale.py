@@ -113,7 +113,35 @@ def test_every_result_file_declares_what_it_judges() -> None:
     assert set(stale.JUDGED) == {path.stem for path in result_paths(ROOT / "reports" / "results")}
     folders = provenance.sources()
     for judged in stale.JUDGED.values():
-        assert all(any(f"{folder}/".startswith(f"{top}/") for folder in folders) for top in judged), judged
+        tops = [top.removeprefix(stale.LEFT_OUT) for top in judged]
+        assert all(any(f"{folder}/".startswith(f"{top}/") for folder in folders) for top in tops), judged
+
+
+def test_a_folder_that_is_left_out_makes_nothing_stale(checkout: Path) -> None:
+    judged = ("refimpl", ":!refimpl/identification")
+    made = record(checkout, sources=dict(NOW))
+    (checkout / "refimpl/identification").mkdir()
+    (checkout / "refimpl/identification/fit.py").write_text("x = 1\n")
+    git(checkout, "add", ".")
+    git(checkout, "commit", "-qm", "y")
+    now = {**NOW, "refimpl/identification": "new"}
+    assert stale.age("a", made, judged, now, checkout).state == "current"
+    assert stale.age("a", made, ("refimpl",), now, checkout).state == "stale"
+    made |= {"commit": made["commit"], "sources": {**NOW, "refimpl": "other"}}  # the commit is compared
+    assert stale.age("a", made, judged, now, checkout).state == "current"
+
+
+def test_a_sample_that_is_looked_at_once_is_a_record_and_no_failure(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert set(stale.JUDGED) > stale.ONCE
+    made = provenance.provenance() | {"commit": None}
+    changed = made | {"sources": {**provenance.sources(), "refimpl": "other"}}
+    documents = {"mutation_areas": {"provenance": changed}, "priors": {"provenance": made}}
+    monkeypatch.setattr(stale, "read_results", lambda folder: documents)
+    assert main(["verify", "--stale", "--json", "-"]) == 0
+    told = {line["name"]: line["state"] for line in json.loads(capsys.readouterr().out)}
+    assert told == {"mutation_areas": "record", "priors": "current"}
 
 
 def test_the_command_fails_when_one_is_stale(
