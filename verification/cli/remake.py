@@ -16,10 +16,8 @@ from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
 
-from refimpl.errors import InputError
 from reports.result_files import read_result, read_results, result_paths, write_result
 from verification.cli.output import Parsers, add_json, columns, emit
-from verification.cli.parts_of_a_run import parts, read_run
 from verification.framework.provenance import ROOT
 
 CUT = "cut from a whole run"
@@ -90,6 +88,8 @@ def add_parser(commands: Parsers) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """List, or make again; status 1 where a command failed or a stale file is left."""
+    from refimpl.errors import InputError
+
     if not options.seconds > 0:
         raise InputError("--seconds", options.seconds, "a positive number of seconds")
     folder = Path(str(resources.files("reports").joinpath("results")))
@@ -140,6 +140,8 @@ def cut(
     whole: Path, known: Mapping[str, Recipe], only: Sequence[str] | None, folder: Path
 ) -> Iterator[Remade]:
     """Write the files whose cases a whole run holds; raises InputError for a file that is no such run."""
+    from verification.cli.parts_of_a_run import parts, read_run
+
     commands = {name: recipe.command for name, recipe in known.items() if not only or name in only}
     for name, found in parts(read_run(whole), commands):
         write_result(found, folder / f"{name}.json")

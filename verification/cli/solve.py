@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from verification.cli.argument_types import elements, gigabytes, lengths, on_or_off
 from verification.cli.output import (
     Parsers,
     StatusLine,
     add_json,
     check_outputs,
-    columns,
     emit,
     emit_early,
     files_of,
     output_file,
     wrapped,
 )
+from verification.cli.solve_table import document, plain, show_finished, table
 
 if TYPE_CHECKING:
-    from refimpl import Solution
+    from refimpl import Scene, Solution
 
 EPILOG = """examples:
   rough-friction solve table1-smooth
@@ -54,28 +54,6 @@ PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
 LIMITS = ("max_grid", "max_seconds", "max_memory")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
-# Advice after an end that is no success.
-NEXT = {
-    "STAGNATED": "not converged: a residual below stays above the tolerance; check units first "
-    "(E, tau, lengths), then try a looser --tolerance or a coarser --grid",
-    "ITERATION_LIMIT": "not converged within the limits of iterations: a looser --tolerance or --accuracy",
-    "ACCURACY_NOT_REACHED": "the certificate holds, the accuracy was not reached: a larger --accuracy, or "
-    "more of --max-grid, --max-seconds, --max-memory",
-    "NO_CONTACT": "nothing touches: prescribe a larger --approach, or leave it out to press with the load",
-}
-
-# attribute of Solution, name in the table, factor from SI to the unit shown, that unit
-QUANTITIES = (
-    ("friction_coefficient", "friction coefficient mu", 1.0, ""),
-    ("contact_area", "contact area A", 1e6, "mm^2"),
-    ("contact_area_corrected", "A, perimeter-corrected", 1e6, "mm^2"),
-    ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
-    ("approach", "approach", 1e6, "um"),
-    ("normal_force", "normal force N", 1.0, "N"),
-    ("friction_force", "friction force F", 1.0, "N"),
-    ("binormal_force", "binormal force Q", 1.0, "N"),
-)
-
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
@@ -97,7 +75,7 @@ def add_parser(commands: Parsers) -> None:
     )
     add("--max-grid", metavar="N", type=int, help="with --accuracy: at most N elements along the longer side")
     add("--max-seconds", metavar="S", type=float, help="with --accuracy: at most so many seconds in all")
-    add("--max-memory", metavar="GB", type=_gigabytes, help="with --accuracy: at most so many GB for a grid")
+    add("--max-memory", metavar="GB", type=gigabytes, help="with --accuracy: at most so many GB for a grid")
     size("--accuracy", metavar="A", type=float, help="refine until the error bar is this share of mu")
     add(
         "--quantity",
@@ -135,7 +113,7 @@ def add_parser(commands: Parsers) -> None:
     add(
         "--plastic",
         metavar="on|off",
-        type=_on_or_off,
+        type=on_or_off,
         help="end pressures at the hardness, or never (default: the scene's own, or where they reach it)",
     )
     add("--explain", action="store_true", help="print what the scene requires, without solving it")
@@ -155,64 +133,35 @@ def add_parser(commands: Parsers) -> None:
     parser.set_defaults(run=run)
 
 
-def _gigabytes(text: str) -> float:
-    """Argument type of a memory: GB, returned in bytes.
-
-    >>> _gigabytes("1.5")
-    1500000000.0
-    """
-    try:
-        return 1e9 * float(text)
-    except ValueError as wrong:
-        raise argparse.ArgumentTypeError(f"expected a number of GB, not {text!r}") from wrong
-
-
-def _on_or_off(text: str) -> bool:
-    if text not in ("on", "off"):
-        raise argparse.ArgumentTypeError(f"{text}: expected on or off")
-    return text == "on"
-
-
-def elements(text: str) -> int | tuple[int, int]:
-    """Argument type of a grid: a number, or two.
-
-    >>> elements("128"), elements("128x64")
-    (128, (128, 64))
-    """
-    try:
-        numbers = [int(number) for number in text.split("x")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (1, 2):
-        raise argparse.ArgumentTypeError(f"expected a number of elements, or two like 128x64, not {text!r}")
-    return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
-
-
-def lengths(text: str) -> tuple[float, float]:
-    """Argument type of a size: two lengths (m).
-
-    >>> lengths("83e-6x204e-6")
-    (8.3e-05, 0.000204)
-    """
-    try:
-        x, y = (float(length) for length in text.split("x"))
-    except ValueError as wrong:
-        raise argparse.ArgumentTypeError(f"expected two lengths in m like 2e-3x1e-3, not {text!r}") from wrong
-    return x, y
-
-
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
-    import refimpl
-    from refimpl.driver.limits import Limits
-    from refimpl.driver.options import Options
-    from refimpl.driver.refined import forecast
     from refimpl.errors import InputError
-    from refimpl.planning.terms import RequestedTerms
-    from refimpl.scene.discretise import Discretiser
     from refimpl.scene.scene_file import read_tolerances
-    from verification.cli import arrays, explain, plot, plot_style, vtk
-    from verification.cli import budget as budget_lines
+
+    scene = _read_scene(options)
+    if options.grid is None and options.accuracy is None:
+        options.grid = DEFAULT_GRID
+    keywords = {name: getattr(options, name) for name in (*PASSED_ON, *SWITCHES, *LIMITS)}
+    if options.explain:
+        return _explain(scene, options, keywords)
+    if options.budget and options.approach is not None:
+        raise InputError(
+            "--approach", options.approach, "none with --budget, which is about the scene's load"
+        )
+    tolerances = read_tolerances(options.scene)
+    solution = _solved(scene, options, keywords)
+    _write_files(solution, scene, options)
+    found, text = document(solution, options.scene), table(solution, options.scene)
+    if tolerances or options.budget:
+        text = _with_budget(scene, solution, tolerances, options, found, text)
+    emit(found, options.json, text)
+    return int(not solution.converged or (options.strict and bool(found["not_usable"])))
+
+
+def _read_scene(options: argparse.Namespace) -> Scene:
+    """Return the scene, after whatever can be refused before it is solved."""
+    import refimpl
+    from verification.cli import arrays, plot_style, vtk
 
     _refuse_ignored(options)
     plot_style.check_suffix(options.plot)
@@ -221,36 +170,52 @@ def run(options: argparse.Namespace) -> int:
     scene = refimpl.read_scene(options.scene)
     if options.size is not None:
         scene = replace(scene, side=None, size=options.size)
-    inputs = [Path(options.scene), *files_of(scene)]
     outputs = {name: getattr(options, name) for name in ("json", *FILES)}
-    check_outputs(inputs, **outputs)
-    if options.grid is None and options.accuracy is None:
-        options.grid = DEFAULT_GRID
-    keywords = {name: getattr(options, name) for name in PASSED_ON}
-    switches = {name: getattr(options, name) for name in SWITCHES}
-    most = {name: getattr(options, name) for name in LIMITS}
-    checked = Options(scene=scene, requested=RequestedTerms(**switches), limits=Limits(**most), **keywords)
-    if options.explain:
-        discretiser = Discretiser(scene, checked.approach)
-        plan = checked.plan(discretiser)
-        expected = None if checked.accuracy is None else forecast(checked, plan, discretiser)
-        found = explain.document(checked, plan, options.scene, expected)
-        emit(found, options.json, explain.explained(checked, plan, options.scene, expected))
-        return 0
-    if options.budget and options.approach is not None:
-        raise InputError(
-            "--approach", options.approach, "none with --budget, which is about the scene's load"
-        )
-    tolerances = read_tolerances(options.scene)
+    check_outputs([Path(options.scene), *files_of(scene)], **outputs)
+    return scene
+
+
+def _explain(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, Any]) -> int:
+    """Show what the scene requires, and what an accuracy will cost, without solving it."""
+    from refimpl.driver.limits import Limits
+    from refimpl.driver.options import Options
+    from refimpl.driver.refined import forecast
+    from refimpl.planning.terms import RequestedTerms
+    from refimpl.scene.discretise import Discretiser
+    from verification.cli import explain
+
+    checked = Options(
+        scene=scene,
+        requested=RequestedTerms(**{name: keywords[name] for name in SWITCHES}),
+        limits=Limits(**{name: keywords[name] for name in LIMITS}),
+        **{name: keywords[name] for name in PASSED_ON},
+    )
+    discretiser = Discretiser(scene, checked.approach)
+    plan = checked.plan(discretiser)
+    expected = None if checked.accuracy is None else forecast(checked, plan, discretiser)
+    found = explain.document(checked, plan, options.scene, expected)
+    emit(found, options.json, explain.explained(checked, plan, options.scene, expected))
+    return 0
+
+
+def _solved(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, Any]) -> Solution:
+    """Return the solution, with progress on a terminal; an interrupt shows the last finished grid."""
+    import refimpl
+
     line = StatusLine()
     try:
-        solution = refimpl.solve(scene, **keywords, **switches, **most, progress=line.show)
+        return refimpl.solve(scene, **keywords, progress=line.show)
     except KeyboardInterrupt as interrupt:
         line.close()
         show_finished(interrupt, options.scene)
         raise
     finally:
         line.close()
+
+
+def _write_files(solution: Solution, scene: Scene, options: argparse.Namespace) -> None:
+    from verification.cli import arrays, plot, vtk
+
     if options.plot is not None:
         plot.draw(solution, scene, options.plot)
     if options.vtk is not None:
@@ -261,20 +226,26 @@ def run(options: argparse.Namespace) -> int:
         arrays.write_netcdf(solution, options.netcdf)
     if options.patches is not None:
         arrays.write_patches(solution, options.patches)
-    found, text = document(solution, options.scene), table(solution, options.scene)
-    if tolerances or options.budget:
-        found["budget"] = None
-        if reason := budget_lines.hindrance(solution, options.approach):
-            text += f"\n\n{wrapped(reason, 'no uncertainty budget: ')}"
-        else:
-            emit_early(found, options.json, text)  # an interrupt of the budget costs no solution
-            budgets = budget_lines.made(scene, solution, tolerances)
-            found["budget"] = plain(budget_lines.document(budgets))
-            text = f"\n{budget_lines.table(budgets)}"
-    emit(found, options.json, text)
-    if options.strict and found["not_usable"]:
-        return 1
-    return 0 if solution.converged else 1
+
+
+def _with_budget(
+    scene: Scene,
+    solution: Solution,
+    tolerances: Mapping[str, float],
+    options: argparse.Namespace,
+    found: dict[str, object],
+    text: str,
+) -> str:
+    """Add the uncertainty budget to the document; return the text that is left to be shown."""
+    from verification.cli import budget
+
+    found["budget"] = None
+    if reason := budget.hindrance(solution, options.approach):
+        return f"{text}\n\n{wrapped(reason, 'no uncertainty budget: ')}"
+    emit_early(found, options.json, text)  # an interrupt of the budget costs no solution
+    budgets = budget.made(scene, solution, tolerances)
+    found["budget"] = plain(budget.document(budgets))
+    return f"\n{budget.table(budgets)}"
 
 
 def _refuse_ignored(options: argparse.Namespace) -> None:
@@ -287,107 +258,3 @@ def _refuse_ignored(options: argparse.Namespace) -> None:
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
             raise InputError(f"--{name}", shown, "none with --explain, which does not solve the scene")
-
-
-def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
-    """Show the table of the last finished grid: the `Solution` that is the interrupt's argument, if any."""
-    from refimpl import Solution
-    from verification.cli.output import show
-
-    finished = [item for item in interrupt.args if isinstance(item, Solution)]
-    if finished:
-        show(f"interrupted; the last finished grid:\n\n{table(finished[0], scene)}")
-
-
-def document(solution: Solution, scene: str) -> dict[str, object]:
-    """The JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK file."""
-    from verification.framework.provenance import provenance
-
-    summary = {key: plain(value) for key, value in solution.summary().items()}
-    return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
-
-
-def table(solution: Solution, scene: str) -> str:
-    """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
-    found = [_row(solution, *quantity) for quantity in QUANTITIES]
-    if solution.plan.includes("plastic"):
-        name = f"plastic area, {solution.plastic_share:.1%} of A"
-        found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
-    summary = solution.summary()
-    certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
-    not_modelled = [
-        [term["term"], term["reason"], _change(term["effect"])]
-        for term in summary["plan"]
-        if not term["included"]
-    ]
-    parts = [
-        f"{scene}: {solution.grid} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
-        + wrapped(NEXT.get(solution.status.name, ""), f"status: {solution.status.name}  "),
-        columns(found),
-        f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
-        f"not modelled:\n{columns(not_modelled)}" if not_modelled else "",
-        *(_warned(warning) for warning in summary["warnings"]),
-    ]
-    return "\n\n".join(part for part in parts if part)
-
-
-def error_bar(solution: Solution, quantity: str) -> float:
-    """The sum of the parts of a number's uncertainty, in its unit; 0 where none is stated."""
-    return math.fsum(solution.uncertainty.get(quantity, {}).values())
-
-
-def not_usable(solution: Solution) -> list[str]:
-    """Return the names of the numbers in the table whose bar exceeds half of their magnitude."""
-    shown = [attribute for attribute, *_ in QUANTITIES]
-    if solution.plan.includes("plastic"):
-        shown.append("plastic_area")
-    return [name for name in shown if _verdict(solution, name)]
-
-
-def _verdict(solution: Solution, quantity: str) -> str:
-    """Return "(not usable)" or nothing. Symmetry may make Q zero: its magnitude is that of the
-    tangential force, F and Q together. Without friction that of F and Q is N, and that of mu is 1.
-    """
-    from refimpl.accuracy.digits import verdict
-
-    value = getattr(solution, quantity)
-    if not math.isfinite(value):  # without contact
-        return ""
-    scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
-    if not solution.traction.any():  # frictionless
-        scale = dict.fromkeys(("friction_force", "binormal_force"), solution.normal_force)
-        scale["friction_coefficient"] = 1.0
-    return verdict(error_bar(solution, quantity), scale.get(quantity, value))
-
-
-def _row(solution: Solution, quantity: str, name: str, factor: float, unit: str) -> list[str]:
-    """Return a row of the table: value and bar with the digits that the bar leaves, and the verdict."""
-    from refimpl.accuracy.digits import bar_of, digits_of
-
-    error = error_bar(solution, quantity) * factor
-    value = digits_of(getattr(solution, quantity) * factor, error)
-    return [name, value, f"{bar_of(error)} {_verdict(solution, quantity)}".rstrip(), unit]
-
-
-def _change(effect: Mapping[str, float]) -> str:
-    """Return the effect of neglecting a term, in words; nothing where it is exactly zero."""
-    if not any(effect.values()):
-        return ""
-    return f"estimated change of mu {effect['friction']:.1e}, of A {effect['area']:.1e}"
-
-
-def _warned(warning: Mapping[str, object]) -> str:
-    return wrapped(str(warning["text"]), f"warning ({warning['name']}): ")
-
-
-def plain(item: object) -> object:
-    """NaN and infinity, which JSON does not have, as None.
-
-    >>> plain({"a": [1.0, float("nan")]})
-    {'a': [1.0, None]}
-    """
-    if isinstance(item, Mapping):
-        return {key: plain(value) for key, value in item.items()}
-    if isinstance(item, list | tuple):
-        return [plain(value) for value in item]
-    return None if isinstance(item, float) and not math.isfinite(item) else item

@@ -212,7 +212,7 @@ def _share(text: str) -> float:
 
 
 def _document(done: Sweep, store: Path) -> dict[str, object]:
-    from verification.cli.solve import plain
+    from verification.cli.solve_table import plain
     from verification.framework.provenance import provenance
 
     return {

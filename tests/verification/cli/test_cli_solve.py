@@ -18,7 +18,7 @@ import refimpl
 from refimpl.accuracy.refinement import QUANTITIES
 from refimpl.planning.plan import METHODS
 from tests.verification.cli.test_cli import Capture, refused
-from verification.cli import main, solve
+from verification.cli import main, solve, solve_table
 from verification.cli.plot import hertz_of
 
 SCENE = """
@@ -88,8 +88,8 @@ def test_an_error_bar_is_the_sum_of_its_parts(scene: str) -> None:
     solution = refimpl.solve(refimpl.read_scene(scene), grid=8)
     parts = {"approach": {"iteration": 1e-9, "discretisation": 2e-9}}
     bare = dataclasses.replace(solution, uncertainty=parts)
-    assert solve.error_bar(bare, "approach") == pytest.approx(3e-9)
-    assert solve.error_bar(bare, "contact_area") == 0
+    assert solve_table.error_bar(bare, "approach") == pytest.approx(3e-9)
+    assert solve_table.error_bar(bare, "contact_area") == 0
 
 
 def test_what_nothing_bounds_says_so(scene: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
@@ -168,7 +168,7 @@ def test_json_has_the_solutions_numbers(scene: str, capsys: Capture) -> None:
     assert main(["solve", scene, "--grid", "48", "--json", "-"]) == 0
     found = json.loads(capsys.readouterr().out)
     solution = refimpl.solve(refimpl.read_scene(scene), grid=48)
-    for attribute, *_ in solve.QUANTITIES:
+    for attribute, *_ in solve_table.QUANTITIES:
         assert found[attribute] == getattr(solution, attribute)
     assert found["status"] == "converged"
     assert found["certificate"]["gap"] <= 1e-8

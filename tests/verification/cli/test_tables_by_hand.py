@@ -15,7 +15,7 @@ from refimpl.scene.resolution import Resolution
 from refimpl.sensitivities.budget import Budget, Budgets
 from refimpl.sensitivities.sensitivity import Sensitivity
 from refimpl.surfaces.surface import Detail
-from verification.cli import budget, explain, main, solve, tradeoff
+from verification.cli import budget, explain, main, solve_table, tradeoff
 from verification.cli.output import judgement
 from verification.framework.case import Case, Measured, Metric
 
@@ -57,7 +57,7 @@ def solution() -> rf.Solution:
 
 def test_numbers_bars_and_units_of_a_solve(solution: rf.Solution) -> None:
     """The plastic area is a quarter of A; bars are sums of parts, in the unit beside them."""
-    found = [line.split() for line in solve.table(solution, "scene").splitlines()]
+    found = [line.split() for line in solve_table.table(solution, "scene").splitlines()]
     for row in (
         "friction coefficient mu 0.25 +- 0.04",
         "contact area A 3.0 +- 0.2 mm^2",

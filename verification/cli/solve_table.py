@@ -1,0 +1,138 @@
+"""The numbers of a solve as a table and as a document, with their error bars and warnings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from verification.cli.output import columns, wrapped
+
+if TYPE_CHECKING:
+    from refimpl import Solution
+
+# Advice after an end that is no success.
+NEXT = {
+    "STAGNATED": "not converged: a residual below stays above the tolerance; check units first "
+    "(E, tau, lengths), then try a looser --tolerance or a coarser --grid",
+    "ITERATION_LIMIT": "not converged within the limits of iterations: a looser --tolerance or --accuracy",
+    "ACCURACY_NOT_REACHED": "the certificate holds, the accuracy was not reached: a larger --accuracy, or "
+    "more of --max-grid, --max-seconds, --max-memory",
+    "NO_CONTACT": "nothing touches: prescribe a larger --approach, or leave it out to press with the load",
+}
+
+# attribute of Solution, name in the table, factor from SI to the unit shown, that unit
+QUANTITIES = (
+    ("friction_coefficient", "friction coefficient mu", 1.0, ""),
+    ("contact_area", "contact area A", 1e6, "mm^2"),
+    ("contact_area_corrected", "A, perimeter-corrected", 1e6, "mm^2"),
+    ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
+    ("approach", "approach", 1e6, "um"),
+    ("normal_force", "normal force N", 1.0, "N"),
+    ("friction_force", "friction force F", 1.0, "N"),
+    ("binormal_force", "binormal force Q", 1.0, "N"),
+)
+
+
+def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
+    """Show the table of the last finished grid: the `Solution` that is the interrupt's argument, if any."""
+    from refimpl import Solution
+    from verification.cli.output import show
+
+    finished = [item for item in interrupt.args if isinstance(item, Solution)]
+    if finished:
+        show(f"interrupted; the last finished grid:\n\n{table(finished[0], scene)}")
+
+
+def document(solution: Solution, scene: str) -> dict[str, object]:
+    """The JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK file."""
+    from verification.framework.provenance import provenance
+
+    summary = {key: plain(value) for key, value in solution.summary().items()}
+    return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
+
+
+def table(solution: Solution, scene: str) -> str:
+    """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
+    found = [_row(solution, *quantity) for quantity in QUANTITIES]
+    if solution.plan.includes("plastic"):
+        name = f"plastic area, {solution.plastic_share:.1%} of A"
+        found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
+    summary = solution.summary()
+    certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
+    not_modelled = [
+        [term["term"], term["reason"], _change(term["effect"])]
+        for term in summary["plan"]
+        if not term["included"]
+    ]
+    parts = [
+        f"{scene}: {solution.grid} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
+        + wrapped(NEXT.get(solution.status.name, ""), f"status: {solution.status.name}  "),
+        columns(found),
+        f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
+        f"not modelled:\n{columns(not_modelled)}" if not_modelled else "",
+        *(_warned(warning) for warning in summary["warnings"]),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def error_bar(solution: Solution, quantity: str) -> float:
+    """The sum of the parts of a number's uncertainty, in its unit; 0 where none is stated."""
+    return math.fsum(solution.uncertainty.get(quantity, {}).values())
+
+
+def not_usable(solution: Solution) -> list[str]:
+    """Return the names of the numbers in the table whose bar exceeds half of their magnitude."""
+    shown = [attribute for attribute, *_ in QUANTITIES]
+    if solution.plan.includes("plastic"):
+        shown.append("plastic_area")
+    return [name for name in shown if _verdict(solution, name)]
+
+
+def _verdict(solution: Solution, quantity: str) -> str:
+    """Return "(not usable)" or nothing. Symmetry may make Q zero: its magnitude is that of the
+    tangential force, F and Q together. Without friction that of F and Q is N, and that of mu is 1.
+    """
+    from refimpl.accuracy.digits import verdict
+
+    value = getattr(solution, quantity)
+    if not math.isfinite(value):  # without contact
+        return ""
+    scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
+    if not solution.traction.any():  # frictionless
+        scale = dict.fromkeys(("friction_force", "binormal_force"), solution.normal_force)
+        scale["friction_coefficient"] = 1.0
+    return verdict(error_bar(solution, quantity), scale.get(quantity, value))
+
+
+def _row(solution: Solution, quantity: str, name: str, factor: float, unit: str) -> list[str]:
+    """Return a row of the table: value and bar with the digits that the bar leaves, and the verdict."""
+    from refimpl.accuracy.digits import bar_of, digits_of
+
+    error = error_bar(solution, quantity) * factor
+    value = digits_of(getattr(solution, quantity) * factor, error)
+    return [name, value, f"{bar_of(error)} {_verdict(solution, quantity)}".rstrip(), unit]
+
+
+def _change(effect: Mapping[str, float]) -> str:
+    """Return the effect of neglecting a term, in words; nothing where it is exactly zero."""
+    if not any(effect.values()):
+        return ""
+    return f"estimated change of mu {effect['friction']:.1e}, of A {effect['area']:.1e}"
+
+
+def _warned(warning: Mapping[str, object]) -> str:
+    return wrapped(str(warning["text"]), f"warning ({warning['name']}): ")
+
+
+def plain(item: object) -> object:
+    """NaN and infinity, which JSON does not have, as None.
+
+    >>> plain({"a": [1.0, float("nan")]})
+    {'a': [1.0, None]}
+    """
+    if isinstance(item, Mapping):
+        return {key: plain(value) for key, value in item.items()}
+    if isinstance(item, list | tuple):
+        return [plain(value) for value in item]
+    return None if isinstance(item, float) and not math.isfinite(item) else item
