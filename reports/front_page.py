@@ -10,7 +10,7 @@ from typing import Any
 from reports.agreement import Number, bias_and_scatter, by_quantity, fine
 from reports.claims import NOT_ESTABLISHED, VERDICTS, Judged
 from reports.evidence import Evidence
-from reports.results import FORMAT, Case
+from reports.results import Case
 from reports.text import number
 
 HERTZ = {
@@ -35,7 +35,6 @@ class FrontPage:
     hertz: Sequence[str]
     quantities: Sequence[tuple[str, int, str, str, int]]
     trust: Sequence[str]
-    revisions: Sequence[tuple[str, str, str]]
 
     @property
     def table3_rows(self) -> Mapping[str, Sequence[Number]]:
@@ -66,7 +65,6 @@ def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[N
         hertz=[said for said in map(_hertz, evidence.cases) if said],
         quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
         trust=[*_coverage(evidence.studies), *_trust(evidence.studies)],
-        revisions=revisions(evidence),
     )
 
 
@@ -130,32 +128,3 @@ def _trust(studies: Mapping[str, Any]) -> list[str]:
             f"{counts['crash']} a crash, and {counts['honest failure']} a status that says that they failed"
         )
     return said
-
-
-def revisions(evidence: Evidence) -> list[tuple[str, str, str]]:
-    """File, date and commit of every result file that the report is made of; the run first."""
-    rows = [("this run", *_made(evidence.run.get("provenance")))]
-    for name, file in sorted(evidence.files.items()):
-        provenance = file.get("provenance") if file.get("format") == FORMAT else newest(file)
-        rows.append((f"{name}.json", *_made(provenance)))
-    return rows
-
-
-def newest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Provenance of a study's document, or of the newest run in its list."""
-    listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
-    records = [
-        item["provenance"]
-        for item in (document, *listed)
-        if isinstance(item, Mapping) and "provenance" in item
-    ]
-    return max(records, key=lambda record: str(record["date"]), default=None)
-
-
-def _made(provenance: Mapping[str, Any] | None) -> tuple[str, str]:
-    if provenance is None:
-        return "n/a", "n/a"
-    commit = str(provenance.get("commit") or "n/a")[:12]
-    return str(provenance.get("date"))[
-        :10
-    ], f"{commit}{' and uncommitted changes' if provenance.get('dirty') else ''}"
