@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from reports.result_files import read_results
+from reports.revisions import newest
 from verification.cli.output import columns, emit
 from verification.framework.provenance import ROOT, SOURCES, sources
 
@@ -105,17 +106,8 @@ def ages(documents: Mapping[str, Any], root: Path = ROOT) -> Iterator[Age]:
     """The age of each document, by name of its file."""
     now = sources()
     for name, document in documents.items():
-        found = age(name, newest_provenance(document), JUDGED.get(name, SOURCES), now, root)
+        found = age(name, newest(document), JUDGED.get(name, SOURCES), now, root)
         yield replace(found, state="record") if found.state == "stale" and name in ONCE else found
-
-
-def newest_provenance(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Provenance of the document, or of the newest run in its list; None where it records no commit."""
-    listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
-    records = [
-        item["provenance"] for item in (document, *listed) if isinstance(item, dict) and "provenance" in item
-    ]
-    return max(records, key=lambda record: str(record["date"]), default=None)
 
 
 def age(

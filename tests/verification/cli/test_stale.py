@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from reports.result_files import result_paths
+from reports.revisions import newest
 from tests.documents import ROOT
 from verification.cli import main, stale
 from verification.framework import provenance
@@ -89,9 +90,9 @@ def test_digests_need_no_repository(checkout: Path) -> None:
 
 def test_the_newest_run_of_a_record_counts() -> None:
     runs = [{"provenance": {"date": date}} for date in ("2026-01-02", "2026-01-03", "2026-01-01")]
-    assert stale.newest_provenance({"runs": runs, "other": [1, "x"]}) == {"date": "2026-01-03"}
-    assert stale.newest_provenance({"provenance": {"date": "1"}}) == {"date": "1"}
-    assert stale.newest_provenance({"date": "2026-01-01"}) is None
+    assert newest({"runs": runs, "other": [1, "x"]}) == {"date": "2026-01-03"}
+    assert newest({"provenance": {"date": "1"}}) == {"date": "1"}
+    assert newest({"date": "2026-01-01"}) is None
 
 
 def test_digests_are_of_contents(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
