@@ -20,8 +20,9 @@ from reports.text import symbols
 Data = Mapping[str, Any]
 Draw = Callable[[Canvas, Data], None]
 
-# Hues of Okabe and Ito 2008, of at least 3:1 against the light and the dark page; black is left to the text.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#A65A9E", "#1E8FA8", "#9A7B00")
+# Three of Okabe and Ito 2008, and three that any reader tells from them and from each other. All have a
+# contrast of at least 3:1 with the light and the dark page; black is left to the text.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#9888A8", "#786838", "#586868")
 MARKERS = "os^Dv<"
 INK = "#010203"  # stands for the page's text colour until the export
 STYLE: dict[Any, Any] = {
