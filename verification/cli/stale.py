@@ -17,6 +17,7 @@ from typing import Any, Literal
 from reports.result_files import read_results
 from reports.revisions import newest
 from verification.cli.output import columns, emit
+from verification.framework.code_digest import code_of
 from verification.framework.provenance import ROOT, SOURCES, sources
 
 State = Literal["current", "stale", "record", "unknown"]
@@ -178,19 +179,7 @@ def _code(name: str, content: bytes | None) -> str | bytes | None:
     """The syntax tree without docstrings as text, of Python; the content itself of all else."""
     if content is None or not name.endswith(".py"):
         return content
-    tree = ast.parse(content)
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            node.body = [line for line in node.body if not _is_text(line)]
-    return ast.dump(tree)
-
-
-def _is_text(line: ast.stmt) -> bool:
-    return (
-        isinstance(line, ast.Expr)
-        and isinstance(line.value, ast.Constant)
-        and isinstance(line.value.value, str)
-    )
+    return code_of(ast.parse(content))
 
 
 def _git(root: Path, *arguments: str) -> bytes | None:

@@ -10,110 +10,44 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
-from refimpl.grid import Array
 from reports.result_files import write_result
-from verification.contestants import compact, referee
-from verification.contestants.design import in_turn, posed, rows
-from verification.contestants.fault_error import CLAIM, error
-from verification.contestants.protocol import ContactProblem
-from verification.contestants.random_faults import COUNTED, SEEDS, RandomFault, random_fault
+from verification.contestants.fault_error import error
+from verification.contestants.fault_log import Record, resumed
+from verification.contestants.random_faults import COUNTED, SEEDS, random_fault
+from verification.contestants.trial import FIRST, TRIED, design_of, first_failure
+from verification.framework.code_digest import code_digest
 from verification.framework.provenance import provenance
 
-FIRST = ("plain", "sliding", "oblong")
-"""Designs that were fixed before any fault beyond the first 51 was judged."""
-TRIED = (*FIRST, "tiny", "triples", "memory")
-"""Designs of the campaign: all but those of large grids, and those with a hardness."""
 GOAL = 0.95
-Record = dict[str, Any]
+"""Share of the counted faults that are to be caught."""
 
 
-@cache
-def problems(design: str) -> tuple[tuple[str, ContactProblem], ...]:
-    """Slugs and problems of a design, in the order of the suite; those in turn with a letter."""
-    return tuple(
-        (f"design-{design}-{number:02}{letter if design == 'memory' else ''}", posed(row, number, CLAIM))
-        for number, base in enumerate(rows()[design], start=1)
-        for letter, row in zip("abc", in_turn(base), strict=False)
-    )
-
-
-@cache
-def right(slug: str) -> compact.Solved | None:
-    """The compact solver's solution without a fault; None where it does not meet the claim."""
-    problem = dict(problems(_design(slug)))[slug]
-    if compact.solve.abilities.lacking(problem):
-        return None
-    found = compact.solve.solved(problem)
-    return found if found.converged and residual(problem, found.pressure) <= CLAIM else None
-
-
-def _design(slug: str) -> str:
-    return slug.removeprefix("design-").rpartition("-")[0]
-
-
-def residual(problem: ContactProblem, pressure: Array) -> float:
-    """The worst recomputed residual; infinite where there is none."""
-    try:
-        return referee.residual(problem, pressure).worst
-    except ValueError:
-        return float("inf")
-
-
-def fails(solver: compact.Compact, slug: str, problem: ContactProblem) -> bool:
-    """Return whether a faulty solver misses its claim in a problem that the right one solves."""
-    exact = right(slug)
-    if exact is None or solver.changes_nothing(problem, exact):
-        return False
-    return not residual(problem, solver.solved(problem).pressure) <= 1.01 * CLAIM
-
-
-def caught(fault: RandomFault, designs: Iterable[str]) -> str | None:
-    """Slug of the first problem of the designs that a fault fails, or None.
-
-    Problems are posed small ones first; to a memory in the order of the suite.
-    """
-    solver = fault.fresh()
-    posed_ = [item for design in designs for item in problems(design)]
-    if solver.hooks.key is None:
-        posed_ = sorted((item for item in posed_ if fault.when(item[1])), key=lambda item: item[1].gap.size)
-    return next((slug for slug, problem in posed_ if fails(solver, slug, problem)), None)
-
-
-def judged(seed: int, known: Mapping[str, Any]) -> Record:
-    """Return the record of a fault: its error, what catches it, and the designs that it was put to.
-
-    ``known`` is an earlier record, or empty; only designs that it does not name are put to a survivor.
-    """
-    fault, record = random_fault(seed), dict(known)
-    if not record:
-        found = error(fault)
-        record = {"seed": seed, "effect": fault.effect, "condition": fault.condition}
-        record |= {"error": found.peak, "claims": found.claims, "caught": None, "designs": []}
-    for design in TRIED:
-        if record["caught"] is None and design not in record["designs"]:
-            record["caught"] = caught(fault, [design])
-            record["designs"] = [*record["designs"], design]
+def judged(seed: int) -> Record:
+    """Return the record of a random fault: its error, and the first problem that catches it, or None."""
+    fault = random_fault(seed)
+    found = error(fault)
+    caught = filter(None, (first_failure(fault.fresh(), fault.when, design) for design in TRIED))
+    record = {
+        "effect": fault.effect,
+        "condition": fault.condition,
+        "error": found.peak,
+        "claims": found.claims,
+        "caught": next(caught, None),
+    }
+    print({"seed": seed} | record, file=sys.stderr, flush=True)
     return record
 
 
 def run(seeds: Iterable[int], log: Path) -> list[Record]:
-    """Judge the faults that the log (JSON lines) does not hold whole, memories last; return all records."""
-    lines = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
-    known = {record["seed"]: record for record in map(json.loads, lines)}
+    """Judge the faults that the log does not have of the same code, memories last; return all records."""
     order = list(seeds)
-    for seed in sorted(order, key=lambda seed: random_fault(seed).fresh().hooks.key is not None):
-        before = known.get(seed, {})
-        known[seed] = judged(seed, before)
-        if known[seed] != before:
-            with log.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(known[seed]) + "\n")
-            print(known[seed], file=sys.stderr, flush=True)
-    return [known[seed] for seed in order]
+    memories_last = sorted(order, key=lambda seed: random_fault(seed).fresh().hooks.key is not None)
+    records = resumed(log, memories_last, judged, code_digest("verification.contestants.campaign"))
+    found = {record["fault"]: record for record in records}
+    return [found[seed] for seed in order]
 
 
 def summary(records: Sequence[Record]) -> Record:
@@ -123,7 +57,7 @@ def summary(records: Sequence[Record]) -> Record:
     """
     counted = [r for r in records if r["error"] > COUNTED]
     found = [r for r in counted if r["caught"] is not None]
-    first = [r for r in found if _design(r["caught"]) in FIRST]
+    first = [r for r in found if design_of(r["caught"]) in FIRST]
     missed = [r for r in counted if r["caught"] is None]
     lesser = [r for r in records if r["error"] <= COUNTED]
     return {
@@ -140,7 +74,7 @@ def summary(records: Sequence[Record]) -> Record:
 
 
 def _told(record: Record) -> Record:
-    kept = {name: record[name] for name in ("seed", "effect", "condition")}
+    kept = {"seed": record["fault"], "effect": record["effect"], "condition": record["condition"]}
     return kept | {name: float(f"{record[name]:.2g}") for name in ("error", "claims")}
 
 

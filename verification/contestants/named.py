@@ -1,8 +1,8 @@
 """Every fault of the table against the covering designs: is it caught, and is its dimension named?
 
-``python -m verification.contestants.named --log FILE --json FILE`` resumes from its log. Each fault is put to
-all problems of up to 64 elements a side that the compact solver solves when right. Those of large grids are
-put to problems of up to 176 as well.
+``python -m verification.contestants.named --log FILE --json FILE`` resumes from its log, which has the
+problems that each fault fails. Each fault is put to all problems of up to 64 elements a side that the compact
+solver solves when right. Those of large grids are put to larger problems as well.
 """
 
 from __future__ import annotations
@@ -10,33 +10,19 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from reports.result_files import write_result
-from verification.contestants.campaign import TRIED, fails, problems, right
+from verification.contestants.fault_log import Record, resumed
 from verification.contestants.short_list import short_list
-from verification.contestants.table_faults import TABLE, TableFault
+from verification.contestants.table_faults import TABLE
+from verification.contestants.trial import verdicts
+from verification.framework.code_digest import code_digest
 from verification.framework.provenance import provenance
 
-SMALL = 64
-"""Most elements a side of the problems that every fault is put to."""
-OF_LARGE = "large grids"
-Record = dict[str, Any]
-
-
-def verdicts(fault: TableFault, designs: Iterable[str] = TRIED) -> dict[str, bool]:
-    """Return whether each problem of the designs fails, by slug, in the order of the suite."""
-    solver = fault.fresh()
-    failed: dict[str, bool] = {}
-    for design in designs:
-        for slug, problem in problems(design):
-            if (problem.M > SMALL and fault.hole != OF_LARGE) or right(slug) is None:
-                continue
-            case = slug.rstrip("abc")
-            failed[case] = fails(solver, slug, problem) or failed.get(case, False)
-    return failed
+JUDGING = ("verification.contestants.table_faults", "verification.contestants.trial")
+"""Modules that decide which problems a fault fails; the short list is made anew at each run."""
 
 
 def named(listed: Sequence[str], dimensions: Sequence[Sequence[str]]) -> bool:
@@ -53,27 +39,30 @@ def named(listed: Sequence[str], dimensions: Sequence[Sequence[str]]) -> bool:
 
 
 def tried(name: str) -> Record:
-    """Return the record of a fault: problems judged and failed, the short list, and whether it names it."""
+    """Return the slugs of the problems that a fault is put to, and of those that it fails."""
     fault = TABLE[name]
-    failed = verdicts(fault)
-    listed = short_list(failed)
-    record = {"fault": name, "hole": fault.hole, "judged": len(failed), "failed": sum(failed.values())}
-    return record | {"listed": listed, "named": named(listed, fault.dimensions)}
+    found = verdicts(fault.fresh(), fault.largest)
+    print(f"{name}: {sum(found.values())} of {len(found)} problems failed", file=sys.stderr, flush=True)
+    return {"problems": [*found], "failed": [slug for slug in found if found[slug]]}
+
+
+def judged(name: str, problems: Sequence[str], failed: Collection[str]) -> Record:
+    """Return the numbers of problems judged and failed, the short list, and whether it names the fault."""
+    listed = short_list({slug: slug in failed for slug in problems})
+    return {
+        "fault": name,
+        "hole": TABLE[name].hole,
+        "judged": len(problems),
+        "failed": len(failed),
+        "listed": listed,
+        "named": named(listed, TABLE[name].dimensions),
+    }
 
 
 def run(names: Iterable[str], log: Path) -> list[Record]:
-    """Try the faults that the log (JSON lines) does not hold; return the records of all."""
-    lines = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
-    known = {record["fault"]: record for record in map(json.loads, lines)}
-    records = []
-    for name in names:
-        if name not in known:
-            known[name] = tried(name)
-            with log.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(known[name]) + "\n")
-            print(known[name], file=sys.stderr, flush=True)
-        records.append(known[name])
-    return records
+    """Return the records of faults by name; those that the log has of the same code are not tried again."""
+    records = resumed(log, names, tried, code_digest(*JUDGING))
+    return [judged(each["fault"], each["problems"], each["failed"]) for each in records]
 
 
 def summary(records: Sequence[Record]) -> Record:

@@ -15,6 +15,13 @@ from verification.framework.case import Result
 LISTED = 3
 PAIR = 0.04
 """Score that a pair of conditions loses to a single one."""
+DOUBTS = 2
+"""Problems that are taken to speak against each condition: a failure outside it and a pass within it.
+
+What one or two problems show may be chance; what ten show is little changed (Laplace's rule of succession).
+"""
+SHARE = 0.1
+"""Score of a condition that explains all failures, those among problems without its dimension too."""
 
 
 class Condition(NamedTuple):
@@ -31,9 +38,11 @@ class Condition(NamedTuple):
 def short_list(failed: Mapping[str, bool], most: int = LISTED) -> list[str]:
     """Return conditions under which problems fail, best first, from slugs and whether each failed.
 
-    Candidates are conditions on one dimension, or on two. Their score is the F measure ``2 n / (f + s)``
-    among the problems that have these dimensions: n failures meet the condition, of f failures and s problems
-    that meet it.
+    Candidates are conditions on one dimension, or on two. Their score is ``2 n / (f + s + 2) + 0.1 n / F``:
+    n failures meet the condition, of s problems that meet it, of f failures among the problems that have the
+    dimension, and of F in all. The first term is the F measure with two `DOUBTS`: a fault that fails
+    elsewhere too, by another way, is named by its dimension all the same. The second term prefers conditions
+    that explain more of the failures.
 
     >>> from verification.contestants.design import rows
     >>> slugs = [f"design-plain-{n:02}" for n in range(1, 49)]
@@ -50,7 +59,7 @@ def short_list(failed: Mapping[str, bool], most: int = LISTED) -> list[str]:
     met = np.array([each.met for each in conditions], dtype=np.float64)
     known = np.array([has[each.name] for each in conditions], dtype=np.float64)
     hits, covered, failures = (met * fails) @ met.T, met @ met.T, (known * fails) @ known.T
-    score = 2 * hits / np.maximum(failures + covered, 1)
+    score = 2 * hits / (failures + covered + DOUBTS) + SHARE * hits / fails.sum()
     score -= PAIR * ~np.eye(len(conditions), dtype=bool)
     return _best(conditions, score, most)
 

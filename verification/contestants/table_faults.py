@@ -31,6 +31,11 @@ class TableFault(NamedTuple):
     fresh: Callable[[], Compact]
     dimensions: tuple[tuple[str, ...], ...]
 
+    @property
+    def largest(self) -> float:
+        """Most elements a side of the problems that the fault is put to."""
+        return math.inf if self.hole == _LARGE else _SMALL
+
 
 def _friction(change: Callable[[Coupling], Coupling], when: When = lambda p: True) -> Callable[[], Compact]:
     def pose(_: ContactProblem, p: ContactProblem) -> ContactProblem:
@@ -172,6 +177,7 @@ _UNITS, _DIRECTION, _FRICTION = "absolute units", "directions", "range of beta a
 _CACHE, _NYQUIST, _FULL, _LARGE = "operators by a short key", "Nyquist rows", "full contact", "large grids"
 _COS, _SIN = ("cos of the direction", "sector"), ("sin of the direction", "sector")
 _TAU, _N = ("tau",), ("elements",)
+_SMALL = 64
 
 
 def _pose(hook: Callable[[ContactProblem, ContactProblem], ContactProblem]) -> Callable[[], Compact]:

@@ -6,6 +6,7 @@ Names are the design's dimensions. Numbers are compared with thresholds; texts a
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable, Mapping
 from functools import cache
 from typing import Any
 
@@ -13,7 +14,11 @@ from verification.contestants.design import HEIGHT, Row, in_turn, rows, shape_of
 from verification.contestants.dimensions import PRESSURES
 from verification.contestants.iterations import ITERATIONS
 
-Trait = float | str | bool
+Trait = float | str | bool | None
+"""Value of a dimension; None where the problem has the dimension and no condition is to name it."""
+OF_SLIDING = ("c0", "direction")
+PARTS = ("edges", "modulus", "borders", *OF_SLIDING)
+"""Parts of a problem that its operators depend on, beside its shape."""
 
 
 def row_of(slug: str) -> Row | None:
@@ -65,6 +70,8 @@ def levels(slug: str) -> dict[str, Trait] | None:
         traits["iterations"] = float(iterations)
     if "changed" in row:
         traits["changed"] = str(row["changed"])
+    for part in PARTS[: None if _slides(row) else -len(OF_SLIDING)]:
+        traits[f"changed {part}"] = part in _changed_parts()[slug] or None
     return traits | (_of_sliding(row) if _slides(row) else {})
 
 
@@ -76,6 +83,43 @@ def _first_of_their_shapes() -> frozenset[str]:
         for number, row in enumerate(found, start=1):
             first.setdefault((shape_of(row), row["borders"]), f"design-{design}-{number:02}")
     return frozenset(slug for slug in first.values() if "-memory-" not in slug)
+
+
+@cache
+def _changed_parts() -> dict[str, frozenset[str]]:
+    """By slug: the parts in which alone a problem differs from an earlier one of its shape.
+
+    A memory that forgets such a part hands the operators of the earlier problem out again.
+    """
+    met: dict[tuple[Hashable, ...], set[Hashable]] = {}
+    changed: dict[str, frozenset[str]] = {}
+    for design, found in rows().items():
+        for number, base in enumerate(found, start=1):
+            slug = f"design-{design}-{number:02}"
+            for parts in (_parts(row, slug) for row in in_turn(base)):
+                others = {name: met.setdefault((name, *_without(name, parts)), set()) for name in PARTS}
+                new = {name for name in PARTS if others[name] - {parts[name]}}
+                changed[slug] = changed.get(slug, frozenset()) | new
+                for name in PARTS:
+                    others[name].add(parts[name])
+    return changed
+
+
+def _parts(row: Row, slug: str) -> dict[str, Hashable]:
+    """Shape and `PARTS` of a row; each problem has a direction of its own, drawn within its sector."""
+    slides, oblong = _slides(row), row.get("shape") in ("both", "oblong elements")
+    return {
+        "shape": shape_of(row),
+        "edges": (row["edge"], oblong),
+        "modulus": row["modulus"],
+        "borders": row["borders"],
+        "c0": row["coupling"] / row["modulus"] if slides else 0.0,
+        "direction": (slug, row["sector"]) if slides else None,
+    }
+
+
+def _without(name: str, parts: Mapping[str, Hashable]) -> tuple[Hashable, ...]:
+    return tuple(value for part, value in parts.items() if part != name)
 
 
 def _slides(row: Row) -> bool:

@@ -7,12 +7,12 @@ import itertools
 import pytest
 
 from verification.contestants import own
-from verification.contestants.campaign import caught
 from verification.contestants.covering import covering
 from verification.contestants.design import in_turn, posed, rows, shape_of
 from verification.contestants.dimensions import CHANGED, DESIGNS
 from verification.contestants.random_faults import SEEDS, random_fault
 from verification.contestants.suite import select
+from verification.contestants.trial import first_failure
 
 
 @pytest.mark.parametrize("name", DESIGNS)
@@ -51,4 +51,4 @@ def test_our_solver_meets_its_claim_in_every_problem() -> None:
 
 def test_a_random_fault_is_caught() -> None:
     fault = next(f for f in map(random_fault, SEEDS) if f.effect.startswith("load times"))
-    assert caught(fault, ["plain"]) is not None
+    assert first_failure(fault.fresh(), fault.when, "plain") is not None

@@ -71,19 +71,23 @@ def test_a_campaign_goes_on_where_its_log_ends(tmp_path: Path) -> None:
     assert first["caught"].startswith("design-")
     known = [first | {"effect": "kept from the log"}]
     log.write_text("".join(json.dumps(record) + "\n" for record in known), encoding="utf-8")
+    stale = first | {"fault": seeds[1], "caught": None, "code": "older"}
+    with log.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(stale) + "\n")
     records = run(seeds, log)
+    assert records[1]["caught"] is not None
     assert [r["effect"] for r in records] == ["kept from the log", random_fault(seeds[1]).effect]
-    assert len(log.read_text(encoding="utf-8").splitlines()) == 2
+    assert len(log.read_text(encoding="utf-8").splitlines()) == 3
 
 
 def test_the_summary_counts_and_names_survivors() -> None:
-    one = {"seed": 1, "effect": "e", "condition": "c", "error": 0.5, "claims": 1e6, "designs": []}
+    one = {"fault": 1, "effect": "e", "condition": "c", "error": 0.5, "claims": 1e6}
     found = summary(
         [
             one | {"caught": "design-plain-01"},
-            one | {"caught": None, "seed": 2},
+            one | {"caught": None, "fault": 2},
             one | {"caught": "design-other-03"},
-            one | {"error": 1e-6, "claims": 0.1, "caught": None, "seed": 3},
+            one | {"error": 1e-6, "claims": 0.1, "caught": None, "fault": 3},
         ]
     )
     assert (found["counted"], found["caught"], found["caught_first"]) == (3, 2, 1)

@@ -42,6 +42,26 @@ def test_dimensions_count_among_the_problems_that_have_them() -> None:
     assert short_list(failed)[0] == "changed = edge"
 
 
+def test_a_dimension_of_few_problems_does_not_hide_that_of_most_failures() -> None:
+    """The changed sector explains one failure: it once stood first, by a score among the memories alone."""
+    failed = {slug: bool(trait(slug, "beyond the gap")) for slug in SLUGS}
+    failed[next(slug for slug in SLUGS if trait(slug, "changed") == "sector")] = True
+    listed = short_list(failed)
+    assert listed[0] == "beyond the gap"
+    assert not any("changed" in each for each in listed)
+
+
+def test_a_part_that_alone_differs_from_an_earlier_problem_is_named() -> None:
+    """As by operators kept by a key without the direction, whatever the design."""
+    failed = {slug: bool(trait(slug, "changed direction")) for slug in SLUGS}
+    assert sum(failed[slug] for slug in SLUGS if "memory" not in slug) > 20
+    assert short_list(failed)[0] == "changed direction"
+    assert trait("design-plain-01", "changed edges") is None
+    turned = next(slug for slug in SLUGS if trait(slug, "changed") == "edge")
+    assert trait(turned, "changed edges") is True
+    assert trait(turned, "changed borders") is None
+
+
 def test_three_dimensions_are_listed_not_three_thresholds_of_one() -> None:
     small = {slug: float(trait(slug, "pressure over E*") or 0.0) > 1.0 for slug in SLUGS}
     assert short_list(small)[0] == "pressure over E* above 0.5"
