@@ -38,6 +38,7 @@ def run(options: argparse.Namespace) -> int:
     """Run the study and print the cost-accuracy table."""
     from refimpl.errors import InputError
     from refimpl.scene.scene_file import read_scene
+    from verification.framework.case import jsonable
     from verification.framework.files import Progress
     from verification.tradeoff.settings import inapplicable, settings
     from verification.tradeoff.study import TOLERANCES, study
@@ -54,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
         found = study(scene, options.scene, options.grids, options.reference, options.repeats, progress.tick)
     finally:
         progress.close()
-    emit(found, options.json, _table(found))
+    emit(jsonable(found), options.json, _table(found))
     return 0
 
 

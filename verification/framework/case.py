@@ -18,7 +18,7 @@ import numpy as np
 
 LONGEST_NOTE = 1000
 """Characters of somebody else's message that a note keeps."""
-SERIES_DIGITS = 9
+SERIES_DIGITS = 6
 MAP_DIGITS = 3
 """Digits of recorded numbers; for a map as many as 256 colours show."""
 MAP_SIZE = 1000
@@ -226,13 +226,13 @@ def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
 
 
 def jsonable(item: object) -> object:
-    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 9 digits, maps 3.
+    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 6 digits, maps 3.
 
     A map is a list of lists with at least `MAP_SIZE` numbers.
     Raises TypeError for anything that is not a number, a text, a mapping or a series of such.
 
     >>> jsonable({"x": np.array([1 / 3, np.nan])})
-    {'x': [0.333333333, None]}
+    {'x': [0.333333, None]}
     """
     return _jsonable(item, SERIES_DIGITS)
 

@@ -179,17 +179,17 @@ def test_a_result_is_json_whatever_the_data_holds() -> None:
             "tolerance_reason", "status", "seconds"} <= set(back)  # fmt: skip
 
 
-def test_data_keep_nine_digits_but_the_verdict_keeps_all() -> None:
+def test_data_keep_six_digits_but_the_verdict_keeps_all() -> None:
     result = declare(lambda: Measured(value=1 / 3, reference=1 / 3, data={"x": 1 / 3})).run()
     assert result.value == 1 / 3
-    assert result.data == {"x": 0.333333333}
+    assert result.data == {"x": 0.333333}
     with pytest.raises(TypeError):
         jsonable({1, 2})
 
 
-def test_a_map_is_recorded_with_three_digits_and_a_short_table_with_nine() -> None:
+def test_a_map_is_recorded_with_three_digits_and_a_short_table_with_six() -> None:
     assert jsonable(np.full((40, 25), 2 / 3)) == [[0.667] * 25] * 40
-    assert jsonable(np.full((40, 24), 2 / 3)) == [[0.666666667] * 24] * 40
+    assert jsonable(np.full((40, 24), 2 / 3)) == [[0.666667] * 24] * 40
 
 
 @pytest.mark.parametrize("failure", [RuntimeError, SystemExit, Unavailable])
