@@ -94,6 +94,8 @@ def points() -> list[Point]:
         *grid((10.0, 30.0), 50.0, 0.45),
         *grid(SLOPES, 100.0, 0.3),
         *grid((30.0,), 50.0, 0.45, (FLANK,), quality="full"),
+        *grid((30.0,), 20.0, 0.45, (CREST,), quality="full"),
+        *grid((30.0,), 20.0, 0.3, (0.125,), quality="full"),
     ]
     return list(dict.fromkeys(first + rest))
 

@@ -20,7 +20,7 @@ FAMILIES = [
 
 
 def error_and_differences(steps: tuple[float, ...], order: int, power: float) -> np.ndarray:
-    """Error of the limit of step^power, its change from the finest value, and from the coarse pair's limit."""
+    """Error of the limit of step^power; its change from the finest value, from the coarse pair's limit."""
     values = [np.array([step**power]) for step in steps]
 
     def limit(coarse: int, fine: int) -> float:
