@@ -162,17 +162,15 @@ class CoefficientMap:
         return cls(slope, wavelength, position, offset, kappa, constant, error)
 
 
-def interpolation_error(slope_deg: float, wavelength: float) -> tuple[float, float]:
+def interpolation_error(slope_deg: float) -> tuple[float, float]:
     """Return by how much the shipped map may be off between its nodes, in percentage points.
 
-    The first number is for the next elements (offsets -2 and 2), the second for all offsets up to 10.
-    Bounds ``0.01 + tan^2(slope) (c + (l / wavelength)^n)`` above the 33 first of 100 random points of case
-    appendix-fem/map-between-nodes: far offsets see short waves at many phases, and wavelengths are tabulated
-    a factor of two apart. The 0.01 are the finite elements' own error.
+    The first number is for the next elements (offsets -2 and 2), the second for all offsets, on waves of 8 to
+    300 half-widths. Bounds ``0.01 + c tan^2(slope)``, c a good half above the largest of 60 random points;
+    case appendix-fem/map-between-nodes judges them on 60 others. The 0.01 are the finite elements' own error.
     """
     square = math.tan(math.radians(slope_deg)) ** 2
-    near = 0.01 + square * (0.15 + (16.0 / wavelength) ** 2)
-    return near, 0.01 + square * (0.5 + (70.0 / wavelength) ** 1.2)
+    return 0.01 + 0.05 * square, 0.01 + 0.25 * square
 
 
 def check_ascending(**axes: tuple[float, ...]) -> None:

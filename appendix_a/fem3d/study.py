@@ -156,7 +156,7 @@ def load(path: Path) -> list[dict[str, object]]:
 def save(path: Path, command: str, rows: list[dict[str, object]]) -> None:
     """Replace the table in one step: a reader sees the old one or the new one."""
     part = path.with_suffix(".part")
-    lines = ",\n".join(json.dumps(line) for line in rows)
+    lines = ",\n".join(json.dumps(line, separators=(",", ":")) for line in rows)
     top = json.dumps(header(command), indent=1).removesuffix("\n}")
     part.write_text(f'{top},\n "points": [\n{lines}\n]}}\n')
     os.replace(part, path)
