@@ -23,6 +23,12 @@ EXAMPLES = {
     ),
     "conventions": (["33"], "centre of pressure at x = -0.046 mm, theta_x in front up to +0.088"),
     "small_slopes": (["32"], "a / R = 0.05: p_max +0.1 %\n...a / R = 0.33: p_max +6.3 %"),
+    "half_space_map": (["0.3"], "copper, flank, 10 degrees: 4.8 % on waves of 8 half-widths, 5.2 on 256"),
+    "half_space_wave": (
+        ["model_form"],
+        "15 degrees, approach under the load: 8.5 %, first order 9.3, stated 11.8\n"
+        "15 degrees, N at the approach: 14.2 %, first order 14.8, stated 19.1",
+    ),
     "direction_scan": (
         ["32", "2"],
         "2 directions, 2 converged\nmu from 0.1408 to 0.1411, Q/P from -0.0011 to +0.0011",

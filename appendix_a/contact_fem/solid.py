@@ -81,7 +81,11 @@ def asperity(amplitude: float, crest: float, nu: float, elements: int) -> Patch:
 
 
 def _stiffness(basis: Basis, nu: float) -> csc_matrix:
-    """lambda div u div v + 2 mu eps(u) : eps(v), unknowns (u_x; u_y; u_z)."""
+    """lambda div u div v + 2 mu eps(u) : eps(v), unknowns (u_x; u_y; u_z).
+
+    From six scalar forms: scikit-fem's `linear_elasticity` on an `ElementVector` is equal to rounding, and
+    needs twelve times as long on triquadratic hexahedra (12.3 s against 1.0 s at five elements).
+    """
     lam, mu = lame(nu)
 
     def product(i: int, j: int) -> csc_matrix:

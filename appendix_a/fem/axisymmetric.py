@@ -18,7 +18,7 @@ from scipy.special import ellipe, ellipkm1
 from skfem import BilinearForm
 
 from appendix_a.errors import InputError, real, reals
-from appendix_a.fem.body import Body, lagrange, solve_fixed
+from appendix_a.fem.body import Body, solve_fixed
 from appendix_a.fem.departure import LEVELS, ORDER
 from appendix_a.fem.elasticity import lame
 from appendix_a.fem.geometry import Boundary, bend, cap_boundary, flat, ridge_boundary
@@ -63,16 +63,8 @@ class Axisymmetric(Body):
 
     @cached_property
     def load(self) -> Array:
-        """Consistent nodal forces (2, n), (r; z), of the patch's pressure; inward normal (-dz, dr)."""
-        nodes = self.edge_nodes(self.strip)
-        r, z = self.basis.doflocs[:, nodes]
-        t, weights = np.polynomial.legendre.leggauss(2 * self.order)
-        shape, slope = lagrange(self.order, (1.0 + t) / 2)
-        ring = weights[:, None] / 2 * (shape.T @ r)
-        forces = np.zeros((2, self.basis.N))
-        np.add.at(forces[0], nodes, -shape @ (ring * (slope.T @ z)))
-        np.add.at(forces[1], nodes, shape @ (ring * (slope.T @ r)))
-        return forces
+        """Consistent nodal forces (2, n), (r; z), of the patch's pressure."""
+        return self.pressed(lambda r: r)
 
     def stiffness(self, nu: float) -> csc_matrix:
         """lambda div u div v + 2 mu eps(u) : eps(v), div u = u_r,r + u_r / r + u_z,z; unknowns (u_r; u_z)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
-from skfem import Basis, ElementTriP2, ElementTriP4, MeshTri, MeshTri2
+from skfem import Basis, ElementTriP2, ElementTriP4, FacetBasis, LinearForm, MeshTri, MeshTri2, condense
 from skfem.element import ElementTriP3
 
 Array = NDArray[np.float64]
@@ -49,6 +50,21 @@ class Body:
         """Scalar basis, one per displacement component."""
         return Basis(self.mesh, ELEMENTS[self.order](), intorder=2 * self.order)
 
+    def pressed(self, weight: Callable[[Array], Array] = np.ones_like) -> Array:
+        """Consistent nodal forces (2, n) of unit pressure on the strip, times `weight` of the abscissae.
+
+        Pressure acts against the outward normal; exact on the mesh's quadratic sides.
+        """
+        sides = FacetBasis(
+            self.mesh,
+            ELEMENTS[self.order](),
+            facets=self.strip,
+            intorder=2 * self.order,
+            dofs=self.basis.dofs,
+        )
+        forms = [LinearForm(lambda v, w, i=i: -w.n[i] * v * weight(w.x[0])) for i in (0, 1)]
+        return np.array([form.assemble(sides) for form in forms])
+
     def edge_nodes(self, facets: Numbers) -> Numbers:
         """(order + 1, m) nodes of surface facets, from left to right, equally spaced in the parameter."""
         dofs = self.basis.dofs
@@ -65,7 +81,10 @@ class Body:
         return np.asarray(self.basis.get_dofs(facets).all(), dtype=np.int64)
 
     def surface_values(self, u: Array, x: Array) -> Array:
-        """Values of a nodal field u (n,) on the rough boundary at abscissae x (m,)."""
+        """Values of a nodal field u (n,) on the rough boundary at abscissae x (m,).
+
+        By the sides' own parameter: scikit-fem's `interpolator` and `probes` refuse curved meshes.
+        """
         nodes = self.edge_nodes(self.surface)
         where = self.basis.doflocs[0][nodes]
         edge = np.clip(np.searchsorted(where[0], x, side="right") - 1, 0, len(self.surface) - 1)
@@ -96,14 +115,13 @@ def solve_fixed(
     matrix: csc_matrix, load: Array, fixed: Numbers, values: Array, *, definite: bool = True
 ) -> Array:
     """Solution of matrix u = load with u[fixed] = values; a `definite` matrix needs no pivoting."""
-    u = np.zeros(matrix.shape[0])
-    u[fixed] = values
-    free = np.setdiff1d(np.arange(len(u)), fixed)
-    inner = matrix[free][:, free]
+    start = np.zeros(matrix.shape[0])
+    start[fixed] = values
+    inner, right, u, free = condense(matrix, load, x=start, D=fixed)
     if definite:
         options = {"SymmetricMode": True}
-        factor = splu(inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        factor = splu(csc_matrix(inner), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     else:
-        factor = splu(inner)
-    u[free] = factor.solve((load - matrix @ u)[free])
-    return u
+        factor = splu(csc_matrix(inner))
+    u[free] = factor.solve(right)
+    return np.asarray(u, dtype=np.float64)

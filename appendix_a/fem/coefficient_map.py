@@ -26,6 +26,7 @@ from appendix_a.leading_order import coupling
 Array = NDArray[np.float64]
 VERSION = 1
 CUBIC = 4  # nodes that a cubic spline needs
+DECIMALS = 5  # of the table: 0.001 percentage points at 30 degrees
 COMMAND = "rough-friction appendix-a map"
 AXES = ("slope_deg", "wavelength", "position", "offset")
 ARRAYS = ("kappa_part", "constant_part", "error_percentage_points")
@@ -65,18 +66,20 @@ class CoefficientMap:
             raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
         tangent = math.tan(math.radians(slope_deg))
         smallest = math.tan(math.radians(self.slope_deg[0]))
-        where = max(tangent, smallest), math.log(min(wavelength, self.wavelength[-1]))
+        where = max(tangent, smallest), 1.0 / min(wavelength, self.wavelength[-1])
         rest_a, rest_b = (self._rest(part, where, position) for part in (self.kappa_part, self.constant_part))
         rest = tangent**2 * (1.0 + nu) * ((3.0 - 4.0 * nu) * rest_a + rest_b)
         climb = height_change(slope_deg, wavelength, position, np.array(self.offset))
         return rest - coupling(nu) * climb
 
     def _rest(self, part: Array, where: tuple[float, float], position: float) -> Array:
-        """Splines over slope and wavelength, then the trigonometric polynomial through the positions (m,)."""
-        values = part
-        axes = (np.tan(np.radians(self.slope_deg)), np.log(self.wavelength))
-        for axis, point in zip(axes, where, strict=True):
-            values = make_interp_spline(axis, values)(point)
+        """Splines over slope and wavenumber, then the trigonometric polynomial through the positions (m,).
+
+        An offset x sees the waves at the phase 2 pi x / wavelength: over 1 / wavelength all repeat evenly.
+        """
+        along_slope = make_interp_spline(np.tan(np.radians(self.slope_deg)), part)(where[0])
+        rising = slice(None, None, -1)
+        values = make_interp_spline(1.0 / np.array(self.wavelength)[rising], along_slope[rising])(where[1])
         # 1 - position reverses the offsets: the other half of the turn
         turn = np.concatenate([values, values[-2:0:-1, ::-1]])
         order = len(turn) // 2
@@ -132,10 +135,10 @@ class CoefficientMap:
             "stated_error_percentage_points": float(self.error_percentage_points.max()),
         }
         arrays = {
-            key: np.round(value, 7).tolist() if isinstance(value, np.ndarray) else value
+            key: np.round(value, DECIMALS).tolist() if isinstance(value, np.ndarray) else value
             for key, value in asdict(self).items()
         }
-        path.write_text(json.dumps(document | arrays, indent=None) + "\n")
+        path.write_text(json.dumps(document | arrays, separators=(",", ": ")) + "\n")
 
     @classmethod
     def read(cls, path: Path) -> CoefficientMap:
@@ -159,17 +162,15 @@ class CoefficientMap:
         return cls(slope, wavelength, position, offset, kappa, constant, error)
 
 
-def interpolation_error(slope_deg: float, wavelength: float) -> tuple[float, float]:
+def interpolation_error(slope_deg: float) -> tuple[float, float]:
     """Return by how much the shipped map may be off between its nodes, in percentage points.
 
-    The first number is for the next elements (offsets -2 and 2), the second for all offsets up to 10.
-    Bounds ``0.01 + tan^2(slope) (c + (l / wavelength)^n)`` above the 33 first of 100 random points of case
-    appendix-fem/map-between-nodes: far offsets see short waves at many phases, and wavelengths are tabulated
-    a factor of two apart. The 0.01 are the finite elements' own error.
+    The first number is for the next elements (offsets -2 and 2), the second for all offsets, on waves of 8 to
+    300 half-widths. Bounds ``0.01 + c tan^2(slope)``, c a good half above the largest of 60 random points;
+    case appendix-fem/map-between-nodes judges them on 60 others. The 0.01 are the finite elements' own error.
     """
     square = math.tan(math.radians(slope_deg)) ** 2
-    near = 0.01 + square * (0.15 + (16.0 / wavelength) ** 2)
-    return near, 0.01 + square * (0.5 + (70.0 / wavelength) ** 1.2)
+    return 0.01 + 0.05 * square, 0.01 + 0.25 * square
 
 
 def check_ascending(**axes: tuple[float, ...]) -> None:

@@ -16,10 +16,11 @@ from appendix_a.fem.coefficient_map import CoefficientMap, check_ascending, heig
 from appendix_a.fem.sinusoid import departures
 
 Array = NDArray[np.float64]
-SLOPES_DEG = (2.5, 6.5, 10.0, 15.0, 20.0, 30.0)
-WAVELENGTHS = (8.0, 16.0, 32.0, 64.0, 128.0, 256.0)
-POSITIONS = (0.0, 0.125, 0.25, 0.375, 0.5)
-OFFSETS = (-20.0, -10.0, -8.0, -6.0, -4.0, -2.0, 2.0, 4.0, 6.0, 8.0, 10.0, 20.0)  # centres of other elements
+SLOPES_DEG = (2.5, 10.0, 17.5, 25.0, 30.0)
+WAVELENGTHS = (8.0, 9.0, 11.0, 14.0, 18.0, 25.0, 40.0, 72.0, 256.0)  # dense where 1 / wavelength is large
+POSITIONS = tuple(k / 12 for k in range(7))
+OFFSETS = (-10.0, -8.0, -6.0, -4.0, -2.0, 2.0, 4.0, 6.0, 8.0, 10.0)  # centres of other elements
+STEEP = 20.0  # degrees; beyond, meshes are one level finer
 JUDGED_NU = (0.0, 0.3, 0.5)  # the error is linear in kappa too, so its ends bound it
 
 
@@ -81,8 +82,7 @@ def _batch(job: tuple[float, float, tuple[float, ...]]) -> tuple[Array, Array, A
 def _geometry(slope: float, wavelength: float, position: float) -> tuple[Array, Array, float]:
     """A and B (m,) beyond the first order over tan(slope)^2, and the error in percentage points."""
     offsets = np.array(OFFSETS)
-    easy = wavelength > 16.0 and slope < 25.0  # short waves bend the strip itself
-    levels = (0, 1, 2) if easy else (1, 2, 3)
+    levels = (0, 1, 2) if slope < STEEP else (1, 2, 3)
     solved = departures(slope, wavelength, position, offsets, levels)
     at_zero, at_half = solved.meshes[-1].at(0.0), solved.meshes[-1].at(0.5) / 1.5
     kappa_part = (at_zero - at_half) / 2.0  # kappa = 3 and 1

@@ -1,4 +1,4 @@
-"""Influence coefficients on a wavy surface against the flat ones, each with what is uncertain about it."""
+"""Influence coefficients on a wavy surface against the flat ones, each with a bound on its error."""
 
 from __future__ import annotations
 
@@ -17,10 +17,12 @@ Array = NDArray[np.float64]
 
 LABELS = ("self", "+x 1", "+x 2", "+x 3", "-x 1", "-x 2", "-x 3", "across 1", "across 2", "across 3")
 RADIUS_LEVEL = 2  # the mesh on which they are compared: four quadratic elements a wave
-# Observed: 3 at the neighbours, 3 to 5 under the load; the jump of pressure limits it
+# Maximum-norm order of quadratics where the solution is smooth; observed: 3 at the neighbours, 3 to 5 under
+# the load. At the edges of the load strains are logarithmic; no point is there, and their part is h^4
 MESH_ORDER = 3
 # A displacement prescribed at R is wrong by a dipole, 1/R^2, and moves the origin by as much
 RADIUS_ORDER = 2
+SAFETY = 1.25  # Roache's factor for three grids (1998, section 5.9)
 
 
 class Quality(StrEnum):
@@ -52,9 +54,10 @@ class Coefficients3D:
     """Vertical displacements at the loaded element's centre and at its neighbours' 1, 2 and 3 elements away.
 
     Arrays (10,) in the order of LABELS: self, +x (downhill on the flank 0.25), -x, across. `flat`: exact
-    flat coefficients in units of p a / E; `error`: wavy / flat - 1; `discretisation`, `truncation`: what
-    is uncertain about `error`, as fractions of flat; `flat_error`: finest mesh against exact on the flat
-    surface; `residual`: the largest of the linear solutions'; `elements`: of the finest mesh.
+    flat coefficients in units of p a / E; `error`: wavy / flat - 1; `discretisation`, `truncation`: bounds
+    on the parts of its error from the mesh and from the outer boundary, as fractions of flat; `flat_error`:
+    finest mesh against exact on the flat surface; `residual`: the largest of the linear solutions';
+    `elements`: of the finest mesh.
     """
 
     flat: Array
@@ -154,14 +157,17 @@ def coefficients(
 
 
 def extrapolated(values: list[Array], steps: list[float], order: int) -> tuple[Array, Array]:
-    """Limit of three values at falling `steps`, as of order `order`, and its uncertainty.
+    """Limit of three values at falling `steps`, as of order `order`, and a bound on its error.
 
-    Uncertain by the larger of what is added to the last value and what the limit moved since the first pair.
+    With `last` the limit from the second and the third value, the bound is `SAFETY` times the larger of
+    |last - third value| (Roache's grid convergence index) and |last - limit of the first and second value|.
+    For `values = L + a step^p + b step^q` with any a and b it is a bound where p >= 2.5 and q >= p + 0.25,
+    and on outer boundaries (order 2) where p >= 2 (tests/appendix_a/test_fem3d_bound.py).
 
     >>> series = [np.array([1.0 + step**2]) for step in (1.0, 0.5, 0.25)]
     >>> limit, error = extrapolated(series, [1.0, 0.5, 0.25], order=2)
     >>> float(limit[0]), float(error[0])
-    (1.0, 0.0625)
+    (1.0, 0.078125)
     """
 
     def limit(coarse: int, fine: int) -> Array:
@@ -170,7 +176,7 @@ def extrapolated(values: list[Array], steps: list[float], order: int) -> tuple[A
         return result
 
     last = limit(1, 2)
-    return last, np.maximum(np.abs(last - values[2]), np.abs(last - limit(0, 1)))
+    return last, SAFETY * np.maximum(np.abs(last - values[2]), np.abs(last - limit(0, 1)))
 
 
 def _check(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from skfem import Basis
+from skfem import Basis, LinearForm
 
 from appendix_a.fem3d.space import Space
 from appendix_a.fem3d.wavy import Waviness
@@ -92,11 +92,13 @@ def patch_load(space: Space, surface: Waviness, edges: tuple[float, float]) -> A
     Pressure on a facet passes (dz/dx, dz/dy, -1) per projected area.
     """
     basis = space.top(edges)
-    x, y, _ = np.asarray(basis.global_coordinates())
-    along, across = surface.gradient(x, y)
-    nodes = space.tensor_index[basis.element_dofs]
+    tractions = (
+        lambda x, y: surface.gradient(x, y)[0],
+        lambda x, y: surface.gradient(x, y)[1],
+        lambda x, y: -np.ones_like(x),
+    )
     forces = np.zeros((3, space.nodes))
-    for direction, traction in enumerate((along, across, -np.ones_like(x))):
-        for at, shape in zip(nodes, basis.basis, strict=True):
-            np.add.at(forces[direction], at, np.sum(traction * np.asarray(shape[0]) * basis.dx, axis=1))
+    for direction, traction in enumerate(tractions):
+        form = LinearForm(lambda v, w, traction=traction: traction(w.x[0], w.x[1]) * v)
+        forces[direction, space.tensor_index] = form.assemble(basis)
     return forces.reshape(3, *space.shape)

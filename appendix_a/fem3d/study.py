@@ -94,6 +94,8 @@ def points() -> list[Point]:
         *grid((10.0, 30.0), 50.0, 0.45),
         *grid(SLOPES, 100.0, 0.3),
         *grid((30.0,), 50.0, 0.45, (FLANK,), quality="full"),
+        *grid((30.0,), 20.0, 0.45, (CREST,), quality="full"),
+        *grid((30.0,), 20.0, 0.3, (0.125,), quality="full"),
     ]
     return list(dict.fromkeys(first + rest))
 
@@ -154,7 +156,7 @@ def load(path: Path) -> list[dict[str, object]]:
 def save(path: Path, command: str, rows: list[dict[str, object]]) -> None:
     """Replace the table in one step: a reader sees the old one or the new one."""
     part = path.with_suffix(".part")
-    lines = ",\n".join(json.dumps(line) for line in rows)
+    lines = ",\n".join(json.dumps(line, separators=(",", ":")) for line in rows)
     top = json.dumps(header(command), indent=1).removesuffix("\n}")
     part.write_text(f'{top},\n "points": [\n{lines}\n]}}\n')
     os.replace(part, path)

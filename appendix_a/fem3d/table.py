@@ -137,7 +137,7 @@ def write(path: Path, rows: Sequence[dict[str, Any]]) -> None:
         "units": "lengths in half the element edge; slope_deg: maximum slope; errors: fraction of flat",
         "provenance": "python -m appendix_a.fem3d.study, condensed by python -m appendix_a.fem3d.table",
     }
-    lines = ",\n".join(json.dumps(row) for row in condensed(rows))
+    lines = ",\n".join(json.dumps(row, separators=(",", ":")) for row in condensed(rows))
     top = json.dumps(head, indent=1).removesuffix("\n}")
     path.write_text(f'{top},\n "points": [\n{lines}\n]}}\n', encoding="utf-8")
 

@@ -8,24 +8,20 @@ strip's own centre, in units of ``p a / E``, because a plane displacement has no
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from importlib import resources
-from typing import Any
 
 import numpy as np
-from scipy.interpolate import BSpline, RegularGridInterpolator, make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.model.materials import Material, Pair
 from refimpl.model.slopes import Slopes
+from refimpl.solution.coefficient_tables import PLANE, shipped_table
 from refimpl.solution.influence_error_3d import element_error, steepest_tabulated
 
-_VERSION = 1
-_AXES = ("slope_deg", "wavelength", "position", "offset")
 _NEIGHBOUR = 2.0  # offset of the next element in half-widths
 
 
@@ -152,14 +148,17 @@ def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
 
 @lru_cache(maxsize=16)
 def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> BSpline:
-    """The table's parts there over the tangent of the slope, linear between the table's slopes."""
-    at = np.array(positions)
-    tangents = _rest().grid[0]
-    points = np.empty((len(tangents), len(at), 3))
-    points[..., 0] = tangents[:, None]
-    points[..., 1] = math.log(wavelength)
-    points[..., 2] = np.minimum(at, 1 - at)
-    return make_interp_spline(tangents, _rest()(points), k=1)
+    """The table's parts there over the tangent of the slope: cubic splines, harmonics in the position."""
+    crest_to_valley = np.moveaxis(_over_wavenumber()(1 / wavelength), 1, 0)
+    # 1 - position changes the neighbours' places: the other half of the turn
+    turn = np.concatenate([crest_to_valley, crest_to_valley[-2:0:-1][..., [1, 0, 3, 2]]])
+    harmonics = np.fft.rfft(turn, axis=0) / len(turn)
+    weights = np.full(len(harmonics), 2.0)
+    weights[[0, -1]] = 1.0
+    at = np.minimum(positions, 1 - np.array(positions))
+    phases = np.exp(2j * math.pi * at[:, None] * np.arange(len(weights)))
+    parts = np.real(np.tensordot(weights * phases, harmonics, axes=1))
+    return make_interp_spline(np.tan(np.radians(_table()["slope_deg"])), np.moveaxis(parts, 0, 1))
 
 
 def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, parts: Array) -> Array:
@@ -179,42 +178,19 @@ def _flat(nu: float) -> float:
     return -2 * (1 - nu**2) / math.pi * ((x + 1) * math.log(x + 1) - (x - 1) * math.log(x - 1))
 
 
-def read_table(text: str) -> dict[str, Any]:
-    """Return the table of a JSON text, ``coefficient_error.json``.
+@cache
+def _table() -> dict[str, Array]:
+    return shipped_table(PLANE)
 
-    Raises `InputError` for another version, for axes that do not rise, hold fewer than two values or do not
-    span half a period of positions, for missing neighbours, and for parts of another shape.
+
+@cache
+def _over_wavenumber() -> BSpline:
+    """Both parts of the rest at both neighbours over 1 / wavelength, ``(slopes, positions, 4)``.
+
+    Waves of one offset and place repeat over the wavenumber, and not over the wavelength's logarithm.
     """
-    table: dict[str, Any] = json.loads(text)
-    if table.get("version") != _VERSION:
-        raise InputError("coefficient_error.json", table.get("version"), f"version {_VERSION}")
-    for name in _AXES:
-        values = table.get(name)
-        if not isinstance(values, list) or len(values) < 2 or not np.all(np.diff(values) > 0):
-            raise InputError(name, values, "two rising values at least")
-    if (table["position"][0], table["position"][-1]) != (0.0, 0.5):
-        raise InputError("position", table["position"], "positions from 0 (crest) to 0.5 (valley)")
-    if not {-_NEIGHBOUR, _NEIGHBOUR} <= set(table["offset"]):
-        raise InputError("offset", table["offset"], "both neighbours, -2 and 2, among the offsets")
-    shape = tuple(len(table[name]) for name in _AXES)
-    for part in ("kappa_part", "constant_part"):
-        found = np.shape(table.get(part, ()))
-        if found != shape:
-            raise InputError(part, found, f"the shape of its axes, {shape}")
-    return table
-
-
-@cache
-def _table() -> dict[str, Any]:
-    file = resources.files("refimpl").joinpath("data", "coefficient_error.json")
-    return read_table(file.read_text(encoding="utf-8"))
-
-
-@cache
-def _rest() -> RegularGridInterpolator:
-    """Both parts of the rest at both neighbours over (tan slope, ln wavelength, position)."""
     table = _table()
-    neighbours = [table["offset"].index(side * _NEIGHBOUR) for side in (-1, 1)]
-    values = [np.array(table[part])[..., neighbours] for part in ("kappa_part", "constant_part")]
-    axes = (np.tan(np.radians(table["slope_deg"])), np.log(table["wavelength"]), np.array(table["position"]))
-    return RegularGridInterpolator(axes, np.concatenate(values, axis=-1))
+    neighbours = [int(np.flatnonzero(table["offset"] == side * _NEIGHBOUR)[0]) for side in (-1, 1)]
+    parts = np.concatenate([table[part][..., neighbours] for part in PLANE.arrays], axis=-1)
+    rising = slice(None, None, -1)
+    return make_interp_spline(1 / table["wavelength"][rising], np.moveaxis(parts, 1, 0)[rising])

@@ -10,20 +10,17 @@ the self coefficient and those across are off by up to twice as much (tests of t
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 
 import numpy as np
 
-from refimpl.errors import InputError, require_number
+from refimpl.errors import require_number
 from refimpl.grid import Array
 from refimpl.model.materials import Material
+from refimpl.solution.coefficient_tables import SPACE, shipped_table
 
-_VERSION = 1
-_WAVELENGTH = 20.0
 _POSITIONS = (0.0, 0.25, 0.5)  # crest, flank, valley as the lower body sees them
 _MIRRORED = [0, 4, 5, 6, 1, 2, 3, 7, 8, 9]  # +x and -x change places
 
@@ -87,32 +84,8 @@ def _error(slope: float, nu: float, slopes: Array, ratios: Array, errors: Array)
     return found
 
 
-def read_table(text: str) -> tuple[Array, Array, Array]:
-    """Return slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient].
-
-    ``text`` is the JSON of ``coefficient_error_3d.json``; of its points only projected ridges of wavelength
-    20 count, at slopes that were computed for all ratios and positions. Raises `InputError` for another
-    version.
-    """
-    table = json.loads(text)
-    if table["version"] != _VERSION:
-        raise InputError("coefficient_error_3d.json", table["version"], f"version {_VERSION}")
-    rows = {
-        (row["nu"], row["position"], row["slope_deg"]): row["error"]
-        for row in table["points"]
-        if (row["wavelength"], row["kind"], row["width"]) == (_WAVELENGTH, "ridge", "projected")
-    }
-    ratios = sorted({nu for nu, _, _ in rows})
-    slopes = sorted(
-        slope
-        for slope in {slope for _, _, slope in rows}
-        if all((nu, place, slope) in rows for nu in ratios for place in _POSITIONS)
-    )
-    errors = [[[rows[nu, place, slope] for slope in slopes] for place in _POSITIONS] for nu in ratios]
-    return np.array(slopes), np.array(ratios), np.array(errors)
-
-
 @cache
 def _table() -> tuple[Array, Array, Array]:
-    file = resources.files("refimpl").joinpath("data", "coefficient_error_3d.json")
-    return read_table(file.read_text(encoding="utf-8"))
+    """Slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
+    table = shipped_table(SPACE)
+    return table["slope_deg"], table["nu"], table["error"]

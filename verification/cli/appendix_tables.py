@@ -63,7 +63,7 @@ def look_up(options: argparse.Namespace) -> int:
     else:
         percent = table.pair_percent(*where, (options.E, options.nu), upper)
     own = float(table.error_percentage_points.max())
-    near, far = (own + error for error in interpolation_error(options.slope_deg, options.wavelength))
+    near, far = (own + error for error in interpolation_error(options.slope_deg))
     rows = [["offset", "wavy over flat (%)"]]
     rows += [[f"{x:g}", f"{value:+.3f}"] for x, value in zip(table.offset, percent, strict=True)]
     document = {

@@ -31,7 +31,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "appendix_a": ("appendix_a",),
     "appendix_a_3d": ("appendix_a/fem3d",),
     "appendix_a_fem3d": ("appendix_a",),
-    "appendix_a_map": ("appendix_a/fem",),
+    "appendix_a_map": ("appendix_a/fem", "refimpl/data"),
     "appendix_correction": (*SOLVES, "appendix_a"),
     "benchmarks": (*SOLVES, "verification/benchmarks"),
     "chaos": (*SOLVES, "verification/chaos", "verification/sweep"),

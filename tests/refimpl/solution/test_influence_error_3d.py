@@ -7,7 +7,6 @@ import math
 from dataclasses import FrozenInstanceError, astuple
 from importlib import resources
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ from appendix_a.fem3d.leading_order import first_order
 from appendix_a.fem3d.patch import normal_coefficient
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.wavy import Waviness
-from refimpl.solution.influence_error_3d import element_error, read_table
+from refimpl.solution.influence_error_3d import element_error
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RIGID = rf.Material(E=1e22, nu=0.3)
@@ -127,22 +126,6 @@ def test_pairs() -> None:
         astuple(element_error(slope, COPPER))
     )
     assert element_error(slope, STEEL, STEEL).in_line < 0.2 * element_error(slope, STEEL).in_line
-
-
-@pytest.mark.parametrize("points", [TABLE["points"], TABLE["points"][::-1]], ids=["filed", "reversed"])
-def test_only_projected_ridges_of_the_standard_length_count(points: list[dict[str, Any]]) -> None:
-    """Wherever egg-boxes, facets and longer waves stand in the file."""
-    slopes, ratios, errors = read_table(json.dumps(TABLE | {"points": points}))
-    assert slopes.tolist() == [2.5, 6.5, 10.0, 15.0, 20.0, 30.0]
-    assert ratios.tolist() == [0.0, 0.3, 0.45]
-    expected = [[[row(d, nu, at) for d in slopes] for at in (0.0, 0.25, 0.5)] for nu in ratios]
-    np.testing.assert_array_equal(errors, expected)
-
-
-@pytest.mark.parametrize("version", [0, 2])
-def test_a_table_of_another_version_is_refused(version: int) -> None:
-    with pytest.raises(rf.InputError, match=rf"coefficient_error_3d\.json = {version}: expected version 1"):
-        read_table(json.dumps(TABLE | {"version": version}))
 
 
 @pytest.mark.parametrize("slope", [-0.1, -1e-9, 0.5237, 0.53, math.nan])

@@ -30,21 +30,19 @@ def shipped_map() -> CoefficientMap:
 @case(
     "appendix-fem/six-map-points",
     title="Six points of the shipped map, solved afresh between its nodes",
-    claim="the map, interpolated, gives the coefficients to 0.05 percentage points on waves of 40 "
-    "half-widths and more",
+    claim="the map, interpolated, gives the coefficients to 0.05 percentage points, on short waves as well",
     source="refimpl/data/coefficient_error.json",
     metric="at_most",
     tolerance=0.05,
-    tolerance_reason="0.011 stated by the map, and the splines' error between nodes; measured 0.03",
+    tolerance_reason="0.02 stated by the map, and the splines' error between nodes; measured 0.035",
     tags=("appendix-a", "fem", "map"),
 )
 def six_map_points() -> Measured:
     table = shipped_map()
     offsets = np.array(table.offset)
-    near = np.abs(offsets) <= 10.0
     points = (
-        (4.0, 40.0, 0.25, 0.3),
         (8.0, 90.0, 0.2, 0.3),
+        (25.0, 11.0, 0.07, 0.45),
         (12.0, 50.0, 0.05, 0.0),
         (12.0, 45.0, 0.45, 0.4999),
         (18.0, 64.0, 0.3, 0.2),
@@ -52,33 +50,33 @@ def six_map_points() -> Measured:
     )
     errors = []
     for slope, wavelength, position, nu in points:
-        reach = 3 * wavelength
+        reach = max(3 * wavelength, 40.0)
         boundary = sinusoid_boundary(slope, wavelength, position, reach)
-        fresh = departure(setup_for(wavelength, reach), 1, boundary, offsets[near]).at(nu)
-        looked_up = table.departure(slope, wavelength, position, nu)[near]
-        errors.append(float(np.max(np.abs(percent(looked_up - fresh, nu, offsets[near])))))
+        fresh = departure(setup_for(wavelength, reach), 1, boundary, offsets).at(nu)
+        looked_up = table.departure(slope, wavelength, position, nu)
+        errors.append(float(np.max(np.abs(percent(looked_up - fresh, nu, offsets)))))
     data = {"slope, wavelength, position, nu": [list(p) for p in points], "error, percentage points": errors}
     return Measured(value=max(errors), unit="percentage points", data=data)
 
 
-RANDOM_POINTS, SEED = 100, 39  # the seed was chosen before any point was computed
+RANDOM_POINTS, DRAWN_FROM, SEED = 120, 60, 2001  # the seed was chosen before any point was computed
 
 
 @case(
     "appendix-fem/map-between-nodes",
-    title="The shipped map at 100 random points",
-    claim="what is stated of interpolation holds: next elements, and all offsets up to 10",
+    title="The shipped map between its nodes, at 60 random points that its stated error was not drawn from",
+    claim="what is stated of interpolation holds on waves of 8 to 300 half-widths: next elements, and all",
     source="refimpl/data/coefficient_error.json; appendix_a.fem.coefficient_map.interpolation_error",
     metric="at_most",
     tolerance=1.0,
-    tolerance_reason="error over stated error, the largest; the bounds were drawn above the first 33 points",
+    tolerance_reason="error over stated error, the largest; the bounds were drawn above 60 other points",
     tier="full",
     tags=("appendix-a", "fem", "map"),
 )
 def map_between_nodes() -> Measured:
     table = shipped_map()
     offsets = np.array(table.offset)
-    near, beside = np.abs(offsets) <= 10.0, np.abs(offsets[np.abs(offsets) <= 10.0]) == 2.0
+    beside = np.abs(offsets) == 2.0
     rng = np.random.default_rng(SEED)
     points, errors, stated = [], [], []
     for _ in range(RANDOM_POINTS):
@@ -86,19 +84,26 @@ def map_between_nodes() -> Measured:
         position, nu = rng.uniform(0, 1), rng.uniform(0, 0.4999)
         reach = max(3 * wavelength, 40.0)
         boundary = sinusoid_boundary(slope, wavelength, position, reach)
-        fresh = departure(setup_for(wavelength, reach), 1, boundary, offsets[near]).at(nu)
-        looked_up = table.departure(slope, wavelength, position, nu)[near]
-        error = np.abs(percent(looked_up - fresh, nu, offsets[near]))
+        fresh = departure(setup_for(wavelength, reach), 1, boundary, offsets).at(nu)
+        looked_up = table.departure(slope, wavelength, position, nu)
+        error = np.abs(percent(looked_up - fresh, nu, offsets))
         points.append([round(x, 3) for x in (slope, wavelength, position, nu)])
         errors.append([round(float(e), 4) for e in (error[beside].max(), error.max())])
-        stated.append(interpolation_error(slope, wavelength))
+        stated.append(interpolation_error(slope))
     ratio = np.array(errors) / np.array(stated)
+    judged = ratio[DRAWN_FROM:]
     data = {
         "slope, wavelength, position, nu": points,
         "error of the next elements, of all (points)": errors,
-        "error over stated: median": np.median(ratio, axis=0).tolist(),
+        "error over stated, points drawn from: median": np.median(ratio[:DRAWN_FROM], axis=0).tolist(),
+        "error over stated, points drawn from: largest": ratio[:DRAWN_FROM].max(axis=0).tolist(),
+        "error over stated, points judged on: median": np.median(judged, axis=0).tolist(),
+        "error over stated, points judged on: largest": judged.max(axis=0).tolist(),
     }
-    return Measured(value=float(ratio.max()), data=data)
+    return Measured(value=float(judged.max()), data=data)
+
+
+CREST_FLANK_VALLEY = (0.0, 0.25, 0.5)
 
 
 def _two_percent_slopes(table: CoefficientMap, position: float, nu: float) -> list[float | None]:
@@ -137,8 +142,9 @@ def two_percent() -> Measured:
 
 @case(
     "appendix-fem/map",
-    title="The whole plane map, solved afresh",
-    claim="every point of the map is known to 0.02 percentage points, and the shipped table is this map",
+    title="The plane map on crest, flank and valley, solved afresh",
+    claim="these points are known to 0.02 percentage points, so is every other by the table's own "
+    "statement; the shipped table is this map",
     source="appendix_a.fem.map2d",
     metric="at_most",
     tolerance=POINTS,
@@ -148,14 +154,15 @@ def two_percent() -> Measured:
 )
 def whole_map() -> Measured:
     start = time.perf_counter()
-    fresh, shipped = compute(), shipped_map()
+    fresh, shipped = compute(positions=CREST_FLANK_VALLEY), shipped_map()
     seconds = time.perf_counter() - start
+    at = [shipped.position.index(position) for position in CREST_FLANK_VALLEY]
     parts = [(fresh.kappa_part, shipped.kappa_part), (fresh.constant_part, shipped.constant_part)]
-    # the table has seven decimals; other machines round the solves differently
-    drift = max(float(np.max(np.abs(new - old))) for new, old in parts)
+    # the table has five decimals; other machines round the solves differently
+    drift = max(float(np.max(np.abs(new - old[:, :, at]))) for new, old in parts)
     if drift > 1e-5:
         raise ValueError(f"the shipped table differs from the fresh one by {drift:.2g}")
-    stated = fresh.error_percentage_points
+    stated, everywhere = fresh.error_percentage_points, shipped.error_percentage_points
     data = {
         "seconds, two processes": [seconds],
         "geometries": [stated.size],
@@ -163,7 +170,8 @@ def whole_map() -> Measured:
         "stated error by slope": stated.max(axis=(1, 2)).tolist(),
         "stated error by wavelength": stated.max(axis=(0, 2)).tolist(),
     }
-    return Measured(value=float(stated.max()), unit="percentage points", data=data)
+    worst = max(float(stated.max()), float(everywhere.max()))
+    return Measured(value=worst, unit="percentage points", data=data)
 
 
 @case(

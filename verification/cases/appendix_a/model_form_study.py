@@ -57,6 +57,19 @@ class Modelled:
     length: float
 
 
+def scene_of(pair: WavyPair, load: float, M: int) -> rf.Scene:
+    """The pair on M x M elements of one wavelength, constant along y; `load` per wavelength and thickness."""
+    x, across = (np.arange(M) + 0.5) / M - 0.5, np.ones(M)
+    return rf.Scene(
+        upper=rf.Body(rf.Material(pair.upper.E, pair.upper.nu), np.outer(pair.upper_height(x), across)),
+        lower=rf.Body(rf.Material(pair.lower.E, pair.lower.nu), np.outer(pair.lower_height(x), across)),
+        friction=rf.Friction(tau=pair.tau, beta=pair.beta),
+        load=load,
+        side=1.0,
+        periodic=True,
+    )
+
+
 def modelled(
     pair: WavyPair, load: float, M: int, *, correction: bool, approach: float | None = None
 ) -> Modelled:
@@ -65,16 +78,8 @@ def modelled(
     Whole elements leave the length uncertain by one of them, which tau carries into the friction. Both are
     taken with the ends found between elements (`contact_fem.ends`), which is the limit of fine grids.
     """
-    x, across = (np.arange(M) + 0.5) / M - 0.5, np.ones(M)
-    scene = rf.Scene(
-        upper=rf.Body(rf.Material(pair.upper.E, pair.upper.nu), np.outer(pair.upper_height(x), across)),
-        lower=rf.Body(rf.Material(pair.lower.E, pair.lower.nu), np.outer(pair.lower_height(x), across)),
-        friction=rf.Friction(tau=pair.tau, beta=pair.beta),
-        load=load,
-        side=1.0,
-        periodic=True,
-    )
-    touch = pair.gap_amplitude
+    scene, touch = scene_of(pair, load, M), pair.gap_amplitude
+    x = (np.arange(M) + 0.5) / M - 0.5
     depth = None if approach is None else approach - touch
     solved = rf.solve(scene, grid=M, slope_correction=correction, approach=depth, tolerance=TOLERANCE)
     if solved.status not in (rf.Status.CONVERGED, rf.Status.CYCLED):

@@ -1,0 +1,32 @@
+"""Half-space error of a wave under a rigid flat, committed. Usage: half_space_wave.py [RESULT] [PICTURE]"""
+
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+from PIL import Image
+
+from reports.result_files import read_result
+
+NAME = sys.argv[1] if len(sys.argv) > 1 else "model_form"
+PICTURE = sys.argv[2] if len(sys.argv) > 2 else "half_space_wave.png"
+RESULTS = Path(__file__).parents[1] / "reports" / "results" / f"{NAME}.json"
+
+[wave] = [c for c in read_result(RESULTS)["cases"] if c["id"] == "model-form/half-space-wave"]
+slopes = wave["data"]["slope (degrees)"]
+figure, panels = plt.subplots(1, 2, figsize=(7.2, 3.2), layout="constrained")
+for axes, name in zip(panels, ("approach under the load", "N at the approach"), strict=True):
+    found, first, stated = (
+        [abs(value) for value in wave["data"][f"{name}: {part} (%)"]]
+        for part in ("finite elements over half-space - 1", "first order", "stated")
+    )
+    axes.plot(slopes, stated, "--", color="#D55E00", label="stated by the estimate")
+    axes.plot(slopes, first, "-", color="#0072B2", label="first order of the estimate")
+    axes.plot(slopes, found, "o", color="black", label="finite elements")
+    axes.set(xlabel="maximum slope (degrees)", ylabel=f"{name} off by (%)", xlim=0, ylim=0)
+    axes.grid(alpha=0.3)
+    at = slopes.index(15.0)
+    print(f"15 degrees, {name}: {found[at]:.1f} %, first order {first[at]:.1f}, stated {stated[at]:.1f}")
+panels[0].legend(frameon=False)
+figure.savefig(PICTURE, dpi=90)
+Image.open(PICTURE).convert("RGB").quantize(64).save(PICTURE, optimize=True)
