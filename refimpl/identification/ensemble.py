@@ -1,27 +1,31 @@
 """Friction where surfaces are known by their statistics: the mean over realisations, and their scatter.
 
 The pair that was measured is one realisation, and none of those drawn. Its friction differs from their mean
-by as much as theirs does, at neighbouring loads by nearly the same. So the data scatter about the mean with
-the covariance of the realisations, ``1 + 1/n`` times as large since the mean is one of n draws.
+by as much as theirs does, and at neighbouring loads by nearly the same share. Few draws give that covariance
+poorly: of n draws it has rank n - 1, and weights taken from it lead to intervals that are too short. So the
+two uses of the scatter stand apart:
+
+- Rows are weighed by a model of it with one factor (`working_variances`). A poor model widens intervals and
+  leaves them right.
+- The variance of a fitted parameter is that of the draws' own deviations taken through the fit
+  (`deviations`): one number per draw, so Student's t of n - 1 degrees of freedom holds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.stats import t as student
 
 from refimpl.grid import Array
-from refimpl.identification.forward import COVERAGE, Forward, Response
+from refimpl.identification.forward import Forward, Response
 from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import SurfaceSum
 
 MIN_REALISATIONS = 3
 _SEED_STEP = 1000  # between realisations: far from the seeds of both bodies
-_CORRELATED = 0.7  # share of the sampled correlation of loads that is kept: few draws overstate it
 
 
 def is_random(scene: Scene) -> bool:
@@ -44,9 +48,15 @@ def redrawn(scene: Scene, k: int) -> Scene:
     return replace(scene, **bodies)
 
 
-def draws(forward: Forward, scene: Scene, theta: Array, realisations: int) -> list[Response]:
+def draws(
+    forward: Forward,
+    scene: Scene,
+    theta: Array,
+    realisations: int,
+    tolerances: Mapping[str, float] | None = None,
+) -> list[Response]:
     """Return the response of each realisation of a scene at the same parameters."""
-    return [forward.respond(redrawn(scene, k), theta) for k in range(realisations)]
+    return [forward.respond(redrawn(scene, k), theta, tolerances) for k in range(realisations)]
 
 
 def mean_response(responses: Sequence[Response]) -> Response:
@@ -69,26 +79,33 @@ def mean_response(responses: Sequence[Response]) -> Response:
         plastic=max(one.plastic for one in responses),
         pressures=tuple(p for one in responses for p in one.pressures),
         weights=tuple(w / n for one in responses for w in one.weights),
-        scatter=float(np.sqrt(scatter(np.array([[one.mu] for one in responses]))[0, 0])),
+        inputs={
+            name: float(np.mean([one.inputs[name] for one in responses])) for name in responses[0].inputs
+        },
+        scatter=float(np.linalg.norm(deviations(np.array([[one.mu] for one in responses])))),
         solves=sum(one.solves for one in responses),
         warnings=tuple(dict.fromkeys(text for one in responses for text in one.warnings)),
     )
 
 
-def scatter(mu: Array) -> Array:
-    """Return the covariance of one pair's friction about the mean of realisations; ``mu`` is (n, loads).
+def deviations(mu: Array) -> Array:
+    """Return the draws' deviations from their mean, (n, loads), scaled for a pair that is none of them.
 
-    Its standard deviations are those that, taken 1.96 times, cover what n draws leave open (Student's t).
-    Each load's relative variance is the mean of its own and of all loads': n draws scatter.
+    ``mu`` is (n, loads). The sum of squares of a column is the variance of one pair about the mean of n
+    draws, ``1 + 1/n`` times the sample variance; one draw has no row.
     """
     n, loads = mu.shape
     if n == 1:
-        return np.zeros((loads, loads))
-    covariance = np.atleast_2d(np.cov(mu.T))
-    middle, own = mu.mean(axis=0), np.diag(covariance)
-    correlation = covariance / np.sqrt(np.outer(own, own))
-    relative = own / middle**2
-    deviation = middle * np.sqrt(0.5 * (relative + relative.mean()))
-    deviation *= np.sqrt(1 + 1 / n) * student.ppf(0.975, n - 1) / COVERAGE
-    kept = _CORRELATED * correlation + (1 - _CORRELATED) * np.eye(loads)
-    return np.asarray(np.outer(deviation, deviation) * kept)
+        return np.zeros((0, loads))
+    return np.asarray((mu - mu.mean(axis=0)) * np.sqrt((1 + 1 / n) / (n - 1)))
+
+
+def working_variances(mu: Array, loads: Array) -> Array:
+    """Return variances of one pair's friction about the mean of realisations, (loads,), to weigh rows by.
+
+    ``mu`` is (n, loads), loads in N. Contact patches grow in number in proportion to the load (Greenwood
+    and Williamson 1966), so the relative standard deviation is modelled as ``P^(-1/2)`` times one factor.
+    """
+    middle = mu.mean(axis=0)
+    relative = np.sum(deviations(mu) ** 2, axis=0) / middle**2
+    return np.asarray(np.mean(relative * loads) / loads * middle**2)

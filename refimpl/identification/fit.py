@@ -17,7 +17,7 @@ from scipy.optimize import least_squares
 
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
-from refimpl.identification.ensemble import draws, mean_response, scatter
+from refimpl.identification.ensemble import deviations, draws, mean_response, working_variances
 from refimpl.identification.forward import COVERAGE, Forward, Response
 from refimpl.identification.profile import BOUNDED, Profile
 from refimpl.scene.scene import Scene
@@ -37,7 +37,8 @@ class Fit:
     """A fit: ``theta`` (tau in Pa, beta, logarithms) within the bounds, ``free`` without them.
 
     responses : of the rows, linear about the last solves; passes : of solves over all rows
-    between : (rows, rows), covariance of friction by the choice of a realisation
+    between : (rows,), variances of friction by the choice of a realisation, as they weigh rows
+    deviations : (realisations, rows), of the draws from their mean (`ensemble.deviations`)
     gain : (parameters, rows), change of ``free`` by a change of the measured mu
     residuals : measured less predicted mu over the standard uncertainty with bars
     deleted : measured mu less that of the fit to the other rows, over its standard uncertainty
@@ -49,6 +50,7 @@ class Fit:
     free: Array
     responses: tuple[Response, ...]
     between: Array
+    deviations: Array
     gain: Array
     weights: Array
     predicted: Array
@@ -58,6 +60,11 @@ class Fit:
     nonlinearity: float
     passes: int
     limited: bool = False
+
+    @property
+    def degrees(self) -> float:
+        """Degrees of freedom of the scatter over realisations; infinite for a single one."""
+        return len(self.deviations) - 1 if len(self.deviations) else math.inf
 
 
 def fit_rows(
@@ -69,13 +76,14 @@ def fit_rows(
     while True:
         passes += 1
         drawn = [draws(forward, scene, theta, realisations) for scene in scenes]
-        between = scatter(np.array([[one.mu for one in row] for row in drawn]).T)
+        mu = np.array([[one.mu for one in row] for row in drawn]).T
+        between = working_variances(mu, np.array([scene.load for scene in scenes]))
         responses = tuple(mean_response(row) for row in drawn)
         _check_slopes(responses, forward.further, theta)
         solved = np.array([response.predict(theta) for response in responses])
         scale = np.sqrt(np.diag(data_covariance(rows, responses, between)))
         away = np.inf if predicted is None else float(np.max(np.abs(solved - predicted) / scale))
-        found = linear_fit(rows, responses, between, away, passes)
+        found = linear_fit(rows, responses, between, deviations(mu), away, passes)
         if (away < agreed and not found.limited) or passes == most:
             return found
         share = 0.5 if forward.further and passes >= _FULL_STEPS else 1.0
@@ -95,7 +103,8 @@ def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: 
 
 def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between: Array) -> Array:
     """Return the covariance of measured less modelled mu: measurement, bars, contact edges, realisations."""
-    return np.asarray(np.diag([row.u_mu**2 for row in rows]) + sum(_bars(responses).values()) + between)
+    own = np.array([row.u_mu**2 for row in rows]) + between
+    return np.asarray(np.diag(own) + sum(_bars(responses).values()))
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
@@ -109,7 +118,12 @@ def _bars(responses: Sequence[Response]) -> dict[str, Array]:
 
 
 def linear_fit(
-    rows: Sequence[Row], responses: Sequence[Response], between: Array, away: float, passes: int
+    rows: Sequence[Row],
+    responses: Sequence[Response],
+    between: Array,
+    scattered: Array,
+    away: float,
+    passes: int,
 ) -> Fit:
     """Fit the linear models of all rows by generalised least squares, within the bounds and without."""
     measured = np.array([row.mu for row in rows])
@@ -132,6 +146,7 @@ def linear_fit(
         free=origin + step,
         responses=tuple(responses),
         between=between,
+        deviations=scattered,
         gain=gain,
         weights=weights,
         predicted=predicted,
@@ -177,8 +192,8 @@ def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float
     which all rows share.
     """
     parts = {"measurement": np.diag([row.u_mu**2 for row in rows]), **_bars(fitted.responses)}
-    if fitted.between.any():
-        parts["realisations"] = fitted.between
+    if len(fitted.deviations):
+        parts["realisations"] = fitted.deviations.T @ fitted.deviations
     for name in inputs[0] if inputs else ():
         change = np.array([row[name] for row in inputs]) / COVERAGE
         parts[f"input {name}"] = np.outer(change, change)
@@ -190,6 +205,7 @@ def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float
     return found
 
 
-def profile_of(fitted: Fit, covariance: Array) -> Profile:
-    """Return the likelihood of a fit with the whole covariance."""
-    return Profile(fitted.free, covariance)
+def profile_of(fitted: Fit, parts: Mapping[str, Array]) -> Profile:
+    """Return the likelihood of a fit with the whole covariance, of which n draws give a part."""
+    covariance = np.asarray(sum(parts.values()))
+    return Profile(fitted.free, covariance, parts.get("realisations"), fitted.degrees)

@@ -1,8 +1,11 @@
 """Profile likelihood of a linear combination of parameters, of which the first may not be negative.
 
 With ``Q = (theta - c)^T C^-1 (theta - c)``, the combination ``g theta = m`` is inside the 95 % interval where
-``min Q`` over ``theta >= 0`` on that line exceeds the least of all by at most 3.84 (Wilks 1938). Where no
+``min Q`` over ``theta >= 0`` on that line exceeds the least of all by at most 1.96^2 (Wilks 1938). Where no
 bound is active the interval is that of the ellipse, ``g c +- 1.96 sqrt(g C g)``.
+
+A part S of the covariance may be estimated from few draws, with ``nu`` degrees of freedom. Then 1.96 becomes
+the quantile of Student's t with the effective ``nu (g C g)^2 / (g S g)^2`` of them (Welch 1947).
 
 The minimum of a convex Q is the minimum on one face of the bounds (some parameters at zero, the rest free),
 and there are few faces: each is tried.
@@ -17,20 +20,33 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
+from scipy.stats import t as student
 
 from refimpl.grid import Array
 
-LEVEL = 3.841458820694124  # 95 % quantile of chi-square, one degree of freedom
+_PROBABILITY = 0.975  # quantile of two-sided 95 %
 BOUNDED = 2  # parameters that may not be negative, the first ones: tau and beta
 _ROUNDING = 1e-12  # below zero, in standard deviations, that still counts as zero
 
 Indices = NDArray[np.intp]
 
 
-class Profile:
-    """Likelihood of parameters about ``centre`` (the optimum without bounds), covariance (n, n)."""
+def quantile(degrees: float) -> float:
+    """Return Student's t of a two-sided 95 % interval, 1.96 for infinite degrees of freedom."""
+    return float(student.ppf(_PROBABILITY, degrees))
 
-    def __init__(self, centre: Array, covariance: Array) -> None:
+
+class Profile:
+    """Likelihood of parameters about ``centre`` (the optimum without bounds), covariance (n, n).
+
+    ``estimated`` is the part of the covariance that draws give with ``degrees`` degrees of freedom.
+    """
+
+    def __init__(
+        self, centre: Array, covariance: Array, estimated: Array | None = None, degrees: float = math.inf
+    ) -> None:
+        self.covariance, self.degrees = covariance, degrees
+        self.estimated = np.zeros_like(covariance) if estimated is None else estimated
         self.scale = np.sqrt(np.diag(covariance))
         self.centre = centre / self.scale
         self.precision = np.linalg.inv(covariance / np.outer(self.scale, self.scale))
@@ -71,6 +87,14 @@ class Profile:
                     least = min(least, self._misfit(theta))
         return least
 
+    def quantile(self, gradient: Array) -> float:
+        """Return the quantile of Student's t for ``gradient theta``."""
+        estimated = float(gradient @ self.estimated @ gradient)
+        if estimated <= 0 or math.isinf(self.degrees):
+            return quantile(math.inf)
+        share = estimated / float(gradient @ self.covariance @ gradient)
+        return quantile(self.degrees / share**2)
+
     def interval(self, gradient: Array) -> tuple[float, float]:
         """Return the 95 % interval of ``gradient theta``.
 
@@ -79,8 +103,10 @@ class Profile:
         middle, g = float(gradient @ self.optimum), gradient * self.scale
         spread = math.sqrt(float(g @ np.linalg.inv(self.precision) @ g))
 
+        level = self.quantile(gradient) ** 2
+
         def excess(value: float) -> float:
-            return self.on_line(gradient, value) - self.least - LEVEL
+            return self.on_line(gradient, value) - self.least - level
 
         high = middle + spread
         while excess(high) < 0:
@@ -96,4 +122,8 @@ class Profile:
     @property
     def is_bounded(self) -> bool:
         """True where the bounds cut the 95 % intervals of the ellipse."""
-        return bool(np.any(self.centre[:BOUNDED] < math.sqrt(LEVEL)))
+        return any(self.centre[j] < self.quantile(axis) for j, axis in enumerate(self._axes()))
+
+    def _axes(self) -> Array:
+        """Unit vectors of the bounded parameters."""
+        return np.eye(len(self.centre))[:BOUNDED]
