@@ -7,14 +7,15 @@ two uses of the scatter stand apart:
 
 - Rows are weighed by a model of it with one factor (`working_variances`). A poor model widens intervals and
   leaves them right.
-- The variance of a fitted parameter is that of the draws' own deviations taken through the fit
-  (`deviations`): one number per draw, so Student's t of n - 1 degrees of freedom holds.
+- The variance of a fitted parameter is that of the draws' own deviations taken through the fit (`Scatter`):
+  one number per draw, so Student's t of n - 1 degrees of freedom holds.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -82,30 +83,59 @@ def mean_response(responses: Sequence[Response]) -> Response:
         inputs={
             name: float(np.mean([one.inputs[name] for one in responses])) for name in responses[0].inputs
         },
-        scatter=float(np.linalg.norm(deviations(np.array([[one.mu] for one in responses])))),
+        scatter=float(np.linalg.norm(scatter([responses]).deviations)),
         solves=sum(one.solves for one in responses),
         warnings=tuple(dict.fromkeys(text for one in responses for text in one.warnings)),
     )
 
 
-def deviations(mu: Array) -> Array:
-    """Return the draws' deviations from their mean, (n, loads), scaled for a pair that is none of them.
+@dataclass(frozen=True, eq=False)
+class Scatter:
+    """Deviations of n draws from their mean, scaled for a pair that is none of them, linear about ``at``.
 
-    ``mu`` is (n, loads). The sum of squares of a column is the variance of one pair about the mean of n
-    draws, ``1 + 1/n`` times the sample variance; one draw has no row.
+    deviations : (n, loads); the sum of squares of a column is the variance of one pair about the mean of n
+    draws, ``1 + 1/n`` times the sample variance. One draw has no row
+    slopes : (n, loads, parameters), of the deviations by the parameters
     """
-    n, loads = mu.shape
-    if n == 1:
-        return np.zeros((0, loads))
-    return np.asarray((mu - mu.mean(axis=0)) * np.sqrt((1 + 1 / n) / (n - 1)))
+
+    at: Array
+    deviations: Array
+    slopes: Array
+
+    @property
+    def degrees(self) -> float:
+        """Degrees of freedom of the variances; infinite without scatter."""
+        return len(self.deviations) - 1 if len(self.deviations) else math.inf
+
+    def variance(self, gain: Array, theta: Array) -> Array:
+        """Return the covariance (parameters, parameters) of ``gain mu`` at parameters ``theta``."""
+        moved = (self.deviations + self.slopes @ (theta - self.at)) @ gain.T
+        return np.asarray(moved.T @ moved)
 
 
-def working_variances(mu: Array, loads: Array) -> Array:
+def scatter(drawn: Sequence[Sequence[Response]]) -> Scatter:
+    """Return the scatter of the responses of n draws at each load, in the order of `draws`."""
+    mu = np.array([[one.mu for one in row] for row in drawn]).T
+    slopes = np.array([[one.slopes for one in row] for row in drawn]).transpose(1, 0, 2)
+    n = len(mu)
+    scale = math.sqrt((1 + 1 / n) / (n - 1)) if n > 1 else 0.0
+    rows = n if n > 1 else 0
+    return Scatter(
+        np.array(drawn[0][0].at),
+        scale * (mu - mu.mean(axis=0))[:rows],
+        scale * (slopes - slopes.mean(axis=0))[:rows],
+    )
+
+
+def working_variances(drawn: Sequence[Sequence[Response]], loads: Array) -> Array:
     """Return variances of one pair's friction about the mean of realisations, (loads,), to weigh rows by.
 
-    ``mu`` is (n, loads), loads in N. Contact patches grow in number in proportion to the load (Greenwood
-    and Williamson 1966), so the relative standard deviation is modelled as ``P^(-1/2)`` times one factor.
+    The relative scatter of ``d mu / d tau``, the area over the load, bounds that of mu from above and does
+    not change with the fitted tau. Contact patches grow in number in proportion to the load (Greenwood and
+    Williamson 1966), so its standard deviation is modelled as ``P^(-1/2)`` times one factor.
     """
-    middle = mu.mean(axis=0)
-    relative = np.sum(deviations(mu) ** 2, axis=0) / middle**2
-    return np.asarray(np.mean(relative * loads) / loads * middle**2)
+    found = scatter(drawn)
+    area = np.array([np.mean([one.slopes[0] for one in row]) for row in drawn])
+    mu = np.array([np.mean([one.mu for one in row]) for row in drawn])
+    relative = np.sum(found.slopes[:, :, 0] ** 2, axis=0) / area**2
+    return np.asarray(np.mean(relative * loads) / loads * mu**2)

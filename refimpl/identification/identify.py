@@ -21,6 +21,7 @@ from refimpl.identification.laws import compare
 from refimpl.identification.profile import Profile, quantile
 from refimpl.identification.remarks import remarks
 from refimpl.identification.result import WIDE, Identification, Interval, Prediction
+from refimpl.identification.varying_profile import VaryingProfile
 from refimpl.scene.parameters import check_tolerances, parameters
 from refimpl.scene.scene import Scene
 
@@ -130,7 +131,7 @@ def _proposal(
     return propose(fitted.theta, covariance, trials, relative)
 
 
-def _values(fitted: Fit, profile: Profile, further: Sequence[str]) -> dict[str, Interval]:
+def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[str]) -> dict[str, Interval]:
     """Values with their intervals; those of further parameters from the logarithms'."""
     found = {}
     for j, name in enumerate(("tau", "beta", *further)):
@@ -194,7 +195,9 @@ def _best_factor(covariance: Array, mean: Array) -> float:
     return best if best > 0 else float(mean[0] / mean[1])
 
 
-def _prediction(load: float, response: Response, theta: Array, profile: Profile) -> Prediction:
+def _prediction(
+    load: float, response: Response, theta: Array, profile: Profile | VaryingProfile
+) -> Prediction:
     """Interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in squares."""
     mu = response.predict(theta)
     slopes = np.array(response.slopes)

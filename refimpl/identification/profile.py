@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ from refimpl.grid import Array
 
 _PROBABILITY = 0.975  # quantile of two-sided 95 %
 BOUNDED = 2  # parameters that may not be negative, the first ones: tau and beta
+_FARTHEST = 1e3  # spreads from the optimum to an end that counts as infinite
 _ROUNDING = 1e-12  # below zero, in standard deviations, that still counts as zero
 
 Indices = NDArray[np.intp]
@@ -34,6 +35,33 @@ Indices = NDArray[np.intp]
 def quantile(degrees: float) -> float:
     """Return Student's t of a two-sided 95 % interval, 1.96 for infinite degrees of freedom."""
     return float(student.ppf(_PROBABILITY, degrees))
+
+
+def floor(gradient: Array) -> float:
+    """Return the least value of a combination: 0 where the bounds keep it from less."""
+    bounded = np.all(gradient[:BOUNDED] >= 0) and not np.any(gradient[BOUNDED:])
+    return 0.0 if bounded else -math.inf
+
+
+def ends(excess: Callable[[float], float], middle: float, spread: float, least: float) -> tuple[float, float]:
+    """Return where ``excess`` changes its sign below and above ``middle``.
+
+    The low end is ``least`` where that is inside; an end further than `_FARTHEST` is infinite.
+    """
+    high, low = middle + spread, max(middle - spread, least)
+    while excess(high) < 0:
+        high += high - middle
+        if high - middle > _FARTHEST * spread:
+            high = math.inf
+            break
+    while low > least and excess(low) < 0:
+        low = max(low - (middle - low), least)
+        if middle - low > _FARTHEST * spread:
+            least = low = -math.inf
+    upper = high if math.isinf(high) else float(brentq(excess, middle, high, xtol=1e-9 * spread))
+    if low == least and (math.isinf(low) or excess(low) <= 0):
+        return low, upper
+    return float(brentq(excess, low, middle, xtol=1e-9 * spread)), upper
 
 
 class Profile:
@@ -102,22 +130,11 @@ class Profile:
         """
         middle, g = float(gradient @ self.optimum), gradient * self.scale
         spread = math.sqrt(float(g @ np.linalg.inv(self.precision) @ g))
+        return ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
 
-        level = self.quantile(gradient) ** 2
-
-        def excess(value: float) -> float:
-            return self.on_line(gradient, value) - self.least - level
-
-        high = middle + spread
-        while excess(high) < 0:
-            high += spread
-        upper = float(brentq(excess, middle, high, xtol=1e-9 * spread))
-        floor = 0.0 if np.all(g[:BOUNDED] >= 0) and not np.any(g[BOUNDED:]) else -math.inf
-        low = max(middle - spread, floor)
-        while low > floor and excess(low) < 0:
-            low = max(low - spread, floor)
-        inside = low == floor and excess(floor) <= 0
-        return floor if inside else float(brentq(excess, low, middle, xtol=1e-9 * spread)), upper
+    def excess(self, gradient: Array, value: float) -> float:
+        """Return how far ``gradient theta = value`` is outside the 95 % interval; negative inside."""
+        return self.on_line(gradient, value) - self.least - self.quantile(gradient) ** 2
 
     @property
     def is_bounded(self) -> bool:
