@@ -1,27 +1,32 @@
 """Friction where surfaces are known by their statistics: the mean over realisations, and their scatter.
 
 The pair that was measured is one realisation, and none of those drawn. Its friction differs from their mean
-by as much as theirs does, at neighbouring loads by nearly the same. So the data scatter about the mean with
-the covariance of the realisations, ``1 + 1/n`` times as large since the mean is one of n draws.
+by as much as theirs does, and at neighbouring loads by nearly the same share. Few draws give that covariance
+poorly: of n draws it has rank n - 1, and weights taken from it lead to intervals that are too short. So the
+two uses of the scatter stand apart:
+
+- Rows are weighed by a model of it with one factor (`working_variances`). A poor model widens intervals and
+  leaves them right.
+- The variance of a fitted parameter is that of the draws' own deviations taken through the fit (`Scatter`):
+  one number per draw, so Student's t of n - 1 degrees of freedom holds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.stats import t as student
 
 from refimpl.grid import Array
-from refimpl.identification.forward import COVERAGE, Forward, Response
+from refimpl.identification.forward import Forward, Response
 from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import SurfaceSum
 
 MIN_REALISATIONS = 3
 _SEED_STEP = 1000  # between realisations: far from the seeds of both bodies
-_CORRELATED = 0.7  # share of the sampled correlation of loads that is kept: few draws overstate it
 
 
 def is_random(scene: Scene) -> bool:
@@ -44,9 +49,15 @@ def redrawn(scene: Scene, k: int) -> Scene:
     return replace(scene, **bodies)
 
 
-def draws(forward: Forward, scene: Scene, theta: Array, realisations: int) -> list[Response]:
+def draws(
+    forward: Forward,
+    scene: Scene,
+    theta: Array,
+    realisations: int,
+    tolerances: Mapping[str, float] | None = None,
+) -> list[Response]:
     """Return the response of each realisation of a scene at the same parameters."""
-    return [forward.respond(redrawn(scene, k), theta) for k in range(realisations)]
+    return [forward.respond(redrawn(scene, k), theta, tolerances) for k in range(realisations)]
 
 
 def mean_response(responses: Sequence[Response]) -> Response:
@@ -69,26 +80,62 @@ def mean_response(responses: Sequence[Response]) -> Response:
         plastic=max(one.plastic for one in responses),
         pressures=tuple(p for one in responses for p in one.pressures),
         weights=tuple(w / n for one in responses for w in one.weights),
-        scatter=float(np.sqrt(scatter(np.array([[one.mu] for one in responses]))[0, 0])),
+        inputs={
+            name: float(np.mean([one.inputs[name] for one in responses])) for name in responses[0].inputs
+        },
+        scatter=float(np.linalg.norm(scatter([responses]).deviations)),
         solves=sum(one.solves for one in responses),
         warnings=tuple(dict.fromkeys(text for one in responses for text in one.warnings)),
     )
 
 
-def scatter(mu: Array) -> Array:
-    """Return the covariance of one pair's friction about the mean of realisations; ``mu`` is (n, loads).
+@dataclass(frozen=True, eq=False)
+class Scatter:
+    """Deviations of n draws from their mean, scaled for a pair that is none of them, linear about ``at``.
 
-    Its standard deviations are those that, taken 1.96 times, cover what n draws leave open (Student's t).
-    Each load's relative variance is the mean of its own and of all loads': n draws scatter.
+    deviations : (n, loads); the sum of squares of a column is the variance of one pair about the mean of n
+    draws, ``1 + 1/n`` times the sample variance. One draw has no row
+    slopes : (n, loads, parameters), of the deviations by the parameters
     """
-    n, loads = mu.shape
-    if n == 1:
-        return np.zeros((loads, loads))
-    covariance = np.atleast_2d(np.cov(mu.T))
-    middle, own = mu.mean(axis=0), np.diag(covariance)
-    correlation = covariance / np.sqrt(np.outer(own, own))
-    relative = own / middle**2
-    deviation = middle * np.sqrt(0.5 * (relative + relative.mean()))
-    deviation *= np.sqrt(1 + 1 / n) * student.ppf(0.975, n - 1) / COVERAGE
-    kept = _CORRELATED * correlation + (1 - _CORRELATED) * np.eye(loads)
-    return np.asarray(np.outer(deviation, deviation) * kept)
+
+    at: Array
+    deviations: Array
+    slopes: Array
+
+    @property
+    def degrees(self) -> float:
+        """Degrees of freedom of the variances; infinite without scatter."""
+        return len(self.deviations) - 1 if len(self.deviations) else math.inf
+
+    def variance(self, gain: Array, theta: Array) -> Array:
+        """Return the covariance (parameters, parameters) of ``gain mu`` at parameters ``theta``."""
+        moved = (self.deviations + self.slopes @ (theta - self.at)) @ gain.T
+        return np.asarray(moved.T @ moved)
+
+
+def scatter(drawn: Sequence[Sequence[Response]]) -> Scatter:
+    """Return the scatter of the responses of n draws at each load, in the order of `draws`."""
+    mu = np.array([[one.mu for one in row] for row in drawn]).T
+    slopes = np.array([[one.slopes for one in row] for row in drawn]).transpose(1, 0, 2)
+    n = len(mu)
+    scale = math.sqrt((1 + 1 / n) / (n - 1)) if n > 1 else 0.0
+    rows = n if n > 1 else 0
+    return Scatter(
+        np.array(drawn[0][0].at),
+        scale * (mu - mu.mean(axis=0))[:rows],
+        scale * (slopes - slopes.mean(axis=0))[:rows],
+    )
+
+
+def working_variances(drawn: Sequence[Sequence[Response]], loads: Array) -> Array:
+    """Return variances of one pair's friction about the mean of realisations, (loads,), to weigh rows by.
+
+    The relative scatter of ``d mu / d tau``, the area over the load, bounds that of mu from above and does
+    not change with the fitted tau. Contact patches grow in number in proportion to the load (Greenwood and
+    Williamson 1966), so its standard deviation is modelled as ``P^(-1/2)`` times one factor.
+    """
+    found = scatter(drawn)
+    area = np.array([np.mean([one.slopes[0] for one in row]) for row in drawn])
+    mu = np.array([np.mean([one.mu for one in row]) for row in drawn])
+    relative = np.sum(found.slopes[:, :, 0] ** 2, axis=0) / area**2
+    return np.asarray(np.mean(relative * loads) / loads * mu**2)

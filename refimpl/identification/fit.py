@@ -17,9 +17,10 @@ from scipy.optimize import least_squares
 
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
-from refimpl.identification.ensemble import draws, mean_response, scatter
+from refimpl.identification.ensemble import Scatter, draws, mean_response, scatter, working_variances
 from refimpl.identification.forward import COVERAGE, Forward, Response
 from refimpl.identification.profile import BOUNDED, Profile
+from refimpl.identification.varying_profile import VaryingProfile
 from refimpl.scene.scene import Scene
 
 MAX_PASSES, MAX_FURTHER_PASSES = 6, 8  # without further parameters, and with them
@@ -28,6 +29,7 @@ _FURTHER_AGREED = 0.1  # with further parameters, likewise: elements that yield 
 _FULL_STEPS = 4  # passes with further parameters after which steps are halved: such steps can alternate
 _CORRELATED = 0.5  # share of the bars' variance that all rows have in common: one grid, one surface
 _LONGEST = math.log(1.5)  # step of a further parameter's logarithm in one pass
+REALISATIONS = "realisations"  # the part of the covariance by the choice of a realisation
 _ALONE = 1e-6  # share of a row's weight that the other rows leave to judge it, at least
 _RIDGE = 1e-10  # relative, added to the normal matrix: rows at one A/P leave it singular
 
@@ -37,7 +39,8 @@ class Fit:
     """A fit: ``theta`` (tau in Pa, beta, logarithms) within the bounds, ``free`` without them.
 
     responses : of the rows, linear about the last solves; passes : of solves over all rows
-    between : (rows, rows), covariance of friction by the choice of a realisation
+    between : (rows,), variances of friction by the choice of a realisation, as they weigh rows
+    scatter : of the draws about their mean
     gain : (parameters, rows), change of ``free`` by a change of the measured mu
     residuals : measured less predicted mu over the standard uncertainty with bars
     deleted : measured mu less that of the fit to the other rows, over its standard uncertainty
@@ -49,6 +52,7 @@ class Fit:
     free: Array
     responses: tuple[Response, ...]
     between: Array
+    scatter: Scatter
     gain: Array
     weights: Array
     predicted: Array
@@ -69,13 +73,13 @@ def fit_rows(
     while True:
         passes += 1
         drawn = [draws(forward, scene, theta, realisations) for scene in scenes]
-        between = scatter(np.array([[one.mu for one in row] for row in drawn]).T)
+        between = working_variances(drawn, np.array([scene.load for scene in scenes]))
         responses = tuple(mean_response(row) for row in drawn)
         _check_slopes(responses, forward.further, theta)
         solved = np.array([response.predict(theta) for response in responses])
         scale = np.sqrt(np.diag(data_covariance(rows, responses, between)))
         away = np.inf if predicted is None else float(np.max(np.abs(solved - predicted) / scale))
-        found = linear_fit(rows, responses, between, away, passes)
+        found = linear_fit(rows, responses, between, scatter(drawn), away, passes)
         if (away < agreed and not found.limited) or passes == most:
             return found
         share = 0.5 if forward.further and passes >= _FULL_STEPS else 1.0
@@ -95,7 +99,8 @@ def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: 
 
 def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between: Array) -> Array:
     """Return the covariance of measured less modelled mu: measurement, bars, contact edges, realisations."""
-    return np.asarray(np.diag([row.u_mu**2 for row in rows]) + sum(_bars(responses).values()) + between)
+    own = np.array([row.u_mu**2 for row in rows]) + between
+    return np.asarray(np.diag(own) + sum(_bars(responses).values()))
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
@@ -109,7 +114,12 @@ def _bars(responses: Sequence[Response]) -> dict[str, Array]:
 
 
 def linear_fit(
-    rows: Sequence[Row], responses: Sequence[Response], between: Array, away: float, passes: int
+    rows: Sequence[Row],
+    responses: Sequence[Response],
+    between: Array,
+    scattered: Scatter,
+    away: float,
+    passes: int,
 ) -> Fit:
     """Fit the linear models of all rows by generalised least squares, within the bounds and without."""
     measured = np.array([row.mu for row in rows])
@@ -132,6 +142,7 @@ def linear_fit(
         free=origin + step,
         responses=tuple(responses),
         between=between,
+        scatter=scattered,
         gain=gain,
         weights=weights,
         predicted=predicted,
@@ -177,12 +188,12 @@ def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float
     which all rows share.
     """
     parts = {"measurement": np.diag([row.u_mu**2 for row in rows]), **_bars(fitted.responses)}
-    if fitted.between.any():
-        parts["realisations"] = fitted.between
     for name in inputs[0] if inputs else ():
         change = np.array([row[name] for row in inputs]) / COVERAGE
         parts[f"input {name}"] = np.outer(change, change)
     found = {name: fitted.gain @ part @ fitted.gain.T for name, part in parts.items()}
+    if math.isfinite(fitted.scatter.degrees):
+        found[REALISATIONS] = fitted.scatter.variance(fitted.gain, fitted.theta)
     scale = np.max(np.abs(fitted.gain), axis=1)
     found["measurement"] = found["measurement"] + 1e-12 * np.diag(scale**2) * np.mean(
         [row.u_mu**2 for row in rows]
@@ -190,6 +201,13 @@ def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float
     return found
 
 
-def profile_of(fitted: Fit, covariance: Array) -> Profile:
-    """Return the likelihood of a fit with the whole covariance."""
-    return Profile(fitted.free, covariance)
+def profile_of(fitted: Fit, parts: Mapping[str, Array]) -> Profile | VaryingProfile:
+    """Return the likelihood of a fit with the whole covariance, of which realisations give a part."""
+    fixed = np.asarray(sum(part for name, part in parts.items() if name != REALISATIONS))
+    if REALISATIONS not in parts:
+        return Profile(fitted.free, fixed)
+
+    def estimated(theta: Array) -> Array:
+        return fitted.scatter.variance(fitted.gain, theta)
+
+    return VaryingProfile(fitted.free, fixed, estimated, fitted.scatter.degrees, fitted.theta)

@@ -1,21 +1,26 @@
-"""Parameters that are fitted beside tau and beta: a hardness, or the height of a roughness."""
+"""Parameters that are fitted beside tau and beta: a hardness.
+
+The height of a random roughness is none of them. Friction hardly determines it where the surface is known by
+its statistics: on twins of rough balls its 95 % interval spans a factor of about 4 either way, over which mu
+is not linear, and intervals of tau that rest on it are too short. A measured height with its tolerance is an
+input (`identify(..., tolerances=...)`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from refimpl.errors import InputError
-from refimpl.scene.parameters import BODIES, moving
+from refimpl.scene.parameters import BODIES
 from refimpl.scene.scene import Scene
 
-SHORT = ("hardness", "roughness")
-_KEYS = {"hardness": (".hardness",), "roughness": (".rms", ".rms_gradient")}
+_ROUGHNESS = (".rms", ".rms_gradient")
 
 
 def further_parameters(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
-    """Return the parameters' whole names; "hardness" is the softer body's, "roughness" the only rms.
+    """Return the parameters' whole names; "hardness" is the softer body's.
 
-    Raises `InputError` for a name that is none, or stands for several parameters, or stands twice.
+    Raises `InputError` for a name that is none, or stands for two parameters, or stands twice.
     """
     if isinstance(names, str):
         raise InputError("fit", names, "a list of names")
@@ -27,26 +32,20 @@ def further_parameters(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
 
 def _whole(scene: Scene, name: str) -> str:
     """The name of one parameter of the scene."""
-    kinds = {short: _candidates(scene, short) for short in SHORT}
-    every = [one for names in kinds.values() for one in names]
-    if name not in SHORT and name not in every:
-        allowed = ", ".join([*SHORT, *every])
-        raise InputError("fit", name, f"one of {allowed}")
-    meant = kinds.get(name, [name])
-    if not meant:
-        raise InputError("fit", name, f"a scene with a {name}: its value is the first guess")
-    if len(kinds["hardness"]) > 1 and meant[0] in kinds["hardness"]:
-        raise InputError("fit", name, "two hardnesses that differ, or one: the smaller of them is fitted")
-    if len(meant) > 1:
-        raise InputError("fit", name, f"one of {', '.join(meant)}")
-    return meant[0]
-
-
-def _candidates(scene: Scene, short: str) -> list[str]:
-    """Parameters of a kind that change friction: of two hardnesses the smaller one, or both equal ones."""
-    names = [name for name in moving(scene) if name.endswith(_KEYS[short])]
     softest = scene.materials.softer_hardness
-    if short == "hardness":
-        names = [f"{b}.material.hardness" for b in BODIES if getattr(scene, b).material.hardness == softest]
-        return names if softest is not None else []
-    return names
+    hardnesses = [
+        f"{body}.material.hardness"
+        for body in BODIES
+        if softest is not None and getattr(scene, body).material.hardness == softest
+    ]
+    if name == "roughness" or name.endswith(_ROUGHNESS):
+        raise InputError(
+            "fit", name, "no height of a roughness, which friction hardly determines; give it in [tolerances]"
+        )
+    if name != "hardness" and name not in hardnesses:
+        raise InputError("fit", name, f"one of {', '.join(['hardness', *hardnesses])}")
+    if not hardnesses:
+        raise InputError("fit", name, "a scene with a hardness: its value is the first guess")
+    if len(hardnesses) > 1:
+        raise InputError("fit", name, "two hardnesses that differ, or one: the smaller of them is fitted")
+    return hardnesses[0]

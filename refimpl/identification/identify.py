@@ -15,12 +15,13 @@ from refimpl.identification.data_table import Row, check_rows
 from refimpl.identification.design import Proposal, propose, trial_responses
 from refimpl.identification.ensemble import MIN_REALISATIONS, draws, is_random, mean_response
 from refimpl.identification.fit import Fit, fit_rows, profile_of, shares
-from refimpl.identification.forward import COVERAGE, NAMES, Forward, Key, Memory, Response, floors
+from refimpl.identification.forward import NAMES, Forward, Key, Memory, Response, floors
 from refimpl.identification.further import further_parameters
 from refimpl.identification.laws import compare
-from refimpl.identification.profile import Profile
+from refimpl.identification.profile import Profile, quantile
 from refimpl.identification.remarks import remarks
 from refimpl.identification.result import WIDE, Identification, Interval, Prediction
+from refimpl.identification.varying_profile import VaryingProfile
 from refimpl.scene.parameters import check_tolerances, parameters
 from refimpl.scene.scene import Scene
 
@@ -49,8 +50,8 @@ def identify(
     rows : measurements (`read_rows`), of at least two loads
     grid : as in `refimpl.solve`
     loads : further loads (N) at which mu is predicted
-    fit : parameters that are fitted as well, from the scene's values: "hardness", "roughness", or a whole
-        name such as "lower.surface[0].rms". Each takes two more solves a row
+    fit : parameters that are fitted as well, from the scene's values: "hardness", or the whole name
+        "lower.material.hardness". It takes two more solves a row
     tolerances : relative half-widths (95 %) of inputs, as in `refimpl.budget`; friction is none of them
     realisations : fit the mean over that many draws of random surfaces (their seeds moved), where no map is
         measured; their scatter adds to the uncertainty of each row
@@ -66,7 +67,7 @@ def identify(
     forward = Forward(grid, memory, key, report, further)
     fitted, parts = _fitted(scene, rows, forward, realisations, tolerances)
     covariance = np.asarray(sum(parts.values()))
-    profile = profile_of(fitted, covariance)
+    profile = profile_of(fitted, parts)
     values = _values(fitted, profile, further)
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
     factor = _best_factor(covariance, np.mean([one.slopes for one in fitted.responses], axis=0))
@@ -114,7 +115,10 @@ def _fitted(
     logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
     start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
     fitted = fit_rows(rows, scenes, forward, start, realisations)
-    inputs = [forward.respond(one, fitted.theta, tolerances).inputs for one in scenes] if tolerances else []
+    inputs = []
+    if tolerances:
+        toleranced = (draws(forward, one, fitted.theta, realisations, tolerances) for one in scenes)
+        inputs = [mean_response(drawn).inputs for drawn in toleranced]
     return fitted, shares(rows, fitted, inputs)
 
 
@@ -127,7 +131,7 @@ def _proposal(
     return propose(fitted.theta, covariance, trials, relative)
 
 
-def _values(fitted: Fit, profile: Profile, further: Sequence[str]) -> dict[str, Interval]:
+def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[str]) -> dict[str, Interval]:
     """Values with their intervals; those of further parameters from the logarithms'."""
     found = {}
     for j, name in enumerate(("tau", "beta", *further)):
@@ -191,14 +195,16 @@ def _best_factor(covariance: Array, mean: Array) -> float:
     return best if best > 0 else float(mean[0] / mean[1])
 
 
-def _prediction(load: float, response: Response, theta: Array, profile: Profile) -> Prediction:
+def _prediction(
+    load: float, response: Response, theta: Array, profile: Profile | VaryingProfile
+) -> Prediction:
     """Interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in squares."""
     mu = response.predict(theta)
     slopes = np.array(response.slopes)
     slopes[: len(NAMES)] = np.maximum(slopes[: len(NAMES)], 0.0)
     middle = float(slopes @ theta)
     low, high = profile.interval(slopes)
-    bar = math.hypot(response.numerical, response.contact_edge, COVERAGE * response.scatter)
+    bar = math.hypot(response.numerical, response.contact_edge, quantile(profile.degrees) * response.scatter)
     return Prediction(
         load, Interval(mu, mu - math.hypot(middle - low, bar), mu + math.hypot(high - middle, bar))
     )

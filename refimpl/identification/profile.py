@@ -1,8 +1,11 @@
 """Profile likelihood of a linear combination of parameters, of which the first may not be negative.
 
 With ``Q = (theta - c)^T C^-1 (theta - c)``, the combination ``g theta = m`` is inside the 95 % interval where
-``min Q`` over ``theta >= 0`` on that line exceeds the least of all by at most 3.84 (Wilks 1938). Where no
+``min Q`` over ``theta >= 0`` on that line exceeds the least of all by at most 1.96^2 (Wilks 1938). Where no
 bound is active the interval is that of the ellipse, ``g c +- 1.96 sqrt(g C g)``.
+
+A part S of the covariance may be estimated from few draws, with ``nu`` degrees of freedom. Then 1.96 becomes
+the quantile of Student's t with the effective ``nu (g C g)^2 / (g S g)^2`` of them (Welch 1947).
 
 The minimum of a convex Q is the minimum on one face of the bounds (some parameters at zero, the rest free),
 and there are few faces: each is tried.
@@ -12,25 +15,66 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
+from scipy.stats import t as student
 
 from refimpl.grid import Array
 
-LEVEL = 3.841458820694124  # 95 % quantile of chi-square, one degree of freedom
+_PROBABILITY = 0.975  # quantile of two-sided 95 %
 BOUNDED = 2  # parameters that may not be negative, the first ones: tau and beta
+_FARTHEST = 1e3  # spreads from the optimum to an end that counts as infinite
 _ROUNDING = 1e-12  # below zero, in standard deviations, that still counts as zero
 
 Indices = NDArray[np.intp]
 
 
-class Profile:
-    """Likelihood of parameters about ``centre`` (the optimum without bounds), covariance (n, n)."""
+def quantile(degrees: float) -> float:
+    """Return Student's t of a two-sided 95 % interval, 1.96 for infinite degrees of freedom."""
+    return float(student.ppf(_PROBABILITY, degrees))
 
-    def __init__(self, centre: Array, covariance: Array) -> None:
+
+def floor(gradient: Array) -> float:
+    """Return the least value of a combination: 0 where the bounds keep it from less."""
+    bounded = np.all(gradient[:BOUNDED] >= 0) and not np.any(gradient[BOUNDED:])
+    return 0.0 if bounded else -math.inf
+
+
+def ends(excess: Callable[[float], float], middle: float, spread: float, least: float) -> tuple[float, float]:
+    """Return where ``excess`` changes its sign below and above ``middle``.
+
+    The low end is ``least`` where that is inside; an end further than `_FARTHEST` is infinite.
+    """
+    high, low = middle + spread, max(middle - spread, least)
+    while excess(high) < 0:
+        high += high - middle
+        if high - middle > _FARTHEST * spread:
+            high = math.inf
+            break
+    while low > least and excess(low) < 0:
+        low = max(low - (middle - low), least)
+        if middle - low > _FARTHEST * spread:
+            least = low = -math.inf
+    upper = high if math.isinf(high) else float(brentq(excess, middle, high, xtol=1e-9 * spread))
+    if low == least and (math.isinf(low) or excess(low) <= 0):
+        return low, upper
+    return float(brentq(excess, low, middle, xtol=1e-9 * spread)), upper
+
+
+class Profile:
+    """Likelihood of parameters about ``centre`` (the optimum without bounds), covariance (n, n).
+
+    ``estimated`` is the part of the covariance that draws give with ``degrees`` degrees of freedom.
+    """
+
+    def __init__(
+        self, centre: Array, covariance: Array, estimated: Array | None = None, degrees: float = math.inf
+    ) -> None:
+        self.covariance, self.degrees = covariance, degrees
+        self.estimated = np.zeros_like(covariance) if estimated is None else estimated
         self.scale = np.sqrt(np.diag(covariance))
         self.centre = centre / self.scale
         self.precision = np.linalg.inv(covariance / np.outer(self.scale, self.scale))
@@ -71,6 +115,14 @@ class Profile:
                     least = min(least, self._misfit(theta))
         return least
 
+    def quantile(self, gradient: Array) -> float:
+        """Return the quantile of Student's t for ``gradient theta``."""
+        estimated = float(gradient @ self.estimated @ gradient)
+        if estimated <= 0 or math.isinf(self.degrees):
+            return quantile(math.inf)
+        share = estimated / float(gradient @ self.covariance @ gradient)
+        return quantile(self.degrees / share**2)
+
     def interval(self, gradient: Array) -> tuple[float, float]:
         """Return the 95 % interval of ``gradient theta``.
 
@@ -78,22 +130,17 @@ class Profile:
         """
         middle, g = float(gradient @ self.optimum), gradient * self.scale
         spread = math.sqrt(float(g @ np.linalg.inv(self.precision) @ g))
+        return ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
 
-        def excess(value: float) -> float:
-            return self.on_line(gradient, value) - self.least - LEVEL
-
-        high = middle + spread
-        while excess(high) < 0:
-            high += spread
-        upper = float(brentq(excess, middle, high, xtol=1e-9 * spread))
-        floor = 0.0 if np.all(g[:BOUNDED] >= 0) and not np.any(g[BOUNDED:]) else -math.inf
-        low = max(middle - spread, floor)
-        while low > floor and excess(low) < 0:
-            low = max(low - spread, floor)
-        inside = low == floor and excess(floor) <= 0
-        return floor if inside else float(brentq(excess, low, middle, xtol=1e-9 * spread)), upper
+    def excess(self, gradient: Array, value: float) -> float:
+        """Return how far ``gradient theta = value`` is outside the 95 % interval; negative inside."""
+        return self.on_line(gradient, value) - self.least - self.quantile(gradient) ** 2
 
     @property
     def is_bounded(self) -> bool:
         """True where the bounds cut the 95 % intervals of the ellipse."""
-        return bool(np.any(self.centre[:BOUNDED] < math.sqrt(LEVEL)))
+        return any(self.centre[j] < self.quantile(axis) for j, axis in enumerate(self._axes()))
+
+    def _axes(self) -> Array:
+        """Unit vectors of the bounded parameters."""
+        return np.eye(len(self.centre))[:BOUNDED]

@@ -50,7 +50,7 @@ def add_parser(commands: Parsers) -> None:
     add("data", metavar="DATA.csv", type=Path, help="the measured friction")
     add("--grid", metavar="M", type=int, default=256, help="elements along the longer side (default 256)")
     add("--loads", metavar="P,P,...", type=_numbers, default=(), help="loads (N) at which mu is predicted")
-    add("--fit", metavar="NAME,...", type=_names, default=(), help="fit hardness or roughness as well")
+    add("--fit", metavar="NAME,...", type=_names, default=(), help="fit the hardness as well")
     add("--realisations", metavar="N", type=int, default=1, help="draws of random surfaces (default 1)")
     add("--store", metavar="FILE.json", type=output_file, help="keep finished solves there, and go on")
     add("--plot", metavar="FILE.png", type=output_file, help="draw data, fit, ellipse and residuals")
@@ -99,8 +99,8 @@ def run(options: argparse.Namespace) -> int:
 def _names(text: str) -> tuple[str, ...]:
     """Names from text.
 
-    >>> _names("hardness, lower.surface[0].rms")
-    ('hardness', 'lower.surface[0].rms')
+    >>> _names("hardness, lower.material.hardness")
+    ('hardness', 'lower.material.hardness')
     """
     return tuple(name.strip() for name in text.split(","))
 
@@ -174,13 +174,10 @@ def _further(found: Identification) -> tuple[str, ...]:
 def _scaled(name: str) -> tuple[str, float]:
     """Label with a unit at the object's scale, and the unit.
 
-    >>> _scaled("lower.material.hardness"), _scaled("lower.surface[0].rms")
-    (('lower.material.hardness (MPa)', 1000000.0), ('lower.surface[0].rms (um)', 1e-06))
+    >>> _scaled("lower.material.hardness")
+    ('lower.material.hardness (MPa)', 1000000.0)
     """
-    for ending, (unit, size) in {"hardness": ("MPa", MEGA), "rms": ("um", 1e-6)}.items():
-        if name.endswith(ending):
-            return f"{name} ({unit})", size
-    return name, 1.0
+    return (f"{name} (MPa)", MEGA) if name.endswith("hardness") else (name, 1.0)
 
 
 def _shown(label: str, one: Interval, unit: float) -> list[str]:

@@ -10,13 +10,21 @@ import argparse
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from refimpl.identification import Identification, identify
-from verification.coverage.twins import Twin, blind, ensemble_twin, sharp_twin, twin, yielding_twin
+from verification.coverage.twins import (
+    ROUGHNESS_TOLERANCE,
+    Twin,
+    blind,
+    ensemble_twin,
+    sharp_twin,
+    twin,
+    yielding_twin,
+)
 from verification.framework.case import jsonable
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
@@ -31,19 +39,26 @@ class TwinSet:
     """A set of twins: its seeds, and the function that makes the twin of a seed.
 
     fit : parameters fitted beside tau and beta; realisations : draws of a surface known by its statistics
+    tolerances : relative half-widths (95 %) of inputs, which the twins are off by
     """
 
     seeds: range
     make: Callable[[int], Twin]
     fit: tuple[str, ...] = ()
     realisations: int = 1
+    tolerances: Mapping[str, float] = field(default_factory=dict)
 
 
 SETS: Mapping[str, TwinSet] = {
     "drawn": TwinSet(range(5000, 5300), twin),
     "sharp": TwinSet(range(6000, 6060), sharp_twin),
     "hardness": TwinSet(range(7000, 7040), yielding_twin, ("hardness",)),
-    "roughness": TwinSet(range(8000, 8024), ensemble_twin, ("roughness",), realisations=4),
+    "roughness": TwinSet(
+        range(8200, 8240),
+        ensemble_twin,
+        realisations=4,
+        tolerances={"lower.surface[0].rms": ROUGHNESS_TOLERANCE},
+    ),
 }
 
 
@@ -57,6 +72,7 @@ def judged(twins: TwinSet, seed: int) -> dict[str, object]:
         loads=(case.new_load,),
         fit=twins.fit,
         realisations=twins.realisations,
+        tolerances=twins.tolerances,
         design=False,
     )
     tau, beta, mu = found.values["tau"], found.values["beta"], found.predictions[-1].mu

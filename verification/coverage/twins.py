@@ -15,6 +15,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.identification import Row
+from refimpl.identification.forward import COVERAGE
 
 KINDS = ("ball", "rough ball", "capped ball", "capped rough ball", "rough planes")
 SIDE = 1e-3  # m; the problem is scale-free
@@ -23,6 +24,7 @@ SHARP_FIT_GRID, SHARP_TRUE_GRID = 192, 512  # the smallest load's contact is a t
 SHARP_NOISE = 0.005
 YIELDING_FIT_GRID, YIELDING_TRUE_GRID = 64, 192
 ENSEMBLE_FIT_GRID, ENSEMBLE_TRUE_GRID = 64, 192
+ROUGHNESS_TOLERANCE = 0.3  # relative half-width (95 %) of a measured rms height
 
 Log = Callable[[float, float], float]
 
@@ -119,10 +121,10 @@ def yielding_twin(seed: int) -> Twin:
 
 
 def ensemble_twin(seed: int) -> Twin:
-    """Return a twin whose rough ball is known by its statistics alone, but for the height, which is fitted.
+    """Return a twin whose rough ball is known by its statistics alone, its rms height within 30 % (95 %).
 
     Its friction is of one realisation that no fit draws. Eight to twelve loads over a factor of 100 to 300,
-    noise 0.5 to 2 %; the scene's rms, the first guess of a fit, is off by up to 30 %.
+    noise 0.5 to 2 %. The logarithm of the scene's rms is off by a normal deviate.
     """
     rng = np.random.default_rng([45, seed])
     log = _log_uniform(rng)
@@ -142,9 +144,10 @@ def ensemble_twin(seed: int) -> Twin:
     new_load = load * log(1 / span, 1.1)
     rows = _measured(scene, loads, noise, ENSEMBLE_TRUE_GRID, rng)
     new_mu = true_friction(scene, new_load, ENSEMBLE_TRUE_GRID)
-    drawn = rf.GaussianRoughness(rms * log(0.77, 1.3), length, 2 * seed + 1)
-    guessed = replace(scene, lower=rf.Body(lower, drawn))
-    return Twin("rough ball, drawn anew", guessed, rows, new_load, new_mu, noise, ENSEMBLE_FIT_GRID, rms)
+    error = ROUGHNESS_TOLERANCE / COVERAGE * float(rng.standard_normal())
+    drawn = rf.GaussianRoughness(rms * math.exp(error), length, 2 * seed + 1)
+    stated = replace(scene, lower=rf.Body(lower, drawn))
+    return Twin("rough ball, drawn anew", stated, rows, new_load, new_mu, noise, ENSEMBLE_FIT_GRID)
 
 
 def _log_uniform(rng: np.random.Generator) -> Log:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,25 +10,91 @@ import pytest
 
 import refimpl as rf
 from refimpl.identification import Row, identify
-from refimpl.identification.ensemble import redrawn, scatter
+from refimpl.identification.ensemble import draws, mean_response, redrawn, scatter, working_variances
+from refimpl.identification.fit import linear_fit, profile_of, shares
+from refimpl.identification.forward import Forward, Response
+from refimpl.identification.varying_profile import VaryingProfile
 from refimpl.scene.scene_file import read_scene
+
+SPAN = np.geomspace(1.0, 200.0, 9)  # N
 
 
 def test_one_realisation_has_no_scatter() -> None:
-    assert not scatter(np.array([[0.1, 0.2, 0.3]])).any()
+    one = [[_linear(mu, (mu, 0.1))] for mu in (0.1, 0.2, 0.3)]
+    assert math.isinf(scatter(one).degrees)
+    assert not working_variances(one, np.array([1.0, 2.0, 4.0])).any()
 
 
-def test_the_scatter_covers_another_draw_by_students_t() -> None:
-    """Three draws 1, 2, 3: variance 1, and 1 + 1/3 with the mean's; t of two degrees of freedom is 4.3027."""
-    found = scatter(np.array([[1.0], [2.0], [3.0]]))
-    assert 1.959964 * found[0, 0] ** 0.5 == pytest.approx(4.302653 * (4 / 3) ** 0.5, rel=1e-5)
+def test_the_scatter_is_the_variance_of_another_draw_about_the_mean() -> None:
+    """Three draws 1, 2, 3: variance 1, and 1 + 1/3 with the mean's; four times that at twice tau."""
+    found = scatter([[_linear(mu, (mu, 0.0)) for mu in (1.0, 2.0, 3.0)]])
+    assert found.degrees == 2
+    for tau, factor in ((1.0, 1.0), (2.0, 4.0)):
+        assert found.variance(np.eye(1), np.array([tau, 1.0])) == pytest.approx(
+            np.full((1, 1), factor * 4 / 3)
+        )
 
 
-def test_loads_that_scatter_together_stay_correlated() -> None:
-    """Relative variances 1/4 and 1/4 of both loads: the second is ten times the first, correlation 0.7."""
-    found = scatter(np.array([[1.0, 10.0], [2.0, 20.0], [3.0, 30.0]]))
-    assert found[1, 1] == pytest.approx(100 * found[0, 0])
-    assert found[0, 1] == pytest.approx(0.7 * 10 * found[0, 0])
+def test_the_relative_scatter_that_weighs_rows_falls_with_the_root_of_the_load() -> None:
+    """Relative variances of the area (4/3)/4 at 1 N and none at 3 N: their mean times the load is 1/6 N."""
+    drawn = [[_linear(2.0, (area, 0.0)) for area in (1.0, 2.0, 3.0)], [_linear(10.0, (5.0, 0.0))] * 3]
+    found = working_variances(drawn, np.array([1.0, 3.0]))
+    assert found == pytest.approx([2.0**2 / 6, 10.0**2 / 18])
+
+
+@pytest.mark.parametrize(("count", "correlation"), [(4, 0.5), (4, 3.0), (8, 1.5)])
+def test_intervals_from_few_draws_cover(count: int, correlation: float) -> None:
+    """Areas that scatter as ``P^(-0.6)``, with any correlation in ln P: 95 % cover.
+
+    300 twins: two standard deviations of their share are 2.5 %. Weights by the covariance of four draws
+    cover 80 % instead.
+    """
+    rng, theta, beta = np.random.default_rng(42), np.array([1.0, 1.0]), np.full(len(SPAN), 0.1)
+    area = 0.5 * SPAN ** (-1 / 3)
+    correlations = np.exp(-np.abs(np.subtract.outer(np.log(SPAN), np.log(SPAN))) / correlation)
+    scale = 0.3 * SPAN**-0.6 * area
+    root = np.linalg.cholesky(np.outer(scale, scale) * correlations)
+    covered = []
+    for _ in range(300):
+        areas = area + rng.standard_normal((count + 1, len(SPAN))) @ root.T
+        noise = 0.005 * (area + beta)
+        rows = [
+            Row(load, a + b + u * rng.standard_normal(), u)
+            for load, a, b, u in zip(SPAN, areas[0], beta, noise, strict=True)
+        ]
+        drawn = [[_linear(a + b, (a, b)) for a in row] for row, b in zip(areas[1:].T, beta, strict=True)]
+        means = [mean_response(row) for row in drawn]
+        fitted = linear_fit(rows, means, working_variances(drawn, SPAN), scatter(drawn), 0.0, 1)
+        profile = profile_of(fitted, shares(rows, fitted, ()))
+        assert isinstance(profile, VaryingProfile)
+        excess = [profile.excess(axis, true) for axis, true in zip(np.eye(2), theta, strict=True)]
+        covered.append(np.array(excess) <= 0)
+    assert np.min(np.mean(covered, axis=0)) > 0.925
+
+
+def _linear(mu: float, slopes: tuple[float, float]) -> Response:
+    """A response at (1, 1) without bars."""
+    return Response((1.0, 1.0), mu, slopes, 0.0, 0.0, {}, 1.0, 0.0, 0.0, (), (), 1, ())
+
+
+def test_an_end_judged_by_its_own_scatter() -> None:
+    """Variance ``(s tau)^2`` of tau about 1, many degrees: ends ``1 / (1 +- 1.96 s)``, infinite from 0.51."""
+    for s, high in ((0.25, 1 / (1 - 0.489991)), (0.6, math.inf)):
+
+        def estimated(theta: np.ndarray, s: float = s) -> np.ndarray:
+            return np.diag([(s * theta[0]) ** 2, 0.0])
+
+        profile = VaryingProfile(np.ones(2), 1e-8 * np.eye(2), estimated, 1e9, np.ones(2))
+        low = 1 / (1 + 1.959964 * s)
+        assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((low, high), rel=1e-4)
+
+
+def test_tolerances_of_an_ensemble_are_means_over_its_draws() -> None:
+    scene = read_scene("table1-rough")
+    forward, theta, name = Forward(32), np.array([15e6, 0.08]), "lower.surface[0].rms"
+    drawn = draws(forward, scene, theta, 3, {name: 0.3})
+    assert len({one.inputs[name] for one in drawn}) == 3
+    assert mean_response(drawn).inputs[name] == pytest.approx(np.mean([one.inputs[name] for one in drawn]))
 
 
 def test_realisations_differ_and_maps_stay() -> None:
