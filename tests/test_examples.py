@@ -23,7 +23,12 @@ EXAMPLES = {
     ),
     "conventions": (["33"], "centre of pressure at x = -0.046 mm, theta_x in front up to +0.088"),
     "small_slopes": (["32"], "a / R = 0.05: p_max +0.1 %\n...a / R = 0.33: p_max +6.3 %"),
-    "half_space_map": (["0.3"], "copper, flank, 10 degrees: 4.8 % on waves of 8 half-widths, 5.2 on 256"),
+    "half_space_map": (
+        ["0.3"],
+        "copper, flank, 10 degrees: 4.8 % on waves of 8 half-widths, 5.2 on 256\n"
+        "copper, crest, 10 degrees: 1.3 % on waves of 8 half-widths, 0.1 on 256\n"
+        "steel on copper, 10 degrees: 1.6 % on waves of 8 half-widths, 1.7 on 256",
+    ),
     "half_space_wave": (
         ["model_form"],
         "15 degrees, approach under the load: 8.5 %, first order 9.3, stated 11.8\n"

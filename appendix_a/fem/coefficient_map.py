@@ -26,7 +26,7 @@ from appendix_a.leading_order import coupling
 Array = NDArray[np.float64]
 VERSION = 1
 CUBIC = 4  # nodes that a cubic spline needs
-DECIMALS = 5  # of the table: 0.001 percentage points at 30 degrees
+DECIMALS = 5  # rounding in the file, 0.001 percentage points at 30 degrees
 COMMAND = "rough-friction appendix-a map"
 AXES = ("slope_deg", "wavelength", "position", "offset")
 ARRAYS = ("kappa_part", "constant_part", "error_percentage_points")

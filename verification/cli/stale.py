@@ -30,6 +30,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "accuracy_costs": (*SOLVES, "verification/benchmarks"),
     "appendix_a": ("appendix_a",),
     "appendix_a_3d": ("appendix_a/fem3d",),
+    "appendix_a_between": ("appendix_a/fem", "refimpl/data"),
     "appendix_a_fem3d": ("appendix_a",),
     "appendix_a_map": ("appendix_a/fem", "refimpl/data"),
     "appendix_correction": (*SOLVES, "appendix_a"),
