@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from verification.cli import main
-from verification.cli.contestant import _source, add_options, unseen_faults
+from verification.cli.contestant import _source, add_options
+from verification.cli.contestant_report import unseen_faults
 from verification.contestants import isolated, own
 from verification.contestants.check import Fault
 from verification.contestants.isolated import Named

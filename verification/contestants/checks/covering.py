@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from verification.contestants.asking import ask
 from verification.contestants.check import CLAIMS, Entrant, Pressed, check
 from verification.contestants.checks.residuals import CLAIM, PERIODIC_SOURCE, SOURCE, judged
 from verification.contestants.design import in_turn, posed, rows
@@ -39,8 +38,7 @@ def _declare(design: str, number: int, row: dict[str, Any]) -> None:
         catches=(),
     )
     def covered(entrant: Entrant) -> Measured:
-        problems = [posed(each, number, entrant.claim) for each in in_turn(row)]
-        answers = [Pressed(each, ask(entrant.contestant, each)) for each in problems]
+        answers = [entrant.pose(posed(each, number, entrant.claim)) for each in in_turn(row)]
         return max((_judged(entrant, each) for each in answers), key=lambda found: found.value)
 
 
