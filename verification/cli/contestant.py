@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from verification.contestants.serving import Source
     from verification.framework.case import Result
 
-ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation")
+ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation", "thorough")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -68,6 +68,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "pressures; exit status 0 when both hold, 3 when an order is low, 1 when a limit is wrong",
     )
     group.add_argument(
+        "--thorough",
+        action="store_const",
+        const=True,
+        help="further problems of the covering designs after the suite, from other seeds",
+    )
+    group.add_argument(
         "--table",
         metavar="FILE",
         type=output_file,
@@ -92,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
     from verification.contestants import convergence
     from verification.framework.case import readable
 
-    among = convergence.CASES if options.discretisation == "other" else None
+    among = _among(options)
     checks = _selected(options, among)
     if options.table is not None:
         suite_table.require_suffix(options.table)
@@ -107,10 +113,22 @@ def run(options: argparse.Namespace) -> int:
     if options.table is not None:
         _write_table(options.table, document["contestant"], judged.results)
     _end_as(judged.ended)
-    return convergence.exit_status(judged.results) if among else judged.run.exit_status
+    return convergence.exit_status(judged.results) if judged.of_convergence else judged.run.exit_status
 
 
-def _selected(options: argparse.Namespace, among: tuple[Check, ...] | None) -> tuple[Check, ...]:
+def _among(options: argparse.Namespace) -> tuple[Check, ...]:
+    """The suite, with further problems, or the limits and orders in its place."""
+    from refimpl.errors import InputError
+    from verification.contestants import convergence, suite
+
+    if options.discretisation == "other":
+        if options.thorough:
+            raise InputError("--thorough", True, "nothing beside --discretisation other")
+        return convergence.CASES
+    return suite.thorough() if options.thorough else suite.suite()
+
+
+def _selected(options: argparse.Namespace, among: tuple[Check, ...]) -> tuple[Check, ...]:
     """Checks that ``--only`` names. Raises `InputError` where it names none."""
     from refimpl.errors import InputError
     from verification.contestants import suite
@@ -124,7 +142,7 @@ def _selected(options: argparse.Namespace, among: tuple[Check, ...] | None) -> t
 def _judged(
     options: argparse.Namespace,
     checks: tuple[Check, ...],
-    among: tuple[Check, ...] | None,
+    among: tuple[Check, ...],
     name: str,
     source: Source,
 ) -> Judged:
@@ -158,7 +176,8 @@ def _judged(
         ended = end
     progress.close()
     seconds = time.perf_counter() - start
-    return Judged(checks, tuple(results), tuple(options.only), among is not None, tuple(left), ended, seconds)
+    of_convergence = options.discretisation == "other"
+    return Judged(checks, tuple(results), tuple(options.only), of_convergence, tuple(left), ended, seconds)
 
 
 def _write_table(path: Path, entry: Mapping[str, Any], results: Sequence[Result]) -> None:

@@ -79,6 +79,9 @@ def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[s
 
     return judged.run.document() | {
         "suite": suite.identity(),
+        "thorough": len({c.id for c in judged.checks} - {c.id for c in suite.suite()})
+        if not judged.of_convergence
+        else 0,
         "interrupted": judged.ended is not None,
         "contestant": {
             **solver,

@@ -239,14 +239,19 @@ def check(
     """Declare the decorated function as a case of the suite. Raises ValueError for a slug that is taken."""
 
     def declare(judge: Judge) -> Judge:
-        if slug in _declared:
-            raise ValueError(f"check {slug!r} is declared twice")
-        _declared[slug] = Check(
-            slug, title, claim, source, Metric(metric), tolerance, tolerance_reason, catches, judge
+        register(
+            Check(slug, title, claim, source, Metric(metric), tolerance, tolerance_reason, catches, judge)
         )
         return judge
 
     return declare
+
+
+def register(made: Check) -> None:
+    """Make a check a case of the suite. Raises ValueError for a slug that is taken."""
+    if made.slug in _declared:
+        raise ValueError(f"check {made.slug!r} is declared twice")
+    _declared[made.slug] = made
 
 
 def declared() -> tuple[Check, ...]:
