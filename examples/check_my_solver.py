@@ -8,13 +8,13 @@ from scipy.optimize import nnls
 
 from refimpl.kernels import normal_integral
 from verification.contestants import suite
-from verification.contestants.protocol import Abilities, ContactProblem
+from verification.contestants.protocol import Abilities, Answer, ContactProblem
 
 ONLY = sys.argv[1] if len(sys.argv) > 1 else "contestant/*"
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "check_my_solver.png"
 
 
-def my_solver(problem: ContactProblem) -> np.ndarray:
+def my_solver(problem: ContactProblem) -> Answer:
     """Pressures of least energy at a prescribed approach: non-negative least squares of a Cholesky factor."""
     M, h = problem.M, problem.spacing
     x = np.arange(M) * h
@@ -23,7 +23,7 @@ def my_solver(problem: ContactProblem) -> np.ndarray:
     A = table[apart[:, None, :, None], apart[None, :, None, :]].reshape(M**2, M**2)
     L = np.linalg.cholesky(A)
     f, _ = nnls(L.T, np.linalg.solve(L, problem.approach - problem.gap.ravel()), maxiter=20 * M**2)
-    return f.reshape(problem.gap.shape)
+    return Answer(f.reshape(problem.gap.shape), True, contact_area=np.count_nonzero(f) * h**2)
 
 
 my_solver.abilities = Abilities(periodic=False, load=False, largest=32)

@@ -46,7 +46,7 @@ def press(problem: ContactProblem, **options: str) -> PeerAnswer:
         found = hc.ContactSolver(problem.M, **common).solve(gap, precond="fourier", **stop)
     pressure = E * np.array(found.pressure, dtype=np.float64).reshape(problem.gap.shape)
     work = {"displacements": int(found.matvec_count), "preconditionings": int(found.precond_count)}
-    return PeerAnswer(pressure, str(found.status) == "converged", work)
+    return PeerAnswer(pressure, str(found.status) == "converged", operations=work)
 
 
 def _halves(M: int) -> bool:

@@ -54,7 +54,7 @@ def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> Pe
         )
         force, work = found.x, 2 * int(found.nit)
     pressure = np.array(force).reshape(problem.gap.shape) / problem.element_area
-    return PeerAnswer(pressure, bool(found.success), {"displacements": work})
+    return PeerAnswer(pressure, bool(found.success), operations={"displacements": work})
 
 
 def _half_space(package: ModuleType, problem: ContactProblem, mean_stiffness: float | None) -> Any:

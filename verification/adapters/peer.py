@@ -19,7 +19,7 @@ from verification.framework.case import Unavailable
 class PeerAnswer(Answer):
     """An answer with the operations that the peer says it took, by its own names."""
 
-    operations: Mapping[str, int] = field(default_factory=dict)
+    operations: Mapping[str, int] = field(default_factory=dict, kw_only=True)
 
 
 @dataclass(frozen=True)

@@ -8,17 +8,19 @@ import signal
 import time
 from typing import TYPE_CHECKING, Any
 
-from verification.cli import suite_table
-from verification.cli.output import columns, emit, judgement, output_file, wrapped
+from verification.cli import contestant_report, suite_table
+from verification.cli.contestant_report import Judged
+from verification.cli.output import columns, emit, output_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
+    from verification.contestants.check import Check
     from verification.contestants.serving import Source
     from verification.framework.case import Result
-    from verification.framework.runner import Run
 
-ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation")
+ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation", "thorough")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -66,6 +68,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "pressures; exit status 0 when both hold, 3 when an order is low, 1 when a limit is wrong",
     )
     group.add_argument(
+        "--thorough",
+        action="store_const",
+        const=True,
+        help="further problems of the covering designs after the suite, from other seeds",
+    )
+    group.add_argument(
         "--table",
         metavar="FILE",
         type=output_file,
@@ -87,18 +95,11 @@ def chosen(options: argparse.Namespace) -> bool:
 
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
-    from refimpl.errors import InputError
-    from verification.contestants import convergence, isolated, short_list, suite
-    from verification.contestants.ending import Ended, unwinding
-    from verification.framework.case import Tier, readable
-    from verification.framework.files import Progress, write_text
-    from verification.framework.runner import Run
+    from verification.contestants import convergence
+    from verification.framework.case import readable
 
-    try:
-        among = convergence.CASES if options.discretisation == "other" else None
-        checks = suite.select(options.only, among)
-    except LookupError as nothing:
-        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
+    among = _among(options)
+    checks = _selected(options, among)
     if options.table is not None:
         suite_table.require_suffix(options.table)
     if options.list:
@@ -106,15 +107,59 @@ def run(options: argparse.Namespace) -> int:
         emit(listed, options.json, columns([[c.id, c.title] for c in checks], indent=""))
         return 0
     name, source, stated = _source(options)
+    judged = _judged(options, checks, among, name, source)
+    document = contestant_report.document(judged, identity_of(options), stated)
+    emit(document, options.json, contestant_report.text(readable(name), judged))
+    if options.table is not None:
+        _write_table(options.table, document["contestant"], judged.results)
+    _end_as(judged.ended)
+    return convergence.exit_status(judged.results) if judged.of_convergence else judged.run.exit_status
+
+
+def _among(options: argparse.Namespace) -> tuple[Check, ...]:
+    """The suite, with further problems, or the limits and orders in its place."""
+    from refimpl.errors import InputError
+    from verification.contestants import convergence, suite
+
+    if options.discretisation == "other":
+        if options.thorough:
+            raise InputError("--thorough", True, "nothing beside --discretisation other")
+        return convergence.CASES
+    return suite.thorough() if options.thorough else suite.suite()
+
+
+def _selected(options: argparse.Namespace, among: tuple[Check, ...]) -> tuple[Check, ...]:
+    """Checks that ``--only`` names. Raises `InputError` where it names none."""
+    from refimpl.errors import InputError
+    from verification.contestants import suite
+
+    try:
+        return suite.select(options.only, among)
+    except LookupError as nothing:
+        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
+
+
+def _judged(
+    options: argparse.Namespace,
+    checks: tuple[Check, ...],
+    among: tuple[Check, ...],
+    name: str,
+    source: Source,
+) -> Judged:
+    """Judge the solver case by case; an end by a signal keeps the verdicts so far."""
+    from verification.contestants import isolated
+    from verification.contestants.ending import Ended, unwinding
+    from verification.framework.files import Progress
+
     start, progress = time.perf_counter(), Progress(len(checks))
     results: list[Result] = []
     left: list[str] = []
+    ended: Ended | KeyboardInterrupt | None = None
 
     def judged(result: Result) -> None:
         results.append(result)
         progress.tick(f"{result.status:<11} {result.id}")
 
-    ended: BaseException | None = None
     try:
         with unwinding(signal.SIGTERM, signal.SIGHUP):  # a batch queue's, a terminal's that is closed
             isolated.run(
@@ -127,43 +172,31 @@ def run(options: argparse.Namespace) -> int:
                 tick=judged,
                 left=left.append,
             )
-    except (Ended, KeyboardInterrupt) as end:  # verdicts so far are shown and written
+    except (Ended, KeyboardInterrupt) as end:
         ended = end
     progress.close()
-    done = Run(Tier.FULL, tuple(options.only), tuple(results), time.perf_counter() - start)
-    missing = [check.id for check in checks[len(results) :]]
-    unseen = None if options.only or among or ended else unseen_faults(results)
-    low = convergence.slow(results) if among else []
-    document: dict[str, Any] = done.document() | {
-        "suite": suite.identity(),
-        "interrupted": ended is not None,
-        "contestant": {
-            **identity_of(options),
-            "abilities": stated or None,
-            "not_applicable": {r.id: r.note for r in results if r.status == "unavailable"},
-            "not_judged": missing,
-            "left_running": left,
-            "low_order": low,
-            "unseen_faults": unseen,
-            "short_list": short_list.of_results(results),
-        },
-    }
-    text = table(readable(name), done, unseen or [], left, len(missing))
-    if among and results:
-        orders = columns([[r.id, r.note] for r in results if r.status == "pass"])
-        low_ones = "right in the limit, but of low order: " + ", ".join(low) if low else ""
-        text = "\n\n".join(filter(None, [orders, low_ones, text]))
-    emit(document, options.json, text)
-    if options.table is not None:
-        entry = suite_table.run_entry(document["contestant"], suite.VERSION, results)
-        write_text(
-            suite_table.text_of(options.table.suffix, [entry, *suite_table.published()]), options.table
-        )
+    seconds = time.perf_counter() - start
+    of_convergence = options.discretisation == "other"
+    return Judged(checks, tuple(results), tuple(options.only), of_convergence, tuple(left), ended, seconds)
+
+
+def _write_table(path: Path, entry: Mapping[str, Any], results: Sequence[Result]) -> None:
+    """Write the run beside the published codes."""
+    from verification.contestants import suite
+    from verification.framework.files import write_text
+
+    ours = suite_table.run_entry(entry, suite.VERSION, results)
+    write_text(suite_table.text_of(path.suffix, [ours, *suite_table.published()]), path)
+
+
+def _end_as(ended: BaseException | None) -> None:
+    """End as the signal or Ctrl-C would have, once what is judged is shown and written."""
+    from verification.contestants.ending import Ended
+
     if isinstance(ended, Ended):
-        os.kill(os.getpid(), ended.number)  # everything is tidied up; now what the signal does by itself
+        os.kill(os.getpid(), ended.number)
     if ended is not None:
         raise ended
-    return convergence.exit_status(results) if among else done.exit_status
 
 
 def identity_of(options: argparse.Namespace) -> dict[str, str | None]:
@@ -179,16 +212,6 @@ def identity_of(options: argparse.Namespace) -> dict[str, str | None]:
     else:
         found = identity.of_function(options.solver)
     return found | {"name": readable(options.solver or options.exec)}
-
-
-def unseen_faults(results: Iterable[Result]) -> list[str]:
-    """Faults that no case that ran is meant to catch: a solver of few abilities is judged by few cases."""
-    from verification.contestants.check import Fault
-    from verification.contestants.suite import suite
-
-    ran = {r.id for r in results if r.status != "unavailable"}
-    seen = {fault for check in suite() if check.id in ran for fault in check.catches}
-    return [fault.value for fault in Fault if fault not in seen]
 
 
 def _timeout(options: argparse.Namespace) -> float:
@@ -214,51 +237,3 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
         return options.solver, Named(PEERS.get(options.solver, options.solver), stated).contestant, stated
     command = Command.of(options.exec, abilities, _timeout(options))
     return options.exec, command.contestant, asdict(abilities)
-
-
-def table(
-    name: str, done: Run, unseen: Sequence[str] = (), left: Sequence[str] = (), missing: int = 0
-) -> str:
-    """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts.
-
-    ``left`` are processes that the solver left running, ``missing`` the cases that an interrupted run missed.
-    """
-    ran = [r for r in done.results if r.status != "unavailable"]
-    rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
-    reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
-    counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
-    parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
-    from verification.contestants.short_list import of_results
-
-    if listed := of_results(done.results):
-        parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
-    if unseen:
-        parts.append("looked for by none of these cases:\n" + wrapped(", ".join(unseen), "  "))
-    if left:
-        parts.append("processes that the solver left behind:\n  " + "\n  ".join(left))
-    if missing:
-        parts.append(f"interrupted: {missing} cases were not judged")
-    return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
-
-
-def with_unit(result: Result) -> str:
-    """The judgement in its unit; a relative error has none but that word."""
-    unit = "relative" if result.metric == "relative" else result.unit
-    return f"{judgement(result)} {unit}" if judgement(result) else ""
-
-
-def reason(result: Result) -> str:
-    """Why there is no verdict; or what was claimed, and what is known of the failure."""
-    if result.status == "error":
-        return result.note
-    return f"{result.claim}. Found: {result.note}" if result.note else result.claim
-
-
-def _not_applicable(done: Run) -> list[str]:
-    left_out = [r for r in done.results if r.status == "unavailable"]
-    reasons = dict.fromkeys(r.note for r in left_out)
-    lines = [
-        wrapped(", ".join(r.id.partition("/")[2] for r in left_out if r.note == note), f"  {note}: ")
-        for note in reasons
-    ]
-    return ["\n".join(["not applicable, and not passed:", *lines])] if lines else []

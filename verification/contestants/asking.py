@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+import numbers
 from dataclasses import replace
 
 import numpy as np
 
-from refimpl.grid import Array
 from verification.contestants.protocol import (
+    NUMBERS,
     Answer,
     BadAnswer,
     ContactProblem,
@@ -30,8 +32,8 @@ def _named(answer: object) -> str:
     return f"a {type(answer).__name__}"
 
 
-def ask(contestant: Contestant, problem: ContactProblem) -> Array:
-    """Return the claimed pressures ``(M, M)`` (Pa) of a solver under test, checked for shape and finiteness.
+def ask(contestant: Contestant, problem: ContactProblem) -> Answer:
+    """Return the claimed answer of a solver under test, checked; its pressures ``(M, M)`` (Pa) are an array.
 
     The solver gets a copy of the problem. Raises `Unsupported` where its abilities do not reach,
     `BadAnswer` for an answer that cannot be judged or admits failure, and every exception of the solver.
@@ -40,6 +42,7 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Array:
     if lacking:
         raise Unsupported(f"the solver does not offer: {lacking}")
     answer = contestant(replace(problem, gap=problem.gap))
+    beside = _numbers(answer) if isinstance(answer, Answer) else {}
     if isinstance(answer, Answer):
         if not isinstance(answer.converged, bool | np.bool_):
             raise BadAnswer(f"converged = {answer.converged!r}: expected true or false")
@@ -57,4 +60,14 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Array:
         raise BadAnswer(f"{int(np.count_nonzero(~np.isfinite(pressure)))} pressures are not finite")
     if not np.abs(pressure).max() < HIGHEST * problem.reduced_modulus:
         raise BadAnswer(f"pressures up to {np.abs(pressure).max():.3g} Pa, beyond {HIGHEST:g} E*")
-    return pressure
+    return Answer(pressure, True, **beside)
+
+
+def _numbers(answer: Answer) -> dict[str, float]:
+    """The numbers that an answer has, by name. Raises `BadAnswer` for what is no finite number."""
+    found = {name: getattr(answer, name) for name in NUMBERS if getattr(answer, name) is not None}
+    for name, number in found.items():
+        real = isinstance(number, numbers.Real) and not isinstance(number, bool)
+        if not real or not math.isfinite(number):
+            raise BadAnswer(f"{name} = {number!r}: expected a finite number, or None")
+    return {name: float(number) for name, number in found.items()}

@@ -20,7 +20,7 @@ from refimpl.operators import kernel_tables
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.solvers.production import constants
-from verification.contestants import own, referee
+from verification.contestants import own, referee, wrong_numbers
 from verification.contestants.check import Fault
 from verification.contestants.protocol import Answer, ContactProblem, Contestant
 from verification.contestants.remembering import Forgetful, Remembering
@@ -41,6 +41,7 @@ from verification.contestants.wrong import (
     with_gap,
     without_tau,
 )
+from verification.contestants.wrong_numbers import WrongNumber
 
 
 @dataclass(frozen=True)
@@ -234,5 +235,10 @@ BROKEN: dict[Fault, Callable[[], Contestant]] = {
     Fault.HARDNESS_IGNORED: lambda: Wrong(asked(lambda p: replace(p, hardness=None))),
     Fault.HARDNESS_CUT: lambda: Wrong(cut_at_hardness),
     Fault.HARDNESS_KEPT: lambda: Wrong(Remembering("hardness")),
+    Fault.APPROACH_SIGN: lambda: WrongNumber("approach", wrong_numbers.other_sign),
+    Fault.APPROACH_DATUM: lambda: WrongNumber("approach", wrong_numbers.other_datum),
+    Fault.AREA_IN_ELEMENTS: lambda: WrongNumber("contact_area", wrong_numbers.in_elements),
+    Fault.AREA_CORRECTED: lambda: WrongNumber("contact_area", wrong_numbers.corrected),
+    Fault.DISPLACEMENT_OF_CONTACT: lambda: WrongNumber("mean_displacement", wrong_numbers.over_the_contact),
 }
 """A fresh solver with each fault."""

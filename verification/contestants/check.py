@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from refimpl.grid import Array
-from verification.contestants import referee
+from verification.contestants import numbers, referee
 from verification.contestants.asking import ask
 from verification.contestants.protocol import ContactProblem, Contestant, Coupling, abilities_of
 from verification.framework.case import Case, Measured, Metric
@@ -70,6 +70,11 @@ class Fault(StrEnum):
     HARDNESS_IGNORED = "hardness ignored"
     HARDNESS_CUT = "elastic pressures cut at the hardness"
     HARDNESS_KEPT = "hardness kept from an earlier problem"
+    APPROACH_SIGN = "approach with the other sign"
+    APPROACH_DATUM = "approach from the other datum"
+    AREA_IN_ELEMENTS = "contact area in elements"
+    AREA_CORRECTED = "contact area corrected by its perimeter"
+    DISPLACEMENT_OF_CONTACT = "displacement averaged over the contact"
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,25 +116,32 @@ class Entrant:
         """Pose a gap (m) on a square of ``side`` (m), or a rectangle; under a load (N) or at an approach (m).
 
         An aperiodic approach counts from the gap's own zero, which need not be its least value: an indenter's
-        tip may lie between element centres. Raises what `ask` raises.
+        tip may lie between element centres. Raises what `pose` raises.
         """
         if approach is not None and not periodic:
             approach -= float(gap.min())
         Lx, Ly = side if isinstance(side, tuple) else (side, side)
         dx, dy = Lx / gap.shape[0], Ly / gap.shape[1]
-        problem = ContactProblem(
-            gap=gap - gap.min(),
-            spacing=dx,
-            spacing_y=None if dx == dy else dy,
-            reduced_modulus=modulus,
-            load=load,
-            approach=approach,
-            periodic=periodic,
-            tolerance=self.claim,
-            coupling=coupling,
-            hardness=hardness,
+        return self.pose(
+            ContactProblem(
+                gap=gap - gap.min(),
+                spacing=dx,
+                spacing_y=None if dx == dy else dy,
+                reduced_modulus=modulus,
+                load=load,
+                approach=approach,
+                periodic=periodic,
+                tolerance=self.claim,
+                coupling=coupling,
+                hardness=hardness,
+            )
         )
-        return Pressed(problem, ask(self.contestant, problem))
+
+    def pose(self, problem: ContactProblem) -> Pressed:
+        """Pose a problem. Raises what `ask` raises, and `Disproved` for numbers other than its pressures'."""
+        answer = ask(self.contestant, problem)
+        numbers.require(problem, answer)
+        return Pressed(problem, np.asarray(answer.pressure))
 
     def misfit(self, pressed: Pressed, exact: Array) -> float:
         """Squared energy-norm error against exact pressures, in units of the claim.
@@ -227,14 +239,19 @@ def check(
     """Declare the decorated function as a case of the suite. Raises ValueError for a slug that is taken."""
 
     def declare(judge: Judge) -> Judge:
-        if slug in _declared:
-            raise ValueError(f"check {slug!r} is declared twice")
-        _declared[slug] = Check(
-            slug, title, claim, source, Metric(metric), tolerance, tolerance_reason, catches, judge
+        register(
+            Check(slug, title, claim, source, Metric(metric), tolerance, tolerance_reason, catches, judge)
         )
         return judge
 
     return declare
+
+
+def register(made: Check) -> None:
+    """Make a check a case of the suite. Raises ValueError for a slug that is taken."""
+    if made.slug in _declared:
+        raise ValueError(f"check {made.slug!r} is declared twice")
+    _declared[made.slug] = made
 
 
 def declared() -> tuple[Check, ...]:

@@ -13,9 +13,10 @@ The command is run as ``COMMAND DIRECTORY`` for each problem. In the directory i
     problem.npz    the same array under the name gap
 
 and writes there, in the same layout, either ``pressure.csv`` or ``answer.npz`` (array ``pressure``), in Pa.
-It may add ``answer.json``, ``{"converged": true}``; without it, exit status 0 claims success. Anything else
-is an error of the case: another exit status, no answer or two, a short one, NaN, too much time. What the
-numbers mean is said in `verification.contestants.protocol`.
+It may add ``answer.json``, ``{"converged": true}``; without it, exit status 0 claims success. Beside that the
+object may have ``approach`` (m), ``contact_area`` (m^2) and ``mean_displacement`` (m), each of them judged by
+the pressures where it is there. Anything else is an error of the case: another exit status, no answer or two,
+a short one, NaN, too much time. What the numbers mean is said in `verification.contestants.protocol`.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ import numpy as np
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from verification.contestants.ending import told
-from verification.contestants.protocol import Abilities, Answer, BadAnswer, ContactProblem
+from verification.contestants.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem
 
 LONGEST = 86400.0
 """Seconds that one problem may take: a day. The system's clocks for waiting end at some weeks."""
@@ -178,11 +179,12 @@ def read_answer(directory: Path) -> Answer:
         found = "both pressure.csv and" if table.exists() else "neither pressure.csv nor"
         raise BadAnswer(f"exit status 0, but {found} answer.npz")
     try:
-        converged = json.loads(header.read_text(encoding="utf-8"))["converged"] if header.exists() else True
+        said = json.loads(header.read_text(encoding="utf-8")) if header.exists() else {"converged": True}
+        converged, numbers = said["converged"], {name: said.get(name) for name in NUMBERS}
         pressure = _read_table(table) if table.exists() else _read_archive(archive)
-    except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile) as broken:
+    except (ValueError, KeyError, TypeError, AttributeError, OSError, EOFError, zipfile.BadZipFile) as broken:
         raise BadAnswer(f"unreadable answer: {type(broken).__name__}: {broken}") from broken
-    return Answer(pressure, converged)
+    return Answer(pressure, converged, **numbers)
 
 
 def _read_table(path: Path) -> Array:

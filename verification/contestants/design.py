@@ -5,7 +5,7 @@ Judged by the linear residual, recomputed by `verification.contestants.referee`:
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -20,10 +20,12 @@ from verification.contestants.dimensions import (
     CHANGED,
     DEPTHS,
     DESIGNS,
+    FURTHER,
     MARGIN,
     PEAK,
     PRESSURES,
     SHARES,
+    Design,
 )
 from verification.contestants.gaps import waves
 from verification.contestants.protocol import ContactProblem, Coupling
@@ -38,13 +40,34 @@ FARTHER = 40
 @cache
 def rows() -> dict[str, tuple[dict[str, Any], ...]]:
     """Rows of the designs, by name; small grids first within each."""
-    made = {}
-    for name, (dimensions, seed, strength, tries, fixed) in DESIGNS.items():
+    return _rows_of(DESIGNS, _own_sizes())
+
+
+@cache
+def further_rows() -> dict[str, tuple[dict[str, Any], ...]]:
+    """Rows of the further designs that ``--thorough`` poses."""
+    return _rows_of(FURTHER, _own_sizes()[len(rows()["memory"]) :])
+
+
+def seed_of(design: str, number: int) -> int:
+    """Return the seed of the surface of a design's problem; those of further designs have others.
+
+    >>> seed_of("plain", 7), seed_of("plain-2", 7)
+    (7, 2007)
+    """
+    array = design.rpartition("-")[2]
+    return number + (1000 * int(array) if array.isdigit() else 0)
+
+
+def _rows_of(designs: Mapping[str, Design], sizes: Sequence[int]) -> dict[str, tuple[dict[str, Any], ...]]:
+    """Rows by name; each problem of a memory has the next one of the sizes."""
+    made, next_size = {}, iter(sizes)
+    for name, (dimensions, seed, strength, tries, fixed) in designs.items():
         found = [{**fixed, **row} for row in covering(dimensions, seed, strength=strength, tries=tries)]
         if name == "tiny":
             found = [_bounded(row) for row in found]
-        if name == "memory":
-            found = [row | {"elements": n} for row, n in zip(found, _own_sizes(), strict=False)]
+        if "changed" in dimensions:
+            found = [row | {"elements": next(next_size)} for row in found]
         made[name] = tuple(sorted(found, key=lambda row: int(row["elements"])))
     return made
 

@@ -149,3 +149,12 @@ DESIGNS: dict[str, Design] = {
     "capped": Design(CAPPED, 8, fixed=FIXED | {"tau": 0.0}),
     "memory": Design(MEMORY, 9, fixed=FIXED),
 }
+VARIED = ("plain", "sliding", "oblong", "triples", "capped", "memory")
+"""Designs of which ``--thorough`` poses further arrays; ``tiny`` has few others, ``large`` costs too much."""
+FURTHER_ARRAYS = (2, 3)
+FURTHER: dict[str, Design] = {
+    f"{name}-{number}": DESIGNS[name]._replace(seed=100 * number + DESIGNS[name].seed)
+    for number in FURTHER_ARRAYS
+    for name in VARIED
+}
+"""Arrays of the same levels from other seeds: their rows meet triples of levels that the first ones miss."""

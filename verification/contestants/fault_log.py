@@ -1,7 +1,7 @@
 """Log of a study of faults, from which the study resumes: a line of JSON for each fault.
 
-Each record has the digest of the code that made it. Records of other code are not read: what they say of a
-fault of the same name may not be true of the fault that has the name now.
+Each record has the digest of the code that made it. Records of other code are not read: a fault may have been
+changed under the same name, and the problems too.
 """
 
 from __future__ import annotations

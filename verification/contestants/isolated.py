@@ -30,7 +30,14 @@ from verification.contestants import orphans, wire
 from verification.contestants.check import Check
 from verification.contestants.command import require_timeout
 from verification.contestants.ending import told
-from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, abilities_of
+from verification.contestants.protocol import (
+    NUMBERS,
+    Abilities,
+    Answer,
+    ContactProblem,
+    Contestant,
+    abilities_of,
+)
 from verification.contestants.serving import PATIENCE, Source, serve
 from verification.contestants.suite import select
 from verification.framework.case import Reported, Result, Unavailable
@@ -99,8 +106,8 @@ class Remote:
         self._others = orphans.children()
         self.abilities = self._open()
 
-    def __call__(self, problem: ContactProblem) -> Array:
-        """The solver's pressures. Raises `Reported` for what became of it instead, and `Unavailable`."""
+    def __call__(self, problem: ContactProblem) -> Answer:
+        """The solver's answer. Raises `Reported` for what became of it instead, and `Unavailable`."""
         if self._lost:
             self.close()
             self._open()
@@ -114,7 +121,8 @@ class Remote:
             raise Unavailable(str(reply.get("note", "")))
         if reply["kind"] != "answer":
             raise Reported(str(reply.get("note", "")))
-        return np.frombuffer(body, "<f8").reshape(problem.shape)
+        beside = {name: reply.get(name) for name in NUMBERS}
+        return Answer(np.frombuffer(body, "<f8").reshape(problem.shape), True, **beside)
 
     def _exchange(self, problem: ContactProblem, deadline: float) -> tuple[dict[str, Any], bytes]:
         try:

@@ -47,7 +47,12 @@ class Own:
         apart = solution.status is rf.Status.NO_CONTACT and problem.approach is not None
         lawful = solution.status is rf.Status.CYCLED and solution.certificate.law_violations == 0
         ended_well = apart or lawful or solution.status is rf.Status.CONVERGED
-        return Answer(solution.pressure, ended_well)
+        return Answer(
+            solution.pressure,
+            ended_well,
+            approach=solution.approach,
+            contact_area=solution.contact_area,
+        )
 
 
 def solved(problem: ContactProblem, tolerance: float, method: Method = "fft") -> rf.Solution:

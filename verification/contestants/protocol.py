@@ -172,10 +172,24 @@ class ContactProblem:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """Pressures in the gap's shape (Pa), and the solver's own statement of convergence."""
+    """Pressures in the gap's shape (Pa), the solver's own statement of convergence, and numbers, if any.
+
+    approach : as the problem counts it (m): from first contact or, if periodic, from the mean planes
+    contact_area : area of the elements with a pressure (m^2)
+    mean_displacement : mean over the domain of u, by pressure and by shear (m)
+
+    Each of the numbers is judged by the pressures where it is returned; None is no number, and not judged.
+    """
 
     pressure: ArrayLike
     converged: bool | np.bool_
+    approach: float | None = None
+    contact_area: float | None = None
+    mean_displacement: float | None = None
+
+
+NUMBERS = ("approach", "contact_area", "mean_displacement")
+"""Names of the numbers of an `Answer`."""
 
 
 FLAGS = ("periodic", "aperiodic", "load", "approach", "coupling", "rectangle", "oblong_elements", "hardness")

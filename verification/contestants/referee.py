@@ -27,6 +27,11 @@ _AT_HARDNESS = 1 - 1e-12
 """Share of the hardness from which a pressure counts as at it: units that were changed and back round."""
 
 
+def at_hardness(problem: ContactProblem) -> float:
+    """Pressure (Pa) from which an element counts as at the hardness; infinite without one."""
+    return np.inf if problem.hardness is None else problem.hardness * _AT_HARDNESS
+
+
 class Residual(NamedTuple):
     """The three ways in which pressures can miss a problem, relative; see `residual`."""
 

@@ -21,7 +21,7 @@ from refimpl.errors import InputError
 from verification.contestants import wire
 from verification.contestants.asking import ask
 from verification.contestants.ending import Ended, unwinding
-from verification.contestants.protocol import Contestant, abilities_of
+from verification.contestants.protocol import NUMBERS, Contestant, abilities_of
 from verification.framework.case import Unavailable, readable
 
 Source = Callable[[], Contestant]
@@ -77,9 +77,9 @@ def _answer(judge: socket.socket, source: Source) -> None:
 
 
 def _posed(contestant: Contestant, problem: Any) -> tuple[dict[str, Any], bytes]:
-    """Header and body of the reply: checked pressures, or why there are none."""
+    """Header and body of the reply: checked numbers and pressures, or why there are none."""
     try:
-        pressure = ask(contestant, problem)
+        answer = ask(contestant, problem)
     except Unavailable as missing:
         return {"kind": "unavailable", "note": readable(str(missing))}, b""
     except (Exception, SystemExit) as failure:  # a solver may do anything
@@ -89,7 +89,8 @@ def _posed(contestant: Contestant, problem: Any) -> tuple[dict[str, Any], bytes]
             "kind": "failed",
             "note": f"{type(failure).__name__}: {readable(str(failure))} [{place}]",
         }, b""
-    return {"kind": "answer"}, np.ascontiguousarray(pressure, dtype="<f8").tobytes()
+    numbers = {name: getattr(answer, name) for name in NUMBERS}
+    return {"kind": "answer", **numbers}, np.ascontiguousarray(answer.pressure, dtype="<f8").tobytes()
 
 
 def _text(value: object) -> str:

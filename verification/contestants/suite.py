@@ -27,6 +27,13 @@ def suite() -> tuple[Check, ...]:
     return tuple(sorted(declared(), key=lambda check: place.get(check.judge.__module__, len(names))))
 
 
+def thorough() -> tuple[Check, ...]:
+    """The suite, with the problems of further covering arrays."""
+    from verification.contestants.checks.covering import further
+
+    return (*suite(), *further())
+
+
 def identity() -> dict[str, str | int]:
     """Return the suite's version, number of cases, and a digest of their claims, tolerances and metrics."""
     cases = sorted((c.id, c.claim, c.metric.value, repr(float(c.tolerance))) for c in suite())

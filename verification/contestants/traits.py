@@ -10,8 +10,8 @@ from collections.abc import Hashable, Mapping
 from functools import cache
 from typing import Any
 
-from verification.contestants.design import HEIGHT, Row, in_turn, rows, shape_of
-from verification.contestants.dimensions import PRESSURES
+from verification.contestants.design import HEIGHT, Row, further_rows, in_turn, rows, shape_of
+from verification.contestants.dimensions import FURTHER, PRESSURES
 from verification.contestants.iterations import ITERATIONS
 
 Trait = float | str | bool | None
@@ -25,9 +25,15 @@ def row_of(slug: str) -> Row | None:
     """Return the row of a problem of the designs by its slug; or None."""
     head, _, number = slug.rpartition("-")
     design = head.removeprefix("design-")
-    if not head.startswith("design-") or design not in rows():
+    if not head.startswith("design-"):
         return None
-    return rows()[design][int(number) - 1]
+    found = _rows(design in FURTHER).get(design)
+    return None if found is None else found[int(number) - 1]
+
+
+def _rows(further: bool) -> Mapping[str, tuple[Row, ...]]:
+    """Rows of the designs in the order of the suite, of the further ones too where asked for."""
+    return rows() | (further_rows() if further else {})
 
 
 def levels(slug: str) -> dict[str, Trait] | None:
@@ -41,6 +47,7 @@ def levels(slug: str) -> dict[str, Trait] | None:
     row = row_of(slug)
     if row is None:
         return None
+    further = slug.removeprefix("design-").rpartition("-")[0] in FURTHER
     n, g, E = int(row["elements"]), float(row["slope"]), float(row["modulus"])
     wide, deep = shape_of(row)
     traits: dict[str, Trait] = {
@@ -64,36 +71,36 @@ def levels(slug: str) -> dict[str, Trait] | None:
         "oblong elements": row.get("shape") in ("both", "oblong elements"),
         "sliding": _slides(row),
         "hardness": "cap" in row,
-        "shape met before": slug not in _first_of_their_shapes(),
+        "shape met before": slug not in _first_of_their_shapes(further),
     }
     if (iterations := ITERATIONS.get(slug)) is not None:
         traits["iterations"] = float(iterations)
     if "changed" in row:
         traits["changed"] = str(row["changed"])
     for part in PARTS[: None if _slides(row) else -len(OF_SLIDING)]:
-        traits[f"changed {part}"] = part in _changed_parts()[slug] or None
+        traits[f"changed {part}"] = part in _changed_parts(further)[slug] or None
     return traits | (_of_sliding(row) if _slides(row) else {})
 
 
 @cache
-def _first_of_their_shapes() -> frozenset[str]:
+def _first_of_their_shapes(further: bool) -> frozenset[str]:
     """Slugs of the problems before which none of their shape and borders is posed; of no problems in turn."""
     first: dict[tuple[tuple[int, int], str], str] = {}
-    for design, found in rows().items():
+    for design, found in _rows(further).items():
         for number, row in enumerate(found, start=1):
             first.setdefault((shape_of(row), row["borders"]), f"design-{design}-{number:02}")
     return frozenset(slug for slug in first.values() if "-memory-" not in slug)
 
 
 @cache
-def _changed_parts() -> dict[str, frozenset[str]]:
+def _changed_parts(further: bool) -> dict[str, frozenset[str]]:
     """By slug: the parts in which alone a problem differs from an earlier one of its shape.
 
     A memory that forgets such a part hands the operators of the earlier problem out again.
     """
     met: dict[tuple[Hashable, ...], set[Hashable]] = {}
     changed: dict[str, frozenset[str]] = {}
-    for design, found in rows().items():
+    for design, found in _rows(further).items():
         for number, base in enumerate(found, start=1):
             slug = f"design-{design}-{number:02}"
             for parts in (_parts(row, slug) for row in in_turn(base)):

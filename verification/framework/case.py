@@ -33,6 +33,10 @@ class Reported(Exception):
     """Raised for a failure in another process; the message is the whole note, with the failure's place."""
 
 
+class Disproved(Exception):
+    """Raised by a case whose subject is wrong before any error is measured; the message says how. A fail."""
+
+
 class Metric(StrEnum):
     """Definition of a case's error from its value; a closed list."""
 
@@ -151,6 +155,8 @@ class Case:
             error = error_of(self.metric, self.tolerance, measured)
         except Unavailable as missing:
             status, note = Status.UNAVAILABLE, readable(str(missing)) or "an optional dependency is missing"
+        except Disproved as wrong:
+            status, note = Status.FAIL, readable(str(wrong))
         except Reported as elsewhere:
             note = readable(str(elsewhere))
         # The one place that takes any failure: a case that breaks, or asks to exit, gets its verdict as well.

@@ -39,9 +39,10 @@ int main(int argc, char **argv) {
         if (fscanf(heights, "%lf%*[,\n]", &gap[i]) != 1) return 2;
         f[i] = by_load ? value / (n * h * h) : gap[i] < value ? 1e-3 * E * value / (M * h) : 0;
     }
-    double before = 1, conjugate = 0, error = 1, tolerance = number(text, "\"tolerance\"");
+    double before = 1, conjugate = 0, error = 1, level = value, count = 0, tolerance = number(text, "\"tolerance\"");
     for (int step = 0; step < 5000; step++) {
-        double level = value, sum = 0, count = 0, mean = 0, least = 1e300, G = 0, energy = 0, gaps = 0, up = 0, down = 0;
+        double sum = 0, mean = 0, least = 1e300, G = 0, energy = 0, gaps = 0, up = 0, down = 0;
+        level = value, count = 0;
         displace(f, v);
         EACH energy += f[i] * v[i] / 2, v[i] += gap[i], least = fmin(least, v[i]), sum += f[i];
         EACH if (f[i] > 0) count++, mean += v[i];
@@ -62,5 +63,8 @@ int main(int argc, char **argv) {
     if (error >= tolerance) return 1;
     answer = file(directory, "pressure.csv", "w");
     EACH fprintf(answer, "%.17g%c", f[i], i % M == M - 1 ? '\n' : ',');
+    fclose(answer);
+    answer = file(directory, "answer.json", "w"); /* numbers beside the pressures are optional */
+    fprintf(answer, "{\"converged\": true, \"approach\": %.17g, \"contact_area\": %.17g}\n", level, count * h * h);
     return fclose(answer);
 }

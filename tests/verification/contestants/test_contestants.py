@@ -110,7 +110,7 @@ def test_an_array_and_an_answer_are_accepted() -> None:
         Answer([[1, 1], [1, 1]], True),
         Answer(FINE, np.True_),
     ):
-        np.testing.assert_array_equal(ask(lambda problem, a=answer: a, _still()), FINE)  # type: ignore[misc]
+        np.testing.assert_array_equal(ask(lambda problem, a=answer: a, _still()).pressure, FINE)  # type: ignore[misc]
 
 
 def test_a_contestant_cannot_change_the_problem_it_is_judged_by() -> None:

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from verification.cli import main
-from verification.cli.contestant import _source, add_options, unseen_faults
+from verification.cli.contestant import _source, add_options
+from verification.cli.contestant_report import unseen_faults
 from verification.contestants import isolated, own
 from verification.contestants.check import Fault
 from verification.contestants.isolated import Named
@@ -257,3 +258,19 @@ def test_the_suite_and_the_self_test_can_be_listed(capfd: Capture) -> None:
     listed = capfd.readouterr().out.splitlines()
     assert len([line for line in listed if "contestants/catches-" in line]) == len(Fault)
     assert own.solve.version.startswith("refimpl ")
+
+
+def test_thorough_adds_problems_of_other_seeds_after_the_suite(tmp_path: Path, capfd: Capture) -> None:
+    words = ["verify", "--solver", "verification.contestants.own:solve"]
+    words += ["--only", "contestant/design-plain-2-0[12]", "--only", "contestant/pins"]
+    assert main([*words, "--thorough", "--json", str(tmp_path / "found.json")]) == 0
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert [case["id"].partition("/")[2] for case in found["cases"]] == [
+        "pins",
+        "design-plain-2-01",
+        "design-plain-2-02",
+    ]
+    assert found["thorough"] == 2
+    assert main(words) == 2
+    assert main([*words[:3], "--thorough", "--discretisation", "other"]) == 2
+    assert "nothing beside --discretisation other" in capfd.readouterr().err

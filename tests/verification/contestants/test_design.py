@@ -8,10 +8,11 @@ import pytest
 
 from verification.contestants import own
 from verification.contestants.covering import covering
-from verification.contestants.design import in_turn, posed, rows, shape_of
-from verification.contestants.dimensions import CHANGED, DESIGNS
+from verification.contestants.design import further_rows, in_turn, posed, rows, shape_of
+from verification.contestants.dimensions import CHANGED, DESIGNS, FURTHER
 from verification.contestants.random_faults import SEEDS, random_fault
-from verification.contestants.suite import select
+from verification.contestants.suite import select, suite, thorough
+from verification.contestants.traits import levels
 from verification.contestants.trial import first_failure
 
 
@@ -47,6 +48,23 @@ def test_designs_reach_from_one_element_to_512() -> None:
 def test_our_solver_meets_its_claim_in_every_problem() -> None:
     verdicts = {c.slug: c.case(own.solve).run() for c in select(["contestant/design-*"])}
     assert {slug: r.note for slug, r in verdicts.items() if r.status != "pass"} == {}
+
+
+def test_further_arrays_pose_other_problems_and_our_solver_solves_them() -> None:
+    """Of each further design the two smallest problems."""
+    checks = thorough()[len(suite()) :]
+    assert len(checks) > 500
+    assert len({c.id for c in (*suite(), *checks)}) == len(suite()) + len(checks)
+    for name in FURTHER:
+        first = name.rpartition("-")[0]
+        found, known = further_rows()[name], rows()[first]
+        assert len([row for row in found if row not in known]) > 0.8 * len(found)
+        for check in [c for c in checks if c.slug.startswith(f"design-{name}-")][:2]:
+            assert check.case(own.solve).run().status == "pass"
+            assert levels(check.slug) is not None
+    sizes = [row["elements"] for name in ("memory-2", "memory-3") for row in further_rows()[name]]
+    assert len({*sizes}) == len(sizes)
+    assert not {*sizes} & {row["elements"] for row in rows()["memory"]}
 
 
 def test_a_random_fault_is_caught() -> None:

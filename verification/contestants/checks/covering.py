@@ -5,15 +5,16 @@ A case of ``memory`` poses three in turn. A flat periodic gap stores no energy: 
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from verification.contestants.asking import ask
-from verification.contestants.check import CLAIMS, Entrant, Pressed, check
+from verification.contestants.check import CLAIMS, Check, Entrant, Pressed, register
 from verification.contestants.checks.residuals import CLAIM, PERIODIC_SOURCE, SOURCE, judged
-from verification.contestants.design import in_turn, posed, rows
-from verification.framework.case import Measured
+from verification.contestants.design import further_rows, in_turn, posed, rows, seed_of
+from verification.framework.case import Measured, Metric
 
 
 def _judged(entrant: Entrant, pressed: Pressed) -> Measured:
@@ -25,25 +26,40 @@ def _judged(entrant: Entrant, pressed: Pressed) -> Measured:
     return Measured(off**2 / entrant.claim, unit=CLAIMS, note=f"off the mean pressure by {off:.1e}")
 
 
-def _declare(design: str, number: int, row: dict[str, Any]) -> None:
+def _check(design: str, number: int, row: dict[str, Any]) -> Check:
     levels = ", ".join(f"{name} {level}" for name, level in row.items())
+    seed = seed_of(design, number)
 
-    @check(
-        f"design-{design}-{number:02}",
+    def covered(entrant: Entrant) -> Measured:
+        answers = [entrant.pose(posed(each, seed, entrant.claim)) for each in in_turn(row)]
+        return max((_judged(entrant, each) for each in answers), key=lambda found: found.value)
+
+    return Check(
+        slug=f"design-{design}-{number:02}",
         title=f"Covering design, {design}, problem {number}",
         claim=f"The residuals meet the claim with {levels}",
         source=PERIODIC_SOURCE if row["borders"] == "periodic" else SOURCE,
-        metric="at_most",
+        metric=Metric.AT_MOST,
         tolerance=1.01,
         tolerance_reason=CLAIM,
         catches=(),
+        judge=covered,
     )
-    def covered(entrant: Entrant) -> Measured:
-        problems = [posed(each, number, entrant.claim) for each in in_turn(row)]
-        answers = [Pressed(each, ask(entrant.contestant, each)) for each in problems]
-        return max((_judged(entrant, each) for each in answers), key=lambda found: found.value)
 
 
-for _design, _rows in rows().items():
-    for _number, _row in enumerate(_rows, start=1):
-        _declare(_design, _number, _row)
+def _checks(designs: Mapping[str, Sequence[dict[str, Any]]]) -> tuple[Check, ...]:
+    return tuple(
+        _check(design, number, row)
+        for design, found in designs.items()
+        for number, row in enumerate(found, start=1)
+    )
+
+
+@cache
+def further() -> tuple[Check, ...]:
+    """Checks of the further designs, which ``--thorough`` adds to the suite."""
+    return _checks(further_rows())
+
+
+for _each in _checks(rows()):
+    register(_each)

@@ -22,6 +22,14 @@ ALWAYS = (
     Fault.TRANSPOSED,
     Fault.HALF_ELEMENT,
 )
+OF_NUMBERS = (
+    Fault.APPROACH_SIGN,
+    Fault.APPROACH_DATUM,
+    Fault.AREA_IN_ELEMENTS,
+    Fault.AREA_CORRECTED,
+    Fault.DISPLACEMENT_OF_CONTACT,
+)
+"""Faults of numbers beside the pressures, which every case judges where a solver returns them."""
 AND_MEAN = (
     "in claims: the squared energy-norm error, at most half the complementarity gap (proven), and the square "
     "of the mean's, at most K (f, a f)/N^2 times that with K the contact's stiffness (Cauchy and Schwarz): "
@@ -57,6 +65,7 @@ def wavy(M: int, seed: int) -> Array:
         Fault.NEAR_FIELD,
         Fault.TENSION,
         Fault.MEAN_PRESSURE_LOST,
+        *OF_NUMBERS,
     ),
 )
 def rough_residual(entrant: Entrant) -> Measured:
@@ -161,6 +170,7 @@ def no_tension(entrant: Entrant) -> Measured:
         Fault.TENSION,
         Fault.MEAN_PRESSURE_LOST,
         Fault.ODD_GRIDS,
+        *OF_NUMBERS,
     ),
 )
 def periodic_residual(entrant: Entrant) -> Measured:

@@ -1,0 +1,151 @@
+"""Report of a run of the suite with one solver: the document for ``--json``, and the text."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from verification.cli.output import columns, judgement, wrapped
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from verification.contestants.check import Check
+    from verification.framework.case import Result
+    from verification.framework.runner import Run
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A run of the suite, perhaps an interrupted one.
+
+    checks : checks that were to be run
+    results : verdicts, those of the first checks where the run was interrupted
+    only : patterns that chose the checks
+    of_convergence : whether limits and orders were judged instead of the suite
+    left : processes that the solver left behind
+    ended : the signal or Ctrl-C that interrupted the run, or None
+    seconds : duration
+    """
+
+    checks: tuple[Check, ...]
+    results: tuple[Result, ...]
+    only: tuple[str, ...]
+    of_convergence: bool
+    left: tuple[str, ...]
+    ended: BaseException | None
+    seconds: float
+
+    @property
+    def run(self) -> Run:
+        """The run as those of the project's own cases are."""
+        from verification.framework.case import Tier
+        from verification.framework.runner import Run
+
+        return Run(Tier.FULL, self.only, self.results, self.seconds)
+
+    @property
+    def missing(self) -> list[str]:
+        """Ids of the checks that an interrupted run did not reach."""
+        return [check.id for check in self.checks[len(self.results) :]]
+
+    @property
+    def unseen(self) -> list[str] | None:
+        """Faults that no case looked for, after a whole run of the suite; None after any other run."""
+        whole = not self.only and not self.of_convergence and self.ended is None
+        return unseen_faults(self.results) if whole else None
+
+    @property
+    def low_order(self) -> list[str]:
+        """Ids of convergence cases whose limit is right and whose order is low."""
+        from verification.contestants import convergence
+
+        return convergence.slow(list(self.results)) if self.of_convergence else []
+
+
+def unseen_faults(results: Iterable[Result]) -> list[str]:
+    """Faults that no case that ran is meant to catch: a solver of few abilities is judged by few cases."""
+    from verification.contestants.check import Fault
+    from verification.contestants.suite import suite
+
+    ran = {r.id for r in results if r.status != "unavailable"}
+    seen = {fault for check in suite() if check.id in ran for fault in check.catches}
+    return [fault.value for fault in Fault if fault not in seen]
+
+
+def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON document; ``solver`` has its name, version and checksum, ``stated`` its abilities."""
+    from verification.contestants import short_list, suite
+
+    return judged.run.document() | {
+        "suite": suite.identity(),
+        "thorough": len({c.id for c in judged.checks} - {c.id for c in suite.suite()})
+        if not judged.of_convergence
+        else 0,
+        "interrupted": judged.ended is not None,
+        "contestant": {
+            **solver,
+            "abilities": dict(stated) or None,
+            "not_applicable": {r.id: r.note for r in judged.results if r.status == "unavailable"},
+            "not_judged": judged.missing,
+            "left_running": list(judged.left),
+            "low_order": judged.low_order,
+            "unseen_faults": judged.unseen,
+            "short_list": short_list.of_results(judged.results),
+        },
+    }
+
+
+def text(name: str, judged: Judged) -> str:
+    """Return the verdicts; before them, of limits and orders, the orders that were found."""
+    verdicts = table(name, judged)
+    if not judged.of_convergence or not judged.results:
+        return verdicts
+    orders = columns([[r.id, r.note] for r in judged.results if r.status == "pass"])
+    low = judged.low_order
+    slow = "right in the limit, but of low order: " + ", ".join(low) if low else ""
+    return "\n\n".join(filter(None, [orders, slow, verdicts]))
+
+
+def table(name: str, judged: Judged) -> str:
+    """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts."""
+    from verification.contestants.short_list import of_results
+
+    done = judged.run
+    ran = [r for r in done.results if r.status != "unavailable"]
+    rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
+    reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
+    counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
+    parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
+    if listed := of_results(done.results):
+        parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
+    if judged.unseen:
+        parts.append("looked for by none of these cases:\n" + wrapped(", ".join(judged.unseen), "  "))
+    if judged.left:
+        parts.append("processes that the solver left behind:\n  " + "\n  ".join(judged.left))
+    if judged.missing:
+        parts.append(f"interrupted: {len(judged.missing)} cases were not judged")
+    return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
+
+
+def with_unit(result: Result) -> str:
+    """The judgement in its unit; a relative error has none but that word."""
+    unit = "relative" if result.metric == "relative" else result.unit
+    return f"{judgement(result)} {unit}" if judgement(result) else ""
+
+
+def reason(result: Result) -> str:
+    """Why there is no verdict; or what was claimed, and what is known of the failure."""
+    if result.status == "error":
+        return result.note
+    return f"{result.claim}. Found: {result.note}" if result.note else result.claim
+
+
+def _not_applicable(done: Run) -> list[str]:
+    left_out = [r for r in done.results if r.status == "unavailable"]
+    reasons = dict.fromkeys(r.note for r in left_out)
+    lines = [
+        wrapped(", ".join(r.id.partition("/")[2] for r in left_out if r.note == note), f"  {note}: ")
+        for note in reasons
+    ]
+    return ["\n".join(["not applicable, and not passed:", *lines])] if lines else []
