@@ -222,8 +222,10 @@ def test_parameters_to_fit_are_checked(smooth: rf.Scene) -> None:
     both = replace(both, upper=replace(both.upper, material=both.lower.material))
     for scene, names, message in (
         (smooth, ["hardness"], "a scene with a hardness"),
-        (smooth, ["tau"], "one of hardness, roughness"),
+        (smooth, ["tau"], "one of hardness"),
         (smooth, "hardness", "a list of names"),
+        (smooth, ["roughness"], r"friction hardly determines; give it in \[tolerances\]"),
+        (smooth, ["lower.surface[0].rms"], r"friction hardly determines; give it in \[tolerances\]"),
         (both, ["hardness"], "two hardnesses that differ"),
         (_yielding(smooth, 1e8), ["hardness", "lower.material.hardness"], "each parameter once"),
     ):
