@@ -277,7 +277,7 @@ def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
     for value in np.unique(x):
         if value > kept[-1] * (x.max() / x.min()) ** 0.08:
             kept.append(value)
-    axes.set_xticks(kept, [f"{value:.4g}" for value in kept])
+    axes.set_xticks(kept, [f"{value:.4g}" if value % 1 == 0 else f"{value:.3g}" for value in kept])
     axes.xaxis.set_minor_locator(NullLocator())
 
 

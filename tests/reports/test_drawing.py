@@ -40,11 +40,12 @@ def test_lines_hold_the_series() -> None:
 @pytest.mark.parametrize(
     ("x", "labels"),
     [
+        ([2.0, 3.01283, 10.3085, 80.0], ["2", "3.01", "10.3", "80"]),
         ([48, 64, 128, 130, 512], ["48", "64", "128", "512"]),  # 130 would stand on 128
         ([1, 10, 1000], None),  # decades have labels of their own
     ],
 )
-def test_few_points_of_a_logarithmic_axis_are_its_ticks(x: list[int], labels: list[str] | None) -> None:
+def test_few_points_of_a_logarithmic_axis_are_its_ticks(x: list[float], labels: list[str] | None) -> None:
     draw = lines("x", {"y": "y"}, xlabel="x", ylabel="y", log="x")
     axes = drawn(draw, {"x": x, "y": x}).axes[0]
     shown = [tick.get_text() for tick in axes.get_xticklabels()]

@@ -55,16 +55,23 @@ def _fit(axes: Axes, found: Identification) -> None:
 
 
 def _region(axes: Axes, found: Identification) -> None:
-    """The joint 95 % ellipse about the optimum without bounds, within the bounds, and both intervals."""
+    """The joint 95 % ellipse about the optimum without bounds, within the bounds, and both intervals.
+
+    An interval without an upper end is drawn to the edge of the ellipse.
+    """
     angle = np.linspace(0, 2 * np.pi, 2000)
     root = np.linalg.cholesky(found.covariance[:2, :2])
     ellipse = found.fitted.free[:2, None] + np.sqrt(JOINT) * root @ [np.cos(angle), np.sin(angle)]
     tau, beta = found.values["tau"], found.values["beta"]
     axes.plot(ellipse[0] / MEGA, ellipse[1], color=BLUE, label="joint 95 %, without bounds")
+    highs = [
+        one.high if np.isfinite(one.high) else max(edge, one.value)
+        for one, edge in zip((tau, beta), ellipse.max(axis=1), strict=True)
+    ]
     axes.errorbar(
         tau.value / MEGA, beta.value,
-        [[beta.value - beta.low], [beta.high - beta.value]],
-        [[(tau.value - tau.low) / MEGA], [(tau.high - tau.value) / MEGA]],
+        [[beta.value - beta.low], [highs[1] - beta.value]],
+        [[(tau.value - tau.low) / MEGA], [(highs[0] - tau.value) / MEGA]],
         fmt="o", color=ORANGE, capsize=3, label=f"95 % each, {found.method}",
     )  # fmt: skip
     for edge in (axes.axvline, axes.axhline):

@@ -86,7 +86,7 @@ def judged(twins: TwinSet, seed: int) -> dict[str, object]:
         "tau": tau.low <= truth.tau <= tau.high,
         "beta": beta.low <= truth.beta <= beta.high,
         "mu": mu.low <= case.new_mu <= mu.high,
-        "tau_half_width": 0.5 * (tau.high - tau.low) / tau.value if tau.value > 0 else None,
+        "tau_half_width": tau.relative if math.isfinite(tau.relative) else None,
         "tau_error": tau.value / truth.tau - 1,
         "beta_error": beta.value / truth.beta - 1,
         "measurement_share": measured[0] / math.sqrt(found.covariance[0, 0]),

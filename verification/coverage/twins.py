@@ -121,17 +121,18 @@ def yielding_twin(seed: int) -> Twin:
 
 
 def ensemble_twin(seed: int) -> Twin:
-    """Return a twin whose rough ball is known by its statistics alone, its rms height within 30 % (95 %).
+    """Return a twin whose rough ball is known by statistics alone, its rms height within 30 % (95 %).
 
     Its friction is of one realisation that no fit draws. Eight to twelve loads over a factor of 100 to 300,
-    noise 0.5 to 2 %. The logarithm of the scene's rms is off by a normal deviate.
+    noise 0.5 to 2 %. The logarithm of the scene's rms is off by a normal deviate. A correlation length is six
+    elements of the fit or more: of shorter ones contact patches are too small for the grid's error bars.
     """
     rng = np.random.default_rng([45, seed])
     log = _log_uniform(rng)
     lower, upper, modulus = _materials(log)
     R, a = SIDE * log(5, 100), SIDE * log(0.3, 0.35)
     load, pressure = _hertz(modulus, R, a)
-    rms, length = a**2 / R * log(0.03, 0.1), SIDE * log(0.05, 0.1)
+    rms, length = a**2 / R * log(0.03, 0.1), SIDE * log(0.1, 0.2)
     scene = rf.Scene(
         upper=rf.Body(upper, rf.Sphere(R)),
         lower=rf.Body(lower, rf.GaussianRoughness(rms, length, 2 * seed)),

@@ -222,8 +222,10 @@ def test_parameters_to_fit_are_checked(smooth: rf.Scene) -> None:
     both = replace(both, upper=replace(both.upper, material=both.lower.material))
     for scene, names, message in (
         (smooth, ["hardness"], "a scene with a hardness"),
-        (smooth, ["tau"], "one of hardness, roughness"),
+        (smooth, ["tau"], "one of hardness"),
         (smooth, "hardness", "a list of names"),
+        (smooth, ["roughness"], r"friction hardly determines; give it in \[tolerances\]"),
+        (smooth, ["lower.surface[0].rms"], r"friction hardly determines; give it in \[tolerances\]"),
         (both, ["hardness"], "two hardnesses that differ"),
         (_yielding(smooth, 1e8), ["hardness", "lower.material.hardness"], "each parameter once"),
     ):
@@ -245,3 +247,12 @@ def test_a_profile_with_a_free_third_parameter() -> None:
     assert profile.interval(np.array([1.0, 0.0, 0.0])) == pytest.approx((0.0, 4.841459**0.5 - 1), abs=1e-5)
     # sum of the second and the third: 17 +- 1.96 sqrt(2)
     assert profile.interval(np.array([0.0, 1.0, 1.0])) == pytest.approx((14.2282, 19.7718), abs=1e-3)
+
+
+def test_few_draws_widen_the_interval_by_students_t() -> None:
+    """Half of the variance has 2 degrees of freedom, so the whole has 8: t is 2.306004."""
+    half = np.diag([0.5, 0.5])
+    profile = Profile(np.array([10.0, 20.0]), 2 * half, half, 2)
+    assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((10 - 2.306004, 10 + 2.306004), abs=1e-5)
+    whole = Profile(np.array([10.0, 20.0]), 2 * half, 2 * half, 2)
+    assert whole.interval(np.array([1.0, 0.0])) == pytest.approx((10 - 4.302653, 10 + 4.302653), abs=1e-5)
