@@ -1,7 +1,7 @@
 """``python -m verification.mutation.campaign --log FILE --json FILE``: meaningful faults that tests notice.
 
-The faults of ``faults.toml`` were invented by reading the source: a sign, a column, a lost row, a wrong unit.
-With ``--random N`` they are N mutants of each area instead, of all its modules. Each fault is written into a
+The faults of ``faults.toml``, and later those of ``later_faults.toml`` (``--table``), were invented by reading
+the source: a sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area instead, of all its modules. Each fault is written into a
 clone of the committed tree and judged there: by the doctests of its module, the tests that import it and the
 tests of its area, until one fails. A verdict is kept in the log and counts as long as the module stands as it
 was; an unnoticed fault is tried again when its tests have changed. Mutants take turns by area: a run that is
@@ -58,10 +58,21 @@ class Fault(NamedTuple):
         return source.replace(self.old, self.new)
 
 
-def read_faults(path: Path = TABLE) -> tuple[list[Fault], Areas]:
-    """Return the faults of a table, and the areas: their ``modules`` and ``tests``, by folder."""
-    table = tomllib.loads(path.read_text(encoding="utf-8"))
-    return [Fault(**row) for row in table["fault"]], table["areas"]
+def read_areas() -> Areas:
+    """Return the areas: their ``modules`` and ``tests``, by folder."""
+    areas: Areas = tomllib.loads(TABLE.read_text(encoding="utf-8"))["areas"]
+    return areas
+
+
+def read_faults(path: Path = TABLE) -> list[Fault]:
+    """Return the faults of a table, each of the area whose modules its file is one of."""
+    files = tomllib.loads(path.read_text(encoding="utf-8"))["faults"]
+    area = {folder: name for name, one in read_areas().items() for folder in one["modules"]}
+    return [
+        Fault(next(area[folder] for folder in area if file.startswith(f"{folder}/")), file, breaks, old, new)
+        for file, texts in files.items()
+        for breaks, (old, new) in texts.items()
+    ]
 
 
 def mutants_of(root: Path, name: str, folders: Sequence[str], seed: int) -> Iterable[Fault]:
@@ -194,6 +205,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status 0 when the goal is met, else 1."""
     parser = argparse.ArgumentParser(prog="python -m verification.mutation.campaign", description=__doc__)
     parser.add_argument("--only", nargs="+", default=["*"], help="patterns of the areas to try now")
+    parser.add_argument("--table", type=Path, default=TABLE, help="list of faults (default: the first one)")
     parser.add_argument(
         "--random", type=int, metavar="N", help="N mutants of each area, in place of the list"
     )
@@ -205,14 +217,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--first", type=Path, help="log, or earlier result, with first judgements")
     parser.add_argument("--json", type=Path, help="result to write")
     options = parser.parse_args(arguments)
-    faults, areas = read_faults()
+    areas = read_areas()
     chosen = [name for name in areas if any(fnmatch(name, pattern) for pattern in options.only)]
     with tempfile.TemporaryDirectory() as folder:
         clone = Path(folder) / "clone"
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
         subprocess.run(["git", "-C", str(clone), "checkout", "-q", "--detach", options.tree], check=True)
         if options.random is None:
-            listed = [fault for fault in faults if fault.area in chosen]
+            listed = [fault for fault in read_faults(options.table) if fault.area in chosen]
         else:
             orders = [mutants_of(clone, name, areas[name]["modules"], options.seed) for name in chosen]
             drawn = [list(islice(order, options.random)) for order in orders]
