@@ -1,11 +1,11 @@
 """``python -m verification.mutation.campaign --log FILE --json FILE``: meaningful faults that tests notice.
 
 The faults of ``faults.toml``, and later those of ``later_faults.toml`` (``--table``), were invented by reading
-the source: a sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area instead, of all its modules. Each fault is written into a
-clone of the committed tree and judged there: by the doctests of its module, the tests that import it and the
-tests of its area, until one fails. A verdict is kept in the log and counts as long as the module stands as it
-was; an unnoticed fault is tried again when its tests have changed. Mutants take turns by area: a run that is
-stopped, or has ``--tries``, has judged a stratified sample.
+the source: a sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area
+instead, of all its modules. Each fault is written into a clone of the committed tree and judged there: by the
+doctests of its module, the tests that import it and the tests of its area, until one fails. A verdict is kept
+in the log and counts as long as the module stands as it was; an unnoticed fault is tried again when its tests
+have changed. Areas take turns: a run that is stopped, or has ``--tries``, has judged a stratified sample.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import tempfile
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatch
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -224,11 +224,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
         subprocess.run(["git", "-C", str(clone), "checkout", "-q", "--detach", options.tree], check=True)
         if options.random is None:
-            listed = [fault for fault in read_faults(options.table) if fault.area in chosen]
+            every = read_faults(options.table)
+            drawn = [[fault for fault in every if fault.area == name] for name in chosen]
         else:
             orders = [mutants_of(clone, name, areas[name]["modules"], options.seed) for name in chosen]
             drawn = [list(islice(order, options.random)) for order in orders]
-            listed = [fault for several in zip(*drawn, strict=True) for fault in several]
+        listed = [fault for turn in zip_longest(*drawn) for fault in turn if fault is not None]
         first = first_judgements(options.first) if options.first else ()
         far = options.far or options.random is None
         records = run(listed, areas, options.log, clone, far=far, first=first, tries=options.tries)
