@@ -1,7 +1,7 @@
 """``python -m verification.mutation.campaign --log FILE --json FILE``: meaningful faults that tests notice.
 
-The faults of ``faults.toml``, and later those of ``later_faults.toml`` (``--table``), were invented by reading
-the source: a sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area
+The faults of ``faults.toml``, and later those of ``later_faults.toml`` (``--table``), were invented from the
+source: a sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area
 instead, of all its modules. Each fault is written into a clone of the committed tree and judged there: by the
 doctests of its module, the tests that import it and the tests of its area, until one fails. A verdict is kept
 in the log and counts as long as the module stands as it was; an unnoticed fault is tried again when its tests
@@ -158,14 +158,13 @@ def run(
     return records
 
 
-def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: bool = True) -> Record:
-    """Return the result: noticed shares, by area as well, and the faults with their outcomes.
+def summary(records: Sequence[Record], first: Sequence[Record] = ()) -> Record:
+    """Return the result: noticed shares, by area as well, and faults that were not noticed from the first.
 
     ``first`` are the records of the faults as first judged, before any test was written for one of them.
-    ``every`` lists noticed faults as well.
     """
     before, reasons = {r["breaks"]: r["outcome"] for r in first or records}, _reasons()
-    listed = [r for r in records if every or "unnoticed" in (r["outcome"], before.get(r["breaks"]))]
+    listed = [r for r in records if not r["outcome"] == before.get(r["breaks"]) == "noticed"]
     return {
         "all": _counts(records, before),
         "areas": [
@@ -233,7 +232,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         first = first_judgements(options.first) if options.first else ()
         far = options.far or options.random is None
         records = run(listed, areas, options.log, clone, far=far, first=first, tries=options.tries)
-    found = summary(records, first, every=options.random is None)
+    found = summary(records, first)
     if options.json:
         seed = {} if options.random is None else {"seed": options.seed}
         tree = {} if options.tree == "HEAD" else {"tree": options.tree}
