@@ -160,6 +160,16 @@ def test_what_to_do(shallow: None, parts: tuple[float, float, float], says: str)
     assert advice(made_up(*parts), SOLVED).startswith(says)
 
 
+def test_an_approach_is_judged_from_first_contact(shallow: None) -> None:
+    """0.1 + 0.05 of 4 - 1, the mean planes' distance at first contact less that of the solution."""
+    zero = dict.fromkeys(NUMBERS, 0.0)
+    error = HalfSpaceError(
+        zero | {"approach": 0.1}, zero | {"approach": 0.05}, zero, np.zeros(ELEMENTS), None
+    )  # type: ignore[arg-type]
+    said = "approach may be off by 5.0%: take the corrected numbers, which leave 1.7%"
+    assert advice(error, SOLVED).startswith(said)
+
+
 def test_beyond_the_slopes_that_were_judged_the_advice_is_finite_elements(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -261,6 +261,13 @@ def test_the_bias_of_drawn_maps_is_taken_off(monkeypatch: pytest.MonkeyPatch) ->
     assert found == pytest.approx(expected)
 
 
+def test_angles_of_a_lay_repeat_after_half_a_turn() -> None:
+    """0.02 and 3.1 rad are 0.06 apart; other numbers are as they are."""
+    assert roughness_fit._near(0.02, 3.1, "lay") == pytest.approx(0.02 + math.pi)
+    assert roughness_fit._near(3.1, 0.02, "lay") == pytest.approx(3.1 - math.pi)
+    assert roughness_fit._near(0.02, 3.1, "lx") == 0.02
+
+
 def test_a_fit_is_a_surface_of_a_scene_file() -> None:
     fit = fit_roughness(gaussian(), PIXEL, "gaussian", 4)
     surface = rf.surfaces.surface_from_dict(fit.table(seed=7))
