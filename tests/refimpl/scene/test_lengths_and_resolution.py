@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,8 @@ def test_parameters_that_are_zero_do_not_move() -> None:
     scene = rf.Scene(rf.Body(STEEL, rf.Sphere(0.1)), lower, rf.Friction(tau=0.0, beta=0.2), 7.0, 1e-3)
     still = {"friction.tau", "lower.surface[0].lay", "lower.surface[0].seed"}
     assert set(parameters(scene)) - set(moving(scene)) == still
+    rigid = replace(scene, upper=rf.Body(rf.Material(math.inf, 0.3), rf.Sphere(0.1)))
+    assert set(parameters(rigid)) - set(moving(rigid)) == {*still, "upper.material.E", "upper.material.nu"}
 
 
 @pytest.mark.parametrize("given", [{}, {"side": 1e-4}, {"size": (1.5e-4, 1e-4)}], ids=str)
