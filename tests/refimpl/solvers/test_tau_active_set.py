@@ -71,6 +71,9 @@ def test_the_reach_is_what_tau_on_an_element_moves_the_gap_by() -> None:
     assert isinstance(found, GradualSet)
     pair, h = SCENE.materials, ADHESIVE.grid.element_size
     assert found.reach == pytest.approx(2 * abs(pair.shear_compliance) * 3e6 * 2 * h, rel=1e-12)
+    turned = first_set(problem_of(replace(SCENE, upper=SCENE.lower, lower=SCENE.upper), 4))
+    assert isinstance(turned, GradualSet)
+    assert turned.reach == pytest.approx(found.reach, rel=1e-12)  # whichever body shear displaces more
     apart = first_set(problem_of(SCENE, 4, coupled=False))
     assert isinstance(apart, GradualSet)
     assert apart.reach == pytest.approx(2 * 0.01 * pair.normal_compliance * 3e6 * 2 * h, rel=1e-12)
