@@ -141,6 +141,14 @@ def test_the_contact_of_the_gradual_state_is_the_active_set() -> None:
     assert found.status() is Status.CONVERGED
 
 
+@pytest.mark.parametrize(("coupled", "oblique"), [(True, False), (False, True), (False, False)])
+def test_the_gradual_state_may_end_early_where_tau_moves_a_surface(coupled: bool, oblique: bool) -> None:
+    """By coupling or by slopes; where it moves nothing, the gradual state is the final one."""
+    solver = Played({"?": "xx."})
+    followed(solver, problem_of(SCENE, 4, coupled=coupled, oblique=oblique))
+    assert solver.asked == ["? early" if coupled or oblique else "?", "xx."]
+
+
 def test_elements_that_come_back_are_excluded() -> None:
     solver = Played({"?": "xx.", "xx.": "xxx"})
     found = followed(solver)
