@@ -228,21 +228,3 @@ def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path) -> None:
         (found,) = kept.rows([run])
     assert found["friction_coefficient"] is None
     assert tuple(found) == COLUMNS
-
-
-@pytest.mark.parametrize("finished", [True, False])
-def test_a_refusal_leaves_a_new_store_only_with_finished_runs(finished: bool, tmp_path: Path) -> None:
-    path, (run,) = tmp_path / "s.sqlite", small(1).runs()
-
-    def refused() -> None:
-        with open_store(path) as kept:
-            if finished:
-                kept.add(run, *execute(run.inputs))
-            raise InputError("x", 1, "anything else")
-
-    with pytest.raises(InputError, match="anything"):
-        refused()
-    assert path.exists() is finished
-    if finished:
-        with open_store(path) as kept:
-            assert kept.keys() == {run.key}
