@@ -30,7 +30,7 @@ from verification.mutation.judge import Suite
 from verification.mutation.mutants import candidates, mutant
 from verification.mutation.score import explanations, lower_bound
 from verification.mutation.session import in_fair_order
-from verification.mutation.targets import near_first
+from verification.mutation.targets import definitions, near_first
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLE = Path(__file__).with_name("faults.toml")
@@ -138,10 +138,12 @@ def run(
     records, progress, sound = [], Progress(len(faults)), set[str]()
     Suite(clone, ["tests"]).import_foreign()
     for number, fault in enumerate(faults):
-        near = near_first(clone, fault.file, areas[fault.area]["tests"], far=far)
+        source = (clone / fault.file).read_text(encoding="utf-8")
+        names = definitions(source, fault.applied(source))
+        near = near_first(clone, fault.file, areas[fault.area]["tests"], far=far, names=names)
         before = noticed_by.get(fault.breaks)
         tests = sorted((fault.file, *near), key=lambda test: test != before)
-        key = _digest([*fault, (clone / fault.file).read_text(encoding="utf-8")])
+        key = _digest([*fault, source])
         suite = _digest((clone / test).read_text(encoding="utf-8") for test in tests)
         record = known.get(key)
         if record is None or (record["outcome"] == "unnoticed" and record["suite"] != suite):

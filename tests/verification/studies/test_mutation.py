@@ -18,7 +18,7 @@ from verification.mutation.__main__ import main
 from verification.mutation.campaign import Fault, read_areas, read_faults
 from verification.mutation.exchanges import exchanged
 from verification.mutation.mutants import Candidate, mutant, without_statements
-from verification.mutation.targets import JUDGES, TARGETS
+from verification.mutation.targets import JUDGES, TARGETS, definitions, near_first
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -368,3 +368,25 @@ def test_a_campaigns_result_by_area() -> None:
     shown = exhibit("faults_by_hand", found)
     assert shown.tables[0].rows[0] == ("all", 4, 4, 50.0, 9.8, 75.0)
     assert shown.tables[1].rows[0] == ("x", "a.py", "fault 1", "unnoticed", "noticed")
+
+
+def test_tests_that_mention_what_was_changed_come_after_the_mirror(tmp_path: Path) -> None:
+    """Of a function that only a private name of one test's file stands for."""
+    source = "LIMIT = 3\n\n\nclass Row:\n    def _load(self):\n        return 1\n"
+    changed = source.replace("return 1", "return 2")
+    assert definitions(source, changed) == {"Row", "load"}
+    assert definitions(source, source.replace("3", "4")) == {"LIMIT"}
+    texts = {
+        "test_a": "import rows",
+        "test_rows": "",
+        "test_b": "import rows; x._load",
+        "test_c": "load; Row; load",
+    }
+    for name, text in texts.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    names = definitions(source, changed)
+    found = near_first(tmp_path, "rows.py", ["."], far=False, names=names)
+    assert found == ("test_rows.py", "test_c.py", "test_b.py", "test_a.py")
+    assert near_first(tmp_path, "rows.py", ["."], far=False) == (
+        "test_rows.py", "test_a.py", "test_b.py", "test_c.py",
+    )  # fmt: skip
