@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from verification.framework import provenance
 from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
 from verification.framework.files import write_text
 from verification.framework.rates import extrapolate
@@ -118,3 +119,12 @@ def test_a_replaced_file_keeps_its_mode(tmp_path: Path) -> None:
     finally:
         os.umask(before)
     assert (tmp_path / "fresh").stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.parametrize(("changes", "dirty"), [("", False), (" M a.py", True), (None, None)])
+def test_a_tree_whose_state_git_cannot_tell_is_neither_clean_nor_dirty(
+    changes: str | None, dirty: bool | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = {"--show-prefix": "", "HEAD": "abc", "--porcelain": changes}
+    monkeypatch.setattr(provenance, "_git", lambda root, *words: answers[words[-1]])
+    assert provenance.revision() == {"commit": "abc", "dirty": dirty}
