@@ -11,7 +11,7 @@ import pytest
 
 from refimpl.identification.data_table import Row
 from refimpl.identification.design import propose
-from refimpl.identification.ensemble import mean_response
+from refimpl.identification.ensemble import mean_response, scatter
 from refimpl.identification.fit import linear_fit, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
@@ -53,9 +53,8 @@ def test_a_mean_over_realisations_has_the_worst_border_and_all_warnings() -> Non
         border=0.2, plastic=0.0, pressures=(5e6,), weights=(8e-7,), solves=4, warnings=("steep", "plastic"),
     )  # fmt: skip
     found = asdict(mean_response([response(), other]))
-    # one pair about a mean of two: 0.2 / sqrt(2) * sqrt(1 + 1/2), by Student's t of one degree of freedom
-    scatter = 0.2 / math.sqrt(2) * math.sqrt(1.5) * 12.706205 / COVERAGE
-    assert found.pop("scatter") == pytest.approx(scatter)
+    # one pair about a mean of two: 0.2 / sqrt(2) * sqrt(1 + 1/2)
+    assert found.pop("scatter") == pytest.approx(math.sqrt(0.03))
     expected = {
         **MADE, "mu": 0.4, "slopes": (2.0, 0.5), "numerical": 0.06 * COVERAGE, "contact_edge": 0.02,
         "area_per_load": 4e-9, "border": 0.2, "plastic": 0.1, "pressures": (1e6, 2e6, 5e6),
@@ -70,7 +69,8 @@ def test_all_rows_share_the_error_of_an_input() -> None:
     """Two rows that have one parameter each: their errors of 0.3 and -0.4 go together."""
     rows = [Row(1.0, 0.5, 0.1), Row(2.0, 0.7, 0.2)]
     made = [response(at=(0.0, 0.0), mu=0.0, slopes=slopes) for slopes in ((1.0, 0.0), (0.0, 1.0))]
-    fitted = linear_fit(rows, made, np.zeros((2, 2)), away=0.0, passes=1)
+    alone = scatter([[one] for one in made])  # of one draw: none
+    fitted = linear_fit(rows, made, np.zeros((2, 2)), alone, away=0.0, passes=1)
     inputs = [{"load": 0.3 * COVERAGE}, {"load": -0.4 * COVERAGE}]
     found = shares(rows, fitted, inputs)
     assert found["input load"] == pytest.approx(np.array([[0.09, -0.12], [-0.12, 0.16]]), rel=1e-8)

@@ -115,14 +115,14 @@ def test_what_is_no_pass(records: list[dict[str, Any]]) -> None:
 
 def test_an_explanation_needs_words(tmp_path: Path) -> None:
     listed = tmp_path / "explained.toml"
-    listed.write_text('[[equivalent]]\nmodule = "m"\nbefore = "a"\nafter = "b"\nreason = " "\n')
+    listed.write_text("[equivalent.m]\n' ' = [['a', 'b']]\n")
     with pytest.raises(ValueError, match="empty"):
         score.explanations(listed)
 
 
 def test_one_explanation_is_enough(tmp_path: Path) -> None:
     listed = tmp_path / "explained.toml"
-    listed.write_text(2 * '[[equivalent]]\nmodule = "m"\nbefore = "a"\nafter = "b"\nreason = "c"\n')
+    listed.write_text("[equivalent.m]\nc = [['a', 'b']]\nd = [['x', 'b'], ['a', 'b']]\n")
     with pytest.raises(ValueError, match="twice"):
         score.explanations(listed)
 
