@@ -80,7 +80,7 @@ CHAPTERS = (
         "trusted.",
         ("extremes",),
         ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
-         "hypothesis", "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
+         "later_faults", "hypothesis", "random_order", "extremes", "extremes_drawn", "fuzz", "chaos"),
     ),
     Chapter(
         "codes",

@@ -20,13 +20,12 @@ READINGS = ("self", "in line", "across")  # ends of the names of the readings of
 
 def by_claim(cases: Iterable[Case]) -> dict[str, Case]:
     """Cases by id without "-full": the long case where it passed, else the quick one."""
-    found: dict[str, Case] = {}
-    for case in cases:
-        name = str(case["id"]).removesuffix("-full")
-        long = name != case["id"]
-        if name not in found or (long and case["status"] == "pass"):
-            found[name] = case
-    return found
+
+    def preference(case: Case) -> int:
+        long = str(case["id"]).endswith("-full")
+        return 0 if long and case["status"] != "pass" else 1 + long
+
+    return {str(case["id"]).removesuffix("-full"): case for case in sorted(cases, key=preference)}
 
 
 def filled(text: str, cases: Mapping[str, Case]) -> str:

@@ -8,7 +8,7 @@ HEAD = ("area", "faults", "judged at first", "noticed at first", "lower bound", 
 
 
 def build(document: Document) -> Exhibit:
-    """Shares by area, and every fault with its outcomes."""
+    """Shares by area, and the faults that were not noticed from the first."""
     rows = [_row("all", document["all"]), *(_row(one["area"], one) for one in document["areas"])]
     faults = [
         (one["area"], one["file"], one["breaks"], one["first"], one["outcome"]) for one in document["list"]
@@ -25,7 +25,11 @@ def build(document: Document) -> Exhibit:
         ),
         [
             Table("Noticed by area (per cent).", HEAD, rows),
-            Table("The faults.", ("area", "file", "effect", "at first", "now"), faults),
+            Table(
+                "Faults that were not noticed at first, or not judged then.",
+                ("area", "file", "effect", "at first", "now"),
+                faults,
+            ),
         ],
     )
 

@@ -49,6 +49,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "fuzz": (*SOLVES, "verification/fuzz", "verification/sweep"),
     "identification": ("refimpl", "verification/coverage"),
     "hypothesis": (*SOLVES, "verification/properties"),
+    "later_faults": ("refimpl", "appendix_a", "verification", "tests"),
     "large_grids": (*SOLVES, "verification/benchmarks"),
     "model_form": (*SOLVES, "appendix_a"),
     "multilevel": (*SOLVES, "verification/multilevel"),

@@ -26,10 +26,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     os.environ.update(dict.fromkeys(THREADS, "1"))
 
     from verification.coverage.document import document
+    from verification.framework.case import jsonable
     from verification.framework.files import write_result
 
     seeds = range(options.first, options.first + options.scenes)
-    write_result(document(options.accuracy, seeds, options.store), options.json)
+    write_result(jsonable(document(options.accuracy, seeds, options.store)), options.json)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 """``python -m verification.mutation.campaign --log FILE --json FILE``: meaningful faults that tests notice.
 
-The faults of ``faults.toml`` were invented by reading the source: a sign, a column, a lost row, a wrong unit.
-With ``--random N`` they are N mutants of each area instead, of all its modules. Each fault is written into a
-clone of the committed tree and judged there: by the doctests of its module, the tests that import it and the
-tests of its area, until one fails. A verdict is kept in the log and counts as long as the module stands as it
-was; an unnoticed fault is tried again when its tests have changed. Mutants take turns by area: a run that is
-stopped, or has ``--tries``, has judged a stratified sample.
+The faults of ``faults.toml``, and later those of ``later_faults.toml`` (``--table``), were invented from the
+source: a sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area
+instead, of all its modules. Each fault is written into a clone of the committed tree and judged there: by the
+doctests of its module, the tests that import it and the tests of its area, until one fails. A verdict is kept
+in the log and counts as long as the module stands as it was; an unnoticed fault is tried again when its tests
+have changed. Areas take turns: a run that is stopped, or has ``--tries``, has judged a stratified sample.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import tempfile
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatch
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -30,7 +30,7 @@ from verification.mutation.judge import Suite
 from verification.mutation.mutants import candidates, mutant
 from verification.mutation.score import explanations, lower_bound
 from verification.mutation.session import in_fair_order
-from verification.mutation.targets import near_first
+from verification.mutation.targets import definitions, near_first
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLE = Path(__file__).with_name("faults.toml")
@@ -58,10 +58,21 @@ class Fault(NamedTuple):
         return source.replace(self.old, self.new)
 
 
-def read_faults(path: Path = TABLE) -> tuple[list[Fault], Areas]:
-    """Return the faults of a table, and the areas: their ``modules`` and ``tests``, by folder."""
-    table = tomllib.loads(path.read_text(encoding="utf-8"))
-    return [Fault(**row) for row in table["fault"]], table["areas"]
+def read_areas() -> Areas:
+    """Return the areas: their ``modules`` and ``tests``, by folder."""
+    areas: Areas = tomllib.loads(TABLE.read_text(encoding="utf-8"))["areas"]
+    return areas
+
+
+def read_faults(path: Path = TABLE) -> list[Fault]:
+    """Return the faults of a table, each of the area whose modules its file is one of."""
+    files = tomllib.loads(path.read_text(encoding="utf-8"))["faults"]
+    area = {folder: name for name, one in read_areas().items() for folder in one["modules"]}
+    return [
+        Fault(next(area[folder] for folder in area if file.startswith(f"{folder}/")), file, breaks, old, new)
+        for file, texts in files.items()
+        for breaks, (old, new) in texts.items()
+    ]
 
 
 def mutants_of(root: Path, name: str, folders: Sequence[str], seed: int) -> Iterable[Fault]:
@@ -127,10 +138,12 @@ def run(
     records, progress, sound = [], Progress(len(faults)), set[str]()
     Suite(clone, ["tests"]).import_foreign()
     for number, fault in enumerate(faults):
-        near = near_first(clone, fault.file, areas[fault.area]["tests"], far=far)
+        source = (clone / fault.file).read_text(encoding="utf-8")
+        names = definitions(source, fault.applied(source))
+        near = near_first(clone, fault.file, areas[fault.area]["tests"], far=far, names=names)
         before = noticed_by.get(fault.breaks)
         tests = sorted((fault.file, *near), key=lambda test: test != before)
-        key = _digest([*fault, (clone / fault.file).read_text(encoding="utf-8")])
+        key = _digest([*fault, source])
         suite = _digest((clone / test).read_text(encoding="utf-8") for test in tests)
         record = known.get(key)
         if record is None or (record["outcome"] == "unnoticed" and record["suite"] != suite):
@@ -147,14 +160,13 @@ def run(
     return records
 
 
-def summary(records: Sequence[Record], first: Sequence[Record] = (), *, every: bool = True) -> Record:
-    """Return the result: noticed shares, by area as well, and the faults with their outcomes.
+def summary(records: Sequence[Record], first: Sequence[Record] = ()) -> Record:
+    """Return the result: noticed shares, by area as well, and faults that were not noticed from the first.
 
     ``first`` are the records of the faults as first judged, before any test was written for one of them.
-    ``every`` lists noticed faults as well.
     """
     before, reasons = {r["breaks"]: r["outcome"] for r in first or records}, _reasons()
-    listed = [r for r in records if every or "unnoticed" in (r["outcome"], before.get(r["breaks"]))]
+    listed = [r for r in records if not r["outcome"] == before.get(r["breaks"]) == "noticed"]
     return {
         "all": _counts(records, before),
         "areas": [
@@ -194,6 +206,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status 0 when the goal is met, else 1."""
     parser = argparse.ArgumentParser(prog="python -m verification.mutation.campaign", description=__doc__)
     parser.add_argument("--only", nargs="+", default=["*"], help="patterns of the areas to try now")
+    parser.add_argument("--table", type=Path, default=TABLE, help="list of faults (default: the first one)")
     parser.add_argument(
         "--random", type=int, metavar="N", help="N mutants of each area, in place of the list"
     )
@@ -205,22 +218,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--first", type=Path, help="log, or earlier result, with first judgements")
     parser.add_argument("--json", type=Path, help="result to write")
     options = parser.parse_args(arguments)
-    faults, areas = read_faults()
+    areas = read_areas()
     chosen = [name for name in areas if any(fnmatch(name, pattern) for pattern in options.only)]
     with tempfile.TemporaryDirectory() as folder:
         clone = Path(folder) / "clone"
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
         subprocess.run(["git", "-C", str(clone), "checkout", "-q", "--detach", options.tree], check=True)
         if options.random is None:
-            listed = [fault for fault in faults if fault.area in chosen]
+            every = read_faults(options.table)
+            drawn = [[fault for fault in every if fault.area == name] for name in chosen]
         else:
             orders = [mutants_of(clone, name, areas[name]["modules"], options.seed) for name in chosen]
             drawn = [list(islice(order, options.random)) for order in orders]
-            listed = [fault for several in zip(*drawn, strict=True) for fault in several]
+        listed = [fault for turn in zip_longest(*drawn) for fault in turn if fault is not None]
         first = first_judgements(options.first) if options.first else ()
         far = options.far or options.random is None
         records = run(listed, areas, options.log, clone, far=far, first=first, tries=options.tries)
-    found = summary(records, first, every=options.random is None)
+    found = summary(records, first)
     if options.json:
         seed = {} if options.random is None else {"seed": options.seed}
         tree = {} if options.tree == "HEAD" else {"tree": options.tree}

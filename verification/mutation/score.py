@@ -23,13 +23,18 @@ def explanations(path: Path = EXPLAINED) -> dict[Change, str]:
 
     Raises ValueError for an empty reason, and for a second one.
     """
-    entries = tomllib.loads(path.read_text(encoding="utf-8")).get("equivalent", [])
-    found = {(entry["module"], entry["before"], entry["after"]): entry["reason"] for entry in entries}
-    if not all(reason.strip() for reason in found.values()):
+    modules = tomllib.loads(path.read_text(encoding="utf-8")).get("equivalent", {})
+    entries = [
+        ((module, before, after), reason)
+        for module, reasons in modules.items()
+        for reason, changes in reasons.items()
+        for before, after in changes
+    ]
+    if not all(reason.strip() for _, reason in entries):
         raise ValueError(f"{path.name}: an explanation is empty")
-    if len(found) < len(entries):
+    if len(dict(entries)) < len(entries):
         raise ValueError(f"{path.name}: a mutant is explained twice")
-    return found
+    return dict(entries)
 
 
 def lower_bound(killed: int, tried: int) -> float:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ast
+import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -37,9 +38,13 @@ class Target(NamedTuple):
         return (self.module, *self.tests)
 
 
-def near_first(root: Path, file: str, folders: Sequence[str], *, far: bool) -> tuple[str, ...]:
+def near_first(
+    root: Path, file: str, folders: Sequence[str], *, far: bool, names: Iterable[str] = ()
+) -> tuple[str, ...]:
     """Return the tests of a file, nearest first: the mirror test, those of its folders that import it, with
     ``far`` all others that do, and the rest of the folders.
+
+    After the mirror come those that mention one of ``names``, the most frequent mention first.
     """
     module = file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
     area = sorted(path for folder in folders for path in (root / folder).rglob("test_*.py"))
@@ -48,7 +53,27 @@ def near_first(root: Path, file: str, folders: Sequence[str], *, far: bool) -> t
     mirrors = [path for path in area if path.name == f"test_{Path(file).stem}.py"]
     near = [path for path in importing if path in area]
     ordered = dict.fromkeys((*mirrors, *near, *importing, *area))
-    return tuple(str(path.relative_to(root)) for path in ordered)
+    said = re.compile("|".join(rf"\b_*{name}\b" for name in names) or "(?!)")
+    often = {path: len(said.findall(path.read_text(encoding="utf-8"))) for path in ordered}
+    by_mention = sorted(ordered, key=lambda path: (path not in mirrors, -often[path]))
+    return tuple(str(path.relative_to(root)) for path in by_mention)
+
+
+def definitions(source: str, changed: str) -> set[str]:
+    """Return the names that hold the first line in which two sources differ: functions, classes, constants.
+
+    Private names without their underscores, as tests may have them.
+    """
+    pairs = enumerate(zip(source.splitlines(), changed.splitlines(), strict=False), 1)
+    line = next((number for number, (old, new) in pairs if old != new), 0)
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or 0):
+            if isinstance(node, ast.FunctionDef | ast.ClassDef):
+                found.add(node.name)
+            elif isinstance(node, ast.Assign):
+                found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+    return {name.strip("_") for name in found} - {""}
 
 
 def imported(source: str) -> set[str]:

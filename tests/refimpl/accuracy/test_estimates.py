@@ -18,6 +18,7 @@ from refimpl.accuracy.discretisation_error import (
     estimates,
 )
 from refimpl.accuracy.refinement import FIRST_GRIDS, relative_bound, uncertainty
+from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.solution.limits import Limit
 from refimpl.solution.solution import REPORTED
@@ -162,6 +163,18 @@ def test_a_grid_without_contact_knows_nothing_beside_one_that_has() -> None:
     assert edge_scatter([replace(found, edge=-0.5 * found.numbers["contact_area"])]) == [0.0]  # of holes
     assert discretisation_error.discretisation([found, apart]) == {}
     assert set(discretisation_error.discretisation([apart, found])) == set(REPORTED) - {"normal_force"}
+
+
+def test_straight_edges_add_to_the_scatter_in_squares() -> None:
+    """Runs of 10 and 24 faces: 0.2 * 26 elements; times the root of 2 where both come in and out as one."""
+    found = made_up(64)
+    area, dA = found.numbers["contact_area"], found.grid.element_area
+    for multiplicity, together in ((1.0, 1.0), (4.0, 2.0)):
+        strip = replace(found, straight=StraightEdges(34, 2, 676), symmetry_multiplicity=multiplicity)
+        along = 5.2 * math.sqrt(together) * dA / area
+        around = (found.edge / area) ** 1.5
+        assert edge_scatter([strip])[0] == pytest.approx(math.hypot(around, along))
+        assert along > around
 
 
 @pytest.mark.parametrize("number", [1e101, -1e101, math.inf, math.nan])

@@ -15,7 +15,7 @@ from refimpl.accuracy.refinement import tolerance_for
 from refimpl.grid import Grid
 from refimpl.model.certificate import Certificate, State
 from refimpl.model.forces import Forces
-from refimpl.model.problem import Problem
+from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
 from tests.refimpl.accuracy.made_up import made_up
 from tests.refimpl.states import state_of
@@ -86,6 +86,29 @@ def test_forces_are_uncertain_by_the_residual_and_by_tau_on_marginal_elements() 
     assert found["friction_force"] == pytest.approx(0.04 + 2 * 0.5)
     assert found["friction_coefficient"] == pytest.approx(0.0025 + 2 * 0.5 / 20.0)
     assert found["approach"] == pytest.approx(1e-7)
+
+
+def test_the_plastic_area_is_uncertain_by_elements_that_may_yield_or_not() -> None:
+    """Residual 0.01: pressures from 0.9 H on, and at H those that are indented by less than 0.1 of 10 um."""
+    body = rf.Body(replace(SCENE.lower.material, hardness=4e6), rf.Flat())
+    hard = replace(SCENE, lower=body, plastic=True)
+    _, state = made(0.01)
+    pressure, clearance = np.zeros((4, 4)), np.full((4, 4), 1e-3)
+    pressure[0] = 3.5e6, 3.7e6, 3.8e6, 4e6
+    pressure[1, :2] = 4e6
+    clearance[0], clearance[1, :2] = (0.0, 0.0, 0.0, -0.9e-6), (-2e-6, -3e-6)
+    state = replace(
+        state,
+        pressure=pressure,
+        v=clearance + 1e-5,
+        approach=1e-5,
+        plastic=pressure == 4e6,
+        plastic_area=3 * DA,
+    )
+    problem = discretise(hard, hard.grid(4), Terms(oblique=False, plastic=True))
+    found = iteration_parts(problem, state)
+    assert found["plastic_area"]["iteration"] == pytest.approx(3 * DA)
+    assert found["max_pressure"]["iteration"] == 0
 
 
 def test_of_oblong_elements_the_edge_is_known_less_well() -> None:

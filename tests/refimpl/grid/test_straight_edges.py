@@ -73,3 +73,13 @@ def test_turns_and_reflections_do_not_matter(seed: int) -> None:
     first = straight_edges(contact, grid)
     for image in (contact[::-1], contact[:, ::-1], contact.T, np.rot90(contact)):
         assert straight_edges(image, grid) == first
+
+
+@pytest.mark.parametrize("shift", [(0, 0), (5, 0), (0, 9), (15, 14)])
+def test_a_patch_across_a_period_has_the_edges_of_one_inside(shift: tuple[int, int]) -> None:
+    """Of 2 x 10 elements the long edges exceed the ends by 10 - 2 - 2 faces each."""
+    contact = np.zeros((16, 16), dtype=bool)
+    contact[3:5, 2:12] = True
+    found = straight_edges(np.roll(contact, shift, (0, 1)), Grid.square(1.0, 16, periodic=True))
+    assert found == straight_edges(contact, Grid.square(1.0, 16))
+    assert (found.faces, found.runs) == (12, 2)

@@ -26,6 +26,9 @@ def test_forces_become_coefficients_with_their_uncertainty(tmp_path: Path) -> No
 def test_a_row_overrides_the_scene() -> None:
     scene = Row(9.0, 0.1, 0.01, sliding_direction=0.5, sliding_offset=2e-6).of(read_scene("hertz"))
     assert (scene.load, scene.sliding_direction, scene.sliding_offset) == (9.0, 0.5, 2e-6)
+    back = Row(9.0, 0.1, 0.01, sliding_direction=0.0, sliding_offset=0.0).of(scene)
+    assert (back.sliding_direction, back.sliding_offset) == (0.0, 0.0)
+    assert Row(8.0, 0.1, 0.01).of(scene).sliding_direction == 0.5
 
 
 def test_a_file_needs_a_measured_surface() -> None:

@@ -96,3 +96,6 @@ def test_slopes_without_the_indentation_are_not_those_of_the_common_surface() ->
     without = certify(s.problem, operator, s.pressure, s.traction, elastic, None)
     assert with_it.certificate.slope < 1e-10
     assert without.certificate.slope > 1e-5
+    # the indented surfaces touch: an element's slopes count in Eq. (6), by 1e-6 of 1 um and more here
+    assert with_it.plastic.sum() > 3
+    assert np.abs(with_it.gap[with_it.contact]).max() < 1e-10 * with_it.approach

@@ -38,6 +38,22 @@ def test_the_first_number_of_a_list_counts(monkeypatch: pytest.MonkeyPatch, said
     assert threads.allowed_threads() == 3
 
 
+@pytest.mark.parametrize("said", [None, "2,1", "x"])
+def test_the_environment_is_as_it_was_after_a_number_was_asked_for(
+    monkeypatch: pytest.MonkeyPatch, said: str | None
+) -> None:
+    monkeypatch.setenv("DUCC0_NUM_THREADS", "5")
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    if said is not None:
+        monkeypatch.setenv("OMP_NUM_THREADS", said)
+    by_itself = threads.allowed_threads()
+    with threads.plain_number_of_threads():
+        assert os.environ["OMP_NUM_THREADS"] == str(by_itself)
+        assert os.environ["DUCC0_NUM_THREADS"] == "5"
+    assert os.environ.get("OMP_NUM_THREADS") == said
+    assert os.environ["DUCC0_NUM_THREADS"] == "5"
+
+
 @pytest.mark.parametrize("name", ["OMP_NUM_THREADS", "DUCC0_NUM_THREADS"])
 @pytest.mark.parametrize("said", ["2,1", "abc", "", "-1", "9" * 20, "1e3"])
 def test_no_number_of_threads_ends_in_an_assertion_of_a_library(name: str, said: str) -> None:

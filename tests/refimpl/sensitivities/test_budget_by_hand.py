@@ -40,13 +40,15 @@ def made_up(scene: rf.Scene, solution: rf.Solution) -> Sensitivity:
     return Sensitivity(found, values, every, {number: dict.fromkeys(slopes, 0.0) for number in NUMBERS}, 0.0)
 
 
-def test_no_source_shortens_the_total(solution: rf.Solution, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tolerances of 10 % of E and of tau: |-2| 0.1, 4 0.1; moduli wrong by 3 %: |3 - 2| 0.03."""
+@pytest.mark.parametrize(("along", "across"), [(0.03, None), (0.03, 0.02), (0.01, 0.03)])
+def test_no_source_shortens_the_total(
+    along: float, across: float | None, solution: rf.Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Tolerances of 10 % of E and of tau: |-2| 0.1, 4 0.1; moduli wrong by 3 %, the worst: |3 - 2| 0.03."""
     monkeypatch.setattr(module, "sensitivity", made_up)
     bars = {name: {"iteration": 0.25, "discretisation": 0.5} for name in NUMBERS}
-    given = replace(
-        solution, uncertainty=bars, slope_error=replace(solution.slope_error, at_rms=0.03)
-    )  # fmt: skip
+    wrong = replace(solution.slope_error, at_rms=along, across_at_rms=across)
+    given = replace(solution, uncertainty=bars, slope_error=wrong)
     found = budget(SCENE, given, {"upper.material.E": 0.1, "friction.tau": 0.1}, {"contact_area": 2.0})
     assert set(found.numbers) == set(NUMBERS)
     for number, part in found.numbers.items():

@@ -16,6 +16,7 @@ from refimpl.grid import Array
 from refimpl.scene.discretise import discretise
 from refimpl.sensitivities import half_space
 from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error
+from refimpl.solution.influence_error import coefficient_error
 from refimpl.solution.local_error import local_error
 
 SIZE, ELEMENTS = (3e-3, 2e-3), (9, 6)
@@ -77,6 +78,16 @@ def test_beyond_the_table_nothing_is_known_and_a_rigid_body_has_no_error() -> No
     assert np.isinf(local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE)))).all()
     steep = scene(inclined(31.0, 0.7), inclined(10.0, 0.7), of_upper=rigid)
     expected = largest_in_the_table(10.0, 0.3)
+    assert local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE))) == pytest.approx(
+        np.full(ELEMENTS, expected)
+    )
+
+
+def test_an_auxetic_body_has_the_errors_of_strips() -> None:
+    """The table of square elements has no negative ratio of Poisson."""
+    auxetic = rf.Material(E=3e9, nu=-0.2)
+    steep = scene(rf.Flat(), inclined(10.0, 0.7), of_upper=rf.Material(E=math.inf, nu=0.3), of_lower=auxetic)
+    expected = coefficient_error(math.radians(10.0), auxetic)
     assert local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE))) == pytest.approx(
         np.full(ELEMENTS, expected)
     )
@@ -158,6 +169,16 @@ def test_the_stated_error_is_the_sum_of_the_parts_sizes() -> None:
 def test_what_to_do(shallow: None, parts: tuple[float, float, float], says: str) -> None:
     """Per cents of an area of 2; 2 % is what the paper accepts."""
     assert advice(made_up(*parts), SOLVED).startswith(says)
+
+
+def test_an_approach_is_judged_from_first_contact(shallow: None) -> None:
+    """0.1 + 0.05 of 4 - 1, the mean planes' distance at first contact less that of the solution."""
+    zero = dict.fromkeys(NUMBERS, 0.0)
+    error = HalfSpaceError(
+        zero | {"approach": 0.1}, zero | {"approach": 0.05}, zero, np.zeros(ELEMENTS), None
+    )  # type: ignore[arg-type]
+    said = "approach may be off by 5.0%: take the corrected numbers, which leave 1.7%"
+    assert advice(error, SOLVED).startswith(said)
 
 
 def test_beyond_the_slopes_that_were_judged_the_advice_is_finite_elements(

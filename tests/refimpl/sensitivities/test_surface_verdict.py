@@ -12,7 +12,7 @@ from refimpl.grid import Grid
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
-from refimpl.sensitivities.surface_verdict import pressed_on_a_flat, surface_verdict
+from refimpl.sensitivities.surface_verdict import _evidence, pressed_on_a_flat, surface_verdict
 from refimpl.solution.influence_error import coefficient_error
 from refimpl.solution.influence_error_3d import element_error
 from refimpl.solution.local_error import local_error, share_above, short_wave_share
@@ -135,3 +135,12 @@ def test_a_gentle_surface_keeps_the_half_space() -> None:
     assert verdict.share_above == 0.0
     assert verdict.advice.startswith("keep the half-space")
     assert "finer grid" not in verdict.evidence
+
+
+@pytest.mark.parametrize(("short", "said"), [(0.09, False), (0.15, True)])
+def test_the_evidence_names_short_waves_from_a_tenth_of_the_mean_square_slope_on(
+    short: float, said: bool
+) -> None:
+    upper, lower = rf.Body(RIGID, rf.Sphere(5.0)), rf.Body(COPPER, rf.Flat())
+    found = _evidence(rf.solve(rf.Scene(upper, lower, rf.Friction(), load=1e4, side=1.0), 16), short)
+    assert ("15% of the mean square slope is at wavelengths below ten elements" in found) is said

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import sys
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -84,6 +86,23 @@ def test_every_field_has_the_shape_of_the_grid(rough: rf.Solution) -> None:
     for name, field in fields_of(rough).items():
         assert field.values.shape == rough.grid.shape, name
         assert field.description
+
+
+def test_every_field_is_the_solutions_of_that_name() -> None:
+    """No two of them are equal here; patches are labels of the contact."""
+    grid = rf.Grid((2, 3), (1e-3, 2e-3))
+    contact = np.array([[True, False, True], [False, False, True]])
+    made: Any = SimpleNamespace(grid=grid, contact=contact)
+    names = {
+        "pressure": "Pa", "traction": "Pa", "gap": "m", "surface_lower": "m", "surface_upper": "m",
+        "theta_x": "rad", "theta_y": "rad", "plastic_indentation": "m", "plastic": "1", "excluded": "1",
+    }  # fmt: skip
+    for k, name in enumerate(names):
+        setattr(made, name, np.full(grid.shape, float(k)))
+    found = fields_of(made)
+    assert found.pop("patch").values.tolist() == [[1, 0, 2], [0, 0, 2]]
+    assert {name: field.unit for name, field in found.items()} == names
+    assert [float(field.values[0, 0]) for field in found.values()] == list(range(10))
 
 
 def test_a_dataset_has_coordinates_units_and_numbers(rough: rf.Solution) -> None:

@@ -98,6 +98,13 @@ def test_formulas_leave_nothing_open(formula: Surface) -> None:
     assert data_error(waves(rf.Flat(), formula), Grid((8, 4), LENGTHS, True)) == 0
 
 
+def test_a_balls_slope_is_no_roughness_beside_the_data() -> None:
+    """The share is the map's alone, although the ball's rms gradient is twice the map's."""
+    assert data_error(waves(rf.Sphere(0.2), MEASURED), Grid((8, 4), LENGTHS, True)) == pytest.approx(
+        0.04804, abs=6e-6
+    )
+
+
 def test_a_level_map_leaves_nothing_open() -> None:
     level = Wave(0.0, wavelength=4e-3, data=0.25e-3)
     assert data_error(waves(rf.Flat(), level), Grid((8, 4), LENGTHS, True)) == 0

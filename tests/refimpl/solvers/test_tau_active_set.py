@@ -71,6 +71,9 @@ def test_the_reach_is_what_tau_on_an_element_moves_the_gap_by() -> None:
     assert isinstance(found, GradualSet)
     pair, h = SCENE.materials, ADHESIVE.grid.element_size
     assert found.reach == pytest.approx(2 * abs(pair.shear_compliance) * 3e6 * 2 * h, rel=1e-12)
+    turned = first_set(problem_of(replace(SCENE, upper=SCENE.lower, lower=SCENE.upper), 4))
+    assert isinstance(turned, GradualSet)
+    assert turned.reach == pytest.approx(found.reach, rel=1e-12)  # whichever body shear displaces more
     apart = first_set(problem_of(SCENE, 4, coupled=False))
     assert isinstance(apart, GradualSet)
     assert apart.reach == pytest.approx(2 * 0.01 * pair.normal_compliance * 3e6 * 2 * h, rel=1e-12)
@@ -136,6 +139,14 @@ def test_the_contact_of_the_gradual_state_is_the_active_set() -> None:
     found = followed(solver)
     assert (found.settled, found.solves, solver.asked) == (True, 2, ["? early", "xx."])
     assert found.status() is Status.CONVERGED
+
+
+@pytest.mark.parametrize(("coupled", "oblique"), [(True, False), (False, True), (False, False)])
+def test_the_gradual_state_may_end_early_where_tau_moves_a_surface(coupled: bool, oblique: bool) -> None:
+    """By coupling or by slopes; where it moves nothing, the gradual state is the final one."""
+    solver = Played({"?": "xx."})
+    followed(solver, problem_of(SCENE, 4, coupled=coupled, oblique=oblique))
+    assert solver.asked == ["? early" if coupled or oblique else "?", "xx."]
 
 
 def test_elements_that_come_back_are_excluded() -> None:

@@ -11,6 +11,7 @@ import pytest
 import SurfaceTopography
 
 import refimpl as rf
+from refimpl.surfaces import roughness_fit
 from refimpl.surfaces.areal_parameters import (
     Autocorrelation,
     Spectrum,
@@ -246,6 +247,27 @@ def test_stated_deviations_are_the_scatter() -> None:
         assert 0.5 < stated / scatter < 2.0  # 95 % of ratios of ten draws each
 
 
+def test_the_bias_of_drawn_maps_is_taken_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Maps drawn with the fitted values have four fifths of them: the values are five fourths of those."""
+    z = gaussian(WITH_LAY)
+    fitted = roughness_fit._gaussian(z, PIXEL)[0]
+
+    def drawn(shape: object, pixel: object, values: dict[str, float], *_: object) -> dict[str, np.ndarray]:
+        return {name: value * np.array([0.7, 0.9]) for name, value in values.items()}
+
+    monkeypatch.setattr(roughness_fit, "_estimates", drawn)
+    found = fit_roughness(z, PIXEL, "gaussian").values
+    expected = {name: value if name == "lay" else 1.25 * value for name, value in fitted.items()}
+    assert found == pytest.approx(expected)
+
+
+def test_angles_of_a_lay_repeat_after_half_a_turn() -> None:
+    """0.02 and 3.1 rad are 0.06 apart; other numbers are as they are."""
+    assert roughness_fit._near(0.02, 3.1, "lay") == pytest.approx(0.02 + math.pi)
+    assert roughness_fit._near(3.1, 0.02, "lay") == pytest.approx(3.1 - math.pi)
+    assert roughness_fit._near(0.02, 3.1, "lx") == 0.02
+
+
 def test_a_fit_is_a_surface_of_a_scene_file() -> None:
     fit = fit_roughness(gaussian(), PIXEL, "gaussian", 4)
     surface = rf.surfaces.surface_from_dict(fit.table(seed=7))
@@ -268,6 +290,8 @@ def test_fits_of_a_lay_and_of_self_affine_maps_are_surfaces_too() -> None:
         back = rf.surfaces.surface_from_dict(tomllib.loads(fit.toml(seed=9)))
         assert isinstance(back, type(surface))
         assert abs(fit.values["lay"] - surface.lay) < 4 * fit.deviations["lay"]
+        if kind == "gaussian":
+            assert back.correlation_length == pytest.approx((fit.values["lx"], fit.values["ly"]), rel=1e-5)
         assert getattr(back, "rms", 0) == pytest.approx(1e-6, rel=0.3)
 
 

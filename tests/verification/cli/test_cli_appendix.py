@@ -147,7 +147,16 @@ def test_surface_states_every_numbers_error_and_advises(tmp_path: Path, capsys: 
         assert abs(row["corrected"] - row["value"]) <= row["stated"]
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert main(command) == 0
-    assert "stated error" in capsys.readouterr().out
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    for label, number, factor, unit in (
+        ("A", "contact_area", 1e6, "mm^2"),
+        ("p_max", "max_pressure", 1e-6, "MPa"),
+        ("approach", "approach", 1e6, "um"),
+        ("N at this approach", "normal_force", 1.0, "N"),
+    ):
+        (line,) = [line for line in lines if line.startswith(f"{label} ")]
+        assert f"{found['numbers'][number]['value'] * factor:.4g}" in line.split()
+        assert line.endswith(f" {unit}")
 
 
 def _surface_file(folder: Path, slope: float = 0.2) -> Path:

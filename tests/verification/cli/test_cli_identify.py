@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from verification.cli import main
+import refimpl as rf
+from verification.cli import identify_store, main
 
 ROWS = "load,mu,u_mu\n5,0.4103,0.0082\n11,0.3337,0.0066\n24,0.2788,0.0055\n54,0.2253,0.0046\n"
 
@@ -87,3 +90,18 @@ def test_a_store_of_something_else_is_refused(data: Path, capsys: pytest.Capture
         store.write_text(text)
         assert main(["identify", "table1-smooth", str(data), "--store", str(store)]) == 2
         assert "store" in capsys.readouterr().err
+
+
+def test_solves_are_kept_by_the_contents_of_measured_files(tmp_path: Path) -> None:
+    """The key changes with the map, the scene and the settings, and with nothing else."""
+    path, heights = tmp_path / "map.npy", np.random.default_rng(1).normal(size=(8, 8))
+    np.save(path, heights)
+    body = rf.Body(rf.Material(2e9, 0.3), rf.MeasuredSurface(path, unit="nm", pixel_size=1e-6))
+    scene = rf.Scene(rf.Body(rf.Material(3e9, 0.2), rf.Flat()), body, rf.Friction(), load=1.0)
+    settings = {"grid": 8}
+    first = identify_store.key(scene, settings)
+    assert identify_store.key(scene, {"grid": 8}) == first
+    assert identify_store.key(scene, {"grid": 16}) != first
+    assert identify_store.key(replace(scene, load=2.0), settings) != first
+    np.save(path, 2 * heights)
+    assert identify_store.key(scene, settings) != first

@@ -140,6 +140,8 @@ def test_histograms_are_shares() -> None:
     assert np.diff(np.asarray(pressures.patches[0].get_path().vertices)[:, 1]).max() == pytest.approx(50.0)
     gap_histogram(gaps, solution, view)
     assert "2.78 % of the window" in gaps.get_title()  # 2 of 8 x 9 elements
+    bars = np.asarray(gaps.patches[0].get_path().vertices)[:, 1]
+    assert bars.max() == pytest.approx(100 * 70 / 72)  # all others are 1 um apart
 
 
 def test_the_edge_of_a_set_is_drawn_once() -> None:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from refimpl.grid import Array
 from verification.cli import main
 from verification.contestants import convergence, own, suite
-from verification.contestants.convergence import SLOW, WRONG, exit_status, weighted
+from verification.contestants.check import Entrant
+from verification.contestants.convergence import SLOW, WRONG, _OfField, exit_status, weighted
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant
 from verification.framework.case import Result
 
@@ -96,6 +101,39 @@ def test_a_fault_has_its_exit_status(how: str, status: int) -> None:
 def test_nothing_judged_is_no_success() -> None:
     assert exit_status([]) == WRONG
     assert exit_status(results(averaging, ("other-hertz",))) == WRONG  # beyond its abilities
+
+
+@pytest.mark.parametrize(
+    ("ends", "status"),
+    [
+        (["pass", "unavailable"], 0),
+        (["unavailable"], WRONG),
+        (["pass", "fail"], WRONG),
+        (["pass", "error"], WRONG),
+    ],
+)
+def test_one_wrong_or_broken_case_makes_the_whole_wrong(ends: list[str], status: int) -> None:
+    made: Any = [SimpleNamespace(id=str(k), status=end, data={}) for k, end in enumerate(ends)]
+    assert exit_status(made) == status
+
+
+@pytest.mark.parametrize(("order", "status"), [(1.19, SLOW), (1.21, 0), (math.nan, SLOW)])
+def test_orders_below_three_fifths_of_the_expected_one_are_slow(order: float, status: int) -> None:
+    made: Any = [SimpleNamespace(id="a", status="pass", data={"order": order, "expected": 2})]
+    assert exit_status(made) == status
+
+
+@pytest.mark.parametrize(("falls", "error"), [(0, 0.02), (1, 0.0)])
+def test_fields_that_do_not_converge_are_judged_on_the_finest_grid(falls: int, error: float) -> None:
+    """Pressures of 1 with a chessboard of 2 % have the right load; it stays, or falls with the spacing."""
+
+    def pose(_: Entrant, n: int) -> tuple[Array, Array]:
+        chessboard = (-1.0) ** np.add.outer(np.arange(n), np.arange(n))
+        return 1 + 0.02 * (12 / n) ** falls * chessboard, np.ones((n, n))
+
+    found = _OfField(pose)(None)  # type: ignore[arg-type]  # nobody is asked
+    assert found.value == pytest.approx(error, abs=1e-12)
+    assert found.data["order"] == pytest.approx(falls, abs=1e-9)
 
 
 def test_a_field_weighted_by_hand() -> None:

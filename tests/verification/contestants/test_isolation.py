@@ -185,6 +185,15 @@ def test_a_frame_comes_back_and_half_of_one_is_late() -> None:
         wire.receive(there, seconds=5)
 
 
+@pytest.mark.parametrize("lengths", [(wire.LONGEST_HEADER + 1, 0), (2, wire.LONGEST_BODY + 1)])
+def test_lengths_beyond_the_longest_are_no_frame(lengths: tuple[int, int]) -> None:
+    here, there = socket.socketpair()
+    with here, there:
+        here.sendall(wire.HEAD.pack(wire.MARK, *lengths) + b"{}")
+        with pytest.raises(wire.Garbled):
+            wire.receive(there, seconds=0.2)
+
+
 def test_nobody_who_reads_is_late_too() -> None:
     here, there = socket.socketpair()
     with here, there, pytest.raises(wire.Late):

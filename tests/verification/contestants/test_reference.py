@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 
 from refimpl.grid import Array
+from verification.cli import export as cli_export
 from verification.cli import main
 from verification.contestants import own, referee
 from verification.contestants.beds import Bed
@@ -23,6 +28,7 @@ from verification.contestants.reference.certified import (
     CONTACT,
     SEPARATED,
     Certified,
+    NoBound,
     NotCertified,
     _codes,
     certified,
@@ -268,3 +274,32 @@ def test_what_is_no_export_is_refused(tmp_path: Path, capsys: pytest.CaptureFixt
 
 def _lowest(heights: Array) -> Array:
     return np.asarray(heights - heights.min())
+
+
+@pytest.mark.parametrize(("second", "status"), [(NoBound, 0), (NotCertified, 1)])
+def test_only_a_problem_that_could_have_a_proof_fails_an_export(
+    second: type[NotCertified],
+    status: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Of three problems the first has a bound of 2 Pa below a peak of 8 Pa, the last one of 1 Pa."""
+
+    def certified(problem: str) -> Any:
+        if problem == "b":
+            raise second("why not")
+        bound = {"a": 2.0, "c": 1.0}[problem]
+        return SimpleNamespace(bounds=SimpleNamespace(pressure=bound), pressure=np.array([3.0, 8.0]))
+
+    export = MagicMock()
+    export.return_value.__exit__.return_value = False
+    export.return_value.__enter__.return_value.close.return_value = "v1"
+    named = [SimpleNamespace(case="x", name=letter, problem=letter) for letter in "abc"]
+    monkeypatch.setattr("verification.contestants.reference.certified.certified", certified)
+    monkeypatch.setattr("verification.contestants.reference.posed.problems", lambda only: named)
+    monkeypatch.setattr("verification.contestants.reference.files.Export", export)
+    options = argparse.Namespace(export=Path("x"), only=["contestant/pins"], json=Path("-"))
+    assert cli_export.run(options) == status
+    found = json.loads(capsys.readouterr().out)
+    assert (found["problems"], found["largest_relative_bound"]) == (2, 0.25)
+    assert (found["not_certified"], found["version"]) == ({"b": "why not"}, "v1")

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
+from refimpl import Scene
+from verification.coverage import twins
 from verification.coverage.identification import SETS, TwinSet, judged, study, summary
 from verification.coverage.twins import SHARP_NOISE, Twin, sharp_twin, twin
 
@@ -68,6 +71,41 @@ def test_a_twin_without_a_converged_solve_counts_as_a_failure() -> None:
     assert study(TwinSet(range(3, 4), impossible)) == [
         {"seed": 3, "failure": "the solve of 3 ended as stagnated"}
     ]
+
+
+def test_finished_twins_are_read_from_the_log(tmp_path: Path) -> None:
+    """Seeds 3 and 4 are made once, whatever the order of the runs; others of the log do not count."""
+    made: list[int] = []
+
+    def impossible(seed: int) -> Twin:
+        made.append(seed)
+        raise ArithmeticError(str(seed))
+
+    log, twins = tmp_path / "log", TwinSet(range(3, 6), impossible)
+    assert [row["seed"] for row in study(twins, log, [4, 3])] == [3, 4]
+    assert [row["seed"] for row in study(twins, log)] == [3, 4, 5]
+    assert [row["seed"] for row in study(twins, log, [5])] == [5]
+    assert made == [3, 4, 5]
+
+
+@pytest.mark.parametrize("seed", [7000, 7001])
+def test_a_hardness_to_fit_is_wrong_in_the_scene_and_right_in_the_rows(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved: list[float | None] = []
+
+    def friction(scene: Scene, load: float, grid: int) -> float:
+        solved.append(scene.lower.material.hardness)
+        return 0.1
+
+    monkeypatch.setattr(twins, "true_friction", friction)
+    case = twins.yielding_twin(seed)
+    assert set(solved) == {case.further}
+    assert case.further is not None
+    assert case.scene.lower.material.hardness is not None
+    off = case.scene.lower.material.hardness / case.further
+    assert 0.7 <= off <= 1.4
+    assert abs(off - 1) > 1e-3
 
 
 def test_a_fit_of_a_twin_covers_its_truth() -> None:

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import os
+import time
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+from verification.framework import provenance, workers
 from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
 from verification.framework.files import write_text
 from verification.framework.rates import extrapolate
@@ -118,3 +122,32 @@ def test_a_replaced_file_keeps_its_mode(tmp_path: Path) -> None:
     finally:
         os.umask(before)
     assert (tmp_path / "fresh").stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.parametrize(("changes", "dirty"), [("", False), (" M a.py", True), (None, None)])
+def test_a_tree_whose_state_git_cannot_tell_is_neither_clean_nor_dirty(
+    changes: str | None, dirty: bool | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = {"--show-prefix": "", "HEAD": "abc", "--porcelain": changes}
+    monkeypatch.setattr(provenance, "_git", lambda root, *words: answers[words[-1]])
+    assert provenance.revision() == {"commit": "abc", "dirty": dirty}
+
+
+def test_results_come_in_the_order_of_the_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The case in the middle ends last: the other worker has taken the third one by then."""
+
+    class Player:
+        def run(self, one: Any) -> Any:
+            time.sleep(0.2 if one.module == "b" else 0.0)
+            return SimpleNamespace(id=one.id)
+
+        def close(self) -> None:
+            pass
+
+    monkeypatch.setattr(workers, "Worker", Player)
+    cases: Any = [SimpleNamespace(id=f"{letter}/1", module=letter) for letter in "abc"]
+    ended: list[str] = []
+    found = workers.run_all(cases, 2, lambda result: ended.append(result.id))
+    assert [result.id for result in found] == ["a/1", "b/1", "c/1"]
+    assert sorted(ended) == ["a/1", "b/1", "c/1"]
+    assert ended[-1] == "b/1"

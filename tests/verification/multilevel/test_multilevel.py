@@ -86,6 +86,8 @@ def test_an_element_in_contact_may_come_where_nothing_scatters(
     element = (1.61e-3 / 16) ** 2
     parts = [min(1.0, 3 / N) * element**2 / N for N in found.samples if N]
     assert found.means["contact_area"].standard_error == pytest.approx(sum(parts) ** 0.5)
+    share = 15e6 / 70.0 * sum(parts) ** 0.5  # tau on it over the load
+    assert found.means["friction_coefficient"].standard_error == pytest.approx(share)
     assert found.means["contact_area"].half_width > 0
     assert found.plain == dict.fromkeys(QUANTITIES)
     assert table(found).count("nothing scatters") == 2

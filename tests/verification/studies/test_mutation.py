@@ -15,10 +15,10 @@ from reports.studies import exhibit
 from verification.framework.files import write_result
 from verification.mutation import campaign, mutants, score, session
 from verification.mutation.__main__ import main
-from verification.mutation.campaign import Fault, read_faults
+from verification.mutation.campaign import Fault, read_areas, read_faults
 from verification.mutation.exchanges import exchanged
 from verification.mutation.mutants import Candidate, mutant, without_statements
-from verification.mutation.targets import JUDGES, TARGETS
+from verification.mutation.targets import JUDGES, TARGETS, definitions, near_first
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -115,14 +115,14 @@ def test_what_is_no_pass(records: list[dict[str, Any]]) -> None:
 
 def test_an_explanation_needs_words(tmp_path: Path) -> None:
     listed = tmp_path / "explained.toml"
-    listed.write_text('[[equivalent]]\nmodule = "m"\nbefore = "a"\nafter = "b"\nreason = " "\n')
+    listed.write_text("[equivalent.m]\n' ' = [['a', 'b']]\n")
     with pytest.raises(ValueError, match="empty"):
         score.explanations(listed)
 
 
 def test_one_explanation_is_enough(tmp_path: Path) -> None:
     listed = tmp_path / "explained.toml"
-    listed.write_text(2 * '[[equivalent]]\nmodule = "m"\nbefore = "a"\nafter = "b"\nreason = "c"\n')
+    listed.write_text("[equivalent.m]\nc = [['a', 'b']]\nd = [['x', 'b'], ['a', 'b']]\n")
     with pytest.raises(ValueError, match="twice"):
         score.explanations(listed)
 
@@ -258,14 +258,20 @@ def test_exchanges(operator: str, source: str, expected: list[str]) -> None:
 
 
 def test_every_listed_fault_changes_its_file() -> None:
-    faults, areas = read_faults()
-    assert len(faults) >= 100
-    assert len({fault.breaks for fault in faults}) == len(faults)
-    for fault in faults:
-        source = (ROOT / fault.file).read_text(encoding="utf-8")
-        compile(fault.applied(source), fault.file, "exec")
-        assert any(fault.file.startswith(f"{folder}/") for folder in areas[fault.area]["modules"])
-    assert {fault.area for fault in faults} == set(areas)
+    """Each stands once in a module of its area and compiles; both lists are spread over the areas."""
+    areas = read_areas()
+    first, later = (
+        read_faults(campaign.TABLE.with_name(name)) for name in ("faults.toml", "later_faults.toml")
+    )
+    for faults in (first, later):
+        assert len(faults) >= 100
+        assert len({fault.breaks for fault in faults}) == len(faults)
+        for fault in faults:
+            source = (ROOT / fault.file).read_text(encoding="utf-8")
+            compile(fault.applied(source), fault.file, "exec")
+            assert any(fault.file.startswith(f"{folder}/") for folder in areas[fault.area]["modules"])
+    assert {fault.area for fault in first} == set(areas) - {"identification"}
+    assert {fault.area for fault in later} == set(areas)
 
 
 CAMPAIGN = """
@@ -357,11 +363,30 @@ def test_a_campaigns_result_by_area() -> None:
     assert [(area["area"], area["first"], area["now"]) for area in found["areas"]] == [
         ("x", 0.3333, 0.6667), ("y", 1.0, 1.0)
     ]  # fmt: skip
-    assert [(one["first"], one["outcome"]) for one in found["list"]][1] == ("unnoticed", "noticed")
+    ends = [(one["breaks"], one["first"], one["outcome"]) for one in found["list"]]
+    assert ends == [("fault 1", "unnoticed", "noticed"), ("fault 2", "unnoticed", "unnoticed")]
     shown = exhibit("faults_by_hand", found)
     assert shown.tables[0].rows[0] == ("all", 4, 4, 50.0, 9.8, 75.0)
-    assert shown.tables[1].rows[1] == ("x", "a.py", "fault 1", "unnoticed", "noticed")
-    assert [one["breaks"] for one in campaign.summary(now, first, every=False)["list"]] == [
-        "fault 1",
-        "fault 2",
-    ]
+    assert shown.tables[1].rows[0] == ("x", "a.py", "fault 1", "unnoticed", "noticed")
+
+
+def test_tests_that_mention_what_was_changed_come_after_the_mirror(tmp_path: Path) -> None:
+    """Of a function that only a private name of one test's file stands for."""
+    source = "LIMIT = 3\n\n\nclass Row:\n    def _load(self):\n        return 1\n"
+    changed = source.replace("return 1", "return 2")
+    assert definitions(source, changed) == {"Row", "load"}
+    assert definitions(source, source.replace("3", "4")) == {"LIMIT"}
+    texts = {
+        "test_a": "import rows",
+        "test_rows": "",
+        "test_b": "import rows; x._load",
+        "test_c": "load; Row; load",
+    }
+    for name, text in texts.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    names = definitions(source, changed)
+    found = near_first(tmp_path, "rows.py", ["."], far=False, names=names)
+    assert found == ("test_rows.py", "test_c.py", "test_b.py", "test_a.py")
+    assert near_first(tmp_path, "rows.py", ["."], far=False) == (
+        "test_rows.py", "test_a.py", "test_b.py", "test_c.py",
+    )  # fmt: skip

@@ -37,3 +37,13 @@ def test_one_realisation_has_no_scatter() -> None:
 def test_warnings_are_counted_by_name() -> None:
     rows = [row(0, 0.1, 1.0, warnings="border; contact radius"), row(1, 0.1, 1.0, warnings="border")]
     assert warnings_of(rows) == {"border": 2, "contact radius": 1}
+
+
+def test_a_number_is_biased_from_half_of_its_points_on() -> None:
+    """Errors of 10 % at all points; scatter of none at one, of 71 % at the others."""
+
+    def points(wide: int) -> list[Row]:
+        values = [(0, 0.1, 0.1), *((k + 1, 0.1, 0.3) for k in range(wide))]
+        return [row(k, mu, 1.0) | {"load": load} for load, *both in values for k, mu in enumerate(both)]
+
+    assert [quality_of(points(wide))[0].is_biased for wide in (1, 2)] == [True, False]

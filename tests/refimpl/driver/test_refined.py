@@ -1,0 +1,52 @@
+"""Refinement of a scene: seconds kept of each grid, and where a forecast ends."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import refimpl as rf
+from refimpl.driver import refined
+from refimpl.driver.options import Options
+from refimpl.scene.discretise import Discretiser
+
+SCENE = rf.Scene(
+    upper=rf.Body(rf.Material(200e9, 0.3), rf.Sphere(0.1)),
+    lower=rf.Body(rf.Material(3e9, 0.4), rf.Flat()),
+    friction=rf.Friction(tau=1e6, beta=0.05),
+    load=2.0,
+    side=1e-3,
+)
+
+
+def test_seconds_to_expect_follow_from_the_last_grid_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of all grids add up to the cost of the refinement."""
+    kept: list[tuple[int, float]] = []
+    record = refined.Allowance.record
+
+    def recorded(self: refined.Allowance, grid: rf.Grid, seconds: float) -> None:
+        kept.append((grid.elements, seconds))
+        record(self, grid, seconds)
+
+    monkeypatch.setattr(refined.Allowance, "record", recorded)
+    found = rf.solve(SCENE, accuracy=0.02, max_grid=96)
+    assert [elements for elements, _ in kept][:2] == [32**2, 64**2]
+    assert math.fsum(seconds for _, seconds in kept) == pytest.approx(found.cost.seconds)
+
+
+@pytest.mark.parametrize(("open_", "last"), [(True, 96), (False, 256)])
+def test_a_forecast_goes_no_farther_than_the_data_where_they_leave_more_than_the_accuracy(
+    monkeypatch: pytest.MonkeyPatch, open_: bool, last: int
+) -> None:
+    """Four elements a point of 24: 96, where no size up to there suffices; else up to the finest of all."""
+    monkeypatch.setattr(refined, "GRID_SIZES", (64, 80, 96, 128, 256))
+    monkeypatch.setattr(refined, "finest_by_data", lambda scene: 96.0)
+    monkeypatch.setattr(refined, "leaves", lambda *_: open_)
+    monkeypatch.setattr(refined, "predicted_size", lambda *_: None)
+    options = Options(scene=SCENE, accuracy=1e-4)
+    discretiser = Discretiser(SCENE, None)
+    found = refined.forecast(options, options.plan(discretiser), discretiser)
+    assert found.grid.shape == (last, last)
+    assert [grid.shape for grid in found.solved] == [(32, 32), (64, 64)]
+    assert f"{last} elements a side do not suffice" in found.refusal
