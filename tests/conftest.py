@@ -113,7 +113,7 @@ class Log:
             "seed": self.config.getoption("--order-seed"),
             "share": self.config.getoption("--order-share"),
             "tests": len(self.outcomes),
-            "not_passed": {name: end for name, end in self.outcomes.items() if end != "passed"},
+            "not_passed": {name: end for name, end in sorted(self.outcomes.items()) if end != "passed"},
             "outcomes_sha256": _digest(sorted(self.outcomes.items())),
             "order_sha256": _digest(self.order),
             "processor_seconds": round(time.process_time() - self.begun, 1),
