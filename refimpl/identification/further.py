@@ -1,7 +1,7 @@
 """Parameters that are fitted beside tau and beta: a hardness.
 
 The height of a random roughness is none of them. Friction hardly determines it where the surface is known by
-its statistics: on twins of rough balls its 95 % interval spans a factor of about 4 either way, over which mu
+its statistics: on twins of rough balls its 95 % interval spans a factor of about 3 either way, over which mu
 is not linear, and intervals of tau that rest on it are too short. A measured height with its tolerance is an
 input (`identify(..., tolerances=...)`).
 """
