@@ -12,7 +12,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import MeasuredSurface
 from refimpl.surfaces.detrending import fit_form
-from refimpl.surfaces.preparation import gaussian_filter, prepare
+from refimpl.surfaces.preparation import _off_neighbours, gaussian_filter, prepare
 from refimpl.surfaces.reading import Reading
 from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd
 from tests.refimpl.surfaces.measured import quietly
@@ -131,6 +131,13 @@ def test_a_rough_border_goes_on_at_the_other_end_of_a_map_that_repeats() -> None
     z[[0, 20], 12] += 20.0
     found = prepare(reading_of(z), outliers=6, repeats=True).heights
     assert np.isnan(found[[0, 20], 12]).tolist() == [False, True]
+
+
+def test_a_lone_point_is_off_by_its_height() -> None:
+    """Of the four lines through a neighbour one bends: the median of all four does not."""
+    z = np.zeros((7, 6))
+    z[3, 2] = -2.0
+    assert _off_neighbours(z, False).tolist() == (-z).tolist()
 
 
 def test_an_edge_is_no_outlier() -> None:
