@@ -37,9 +37,9 @@ def test_meshes_and_boxes_are_taken_to_their_limits(monkeypatch: pytest.MonkeyPa
     assert found.flat == pytest.approx(EXACT)
     assert found.flat_error == pytest.approx(np.full(10, 0.01))
     assert found.error == pytest.approx(0.3 + ODD, abs=1e-9)
-    # the last of three meshes lacks 0.1 / 27; limits of both pairs agree
-    assert found.discretisation == pytest.approx(np.full(10, 0.1 / 27), rel=1e-6)
-    assert found.truncation == pytest.approx(np.full(10, 0.02 / 9), rel=1e-6)
+    # the last of three meshes lacks 0.1 / 27; limits of both pairs agree; 1.25 is Roache's factor
+    assert found.discretisation == pytest.approx(np.full(10, 1.25 * 0.1 / 27), rel=1e-6)
+    assert found.truncation == pytest.approx(np.full(10, 1.25 * 0.02 / 9), rel=1e-6)
     assert (found.residual, found.elements) == (pytest.approx(3e-9), 300)
     assert found.antisymmetric == pytest.approx([-0.015] * 3, abs=1e-9)  # +x 1 to 3 are 1, 2, 3 %, -x 4, 5, 6
     assert (found.self_error, found.across[2]) == (pytest.approx(0.3), pytest.approx(0.39))
