@@ -64,6 +64,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "quick": ("refimpl", "appendix_a", "verification/cases"),
     "random_order": ("refimpl", "appendix_a", "verification", "tests"),
     "random_faults": ("verification/contestants",),
+    "remade": (),
     "reproduction": SOLVES,
     "sensitivity": SOLVES,
     "sweeps": (*SOLVES, "verification/benchmarks", "verification/sweep"),
