@@ -20,8 +20,8 @@ from reports.text import symbols
 Data = Mapping[str, Any]
 Draw = Callable[[Canvas, Data], None]
 
-# Three of Okabe and Ito 2008, and three that any reader tells from them and from each other. All have a
-# contrast of at least 3:1 with the light and the dark page; black is left to the text.
+# Three of Okabe and Ito 2008, and three that readers with any kind of colour blindness distinguish from them.
+# All have a contrast of at least 3:1 with the light and the dark page; black is left to the text.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#9888A8", "#786838", "#586868")
 MARKERS = "os^Dv<"
 INK = "#010203"  # stands for the page's text colour until the export

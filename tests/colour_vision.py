@@ -1,4 +1,4 @@
-"""How far apart colours are for readers with and without colour blindness."""
+"""Differences between colours as seen with and without colour blindness."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ VISION: dict[str, Array] = {
 """Linear sRGB as seen without one kind of cones (Machado, Oliveira and Fernandes 2009, severity 1)."""
 _XYZ = np.array(
     [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
-)  # of linear sRGB, white D65 (IEC 61966-2-1)
+)
+"""Matrix from linear sRGB to XYZ, white D65 (IEC 61966-2-1)."""
 
 
 def linear(colour: str) -> Array:

@@ -34,15 +34,14 @@ OUTSIDE = """<!doctype html><body><script>addEventListener("message", (event) =>
 });</script><iframe src="page.html" style="width: %dpx; height: 900px; border: 0"></iframe></body>"""
 
 
-def need_browser() -> None:
-    """Skip the test where no browser is installed."""
-    if browser() is None:
-        pytest.skip(f"no browser: none of {', '.join(BROWSERS)} is installed")
+NEEDS_BROWSER = pytest.mark.skipif(
+    browser() is None, reason=f"no browser: none of {', '.join(BROWSERS)} is installed"
+)
+"""Mark of tests in a browser: they are skipped before the page is made."""
 
 
 def answer(page: str, script: str, folder: Path, width: int = 1280, scheme: str = "light") -> Any:
     """The value that the script returns once the page is loaded, in a frame of the width (px)."""
-    need_browser()
     inside = page.replace("</body>", INSIDE % script + "</body>", 1)
     (folder / "page.html").write_text(inside, encoding="utf-8")
     frame = folder / "frame.html"

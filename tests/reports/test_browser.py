@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 
-from tests.reports.browser import answer, need_browser
+from tests.reports.browser import NEEDS_BROWSER, answer
 
+pytestmark = NEEDS_BROWSER
 AUDIT = """
   document.querySelectorAll("details").forEach((shown) => { shown.open = true; });
   const found = await axe.run(document, { resultTypes: ["violations"] });
@@ -67,7 +68,6 @@ def axe() -> str:
 
 def audited(page: str, folder: Path, width: int, scheme: str) -> Any:
     """What axe-core finds on the page."""
-    need_browser()
     return answer(
         page.replace("</body>", f"<script>{axe()}</script></body>", 1), AUDIT, folder, width, scheme
     )

@@ -1,4 +1,4 @@
-"""What the figure of section 8 beyond yield and the tables of sweeps show, number by number."""
+"""The figure of section 8 beyond yield and the tables of sweeps, number by number."""
 
 from __future__ import annotations
 

@@ -145,7 +145,8 @@ def cut(
     commands = {name: recipe.command for name, recipe in known.items() if not only or name in only}
     for name, found in parts(read_run(whole), commands):
         write_result(found, folder / f"{name}.json")
-        yield Remade(name, found["seconds"], CUT, commands[name])
+        bad = found["counts"]["fail"] + found["counts"]["error"]
+        yield Remade(name, found["seconds"], f"{CUT}; {bad} did not pass" if bad else CUT, commands[name])
 
 
 def wanted(folder: Path, known: Mapping[str, Recipe], only: Sequence[str] | None) -> list[Recipe]:

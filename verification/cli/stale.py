@@ -24,7 +24,7 @@ State = Literal["current", "stale", "record", "unknown"]
 
 LEFT_OUT = ":!"
 SOLVES = ("refimpl", ":!refimpl/identification")
-"""What a solve, its error bars and its warnings come from; a fit of tau and beta uses them."""
+"""Code of a solve, its error bars and its warnings; a fit of tau and beta uses it and is no part of it."""
 
 JUDGED: Mapping[str, tuple[str, ...]] = {
     "accuracy_costs": (*SOLVES, "verification/benchmarks"),

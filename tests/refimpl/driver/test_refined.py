@@ -21,7 +21,7 @@ SCENE = rf.Scene(
 
 
 def test_seconds_to_expect_follow_from_the_last_grid_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those of all grids add up to the cost of the refinement."""
+    """The cost of a refinement is the sum over its grids."""
     kept: list[tuple[int, float]] = []
     record = refined.Allowance.record
 

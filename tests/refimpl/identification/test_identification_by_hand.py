@@ -69,7 +69,7 @@ def test_all_rows_share_the_error_of_an_input() -> None:
     """Two rows that have one parameter each: their errors of 0.3 and -0.4 go together."""
     rows = [Row(1.0, 0.5, 0.1), Row(2.0, 0.7, 0.2)]
     made = [response(at=(0.0, 0.0), mu=0.0, slopes=slopes) for slopes in ((1.0, 0.0), (0.0, 1.0))]
-    alone = scatter([[one] for one in made])  # of one draw: none
+    alone = scatter([[one] for one in made])  # one draw has no scatter
     fitted = linear_fit(rows, made, np.zeros((2, 2)), alone, away=0.0, passes=1)
     inputs = [{"load": 0.3 * COVERAGE}, {"load": -0.4 * COVERAGE}]
     found = shares(rows, fitted, inputs)

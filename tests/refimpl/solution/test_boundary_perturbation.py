@@ -132,7 +132,7 @@ def test_stated_errors_are_first_order_finite_strain_and_second_order(
     monkeypatch.setattr(model_form, "gap_changes", lambda _: (even, 0 * even))
     found = model_form.model_form(solution.problem, solution.pressure, solution.traction, moved, approach)
     weights = solution.pressure / solution.pressure.sum()
-    sunk = 1.4 * 0.01 * approach / abs(float(np.sum(weights * (moved[0] + moved[1]))))  # of 2 U / N
+    sunk = 1.4 * 0.01 * approach / abs(float(np.sum(weights * (moved[0] + moved[1]))))  # relative to 2 U / N
     assert found.approach == pytest.approx(1.2 * 0.01 + 0.1 * steep, rel=2e-3)
     assert found.normal_force == pytest.approx(1.2 * sunk + 0.2 * steep, rel=4e-3)
 

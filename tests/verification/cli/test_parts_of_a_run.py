@@ -11,7 +11,7 @@ import pytest
 from refimpl.errors import InputError
 from reports.result_files import read_result
 from verification.cli.parts_of_a_run import parts, patterns_of, read_run
-from verification.cli.remake import Recipe, cut
+from verification.cli.remake import GOOD, Recipe, cut
 from verification.framework.runner import FORMAT
 
 CASES = [
@@ -59,9 +59,12 @@ def test_files_are_written_and_named_in_the_record(whole: Path, tmp_path: Path) 
     recipe = Recipe("far", "rough-friction verify --tier full --only love/far --json FILE", 5.0)
     other = Recipe("disc", "rough-friction verify --tier full --only love/disc --json FILE", 5.0)
     (entry,) = cut(whole, {"far": recipe, "disc": other}, ["far"], tmp_path)
-    assert (entry.file, entry.seconds, entry.ended) == ("far", 3.5, "cut from a whole run")
+    assert (entry.file, entry.seconds, entry.ended) == ("far", 3.5, "cut from a whole run; 1 did not pass")
+    assert entry.ended not in GOOD
     assert read_result(tmp_path / "far.json")["cases"] == CASES[1:2]
     assert not (tmp_path / "disc.json").exists()
+    (passed,) = cut(whole, {"disc": other}, None, tmp_path)
+    assert passed.ended in GOOD
 
 
 def test_the_self_test_is_a_pattern_of_cases() -> None:

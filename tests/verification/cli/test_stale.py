@@ -55,8 +55,8 @@ def test_code_counts_and_comments_do_not(checkout: Path) -> None:
     (checkout / "README.md").write_text("another")
     assert state(checkout, made) == ("current", "")
     module.write_text("def area(a):\n    return 4 * a\n")
-    told, reason = state(checkout, made)
-    assert (told, reason) == ("stale", f"commit {made['commit'][:12]} of 2026-11-24; 1 file changed since")
+    age, reason = state(checkout, made)
+    assert (age, reason) == ("stale", f"commit {made['commit'][:12]} of 2026-11-24; 1 file changed since")
     (checkout / "refimpl/data.json").write_text("[2]")
     git(checkout, "add", ".")
     git(checkout, "commit", "-qm", "y")
@@ -69,8 +69,8 @@ def test_code_counts_and_comments_do_not(checkout: Path) -> None:
 def test_what_is_not_known_is_said(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
     assert state(checkout, None) == ("unknown", "older than the record: its commit is not known")
     assert state(checkout, record(checkout, dirty=True))[0] == "unknown"
-    told, reason = state(checkout, record(checkout, commit="0" * 40))
-    assert told == "unknown"
+    age, reason = state(checkout, record(checkout, commit="0" * 40))
+    assert age == "unknown"
     assert "does not have" in reason
     assert state(tmp_path_factory.mktemp("no checkout"), record(checkout))[0] == "unknown"
     (checkout / "installed").mkdir()
@@ -141,8 +141,8 @@ def test_a_sample_that_is_looked_at_once_is_a_record_and_no_failure(
     documents = {"mutation_areas": {"provenance": changed}, "priors": {"provenance": made}}
     monkeypatch.setattr(stale, "read_results", lambda folder: documents)
     assert main(["verify", "--stale", "--json", "-"]) == 0
-    told = {line["name"]: line["state"] for line in json.loads(capsys.readouterr().out)}
-    assert told == {"mutation_areas": "record", "priors": "current"}
+    states = {line["name"]: line["state"] for line in json.loads(capsys.readouterr().out)}
+    assert states == {"mutation_areas": "record", "priors": "current"}
 
 
 def test_the_command_fails_when_one_is_stale(
@@ -152,8 +152,8 @@ def test_the_command_fails_when_one_is_stale(
     documents = {"pulled": {"provenance": made}, "new": {"provenance": made}, "old": {"date": "2026"}}
     monkeypatch.setattr(stale, "read_results", lambda folder: documents)
     assert main(["verify", "--stale", "--json", "-"]) == 0
-    told = {line["name"]: line["state"] for line in json.loads(capsys.readouterr().out)}
-    assert told == {"pulled": "current", "new": "current", "old": "unknown"}
+    states = {line["name"]: line["state"] for line in json.loads(capsys.readouterr().out)}
+    assert states == {"pulled": "current", "new": "current", "old": "unknown"}
     documents["pulled"] = {"provenance": made | {"sources": {**provenance.sources(), "refimpl": "other"}}}
     assert main(["verify", "--stale"]) == 1
     line = capsys.readouterr().out.splitlines()[0]

@@ -103,8 +103,9 @@ def hardness() -> Measured:
 @case(
     "identification/roughness",
     title="95 % intervals of tau, beta and a new load's mu, from statistics of a surface",
-    claim="Where a rough ball is known by its statistics alone, and its rms height within "
-    f"{ROUGHNESS_TOLERANCE:.0%}, four other realisations determine tau and beta within their intervals.",
+    claim="Where a rough ball is known by its statistics alone, its rms height within "
+    f"{ROUGHNESS_TOLERANCE:.0%}, and a correlation length is six elements or more, four other realisations "
+    "determine tau and beta within their intervals.",
     source="twins whose friction is known, of a realisation that no fit draws",
     metric="at_least",
     tolerance=0.83,
