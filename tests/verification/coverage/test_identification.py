@@ -118,7 +118,7 @@ def test_a_fit_of_a_twin_covers_its_truth() -> None:
 def test_committed_intervals_cover_in_92_per_cent_of_all_twins() -> None:
     """The full tier judges every third twin; what is claimed rests on all of them."""
     found = read_result(ROOT / "reports/results/identification.json")
-    for name in ("drawn", "sharp", "roughness"):
+    for name in ("drawn", "sharp", "hardness", "roughness"):
         row = found[name]["summary"]
         assert row["twins"] == len(SETS[name].seeds)
         assert min(row["coverage"].values()) >= LEVEL
