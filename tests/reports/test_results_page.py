@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from reports.result_files import read_results
-from reports.results_page import FOLDER, PAGE, interval, page, table_3
+from reports.result_tables.paper import table_3
+from reports.results_page import FOLDER, PAGE, page
+from reports.text import interval
 from tests.documents import ROOT
 
 

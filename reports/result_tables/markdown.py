@@ -1,0 +1,39 @@
+"""Markdown of the tables: sections, rows, numbers and links to result files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from reports.results import Case
+
+RUN = "quick"
+"""The run that the report is made of; the other files are beside it."""
+
+Row = Sequence[object]
+
+
+def section(title: str, text: str, head: Sequence[str], rows: Sequence[Row]) -> str:
+    """A heading, a paragraph, and a table."""
+    return "\n\n".join(filter(None, (f"## {title}", text, "\n".join(_table(head, rows)))))
+
+
+def _table(head: Sequence[str], rows: Sequence[Row]) -> Iterator[str]:
+    yield f"| {' | '.join(head)} |"
+    yield "|" + "---|" * len(head)
+    for row in rows:
+        yield f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in row)} |"
+
+
+def number(value: float | None, digits: str = ".2g") -> str:
+    """A number in a table; a dash where there is none."""
+    return "-" if value is None else format(value, digits)
+
+
+def link(name: str) -> str:
+    """A link to a result file."""
+    return f"[{name}.json](results/{name}.json)"
+
+
+def origin(case: Case) -> str:
+    """A link to the file that holds the case."""
+    return link(RUN if case["origin"] is None else case["origin"]["file"].removesuffix(".json"))

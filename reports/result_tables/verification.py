@@ -1,0 +1,123 @@
+"""How far the verification can be trusted: checks by file, studies of the checks, other codes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from reports.evidence import Evidence
+from reports.result_tables.markdown import Row, link, section
+from reports.results import FORMAT, STATUSES
+
+
+def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
+    """Counts of statuses, by result file."""
+    rows: list[Row] = []
+    for name, run in documents.items():
+        if run.get("format") == FORMAT:
+            made = run["provenance"]
+            selected = (
+                ", ".join(f"`{pattern}`" for pattern in run["only"]) or f"all of the {run['tier']} tier"
+            )
+            counts = [run["counts"][status] for status in STATUSES]
+            rows.append((link(name), selected, *counts, made["date"][:10], f"`{made['commit'][:12]}`"))
+    total = [sum(case["status"] == status for case in evidence.cases) for status in STATUSES]
+    listed = ", ".join(f"{count} {status}" for count, status in zip(total, STATUSES, strict=True))
+    bad = [f"`{case['id']}` ({case['status']})" for case in evidence.cases if case["status"] != "pass"]
+    text = f"{len(evidence.cases)} different checks: {listed}. Not passed: {', '.join(bad) or 'none'}."
+    return section("Checks", text, ("file", "checks", *STATUSES, "date", "commit"), rows)
+
+
+def studies(documents: Mapping[str, Any]) -> str:
+    """Quality of the verification itself: single numbers of the studies."""
+    extremes, fuzz, faults = documents["extremes"]["counts"], documents["fuzz"], documents["fault_matrix"]
+    drawn, chaos = documents["extremes_drawn"]["counts"], documents["chaos"]
+    invariants, order, ensembles = documents["hypothesis"], documents["random_order"], documents["multilevel"]
+    seen = sum(bool(fault["caught_by"]) for fault in faults["faults"])
+    tests = [run["tests"] for run in order["runs"]]
+    covered = {name: found["covered"] for name, found in ensembles["quantities"].items()}
+    rows: list[Row] = [
+        (
+            "extreme inputs",
+            f"{extremes['right']} right, {extremes['honest failure']} detected failures, "
+            f"{extremes['wrong']} wrong, {extremes['crash']} crashes",
+            link("extremes"),
+        ),
+        (
+            "extreme inputs, all parameters drawn at random",
+            f"{drawn['right']} right, {drawn['honest failure']} detected failures, "
+            f"{drawn['wrong']} wrong, {drawn['crash']} crashes",
+            link("extremes_drawn"),
+        ),
+        (
+            "sweeps that are killed, copied and cut off",
+            f"{chaos['sweeps']} tried, {chaos['different']} other tables, {chaos['tracebacks']} tracebacks",
+            link("chaos"),
+        ),
+        (
+            "damaged input files",
+            f"{fuzz['inputs']} tried, {fuzz['tracebacks']} tracebacks, {fuzz['hangs']} hangs",
+            link("fuzz"),
+        ),
+        (
+            "random examples of invariants",
+            f"{invariants['examples']} tried, {invariants['counterexamples']} counter-examples",
+            link("hypothesis"),
+        ),
+        (
+            "seeded faults in the code",
+            f"{seen} of {len(faults['faults'])} detected, by {len(faults['checks'])} quick checks",
+            link("fault_matrix"),
+        ),
+        *(
+            (
+                what,
+                f"{100 * found['score']:.1f} % of {found['tried'] - found['equivalent']} detected; "
+                f"95 % lower bound {100 * found['score_lower_bound']:.1f} %",
+                link(name),
+            )
+            for what, name, found in (
+                (
+                    "mutants of the code, sample that tests were written for",
+                    "mutation",
+                    documents["mutation"],
+                ),
+                ("mutants of the code, fresh sample", "mutation_fresh", documents["mutation_fresh"]),
+                ("mutants of the verification code", "mutation_judges", documents["mutation_judges"]),
+            )
+        ),
+        (
+            "tests in random order",
+            f"{len(tests)} orders of {' to '.join(dict.fromkeys((str(min(tests)), str(max(tests)))))} tests, "
+            + (
+                "no test changes its outcome" if order["no_test_flips"] else "some tests change their outcome"
+            ),
+            link("random_order"),
+        ),
+        (
+            "intervals of ensemble means",
+            f"cover μ in {covered['friction_coefficient']} and A in {covered['contact_area']} of "
+            f"{ensembles['repetitions']} repetitions",
+            link("multilevel"),
+        ),
+    ]
+    text = "How far the verification itself can be trusted, and what broad searches found."
+    return section("Studies", text, ("study", "result", "file"), rows)
+
+
+def codes(cross_code: Mapping[str, Any]) -> str:
+    """Solvers through the suite of checks for other solvers."""
+    roles = {"ours": "this code", "peer": "published solver", "trap": "negative control"}
+    rows: list[Row] = [
+        (
+            entrant["name"],
+            roles[entrant["role"]],
+            *(entrant["counts"][status] for status in STATUSES),
+            link("cross_code"),
+        )
+        for entrant in cross_code["entrants"]
+    ]
+    text = "Unavailable: outside a solver's abilities. A negative control is set up wrongly on purpose."
+    return section(
+        "Solvers in the suite for other solvers", text, ("solver", "role", *STATUSES, "file"), rows
+    )
