@@ -72,7 +72,8 @@ class Watched:
 
 def recomputed(problem: ContactProblem, pressure: Array) -> float:
     """Worst residual recomputed by the suite; NaN without one (too large, or no elastic energy)."""
-    if pressure.shape != problem.gap.shape or (referee.is_large(problem) and not problem.periodic):
+    too_large = referee.is_large(problem) and not problem.periodic
+    if pressure.shape != problem.gap.shape or too_large or referee.stores_no_energy(problem):
         return float("nan")
     try:
         return referee.residual(problem, pressure).worst

@@ -130,6 +130,11 @@ def energy(problem: ContactProblem, pressure: Array) -> float:
     return stored
 
 
+def stores_no_energy(problem: ContactProblem) -> bool:
+    """Whether a load presses a flat periodic gap: the pressure is the mean one, which deforms nothing."""
+    return problem.periodic and problem.load is not None and not problem.gap.any()
+
+
 def residual(problem: ContactProblem, pressure: Array) -> Residual:
     """Residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
 

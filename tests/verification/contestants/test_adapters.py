@@ -103,6 +103,14 @@ def test_peer_gives_table_1_in_free_space(peer: Peer) -> None:
     assert f"{peer.installed}" in peer.version
 
 
+def test_pressures_that_deform_nothing_have_no_residual() -> None:
+    flat = ContactProblem(np.zeros((2, 3)), 1e-6, 1e9, load=6e-3, periodic=True)
+    uneven = np.full((2, 3), 1e9) * [1, 1 + 4e-16, 1]  # by rounding, and its residual is 1e16
+    assert np.isnan(table.recomputed(flat, uneven))
+    lone = ContactProblem(np.array([[0.0, 1e-6, 2e-6]]), 1e-6, 1e9, load=6e-3, periodic=True)
+    assert table.recomputed(lone, np.array([[6e9, 0.0, 0.0]])) > 1  # a load that one element cannot carry
+
+
 def test_absent_peer_is_unavailable() -> None:
     absent = Peer("no-such-solver", "none", "", Abilities(), lambda problem: PeerAnswer([], True))
     assert absent.version == "no-such-solver (not installed)"

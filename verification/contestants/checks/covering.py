@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from verification.contestants import referee
 from verification.contestants.check import CLAIMS, Check, Entrant, Pressed, register
 from verification.contestants.checks.residuals import CLAIM, PERIODIC_SOURCE, SOURCE, judged
 from verification.contestants.design import further_rows, in_turn, posed, rows, seed_of
@@ -19,7 +20,7 @@ from verification.framework.case import Measured, Metric
 
 def _judged(entrant: Entrant, pressed: Pressed) -> Measured:
     problem, f = pressed.problem, pressed.pressure
-    if not problem.periodic or problem.load is None or problem.gap.any():
+    if problem.load is None or not referee.stores_no_energy(problem):
         return judged(entrant, pressed)
     mean = problem.load / problem.area
     off = float(np.abs(f / mean - 1).max())
