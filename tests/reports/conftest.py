@@ -1,7 +1,8 @@
-"""The whole report from the committed results, made once for all tests of it."""
+"""The whole report from the committed results, made once for all tests of it, in whichever process."""
 
 from __future__ import annotations
 
+import fcntl
 from pathlib import Path
 
 import pytest
@@ -12,13 +13,19 @@ from tests.documents import ROOT
 
 
 @pytest.fixture(scope="session")
-def html() -> str:
-    documents = read_results(ROOT / "reports/results")
-    return render(documents["quick"], documents)
+def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Processes of one run have folders side by side: the first makes the page, the others wait for it."""
+    own = tmp_path_factory.getbasetemp()
+    shared = own.parent if own.name.startswith("popen-") else own
+    path = shared / "report.html"
+    with (shared / "report.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not path.exists():
+            documents = read_results(ROOT / "reports/results")
+            path.write_text(render(documents["quick"], documents), encoding="utf-8")
+    return path
 
 
 @pytest.fixture(scope="session")
-def page_file(html: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(html, encoding="utf-8")
-    return path
+def html(page_file: Path) -> str:
+    return page_file.read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from verification.contestants.covering import covering
 from verification.contestants.design import further_rows, in_turn, posed, rows, shape_of
 from verification.contestants.dimensions import CHANGED, DESIGNS, FURTHER
 from verification.contestants.random_faults import SEEDS, random_fault
-from verification.contestants.suite import select, suite, thorough
+from verification.contestants.suite import suite, thorough
 from verification.contestants.traits import levels
 from verification.contestants.trial import first_failure
 
@@ -43,11 +43,6 @@ def test_designs_reach_from_one_element_to_512() -> None:
     assert (min(sizes), max(sizes)) == (1, 512)
     assert shape_of(rows()["tiny"][0]) == (1, 1)
     assert all(posed(row, 1, 1e-8).hardness for row in rows()["capped"][:3])
-
-
-def test_our_solver_meets_its_claim_in_every_problem() -> None:
-    verdicts = {c.slug: c.case(own.solve).run() for c in select(["contestant/design-*"])}
-    assert {slug: r.note for slug, r in verdicts.items() if r.status != "pass"} == {}
 
 
 def test_further_arrays_pose_other_problems_and_our_solver_solves_them() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import warnings
@@ -49,7 +50,8 @@ def naming(fault: Fault) -> list[str]:
     return [check.id for check in suite() if fault in check.catches]
 
 
-def test_our_own_solver_passes_every_case() -> None:
+def test_our_own_solver_passes_every_case_but_those_of_the_designs() -> None:
+    """`contestants/own-solver` of the quick tier, which runs here as well, has those too."""
     posed: list[ContactProblem] = []
 
     def counting(problem: ContactProblem) -> Answer:
@@ -59,6 +61,8 @@ def test_our_own_solver_passes_every_case() -> None:
     contestant = Limited(counting, own.solve.abilities)
     assert len(suite()) >= 40
     for check in suite():
+        if "/design-" in check.id:
+            continue
         posed.clear()
         result = check.case(contestant).run()
         assert result.status == "pass", result
@@ -277,12 +281,16 @@ NONSENSE = {
 }
 
 
+SOME = [check.id for check in suite() if not re.search(r"/design-(?!tiny).*[1-9]$", check.id)]
+"""All cases, of the designs the tiny problems and every tenth: they are judged by one function."""
+
+
 @pytest.mark.parametrize("answer", NONSENSE.values(), ids=NONSENSE)
 def test_nonsense_passes_nothing_but_symmetries_and_warns_of_nothing(answer: Contestant) -> None:
     """Energies and sums overflow or vanish: infinity over infinity is no proof that two answers agree."""
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
-        results = run(Limited(answer, own.solve.abilities))
+        results = run(Limited(answer, own.solve.abilities), SOME)
     passed = {r.id.partition("/")[2] for r in results if r.status == "pass"}
     assert passed <= SYMMETRIC
     assert [str(w.message) for w in warned] == []
