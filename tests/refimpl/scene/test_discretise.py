@@ -184,3 +184,14 @@ def test_a_certified_state_counts_from_first_contact() -> None:
 def test_beyond_mean_planes_a_periodic_approach_is_refused(approach: float) -> None:
     with pytest.raises(rf.InputError, match="approach"):
         rf.solve(PLANES, 8, approach=approach)
+
+
+def test_the_least_approach_of_mean_planes_is_ten_units_in_the_last_place_of_their_gap() -> None:
+    heights = np.zeros((4, 4))
+    heights[0, 0] = 1.6e-5  # the mean gap, 15 / 16 of it, is 1.5e-5 m: doubles there are 1.7e-21 m apart
+    lower, upper = rf.Body(SCENE.lower.material, heights), rf.Body(SCENE.upper.material, rf.Flat())
+    scene = replace(PLANES, lower=lower, upper=upper)
+    grid = scene.grid(4)
+    with pytest.raises(rf.InputError, match=r"at least 1\.7e-20 m below 0"):
+        discretise(scene, grid, approach=-1.6e-20)
+    assert discretise(scene, grid, approach=-1.8e-20).approach is not None

@@ -12,7 +12,7 @@ import refimpl as rf
 from refimpl.accuracy.discretisation_error import AREA
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.scene.parameters import check_tolerances, parameters, with_parameter
-from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity
+from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, friction_slopes, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 M, TIGHT = 48, 1e-11
@@ -293,3 +293,18 @@ def test_a_rigid_body_answers_to_no_modulus() -> None:
         assert found.derivatives[number]["upper.material.E"] == 0.0
         assert abs(found.derivatives[number]["lower.material.E"]) > 0
     assert found.residual < 1e-5
+
+
+def test_where_all_contact_is_at_the_hardness_friction_follows_from_its_area() -> None:
+    """F = tau A + beta N on flats: mu rises by A / P with tau and by one with beta."""
+    copper = rf.Material(E=118e9, nu=0.3, hardness=1e9)
+    flats = rf.Scene(
+        upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Flat()),
+        lower=rf.Body(copper, rf.Flat()),
+        friction=rf.Friction(tau=15e6, beta=0.1),
+        load=1e9 * 2e-6,
+        size=(1e-3, 2e-3),
+    )
+    solution = rf.solve(flats, (4, 8), oblique=False)
+    assert solution.plastic_area == solution.contact_area
+    assert friction_slopes(flats, solution) == pytest.approx((1 / 1e9, 1.0), rel=1e-9)

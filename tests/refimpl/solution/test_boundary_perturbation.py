@@ -141,3 +141,21 @@ def test_a_gentle_wave_warns_of_nothing() -> None:
     solution = rf.solve(wave_scene(1.5), grid=(96, 4))
     assert not [w for w in solution.warnings if w.limit == "half-space"]
     assert 0 < solution.model_form.normal_force < 0.025
+
+
+@pytest.mark.parametrize("facets_solved", [False, True])
+def test_a_quarter_turn_of_everything_turns_the_recession(facets_solved: bool) -> None:
+    """Sliding obliquely, with facets: shear along y is as shear along x, a quarter turn on."""
+    grid = Grid((16, 16), (1.0, 1.0), periodic=True)
+    draw = np.random.default_rng(3)
+    height, pressure = 0.02 * draw.normal(size=(16, 16)), 1e6 * draw.uniform(size=(16, 16))
+
+    def at(turns: int, direction: float) -> Array:
+        z, f = np.rot90(height, turns), np.rot90(pressure, turns)  # from the first axis towards the second
+        posed = contact(grid, z, f, 0.3 * f)
+        slopes = Slopes.of_surface(z, grid, direction)
+        posed = replace(posed, slopes=slopes, direction=direction, facets_solved=facets_solved)
+        return gap_changes(posed)[0]
+
+    once = at(0, 0.4)
+    assert at(1, 0.4 + math.pi / 2) == pytest.approx(np.rot90(once), rel=1e-9, abs=1e-12 * abs(once).max())

@@ -122,3 +122,20 @@ def test_no_bound_without_a_definite_norm_or_a_load() -> None:
     strong = replace(found.problem, friction=rf.Friction(0.0, 5.0))
     tilted = Slopes(np.full((M, M), 3.0), np.zeros((M, M)))
     assert math.isinf(proven_bounds(strong, found.pressure, 5 * found.pressure, tilted).energy)
+
+
+@pytest.mark.parametrize("tau", [0.0, 0.5e6])
+def test_bounds_of_a_state_with_a_hardness_are_sharp(tau: float) -> None:
+    """Stopped early, against the state solved to rounding."""
+    base = scene(4, tau=tau, beta=0.0)
+    peak = rf.solve(base, M, oblique=False).max_pressure
+    yields = replace(base, lower=replace(base.lower, material=replace(POLYMER, hardness=0.5 * peak)))
+    exact = rf.solve(yields, M, oblique=False, tolerance=1e-13)
+    assert 0.1 * exact.contact_area < exact.plastic_area < 0.9 * exact.contact_area
+    norm = EnergyNorm(exact.problem, np.ones((M, M)))
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        early = rf.solve(yields, M, oblique=False, tolerance=tolerance)
+        e = early.pressure - exact.pressure
+        true = float(np.vdot(e, norm.apply(e))) * exact.grid.element_area
+        bounds = proven_bounds(exact.problem, early.pressure, exact.traction, Slopes.flat((M, M)))
+        assert true <= bounds.energy <= 5 * true  # measured 1.06 to 2.96

@@ -11,7 +11,7 @@ import pytest
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import MeasuredSurface
-from refimpl.surfaces.detrending import fit_form
+from refimpl.surfaces.detrending import Curved, fit_form
 from refimpl.surfaces.preparation import _off_neighbours, gaussian_filter, prepare
 from refimpl.surfaces.reading import Reading
 from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd
@@ -223,3 +223,13 @@ def test_keys_out_of_range(keys: dict[str, object], field: str) -> None:
 def test_a_cut_off_below_two_pixels_is_refused() -> None:
     with pytest.raises(InputError, match=r"low_pass = 2\.9e-06: expected at least two pixels"):
         prepare(reading_of(np.zeros((9, 9))), low_pass=2.9e-6)
+
+
+@pytest.mark.parametrize("axis", [None, 0.0, 0.6, -1.9])
+def test_slopes_of_a_curved_fit_are_those_of_its_values(axis: float | None) -> None:
+    """Per pixel at the centre, by central differences; pixels twice as long along y."""
+    curved = Curved((3e-6, 0.02, -0.05, -40.0), axis, (3.0, 4.0), (1e-6, 2e-6))
+    ends = np.array([-0.5, 0.5])
+    along_x = np.diff(curved(3.0 + ends, np.array([4.0]))[:, 0])
+    along_y = np.diff(curved(np.array([3.0]), 4.0 + ends)[0])
+    assert curved.slopes == pytest.approx((along_x[0], along_y[0]), rel=1e-6)

@@ -9,12 +9,14 @@ from __future__ import annotations
 import math
 import threading
 import time
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import j0
 
 import refimpl as rf
 from refimpl.errors import InputError
@@ -477,3 +479,25 @@ def test_a_map_of_it_is_fitted_by_it() -> None:
     assert abs(fitted.hurst - 0.7) < 4 * found.deviations["hurst"]
     assert found.deviations["hurst"] < 0.05
     assert fitted.rms == pytest.approx(1e-6, rel=0.15)
+
+
+@pytest.mark.parametrize("spacing", [2e-6, 9e-6])
+def test_what_differences_miss_is_that_of_an_integral_over_wavenumbers(spacing: float) -> None:
+    """``(1 - J0(2 q h)) / (2 h^2)`` for ``q^2 / 2`` and so on, under the PSD, by scipy's quadrature."""
+    surface = rf.SelfAffineRoughness(
+        rms=1e-6, hurst=0.7, roll_off=2e-4, long_cut=4e-4, short_cut=4e-5, seed=1
+    )
+
+    def integral(weight: Callable[[float], float]) -> float:
+        def both(q: float) -> float:
+            shape = min(1.0, (q * 2e-4 / (2 * math.pi)) ** -3.4)
+            return shape * q * weight(q)
+
+        ends = [2 * math.pi / wave for wave in (4e-4, 2e-4, 4e-5)]
+        return sum(quad(both, *pair, limit=400, epsabs=0, epsrel=1e-10)[0] for pair in pairwise(ends))
+
+    h = spacing
+    seen = integral(lambda q: (1 - j0(2 * q * h)) / (2 * h**2)) / integral(lambda q: q**2 / 2)
+    bends = integral(lambda q: (6 - 8 * j0(q * h) + 2 * j0(2 * q * h)) / h**4)
+    bent = bends / integral(lambda q: 3 * q**4 / 8)
+    assert surface.missed(spacing) == pytest.approx((1 - math.sqrt(seen), 1 - math.sqrt(bent)), rel=1e-7)

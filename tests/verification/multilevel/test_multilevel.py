@@ -158,6 +158,31 @@ def test_an_ensemble_resumes_and_repeats(tmp_path: Path) -> None:
     assert len(shown.tables) == 2
 
 
+def test_the_rows_of_the_report_are_the_documents() -> None:
+    quantity = {
+        "mean": 0.2, "standard error": 0.011, "covered": 38, "cost over plain": 0.345,
+        "mean of the finest solves alone": 0.206, "its standard error": 0.004,
+        "means": [0.19, 0.21], "half widths": [0.02, 0.03],
+    }  # fmt: skip
+    shown = build(
+        {
+            "scene": "table1-rough", "target": 0.01, "repetitions": 40, "seconds": 7.25,
+            "grids": [64, 128], "samples": [9, 0], "seconds of a sample": [0.5, None],
+            "quantities": {"friction_coefficient": quantity},
+        }
+    )  # fmt: skip
+    means, terms = shown.tables
+    assert list(zip(means.head, means.rows[0], strict=True)) == [
+        ("mean", "mu"),
+        ("value", 0.2),
+        ("standard error", "1.10%"),
+        ("covered", "38 of 40"),
+        ("cost over plain sampling", "34.5%"),
+        ("mean of the finest solves alone, off by standard errors", "+1.50"),
+    ]
+    assert [*terms.rows] == [(64, 9, 0.5), (128, "dropped", "-")]
+
+
 @pytest.mark.parametrize("broken", [0, 3])
 def test_no_mean_is_taken_of_what_did_not_converge(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], broken: int
