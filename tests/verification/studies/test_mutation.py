@@ -258,12 +258,13 @@ def test_exchanges(operator: str, source: str, expected: list[str]) -> None:
 
 
 def test_every_listed_fault_changes_its_file() -> None:
-    """Each stands once in a module of its area and compiles; both lists are spread over the areas."""
+    """Each stands once in a module of its area and compiles; all lists are spread over the areas."""
     areas = read_areas()
-    first, later = (
-        read_faults(campaign.TABLE.with_name(name)) for name in ("faults.toml", "later_faults.toml")
+    first, later, third = (
+        read_faults(campaign.TABLE.with_name(f"{name}.toml"))
+        for name in ("faults", "later_faults", "third_faults")
     )
-    for faults in (first, later):
+    for faults in (first, later, third):
         assert len(faults) >= 100
         assert len({fault.breaks for fault in faults}) == len(faults)
         for fault in faults:
@@ -271,7 +272,7 @@ def test_every_listed_fault_changes_its_file() -> None:
             compile(fault.applied(source), fault.file, "exec")
             assert any(fault.file.startswith(f"{folder}/") for folder in areas[fault.area]["modules"])
     assert {fault.area for fault in first} == set(areas) - {"identification"}
-    assert {fault.area for fault in later} == set(areas)
+    assert {fault.area for fault in later} == {fault.area for fault in third} == set(areas)
 
 
 CAMPAIGN = """
