@@ -13,8 +13,9 @@ from refimpl.accuracy.discretisation_error import discretisation, estimates
 from refimpl.accuracy.iteration_error import active_set_parts, iteration_parts
 from refimpl.accuracy.refinement import tolerance_for
 from refimpl.grid import Grid
+from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.certificate import Certificate, State
-from refimpl.model.forces import Forces
+from refimpl.model.forces import EDGE_SHARE, Forces
 from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
 from tests.refimpl.accuracy.made_up import made_up
@@ -132,3 +133,21 @@ def test_what_is_given_has_no_discretisation_error_where_a_state_ran_off() -> No
 @pytest.mark.parametrize(("accuracy", "tolerance"), [(0.5, 1e-5), (1e-3, 1e-6), (1e-5, 1e-8), (1e-9, 1e-8)])
 def test_the_tolerance_of_a_refinement_lies_between_its_ends(accuracy: float, tolerance: float) -> None:
     assert tolerance_for(accuracy) == pytest.approx(tolerance, rel=1e-12)
+
+
+@pytest.mark.parametrize(("multiplicity", "squares"), [(1.0, 0), (1.0, 36), (4.0, 36)])
+def test_the_yielded_area_is_uncertain_by_its_edge(multiplicity: float, squares: int) -> None:
+    """25 edge elements, 0.36 of a count's root each way and their excess; runs of straight edges, half an
+    element each, come in and out together: three of 2, 4 and 4 faces have squares of 36."""
+    features = made_up(32)
+    dA = features.grid.element_area
+    yields = replace(
+        features,
+        numbers={**features.numbers, "plastic_area": 60 * dA},
+        plastic_edge=25 * EDGE_SHARE * dA,
+        plastic_straight=StraightEdges(10, 3, squares),
+        symmetry_multiplicity=multiplicity,
+    )
+    counted, along = 0.36 * 5 * math.sqrt(multiplicity), 0.5 * math.sqrt(squares)
+    bar = estimates([yields])["plastic_area"].error_bound(60 * dA)
+    assert bar == pytest.approx((25 * EDGE_SHARE + math.hypot(counted, along)) * dA)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -73,6 +74,24 @@ def test_slopes_beyond_the_table_have_no_bound(
     steep = replace(solution, slope_error=replace(solution.slope_error, at_rms=None))
     for part in budget(SCENE, steep).numbers.values():
         assert part.sources["coefficients"] == math.inf == part.total
+
+
+def test_the_half_space_counts_beyond_what_coefficients_count(
+    solution: rf.Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Moduli wrong by 3 % change each number by |3 - 2| 0.03; what is stated beyond that counts."""
+    stated = dict(zip(NUMBERS, (0.05, 0.02, 7.0, 0.03), strict=True))
+    monkeypatch.setattr(module, "sensitivity", made_up)
+    monkeypatch.setattr(module, "half_space_error", lambda *_: SimpleNamespace(stated=stated.__getitem__))
+    given = replace(solution, slope_error=replace(solution.slope_error, at_rms=0.03, across_at_rms=None))
+    found = [part.sources["half-space"] for part in budget(SCENE, given).numbers.values()]
+    assert found == pytest.approx([0.02, 0.0, 6.97, 0.0])
+
+    def fails(*_: object) -> None:
+        raise ArithmeticError
+
+    monkeypatch.setattr(module, "half_space_error", fails)
+    assert {part.sources["half-space"] for part in budget(SCENE, given).numbers.values()} == {math.inf}
 
 
 @pytest.mark.parametrize("status", list(rf.Status))
