@@ -1,9 +1,10 @@
 """Result files: JSON documents, and the compact form in which the repository keeps them.
 
 `read_result` takes both forms; `write_result` writes the compact one. ``python -m reports.result_files FILE``
-rewrites a file in place. The compact form loses nothing. It is JSON with three markers, in the place of
+rewrites a file in place. The compact form loses nothing. It is JSON with markers, in the place of
 
 - a list of short records with the same keys: ``{"$table": {key: [value of each record]}}``;
+- short records with the same keys, by name: ``{"$names": [name of each], "$table": ...}``;
 - equal numbers, texts or None in succession, in a list: ``{"$times": [how many, value]}``;
 - a long text or list that stands there again: ``{"$same": name}``, its value under ``shared``.
 
@@ -23,7 +24,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-LAYOUT = "rough-friction compact result file, version 1"
+LAYOUT = "rough-friction compact result file, version 2"
+_READ = (LAYOUT, "rough-friction compact result file, version 1")  # which has no names
 MOST_BYTES = 500_000
 """Largest file that the repository keeps."""
 
@@ -31,7 +33,7 @@ _LINE = 110  # characters; longer values are broken into lines
 _RECORD = 600  # characters; a longer record keeps its keys, so that its numbers stand together
 _SHARED = 40  # characters; a reference needs 23
 _MOST_ENTRIES = 2_000_000  # entries of a document: a corrupt count or nested references must not fill memory
-TABLE, TIMES, SAME = "$table", "$times", "$same"
+TABLE, NAMES, TIMES, SAME = "$table", "$names", "$times", "$same"
 
 
 class LayoutError(ValueError):
@@ -45,7 +47,7 @@ def read_result(path: Path) -> Any:
     """
     text = path.read_text(encoding="utf-8")
     found = _loaded(text)
-    if not isinstance(found, dict) or found.get("layout") != LAYOUT:
+    if not isinstance(found, dict) or found.get("layout") not in _READ:
         return found
     document = _document(found)
     try:
@@ -113,7 +115,7 @@ def compact(document: object, most_bytes: int = MOST_BYTES) -> list[str]:
 
     >>> print(compact({"rows": [{"x": 1, "y": 0.5}, {"x": 2, "y": 0.5}, {"x": 3, "y": 0.5}]})[0])
     {
-    "layout":"rough-friction compact result file, version 1",
+    "layout":"rough-friction compact result file, version 2",
     "continued":{"list":null,"digests":[]},
     "document":{"rows":{"$table":{"x":[1,2,3],"y":[0.5,0.5,0.5]}}},
     "shared":{}
@@ -210,7 +212,10 @@ class _Expansion:
             return self.of(self._shared[name], (*within, name), copies)
         if TABLE in value:
             columns = {key: self.of(column, within, copies) for key, column in value[TABLE].items()}
-            return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+            rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+            if NAMES not in value:
+                return rows
+            return dict(zip(self.of(value[NAMES], within, copies), rows, strict=True))
         return {key: self.of(entry, within, copies) for key, entry in value.items()}
 
     def _entries(self, values: list[Any], within: tuple[str, ...], copies: int) -> Iterator[Any]:
@@ -239,12 +244,19 @@ def _tables(value: Any) -> Any:
     if isinstance(value, dict):
         if any(key.startswith("$") for key in value):
             raise ValueError(f"a key that begins with '$': {sorted(value)[0]!r}")
+        records = list(value.values())
+        if _is_table(records):
+            return {NAMES: list(value), TABLE: _columns(records)}
         return {key: _tables(entry) for key, entry in value.items()}
     if not isinstance(value, list):
         return value
     if _is_table(value):
-        return {TABLE: {key: _tables([record[key] for record in value]) for key in value[0]}}
+        return {TABLE: _columns(value)}
     return _runs([_tables(entry) for entry in value])
+
+
+def _columns(records: list[Any]) -> dict[str, Any]:
+    return {key: _tables([record[key] for record in records]) for key in records[0]}
 
 
 def _is_table(values: list[Any]) -> bool:
@@ -292,7 +304,9 @@ def _references(value: Any, counts: Counter[str], shared: dict[str, Any], *, who
         count, repeated = value[TIMES]
         return {TIMES: [count, _references(repeated, counts, shared)]}
     if TABLE in value:
-        return {TABLE: {key: _references(column, counts, shared) for key, column in value[TABLE].items()}}
+        columns = {key: _references(column, counts, shared) for key, column in value[TABLE].items()}
+        names = {NAMES: _references(value[NAMES], counts, shared)} if NAMES in value else {}
+        return names | {TABLE: columns}
     return {key: _references(entry, counts, shared) for key, entry in value.items()}
 
 
@@ -310,7 +324,9 @@ def _parts(value: Any) -> Sequence[Any]:
         return ()
     if TIMES in value:
         return [value[TIMES][1]]
-    return list(value[TABLE].values() if TABLE in value else value.values())
+    if TABLE in value:
+        return [*([value[NAMES]] if NAMES in value else []), *value[TABLE].values()]
+    return list(value.values())
 
 
 def _lines(value: Any) -> str:

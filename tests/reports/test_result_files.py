@@ -28,6 +28,7 @@ VALUES = st.recursive(
         | st.dictionaries(KEYS, inner, max_size=4)
         | st.builds(lambda value, n: [value] * n, inner, st.integers(0, 4))
         | st.lists(st.fixed_dictionaries({"a": inner, "b": inner}), max_size=4)
+        | st.dictionaries(KEYS, st.fixed_dictionaries({"a": inner, "b": inner}), max_size=4)
     ),
     max_leaves=30,
 )
@@ -59,6 +60,18 @@ def test_records_are_columns_and_texts_are_stored_once() -> None:
     assert made.count("1 of a text") == 1
     assert '{"$times":[9,0.0]}' in made
     assert max(map(len, made.splitlines())) <= 110
+
+
+def test_records_by_name_are_columns_and_names(tmp_path: Path) -> None:
+    """And files of before, which have no names, are read as they were."""
+    document = {"mu": {"mean": 0.5, "seen": 3}, "A": {"mean": 0.25, "seen": 3}}
+    (made,) = compact(document)
+    table = '{"$names":["mu","A"],"$table":{"mean":[0.5,0.25],"seen":[3,3]}}'
+    assert f'"document":{table},' in made
+    before = made.replace("version 2", "version 1").replace(table, json.dumps(document))
+    for number, form in enumerate((made, before)):
+        (tmp_path / f"{number}.json").write_text(form)
+        assert text(read_result(tmp_path / f"{number}.json")) == text(document)
 
 
 def test_long_lists_continue_in_other_files(tmp_path: Path) -> None:
@@ -110,6 +123,8 @@ def test_what_it_cannot_hold_is_refused(document: dict[str, object], tmp_path: P
         {"document": {"$same": []}, "shared": {}},
         {"document": {"$table": {"x": [1], "y": [1, 2]}}, "shared": {}},
         {"document": {"$table": 3}, "shared": {}},
+        {"document": {"$names": ["a"], "$table": {"x": [1, 2]}}, "shared": {}},
+        {"document": {"$names": [["a"], ["b"]], "$table": {"x": [1, 2]}}, "shared": {}},
         {"document": [{"$times": [10**12, 0]}], "shared": {}},
         {"document": [{"$times": [0, 0]}], "shared": {}},
         {"document": [{"$times": ["x", 0]}], "shared": {}},
