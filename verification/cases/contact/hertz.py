@@ -20,7 +20,7 @@ RADIUS = 0.14
 EXACT = Sphere(load=SCENE.load, radius=RADIUS, modulus=SCENE.materials.reduced_modulus)
 GRIDS = (32, 64, 128, 256, 512)
 FINE = 256
-COARSENED = 2
+COARSENED = 4
 """Every second element is enough for a map in a report."""
 
 

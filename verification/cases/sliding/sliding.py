@@ -82,8 +82,8 @@ def trailing_edge() -> Measured:
         "hertz pressure": hertz.pressure(offset()) / 1e6,
         "hertz traction": 0.08 * hertz.pressure(offset()) / 1e6,
         "change by friction": (solution.pressure - still.pressure)[:, middle] / 1e6,
-        "pressure": solution.pressure[::2, ::2] / 1e6,
-        "traction": solution.traction[::2, ::2] / 1e6,
+        "pressure": solution.pressure[::4, ::4] / 1e6,
+        "traction": solution.traction[::4, ::4] / 1e6,
         "side": SCENE.lengths[0] * 1e3,
     }
     return Measured(
