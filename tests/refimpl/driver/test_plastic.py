@@ -258,3 +258,10 @@ def test_no_derivatives_without_elastic_contact() -> None:
     scene = replace(FLATS, load=H * 1e-6)
     with pytest.raises(rf.InputError, match="elastic contact"):
         rf.sensitivity(scene, rf.solve(scene, 8, oblique=False))
+
+
+def test_at_an_approach_the_scenes_load_limits_nothing() -> None:
+    beyond = replace(FLATS, load=2 * H * 1e-6)
+    with pytest.raises(rf.InputError):
+        rf.solve(beyond, 4)
+    assert rf.solve(beyond, 4, approach=1e-9).converged

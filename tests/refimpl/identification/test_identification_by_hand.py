@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from refimpl.identification.fit import linear_fit, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
 from refimpl.identification.profile import Profile
+from refimpl.identification.result import Identification
 
 MADE: dict[str, Any] = {
     "at": (2.0, 1.0), "mu": 0.3, "slopes": (1.0, 0.0), "numerical": 0.04 * COVERAGE, "contact_edge": 0.01,
@@ -85,3 +87,8 @@ def test_an_interval_that_reaches_zero_is_cut(away: tuple[float, float], bounded
     """Optima so many standard deviations from zero; 95 % are 1.96 of them."""
     spread = np.array([1e6, 0.01])
     assert Profile(np.array(away) * spread, np.diag(spread**2)).is_bounded is bounded
+
+
+def test_rows_far_above_and_far_below_are_outliers() -> None:
+    made: Any = SimpleNamespace(deleted=(0.5, -4.0, 2.9, 3.1))
+    assert Identification.outliers.fget(made) == (1, 3)  # type: ignore[attr-defined]

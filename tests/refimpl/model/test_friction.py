@@ -53,3 +53,13 @@ def test_of_smooth_contact_mu_follows_from_the_mean_pressure() -> None:
 def test_parameters_out_of_range_are_refused(field: str, value: float) -> None:
     with pytest.raises(InputError, match=rf"^friction\.{field} = "):
         Friction(**{field: value})
+
+
+def test_a_law_that_is_not_linear_is_friction_even_without_jump_and_slope() -> None:
+    """r = f^2 / Pa, say: at no pressure it has neither."""
+
+    class Square(Friction):
+        is_linear = False
+
+    assert is_frictionless(Friction(0.0, 0.0))
+    assert not is_frictionless(Square(0.0, 0.0))

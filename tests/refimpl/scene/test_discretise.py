@@ -40,6 +40,17 @@ class Counted(rf.Sphere):
         return ("counted by hand",)
 
 
+@dataclass(frozen=True)
+class Noting(rf.Sphere):
+    """A ball that notes the grid."""
+
+    radius: float = 0.14
+    kind: ClassVar[str] = "noting"
+
+    def cautions(self, grid: Grid) -> tuple[str, ...]:
+        return (f"on {grid.shape[0]}",)
+
+
 def counted() -> tuple[rf.Scene, list[int]]:
     ball = Counted()
     return replace(SCENE, upper=rf.Body(SCENE.upper.material, ball)), ball.sampled
@@ -195,3 +206,11 @@ def test_the_least_approach_of_mean_planes_is_ten_units_in_the_last_place_of_the
     with pytest.raises(rf.InputError, match=r"at least 1\.7e-20 m below 0"):
         discretise(scene, grid, approach=-1.6e-20)
     assert discretise(scene, grid, approach=-1.8e-20).approach is not None
+
+
+def test_notes_are_of_the_last_grid() -> None:
+    scene, _ = counted()
+    asked = Discretiser(replace(scene, upper=rf.Body(scene.upper.material, Noting())), None)
+    for M in (8, 16):
+        asked.problem(scene.grid(M), FLAT)
+        assert asked.notes == (f"on {M}",)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +14,14 @@ from refimpl.grid import Grid
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
-from refimpl.sensitivities.surface_verdict import _evidence, pressed_on_a_flat, surface_verdict
+from refimpl.sensitivities.half_space import HalfSpaceError
+from refimpl.sensitivities.surface_verdict import (
+    NUMBERS,
+    SurfaceVerdict,
+    _evidence,
+    pressed_on_a_flat,
+    surface_verdict,
+)
 from refimpl.solution.influence_error import coefficient_error
 from refimpl.solution.influence_error_3d import element_error
 from refimpl.solution.local_error import local_error, share_above, short_wave_share
@@ -144,3 +153,17 @@ def test_the_evidence_names_short_waves_from_a_tenth_of_the_mean_square_slope_on
     upper, lower = rf.Body(RIGID, rf.Sphere(5.0)), rf.Body(COPPER, rf.Flat())
     found = _evidence(rf.solve(rf.Scene(upper, lower, rf.Friction(), load=1e4, side=1.0), 16), short)
     assert ("15% of the mean square slope is at wavelengths below ten elements" in found) is said
+
+
+def test_corrected_numbers_are_the_solutions_and_the_first_order_change() -> None:
+    """Values 1 to 6 and changes of -0.1 times them; stated 0.1 of them, and twice 0.25 more."""
+    values = {name: k + 1.0 for k, name in enumerate(NUMBERS)}
+    error = HalfSpaceError(
+        {name: -0.1 * value for name, value in values.items()},
+        dict.fromkeys(NUMBERS, 0.25), dict.fromkeys(NUMBERS, 0.25), np.zeros((2, 2)), None,  # type: ignore[arg-type]
+    )  # fmt: skip
+    made: Any = SimpleNamespace(error=error, solution=SimpleNamespace(**values))
+    found = SurfaceVerdict.numbers(made)
+    for name, value in values.items():
+        assert found[name]["corrected"] == pytest.approx(0.9 * value)
+        assert found[name]["stated"] == pytest.approx(0.1 * value + 0.5)

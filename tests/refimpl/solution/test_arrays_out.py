@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from types import SimpleNamespace
 from typing import Any
@@ -15,6 +16,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.grid.contact_patches import patch_labels
 from refimpl.solution.arrays import UNITS, fields_of
+from refimpl.solution.display import _map
 from refimpl.solution.patches import patches_of
 
 
@@ -141,3 +143,24 @@ def test_html_escapes_and_draws_a_small_map(rough: rf.Solution) -> None:
 def test_yield_has_its_row(yielded: rf.Solution, rough: rf.Solution) -> None:
     assert ("plastic area" in str(yielded)) == bool(yielded.plastic_area)
     assert "plastic area" not in str(rough)
+
+
+def test_patches_of_a_periodic_solution_go_on_across_its_border() -> None:
+    contact = np.array([[True, False], [False, False], [True, False]])
+    values = dict.fromkeys(
+        ("pressure", "traction", "gap", "surface_lower", "surface_upper", "theta_x", "theta_y",
+         "plastic_indentation", "plastic", "excluded"), np.zeros((3, 2)),
+    )  # fmt: skip
+    labels = {}
+    for periodic in (False, True):
+        grid = rf.Grid((3, 2), (3e-3, 2e-3), periodic=periodic)
+        made: Any = SimpleNamespace(grid=grid, contact=contact, **values)
+        labels[periodic] = fields_of(made)["patch"].values[:, 0].tolist()
+    assert labels == {False: [1, 0, 2], True: [1, 0, 1]}
+
+
+def test_the_map_at_a_prompt_has_x_to_the_right_and_y_up() -> None:
+    """Pressures 2 and 1 at (0, 2) and (1, 1) of 2 x 3 elements: the first in the top row, darkest."""
+    made: Any = SimpleNamespace(pressure=np.array([[0.0, 0.0, 2.0], [0.0, 1.0, 0.0]]))
+    found = re.findall(r"x='(\d)' y='(\d)'.*?fill-opacity='([\d.]+)'", _map(made))
+    assert found == [("0", "0", "1.00"), ("1", "1", "0.60")]

@@ -335,3 +335,8 @@ def test_cost_is_small() -> None:
     for seed in range(5):
         unit(seed, SIDE / 15).heights(Grid.square(SIDE, 512))
     assert (time.process_time() - start) / 5 < 0.1  # CPU seconds; measured 0.01
+
+
+@pytest.mark.parametrize("lengths", [(3e-4, 1e-4), (1e-4, 3e-4)])
+def test_the_shorter_correlation_length_is_what_a_grid_must_resolve(lengths: tuple[float, float]) -> None:
+    assert GaussianRoughness(1e-6, lengths, seed=1).detail(1e-5).length == pytest.approx(1e-4)

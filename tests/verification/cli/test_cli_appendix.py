@@ -193,3 +193,12 @@ def test_neither_a_scene_nor_a_file_is_refused_by_name(tmp_path: Path, capsys: C
     assert main(["appendix-a", "surface", str(heights), "--pixel-size", "1e-6", "--unit", "um",
                  "--plot", str(tmp_path / "map.gif")]) == 2  # fmt: skip
     assert "--plot" in capsys.readouterr().err
+
+
+def test_the_pressure_on_an_oblong_surface_is_the_load_over_its_area(tmp_path: Path, capsys: Capture) -> None:
+    x = np.cos(2 * np.pi * np.arange(24) / 24)
+    path = tmp_path / "oblong.csv"
+    np.savetxt(path, 0.3 * x[:12, None] * x[None, :], delimiter=",")
+    command = ["appendix-a", "surface", str(path), "--unit", "um", "--pixel-size", "1e-6", "--grid", "24"]
+    assert main([*command, "--pressure", "30e6", "--json", "-"]) == 0
+    assert "nominal pressure 30 MPa" in json.loads(capsys.readouterr().out)["assumed"]

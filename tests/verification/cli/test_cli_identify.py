@@ -5,12 +5,18 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.container import ErrorbarContainer
+from matplotlib.figure import Figure
 
 import refimpl as rf
+from refimpl.identification.data_table import Row
 from verification.cli import identify_store, main
+from verification.cli.plot_identify import _fit
 
 ROWS = "load,mu,u_mu\n5,0.4103,0.0082\n11,0.3337,0.0066\n24,0.2788,0.0055\n54,0.2253,0.0046\n"
 
@@ -105,3 +111,15 @@ def test_solves_are_kept_by_the_contents_of_measured_files(tmp_path: Path) -> No
     assert identify_store.key(replace(scene, load=2.0), settings) != first
     np.save(path, 2 * heights)
     assert identify_store.key(scene, settings) != first
+
+
+def test_measured_points_have_bars_of_95_per_cent() -> None:
+    """1.96 standard uncertainties of 0.01 on both sides of 0.3."""
+    mu = SimpleNamespace(value=0.3, low=0.25, high=0.35)
+    made: Any = SimpleNamespace(
+        predictions=[SimpleNamespace(load=2.0, mu=mu)], rows=[Row(load=2.0, mu=0.3, u_mu=0.01)]
+    )
+    axes = Figure().add_subplot()
+    _fit(axes, made)
+    (drawn,) = (c for c in axes.containers if isinstance(c, ErrorbarContainer))
+    assert drawn[2][0].get_segments()[0][:, 1] == pytest.approx([0.2804, 0.3196])

@@ -22,6 +22,7 @@ from verification.coverage.class_scenes import (
     scene,
     windows_of,
 )
+from verification.coverage.classes import summary
 
 SEEDS = range(40)
 DRAWN = {kind: [scene(kind, seed) for seed in SEEDS] for kind in CLASSES}
@@ -205,3 +206,11 @@ def test_heights_of_a_map_at_its_own_points(tmp_path: Path) -> None:
     i, j = np.indices(read.shape)
     fit = np.stack([np.ones(20), i.ravel(), j.ravel()], axis=1)
     assert np.linalg.lstsq(fit, plane.ravel(), rcond=None)[1] == pytest.approx(0, abs=1e-28)
+
+
+def test_bars_that_hold_more_often_than_they_need_are_no_failure() -> None:
+    """All of 100: p is 1, for only too few count. 90 of 100: P(at most 90, each at 92 %) is 0.2780."""
+    row = {"error": 0.1, "bar": 0.2, "reference_bound": 0.0}
+    missed = row | {"error": 0.3}
+    assert summary(100 * [row])["p"] == pytest.approx(1.0)
+    assert summary(90 * [row] + 10 * [missed])["p"] == pytest.approx(0.2780, abs=5e-5)

@@ -123,3 +123,7 @@ def test_committed_intervals_cover_in_92_per_cent_of_all_twins() -> None:
         assert row["twins"] == len(SETS[name].seeds)
         assert min(row["coverage"].values()) >= LEVEL
         assert row["wide_without_warning"] == row["narrow_with_warning"] == row["failures"] == 0
+
+
+def test_tau_that_is_too_small_is_an_error_too() -> None:
+    assert summary([ROW | {"tau_error": -0.5}, ROW | {"tau_error": 0.2}])["unwarned_tau_error"] == 0.5

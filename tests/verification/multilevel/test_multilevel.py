@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -15,19 +16,21 @@ from refimpl.errors import InputError
 from reports.studies.multilevel import build
 from tests.verification.multilevel.drawn import TABLE, spied
 from verification.cli import main
-from verification.cli.ensemble import table
+from verification.cli.ensemble import table, told
 from verification.multilevel.__main__ import document
 from verification.multilevel.ensemble import (
     _BLOCK,
     FEWEST,
     PILOT,
     QUANTITIES,
+    Ensemble,
     _checked,
     _numbers,
     _Term,
     _values,
     ensemble,
 )
+from verification.multilevel.estimator import Estimate
 from verification.sweep import engine
 from verification.sweep.study import MAX_RUNS, Study
 from verification.sweep.study_file import study_from_dict
@@ -217,3 +220,13 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "cost over plain sampling" in capsys.readouterr().out
     assert json.loads(out.read_text())["met"] is True
     assert main([*command, "--target-error", "8%", "--csv", str(tmp_path / "x.csv")]) == 2
+
+
+@pytest.mark.parametrize(("met", "status"), [(True, 0), (False, 1)])
+def test_the_status_says_whether_the_target_was_met(
+    met: bool, status: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    estimate = Estimate(0.5, 0.01, 0.02, 8.0)
+    found = Ensemble((16,), {"contact_area": estimate}, (9,), (0.1,), {"contact_area": 1.0}, {}, met, {})
+    assert told(argparse.Namespace(json=None), found) == status
+    assert capsys.readouterr().out

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.errors import InputError
-from verification.sweep.export import require_parquet, to_csv, to_dataframe, write_csv, write_parquet
+from verification.sweep.export import header, require_parquet, to_csv, to_dataframe, write_csv, write_parquet
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 
@@ -56,3 +56,9 @@ def test_a_frame_has_units_and_named_parameters_as_columns() -> None:
     assert frame["lower.material.E"][0] == 2e9
     assert frame["contact_area"].tolist() == [1 / 3, 1e-300]
     assert frame.attrs["units"]["contact_area_error"] == "m^2"
+
+
+def test_headers_state_units_of_what_is_varied() -> None:
+    assert [header(name) for name in ("sliding_direction", "sliding_offset", "tau", "upper_rms")] == [
+        "sliding_direction [rad]", "sliding_offset [m]", "tau [Pa]", "upper_rms [m]"
+    ]  # fmt: skip

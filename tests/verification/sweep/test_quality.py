@@ -47,3 +47,8 @@ def test_a_number_is_biased_from_half_of_its_points_on() -> None:
         return [row(k, mu, 1.0) | {"load": load} for load, *both in values for k, mu in enumerate(both)]
 
     assert [quality_of(points(wide))[0].is_biased for wide in (1, 2)] == [True, False]
+
+
+def test_a_bar_without_an_end_is_infinite() -> None:
+    rows = [row(0, 0.1, 1.0) | {"contact_area_error": None}]
+    assert quality_of(rows)[1].error == math.inf

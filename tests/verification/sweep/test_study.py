@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -340,3 +341,31 @@ def test_a_requested_accuracy_chooses_the_grid_and_is_met() -> None:
     row, _ = execute(run.inputs)
     assert row["contact_area_error"] <= 0.1 * row["contact_area"]
     assert row["elements_x"] == row["elements_y"] > 1
+
+
+@pytest.mark.parametrize("said", [False, True, None])
+@pytest.mark.parametrize("scenes", [False, True])
+def test_a_study_overrides_whether_a_scene_normalises(
+    scenes: bool, said: bool | None, tmp_path: Path
+) -> None:
+    scene = rf.read_scene("table1-rough")
+    rough = rf.GaussianRoughness(1e-6, 1e-4, seed=1, normalise=scenes)
+    scene = replace(scene, lower=rf.Body(scene.lower.material, rough))
+    (tmp_path / "rough.toml").write_text(rf.scene_to_toml(scene))
+    table: dict[str, Any] = {"scene": "rough.toml", "vary": {"grid": [16]}}
+    study = study_from_dict(table | ({} if said is None else {"normalise": said}), tmp_path)
+    (run,) = study.runs()
+    (part,) = run.inputs["scene"]["lower"]["surface"]
+    assert part["normalise"] is (scenes if said is None else said)
+
+
+def test_a_scene_beside_the_study_comes_before_one_in_the_working_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "here").mkdir()
+    for folder, load in ((tmp_path, 7.0), (tmp_path / "here", 9.0)):
+        scene = replace(rf.read_scene("table1-smooth"), load=load)
+        (folder / "ball.toml").write_text(rf.scene_to_toml(scene))
+    monkeypatch.chdir(tmp_path / "here")
+    table = {"scene": "ball.toml", "vary": {"grid": [16]}}
+    assert [study_from_dict(table, folder).scene["load"] for folder in (tmp_path, Path())] == [7.0, 9.0]
