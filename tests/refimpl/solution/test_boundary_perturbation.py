@@ -115,6 +115,9 @@ def test_a_wave_under_a_rigid_plane_states_what_finite_elements_found(
     assert normal <= stated[1] <= 1.5 * normal
     assert normal <= solution.model_form.normal_force <= 2 * normal
     (warning,) = [w for w in solution.warnings if w.limit == "half-space"]
+    error = solution.model_form
+    assert f"misstates N at a given approach by up to {warning.number:.1%}" in warning
+    assert f"the approach under a load by {error.approach:.1%}" in warning
     # by a quarter of tan^2 of the wave's steepest slope more
     further = 0.25 * math.tan(math.radians(slope_deg)) ** 2
     assert warning.number - solution.model_form.normal_force == pytest.approx(further, rel=0.01)

@@ -7,6 +7,8 @@ import math
 import pickle
 import tracemalloc
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,6 +25,7 @@ from refimpl.solution.limits import (
     model_warnings,
     plain_warning,
 )
+from refimpl.solution.solution import _short_of_accuracy
 from tests.refimpl.states import state_of
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
@@ -266,3 +269,10 @@ def test_a_hardness_is_a_positive_pressure(hardness: float) -> None:
     with pytest.raises(rf.InputError) as caught:
         rf.Material(1e9, 0.3, hardness)
     assert caught.value.field == "hardness"
+
+
+@pytest.mark.parametrize("status", list(rf.Status))
+def test_a_certificate_that_fails_counts_more_than_an_accuracy_that_is_missed(status: rf.Status) -> None:
+    made: Any = SimpleNamespace(status=status)
+    ended_well = status in (rf.Status.CONVERGED, rf.Status.CYCLED)
+    assert _short_of_accuracy(made) is (rf.Status.ACCURACY_NOT_REACHED if ended_well else status)

@@ -11,7 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
-from refimpl.surfaces import surface_from_dict
+from refimpl.surfaces import MeasuredSurface, surface_from_dict
 from refimpl.surfaces.surface import SurfaceWarning
 
 DX, DY, NX, NY = 2e-6, 1e-6, 12, 20  # the area is 24 x 20 um
@@ -210,3 +210,13 @@ def test_maps_that_repeat(tmp_path: Path) -> None:
         rf.InputError, match=r"whole multiples of the 1\.6e-05 x 2\.4e-05 m with which wave\.npy"
     ):
         rf.solve(refused, 24)
+
+
+def test_text_below_words_is_an_image_whose_first_line_is_the_top(tmp_path: Path) -> None:
+    path, table = tmp_path / "map.txt", np.random.default_rng(1).integers(-9, 9, (4, 5))
+    lines = "\n".join(" ".join(map(str, line)) for line in table)
+    path.write_text(f"heights of a sample\n{lines}\n")
+    reading = MeasuredSurface(path, unit="m", pixel_size=1e-6).reading
+    assert reading.heights.tolist() == table.T[:, ::-1].tolist()  # x to the right, y up
+    path.write_text(f"{lines}\n")  # without words: an array, whose first index is x
+    assert MeasuredSurface(path, unit="m", pixel_size=1e-6).reading.heights.tolist() == table.tolist()

@@ -234,6 +234,14 @@ def test_a_changed_file_is_found(folder: Path, tmp_path: Path) -> None:
     assert found == [f"data/pins.pressure.f64: its checksum is not the one in {SUMS}"]
 
 
+def test_a_file_that_has_no_checksum_is_found_and_one_that_is_missing(folder: Path, tmp_path: Path) -> None:
+    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1.0)
+    first, second, *rest = (copy / SUMS).read_text().splitlines(keepends=True)
+    (copy / SUMS).write_text(f"{'0' * 64}  data/lost.f64\n" + second + "".join(rest))
+    found = {line.partition(":")[0] for line in agreement.disagreements(copy, ["pins"])}
+    assert found == {"data/lost.f64", first.split()[1]}
+
+
 def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(folder: Path, tmp_path: Path) -> None:
     copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1 + 1e-7)
     (copy / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in checksums(copy).items()))
