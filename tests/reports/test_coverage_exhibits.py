@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from reports.result_files import read_result
-from reports.studies import exhibit
+from reports.studies import accuracy_costs, exhibit
 
 RESULTS = Path(__file__).parents[2] / "reports" / "results"
 TRAINED = range(1000, 1200)
@@ -30,3 +31,16 @@ def test_no_number_that_nothing_judges_is_shown(name: str) -> None:
     assert len(by_number.rows) == 8
     assert all(row[2] for row in beside.rows)
     assert any("at an approach" in row[0] for row in beside.rows) == (name == "coverage")
+
+
+def test_costs_of_an_error_are_of_each_number() -> None:
+    def price(quantity: str, error: float, M: int | None) -> dict[str, Any]:
+        return {"quantity": quantity, "error": error, "M": M, "transforms of 256": 1.234}
+
+    prices = [price("mu", 0.1, 64), price("mu", 0.01, 128), price("A", 0.01, None), price("A", 0.1, 96)]
+    (table,) = accuracy_costs.build({"classes": [{"class": "smooth", "prices": prices}]}).tables
+    assert table.head == ("class", "number", "10.0%", "1.0%")
+    assert table.rows == [
+        ("smooth", "mu", "64 (1.23)", "128 (1.23)"),
+        ("smooth", "A", "96 (1.23)", "finer"),
+    ]

@@ -52,7 +52,7 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load,mu,u_mu\n5,high,0.01\n9,0.1,0.01\n", "line 2: mu = 'high': expected a finite number"),
         ("load,mu,u_mu\n5 kN,0.1,0.01\n9,0.1,0.01\n", "in N, without its unit"),
         ("load,mu,u_mu\nnan,0.1,0.01\n9,0.1,0.01\n", "finite number"),
-        ("load,mu,u_mu\n5,0.1,0.01,7\n9,0.1,0.01\n", "3 cells"),
+        ("load,mu,u_mu\n5,0.1,0.01,7\n9,0.1,0.01\n", "data line 2 = '5,0.1,0.01,7': expected 3 cells"),
         ("load [kN],mu,u_mu\n5,0.1,0.01\n", "in SI units"),
         ("load,load,mu,u_mu\n5,5,0.1,0.01\n", "once"),
         ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN mixed"),

@@ -41,6 +41,9 @@ def test_the_result_is_shown_written_and_drawn(data: Path, capsys: pytest.Captur
     shown = capsys.readouterr().out
     for word in ("tau (MPa)", "measurement", "numerical", "contact edge", "Coulomb", "chi-square"):
         assert word in shown
+    modelled = [line.split()[:2] for line in shown.partition("mu of the model")[2].splitlines()[1:7]]
+    measured = [line.split(",")[:2] for line in ROWS.splitlines()[1:]]
+    assert modelled == [*measured, ["2", "-"], ["100", "-"]]
 
 
 def test_a_stopped_fit_goes_on(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +18,7 @@ from verification.cli import main, plot
 from verification.cli.plot_maps import domain_map, gap_map, outline, pressure_map, shear_map
 from verification.cli.plot_profiles import gap_histogram, pressure_histogram, profile
 from verification.cli.plot_style import PRESSURES, unit_at_scale
-from verification.cli.plot_view import peak_of, pooled, view_of
+from verification.cli.plot_view import View, peak_of, pooled, view_of
 
 STEEL, SOFT = rf.Material(E=200e9, nu=0.3), rf.Material(E=3e9, nu=0.38)
 
@@ -212,3 +214,11 @@ def test_what_is_not_contact_or_friction_has_a_picture_too(tmp_path: Path) -> No
         path = tmp_path / f"{name}.png"
         main(["solve", "hertz", "--grid", "16", *arguments, "--plot", str(path)])
         assert path.stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(("size", "slender"), [((3e-3, 1e-3), False), ((1e-3, 3.01e-3), True)])
+def test_windows_of_more_than_three_to_one_are_drawn_to_two_scales(
+    size: tuple[float, float], slender: bool
+) -> None:
+    made: Any = SimpleNamespace(size=size)
+    assert View.is_slender.fget(made) is slender  # type: ignore[attr-defined]

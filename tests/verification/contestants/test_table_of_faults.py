@@ -14,9 +14,10 @@ import pytest
 
 from reports.result_files import read_result
 from tests.documents import ROOT
-from verification.contestants import compact
+from verification.contestants import compact, trial
 from verification.contestants.design import in_turn, posed, rows
 from verification.contestants.named import named, run
+from verification.contestants.protocol import ContactProblem
 from verification.contestants.short_list import short_list
 from verification.contestants.suite import select
 from verification.contestants.table_faults import TABLE
@@ -126,3 +127,23 @@ def test_every_fault_of_the_table_is_caught_and_named() -> None:
     assert len(TABLE) >= 25
     assert [each["fault"] for each in found] == [*TABLE]
     assert [each["fault"] for each in found if not each["failed"] or not each["named"]] == []
+
+
+@pytest.mark.parametrize("converged", [True, False])
+def test_a_right_solution_has_converged_and_meets_the_claim(
+    converged: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved = compact.solve.solved
+
+    def ended(problem: ContactProblem) -> compact.Solved:
+        return solved(problem)._replace(converged=converged)
+
+    monkeypatch.setattr(compact.solve, "solved", ended)
+    trial.right.cache_clear()
+    try:
+        assert (trial.right("design-tiny-01") is not None) == converged
+        monkeypatch.setattr(trial, "residual", lambda *_: 2 * trial.CLAIM)
+        trial.right.cache_clear()
+        assert trial.right("design-tiny-01") is None
+    finally:
+        trial.right.cache_clear()
