@@ -82,13 +82,13 @@ class Plan:
         return replace(self, grid=grid, memory=memory)
 
     def restore(self, problem: Problem, name: str) -> Plan:
-        """Return the plan with a neglected term that the solved contact shows to matter."""
+        """Return the plan with a neglected term that the solved contact shows to matter; slopes stay."""
         requested = replace(self.requested, **{name: True})
         restored = tuple(
             replace(term, reason="restored: the solved contact shows that it matters")
             if term.name == name
             else term
-            for term in choose(problem, self.contact, requested, self.budget)
+            for term in choose(problem, self.contact, requested, self.budget, for_mu=self.includes("oblique"))
         )
         return replace(self, terms=restored, requested=requested)
 

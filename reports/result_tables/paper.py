@@ -1,4 +1,4 @@
-"""What the paper prints against what is computed: Table 3, Hertz, claims, errata."""
+"""Tables of what the paper prints against what is computed: Table 3, Hertz, claims, errata."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far the verification can be trusted: checks by file, studies of the checks, other codes."""
+"""Tables of the verification itself: checks by file, studies of the checks, other codes."""
 
 from __future__ import annotations
 

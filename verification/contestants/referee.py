@@ -131,7 +131,7 @@ def energy(problem: ContactProblem, pressure: Array) -> float:
 
 
 def stores_no_energy(problem: ContactProblem) -> bool:
-    """Whether a load presses a flat periodic gap: the pressure is the mean one, which deforms nothing."""
+    """Return whether a load presses a flat periodic gap: the mean pressure, which deforms nothing."""
     return problem.periodic and problem.load is not None and not problem.gap.any()
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 
 import pytest
 
@@ -50,3 +52,47 @@ def test_a_forecast_goes_no_farther_than_the_data_where_they_leave_more_than_the
     assert found.grid.shape == (last, last)
     assert [grid.shape for grid in found.solved] == [(32, 32), (64, 64)]
     assert f"{last} elements a side do not suffice" in found.refusal
+
+
+def test_an_interrupt_has_the_last_finished_grid_with_its_own_bars() -> None:
+    told: list[str] = []
+
+    def progress(line: str) -> None:
+        told.append(line)
+        if stop in line:
+            raise KeyboardInterrupt
+
+    for stop in ("32 x", "next"):
+        told.clear()
+        with pytest.raises(KeyboardInterrupt) as caught:
+            rf.solve(replace(SCENE, side=None, size=(1e-3, 0.8e-3)), accuracy=1e-4, progress=progress)
+        assert len(caught.value.args) == (stop == "next")
+    (found,) = caught.value.args
+    assert (found.grid.shape, found.status) == ((32, 26), rf.Status.ACCURACY_NOT_REACHED)
+    assert found.warnings[-1] == "interrupted: the finest grid that was finished"
+    assert found.error("contact_area") > 0
+    assert told[-2] == f"32 x 26 elements, {sum(found.cost.applications.values())} transforms"
+    memory = found.plan.on(rf.Grid((64, 52), (1e-3, 0.8e-3))).memory / 1e9
+    assert re.fullmatch(rf"64 x 52 elements next: about \S+ s, {memory:.2g} GB", told[-1])
+
+
+@pytest.mark.parametrize(("bound", "enough", "last"), [(0.01, None, 128), (0.2, 384, 384), (0.2, None, 1024)])
+def test_a_forecast_of_a_slender_scene(
+    monkeypatch: pytest.MonkeyPatch, bound: float, enough: int | None, last: int
+) -> None:
+    """A side of 6 : 1 doubles the numbers of elements along it; bars that are met need no more grids."""
+    asked: list[tuple[int, ...]] = []
+
+    def predicted(*given: tuple[int, ...]) -> int | None:
+        asked.append(given[3])
+        return enough
+
+    monkeypatch.setattr(refined, "GRID_SIZES", (64, 80, 512))
+    monkeypatch.setattr(refined, "relative_bound", lambda *_: bound)
+    monkeypatch.setattr(refined, "predicted_size", predicted)
+    scene = replace(SCENE, side=None, size=(3e-3, 0.5e-3), load=0.1)
+    options, discretiser = Options(scene=scene, accuracy=0.05), Discretiser(scene, None)
+    found = refined.forecast(options, options.plan(discretiser), discretiser)
+    assert [max(grid.shape) for grid in (*found.solved, found.grid)] == [64, 128, last]
+    assert asked == ([] if bound < 0.05 else [[160, 1024]])
+    assert found.refusal == ("1024 elements a side do not suffice" if last == 1024 else "")

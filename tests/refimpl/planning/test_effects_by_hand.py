@@ -11,8 +11,9 @@ import pytest
 import refimpl as rf
 from refimpl.model.materials import Pair
 from refimpl.planning.expected_contact import ExpectedContact, expected_contact, solved_contact
+from refimpl.planning.plan import estimated_memory, make_plan
 from refimpl.planning.term_effects import Effect, Scales, effects_in, neglected_parts
-from refimpl.planning.terms import RequestedTerms, choose
+from refimpl.planning.terms import RequestedTerms, budget_of, choose
 from refimpl.scene.discretise import discretise
 
 PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1))
@@ -128,3 +129,62 @@ def test_the_cap_enters_where_three_mean_pressures_reach_the_hardness(mean: floa
     terms = choose(problem, replace(CONTACT, mean_pressure=mean), RequestedTerms(), 1e-8)
     (cap,) = (term for term in terms if term.name == "plastic")
     assert cap.included is included
+
+
+def test_tilt_by_hand() -> None:
+    """Half of both tilts; they turn mu = 0.3 into slopes once more, and with it the area."""
+    scales = Scales(CONTACT, PAIR, SCENE.friction)
+    tilt = 0.5 * sum(scales.tilts)
+    area = 0.3 * tilt + 2 * math.sqrt(0.3 * tilt / 50)
+    found = effects_of("tilted", scales)
+    assert found.area == pytest.approx(area)
+    assert found.friction == pytest.approx((1.09 * tilt + 0.1 * area) / 0.3)
+
+
+@pytest.mark.parametrize("symmetric", [False, True])
+@pytest.mark.parametrize("beta", [0.0, 0.3])
+def test_facets_by_hand(symmetric: bool, beta: float) -> None:
+    """rms slope 0.02; c / a of the pair, lower minus upper and their sum, with half of its squared slopes."""
+    c = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
+    a = sum((1 - nu**2) / E for E, nu in ((2e9, 0.25), (8e9, 0.1)))
+    local = 0.7 * ((c[0] - c[1]) / a + beta) * 0.02
+    slope = 0.0 if symmetric and not beta else (beta + 0.5 * sum(c) / a) * 4e-4
+    area = local + 2 * math.sqrt((4 if symmetric else 1) * local / 50)
+    scales = Scales(replace(CONTACT, symmetric=symmetric), PAIR, rf.Friction(0.0, beta))
+    expected = Effect(slope / beta, area) if beta else Effect(0.0, area, bare=slope)
+    assert vars(effects_of("slope_correction", scales)) == pytest.approx(vars(expected))
+
+
+def test_without_friction_a_symmetric_scene_has_a_hundredth_of_its_edge_as_budget() -> None:
+    """50 elements in four patches have radii of 2 elements, and each whole elements' excess of 0.30 / r."""
+    problem = discretise(replace(SCENE, friction=rf.Friction()), SCENE.grid(6))
+    found = [budget_of(problem, replace(CONTACT, symmetric=word), 1e-3) for word in (True, False)]
+    assert found == pytest.approx([0.01 * 0.30 / math.sqrt(50 / 4 / math.pi), 5e-4], rel=0.02)
+    assert budget_of(problem, replace(CONTACT, symmetric=True), 0.2) == 0.1
+
+
+def test_reasons_of_terms_that_come_with_others() -> None:
+    """What the neglected coupling leaves of the budget is enough for the tilt, or not."""
+    problem, scales = discretise(SCENE, SCENE.grid(6)), Scales(CONTACT, PAIR, SCENE.friction)
+    sizes = {name: effects_of(name, scales).larger for name in ("coupled", "tilted")}
+    both, given = sum(sizes.values()), RequestedTerms(oblique=True)
+    for share, reason in ((1.01, "negligible"), (0.99, "shear moves the common surface")):
+        tilted = choose(problem, CONTACT, given, share * both)[2]
+        assert (tilted.reason, tilted.negligible) == (reason, share > 1)
+    assert choose(problem, CONTACT, given, 0.0)[2].reason == "comes with the coupling's kernel"
+
+
+def test_without_friction_slopes_that_are_all_of_mu_stay_and_facets_still_shear() -> None:
+    """A budget of half of mu: slopes are kept for mu's sake, when the cap is restored as well."""
+    problem = discretise(replace(SCENE, friction=rf.Friction()), SCENE.grid(6))
+    plan = make_plan(problem, demand=1.0, for_mu=True)
+    assert not make_plan(problem, demand=1.0).includes("oblique")
+    assert plan.restore(problem, "plastic").includes("oblique")
+    corrected = choose(problem, CONTACT, RequestedTerms(slope_correction=True), 1.0)
+    assert [term.included for term in corrected] == [True, True, True, True, False, False]
+
+
+def test_memory_is_of_the_grid_or_of_a_window_half_as_large_again() -> None:
+    grid = rf.Grid((10, 20), (1.0, 2.0))
+    found = [estimated_memory("fft", grid, extent=share) / 200 for share in (0.1, 0.4, 0.9)]
+    assert found == [176, 0.6 * 520, 520]

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.model.forces import plasticity_index
+from refimpl.model.forces import Forces, plasticity_index
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.influence_error import SlopeError
@@ -276,3 +276,42 @@ def test_a_certificate_that_fails_counts_more_than_an_accuracy_that_is_missed(st
     made: Any = SimpleNamespace(status=status)
     ended_well = status in (rf.Status.CONVERGED, rf.Status.CYCLED)
     assert _short_of_accuracy(made) is (rf.Status.ACCURACY_NOT_REACHED if ended_well else status)
+
+
+FULL, FEW = {"pressure": np.full((6, 4), 2.5e9), "contact_area": 6e-7}, np.zeros((6, 4))
+FEW[1, 1] = FEW[1, 2] = FEW[4, 1] = 1e6
+PEAK = "pressure, 2500 MPa, exceeds the softer body's hardness, 800 MPa: A, mu and pressures are not reliable"
+FLAT = "degrees: influence coefficients of a flat are off by"
+
+
+@pytest.mark.parametrize(
+    ("name", "number", "changes", "text"),
+    [
+        ("rms gradient", 0.031, {"slope_error": SlopeError(0.1, 0.0, 0.031, 0.0, 0.017, 0.0)},
+         f"gradient 5.73 {FLAT} 3.1% in line and 1.7% across, above 2 %"),
+        ("maximum slope", 0.061, {"slope_error": SlopeError(0.0, 0.25, 0.0, 0.012, 0.0, 0.061)},
+         f"slope 14.3 {FLAT} 1.2% in line and 6.1% across, above 2 %"),
+        # at 0.8 GPa 600 N take 0.75 mm^2, a quarter more
+        ("peak pressure", 2.5e9, FULL | {"forces": Forces(600.0, 0.0, 0.0)},
+         f"{PEAK} (at the hardness A is at least P/H, 25.0% more); set plastic = true"),
+        # the cube root of 3 P R / (4 E*), with 1 / E* = 0.91 / 118 + 0.91 / 200 per GPa
+        ("border", 16, FULL | {"load": 5e3},
+         "enlarge the domain: Hertz's contact radius is 0.00186 m, half of the domain 0.0008 m"),
+        # three elements in two patches: the root of 3 / (2 pi)
+        ("contact radius", 0.690988, {"pressure": FEW}, "a mean radius of 0.69 elements: below 3 areas"),
+        ("active set of tau", 2, {"pressure": FEW, "excluded": np.arange(24).reshape(6, 4) < 7},
+         "under tau: 2 elements in contact carry"),
+    ],
+)  # fmt: skip
+def test_a_warning_has_its_numbers_in_their_units(
+    name: str, number: float, changes: dict[str, Any], text: str
+) -> None:
+    scene = replace(SMOOTH, side=None, size=(2.4e-3, 1.6e-3))
+    s = rf.solve(scene, (6, 4))
+    given, state = dict(changes), state_of(s)
+    problem = replace(s.problem, load=given.pop("load", 70.0))
+    state = replace(state, **{key: given.pop(key) for key in changes if key in vars(state)})
+    made = evidence(s, scene, problem=problem, state=state, **given)
+    (found,) = (w for w in model_warnings(made) if w.limit == name)
+    assert found.number == pytest.approx(number, rel=1e-5)
+    assert text in found
