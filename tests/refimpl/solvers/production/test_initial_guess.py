@@ -145,7 +145,7 @@ def test_a_start_on_the_same_grid_is_used_where_it_is_off_by_one_per_cent(
     approach: float | None, factor: float
 ) -> None:
     """And not by three; at an approach v is off by (factor - 1) u, whose work is twice that of the energy."""
-    problem = problem_of(BALL, 32, approach=approach)
+    problem = problem_of(replace(BALL, load=8.0), 32, approach=approach)
     solver = level_solver(problem)
     solver.solve(1e-9, first_set(problem))
     guess = solver.initial_guess()
