@@ -28,12 +28,9 @@ BARS = Names(held=0.951, held_at_worst=0.902, usable=0.83, held_of_usable=None, 
 BARS["median_bar_over_error"] = None
 OTHERS = BARS | {"class": None, "number": None, "scenes": 7, "held_of_usable": 0.8}
 OTHERS["median_bar_over_error"] = 3.456
-ENDS = Names({"peak memory (bytes)": 5.678e9, "processor seconds": 12.345, "transforms": 22.4}, M=40)
-ENDS["bytes an element"] = 345.6
 OFFERS = [{"quantity": "mu", "error": 0.001, "M": None}]
 OFFERS += [{"quantity": "mu", "error": 0.02, "M": 48, "transforms of 256": 1.2345}]
-SHARE = {"faults": 8, "judged": 6, "first": 0.7654, "first_lower_bound": None, "now": 0.9876}
-AREAS = Names(all=SHARE, areas=[SHARE | {"area": "x", "now": 0.5}])
+AREAS = Names(all=Names(first=None, first_lower_bound=None, now=None), areas=[])
 AREAS["list"] = [Names(reason="", test="t.py::a"), Names(reason="", test=None), Names()]
 STATES = [("load", "fft", "right", d) for d in (12, 3, 7)] + [("load", "fft", "wrong", 5)]
 STATES += [("load", "dense", "honest failure", 1), ("scale", "fft", "crash", 1)]
@@ -57,17 +54,12 @@ ROWS: list[tuple[str, Any, int, list[Any]]] = [
      [("class", "number", "scenes", "95.1%", "90.2%", "83%", "none", "0.012", "unbounded"),
       ("all", "all", 7, "95.1%", "90.2%", "83%", "80.0%", "0.012", "3.46")]),
     ("extremes", EXTREMES, 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
-    ("extremes", EXTREMES, 1, [("axis", "series", "from", "to", "right", "honest failure", "wrong", "crash",
-                                "fewest digits", "median digits", "oracle")]),
     ("extremes", EXTREMES, 3, [("N", 6.5, "sum", "it is this code's form")]),
     ("extremes_drawn", DRAWN, 0, [("load", 1, 9), ("nu", 3, 3)]),
     ("extremes_drawn", DRAWN, 1, [("at", "elements", "verdict", "status", "error", "note")]),
-    ("large_grids", {"rows": [ENDS, ENDS | {"failure": "killed"}]}, 0,
-     [("surface", "terms", "40²", "status", "finest iterations", "22", "346", "5.68", "12.3")]),
     ("mutation", MUTANTS, 0, [("all", "tried", *SCORES, 0.95, "score_lower_bound"),
                               ("solvers", "tried", *SCORES, "score", "score_lower_bound")]),
     ("mutation", MUTANTS, 1, [("module:line", "before", "after", "not explained")]),
-    ("mutation_areas", AREAS, 0, [("all", 8, 76.5, None, 98.8), ("x", 8, 76.5, None, 50.0)]),
     ("mutation_areas", AREAS, 1, [("area", "file", "breaks", "outcome", end)
                                   for end in ("t.py", "a test is wanting", "reason")]),
 ]  # fmt: skip
