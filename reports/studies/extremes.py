@@ -56,7 +56,8 @@ def _by_axis(rows: Sequence[Row]) -> Table:
         group = [row for row in rows if row["axis"] == axis]
         digits = sorted(row["digits"] for row in group if row["verdict"] == "right")
         counts = [sum(row["verdict"] == verdict for row in group) for verdict in VERDICTS]
-        found.append((axis, len(group), *counts, digits[0] if digits else None, digits[len(digits) // 2]))
+        least_and_median = (digits[0], digits[len(digits) // 2]) if digits else (None, None)
+        found.append((axis, len(group), *counts, *least_and_median))
     head = ("axis", "states", *VERDICTS, "fewest digits kept", "median")
     return Table("Verdicts by axis; digits of the right ones.", head, found)
 

@@ -188,7 +188,9 @@ def test_estimates_bound_ordered_and_scattered_series() -> None:
     "build",
     [
         lambda: WavyPair(0.0, 0.0, STEEL, COPPER),
+        lambda: WavyPair(20.1, 0.0, STEEL, COPPER),
         lambda: WavyPair(5.0, 0.5, STEEL, COPPER),
+        lambda: WavyPair(5.0, -0.5, STEEL, COPPER),
         lambda: WavyPair(5.0, 0.0, STEEL, COPPER, tau=-1.0),
         lambda: Material(-1.0, 0.3),
         lambda: Material(1.0, 0.5),

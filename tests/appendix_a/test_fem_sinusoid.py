@@ -112,13 +112,15 @@ def test_json_has_the_documented_keys_and_lists():
     ("field", "arguments"),
     [
         ("slope_deg", (-1.0, 10.0, 0.0, 0.3, [1.0])),
-        ("slope_deg", (60.0, 10.0, 0.0, 0.3, [1.0])),
+        ("slope_deg", (45.1, 10.0, 0.0, 0.3, [1.0])),
         ("slope_deg", (float("nan"), 10.0, 0.0, 0.3, [1.0])),
-        ("wavelength", (5.0, 1.0, 0.0, 0.3, [1.0])),
+        ("wavelength", (5.0, 3.9, 0.0, 0.3, [1.0])),
+        ("wavelength", (5.0, 10001.0, 0.0, 0.3, [1.0])),
         ("position", (5.0, 10.0, float("inf"), 0.3, [1.0])),
         ("nu", (5.0, 10.0, 0.0, 0.6, [1.0])),
         ("offsets", (5.0, 10.0, 0.0, 0.3, [float("nan")])),
         ("offsets", (5.0, 10.0, 0.0, 0.3, [[1.0]])),
+        ("offsets", (5.0, 10.0, 0.0, 0.3, [-10001.0])),
     ],
 )
 def test_bad_input_is_refused_by_name(field, arguments):

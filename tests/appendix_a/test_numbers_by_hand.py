@@ -7,10 +7,13 @@ import math
 import numpy as np
 import pytest
 
+from appendix_a.contact_fem.bodies import wave_height
 from appendix_a.fem.coefficient_map import CoefficientMap, height_change
 from appendix_a.fem.departure import Departure
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.result import WavyResult
+from appendix_a.fem3d.coefficients import Coefficients3D
+from appendix_a.fem3d.study import Point, row
 from appendix_a.leading_order import first_order, slope_of_error
 
 OFFSETS = np.array([-3.0, -0.5, 2.0, 4.0])
@@ -105,3 +108,19 @@ def test_the_slope_of_two_per_cent_is_where_the_first_order_is(offset: float) ->
     profile = (x + 1) * math.log(abs(x + 1)) - (x - 1) * math.log(abs(x - 1))
     flat = -2 * (1 - 0.3**2) / math.pi * profile
     assert abs(change / flat) == pytest.approx(0.02, rel=1e-9)
+
+
+def test_a_harmonic_has_its_share_order_and_phase() -> None:
+    """At an eighth of a wave cos 45 deg, and of the second order cos(90 deg + 0.3) = -sin 0.3."""
+    found = wave_height(np.array([0.125]), 2.0, ((2, 0.4, 0.3),))
+    assert found == pytest.approx(2 * (math.sqrt(0.5) - 0.4 * math.sin(0.3)), rel=1e-14)
+
+
+def test_a_row_of_the_three_dimensional_study() -> None:
+    parts = [np.array([k / 7.0, -0.0]) for k in range(1, 5)]
+    made = row(Point(6.5, 20.0, 0.25, 0.3), Coefficients3D(9 * parts[0], *parts, 1.234e-9, 81), 2.345)
+    assert [*made.values()][7:] == [
+        [0.142857, 0.0], [0.286, 0.0], [0.429, 0.0], [0.571, 0.0], 1.2e-9, 81, 2.3,
+    ]  # fmt: skip
+    assert list(made)[7:10] == ["error", "discretisation", "truncation"]
+    assert math.copysign(1.0, made["error"][1]) == 1.0  # type: ignore[index]

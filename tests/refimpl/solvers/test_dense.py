@@ -247,3 +247,18 @@ def test_shear_on_slopes_that_bears_more_than_the_load_leaves_no_approach(direct
     )
     with pytest.raises(ArithmeticError, match="no approach balances the load"):
         rf.solve(scene, 2, method="dense")
+
+
+def test_where_all_that_press_are_at_the_hardness_the_next_element_bears_the_rest() -> None:
+    """Two elements of 1/16 mm^2 at 0.1 GPa bear 12.5 N of 13 N; of the others the nearest bears 8 MPa."""
+    body = rf.Body(rf.Material(E=200e9, nu=0.3, hardness=0.1e9), rf.Flat())
+    scene = rf.Scene(body, body, rf.Friction(), load=13.0, side=1e-3)
+    gap = np.full((4, 4), 3e-6)
+    gap[0, 1] = gap[3, 2] = 0.0
+    gap[1, 3] = 2e-6
+    problem = replace(discretise(scene, scene.grid(4), Terms(oblique=False, plastic=True), None), gap=gap)
+    result, _ = dense.solve_dense(problem)
+    expected = np.zeros((4, 4))
+    expected[0, 1] = expected[3, 2] = 0.1e9
+    expected[1, 3] = 8e6
+    np.testing.assert_allclose(result.pressure, expected, rtol=1e-9)

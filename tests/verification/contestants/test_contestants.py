@@ -183,6 +183,7 @@ def test_a_problem_is_written_to_the_last_digit(tmp_path: Path) -> None:
     assert (header["M"], header["control"], header["value"], header["periodic"]) == (2, "load", 1e-4, 0)
     assert (header["friction"], header["tau"], header["sliding_direction"]) == (1, 1e6, 0.3)
     assert (header["shape"], header["lengths"]) == ([2, 2], [2e-6, 2e-6])
+    assert command.header_of(replace(PROBLEM, spacing_y=3e-6))["lengths"] == (2e-6, 6e-6)
     assert len((tmp_path / "problem.json").read_text().splitlines()) == len(HEADER) + 2  # one key a line
     np.testing.assert_array_equal(np.loadtxt(tmp_path / "gap.csv", delimiter=","), GAP)
     np.testing.assert_array_equal(np.load(tmp_path / "problem.npz")["gap"], GAP)

@@ -146,3 +146,19 @@ def test_at_an_approach_the_mean_of_the_free_elements_is_a_residual_as_well() ->
     assert balanced.residuals()[0] == pytest.approx((0.2 + 2 * 0.1) / 10.5, rel=1e-12)
     off = capped_cg([4.0, 1.0, 2.0], [-1.5, 2.2, 1.2], approach=3.0)
     assert off.residuals()[0] == pytest.approx(0.2 * 7 / 10.5, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("approach", "gap", "pressure"),
+    [(None, [0.0, 2.0, 3.0], [4.0, 28 / 11, 16 / 11]), (5.0, [0.5, 3.0, 4.5], [4.0, 2.0, 0.5])],
+)
+def test_an_exact_step_ends_at_the_cap(
+    approach: float | None, gap: list[float], pressure: list[float]
+) -> None:
+    """d - h is beyond it: under 8, d = 13/3; at the cap of 4 the others bear 4, 12/11 of 7/3 and 4/3."""
+    cg = capped_cg([8 / 3] * 3, gap, approach=approach)
+    cg._trusted = False  # no trial
+    cg.iterate()
+    np.testing.assert_allclose(cg.pressure, [pressure], rtol=1e-12)
+    np.testing.assert_allclose(cg.normal_displacement, [pressure], rtol=1e-12)
+    assert cg.capped.tolist() == [[True, False, False]]

@@ -16,7 +16,7 @@ from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.constants import MARGIN
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.production.nested_solver import from_guess, solve_fft
-from refimpl.solvers.tau_active_set import FixedSet
+from refimpl.solvers.tau_active_set import FixedSet, first_set
 from tests.refimpl.solvers.production.levels import BALL, level_solver, problem_of
 
 STEEP = rf.Scene(
@@ -137,3 +137,18 @@ def test_a_guess_without_any_pressure_is_replaced_by_a_foundation(monkeypatch: p
     found = continued(coarse, fine)
     assert found.window == fine.grid.window
     assert found.cg.pressure.sum() * fine.grid.element_area == pytest.approx(BALL.load, rel=1e-12)
+
+
+@pytest.mark.parametrize("approach", [None, 1e-6])
+@pytest.mark.parametrize("factor", [1.005, 0.995, 1.03, 0.97])
+def test_a_start_on_the_same_grid_is_used_where_it_is_off_by_one_per_cent(
+    approach: float | None, factor: float
+) -> None:
+    """And not by three; at an approach v is off by (factor - 1) u, whose work is twice that of the energy."""
+    problem = problem_of(replace(BALL, load=8.0), 32, approach=approach)
+    solver = level_solver(problem)
+    solver.solve(1e-9, first_set(problem))
+    guess = solver.initial_guess()
+    start = guess._replace(pressure=factor * guess.pressure, displacement=factor * guess.displacement)
+    found, _ = solve_fft(problem, 1e-6, Counter(), start)
+    assert ("CG at 16 x 16" in found.iterations) is (abs(factor - 1) > 0.02)
