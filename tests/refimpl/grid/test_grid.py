@@ -145,3 +145,15 @@ def test_windows_around_a_contact() -> None:
     assert FREE.window_around(contact, 2) == Window(0, 7, 0, 4)
     assert FREE.window_around(marked(), 2) == FREE.window
     assert PERIODIC.window_around(contact, 0) == PERIODIC.window == Window(0, 7, 0, 4)
+
+
+def test_weights_heights_and_frames_where_a_grid_ends_and_where_it_repeats() -> None:
+    """Bells sin^2(pi k / (n + 1)): of two elements 3/4 and 3/4, of three 1/2, 1 and 1/2."""
+    free, periodic = (Grid((3, 2), (3.0, 1.0), repeats) for repeats in (False, True))
+    np.testing.assert_allclose(free.taper, 0.75 * np.array([[0.5, 0.5], [1, 1], [0.5, 0.5]]), rtol=1e-14)
+    assert (periodic.taper == 1).all()
+    z, weights = np.arange(6.0).reshape(3, 2), np.array([[0.0, 0], [0, 1], [0, 3]])  # (3 + 3 * 5) / 4
+    assert (free.about_datum(z, weights)[0, 0], periodic.about_datum(z, weights)[0, 0]) == (-4.5, -2.5)
+    assert free.about_datum(z, 0 * weights)[0, 0] == -2.5
+    assert (free.padded(z, 1)[0].tolist(), periodic.padded(z, 1)[0].tolist()) == ([0, 0, 1, 1], [5, 4, 5, 4])
+    assert (free.transform_shape, periodic.transform_shape) == ((6, 4), (3, 2))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.identification import Row, read_rows
+from refimpl.identification.data_table import check_rows
 from refimpl.scene.scene_file import read_scene
 
 
@@ -58,6 +61,16 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN mixed"),
         ("load,friction_force,u_friction_force\n5,0.5,0.1\n9,0.0009,0.0001\n", "N and kN mixed"),
         ('load,mu,u_mu\n"5,0.1,0.01\n', "CSV"),
+        ("load,mu,u_mu\n" + "5,0.1,0.1\n" * 1000, "'1000 rows at 1 load': expected at least two"),
+        ("load,mu,u_mu\n" + "5,0.1,0.1\n" * 1001, "'1001 rows': expected at most 1000"),
+        (
+            "\nload,friction_force,u_friction_force\n5,1_0,1\n",
+            "line 3: friction_force = '1_0': expected a fin",
+        ),
+        ("load,friction_force,u_friction_force\n5,x,1\n", "a finite number in N, without"),
+        ("load,mu,u_mu,sliding_direction\n5,1,1,x\n", "a finite number in rad, without"),
+        ("load,mu,u_mu\n1,0.3,1\n301,0.3,1\n", "data: load = 'neighbouring loads 301 apart'"),
+        ("load,mu,u_mu\n1,0.3,1\n2,0.0059,1\n", "data: mu = '0.0059 to 0.3'"),
     ],
 )
 def test_bad_tables_are_refused(tmp_path: Path, text: str, message: str) -> None:
@@ -73,3 +86,30 @@ def test_no_file_and_no_text(tmp_path: Path) -> None:
     (tmp_path / "x.csv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="UTF-8"):
         read_rows(tmp_path / "x.csv")
+
+
+def test_every_column_of_a_table(tmp_path: Path) -> None:
+    """After a byte order mark, with comments, an empty line, empty cells; paths start at the table."""
+    text = (
+        "\ufeff# pin\n\n u_mu, mu ,load,lower_file,sliding_offset,upper_file,sliding_direction\n"
+        "0.1,0,4,a.npy,-1e-6,,\n  # second\n0.2,0.3,5,,,sub/b.npy,-0.5\n"
+    )
+    assert read_rows(_written(tmp_path, text)) == (
+        Row(4.0, 0.0, 0.1, sliding_offset=-1e-6, lower_file=str(tmp_path / "a.npy")),
+        Row(5.0, 0.3, 0.2, sliding_direction=-0.5, upper_file=str(tmp_path / "sub" / "b.npy")),
+    )
+
+
+def test_a_file_replaces_the_map_of_its_body_alone() -> None:
+    hertz, ball = read_scene("hertz"), rf.Sphere(0.1)
+    old, new = (rf.MeasuredSurface(name, level="mean") for name in ("old.npy", "new.npy"))
+    scene = replace(hertz, upper=rf.Body(hertz.upper.material, ball + old))
+    found = Row(9.0, 0.1, 0.01, upper_file="new.npy").of(scene)
+    assert found.upper.surface == rf.SurfaceSum((ball, new))
+    assert found.lower is hertz.lower
+
+
+def test_the_widest_tables_and_the_least_rows() -> None:
+    """Neighbouring loads 300 apart and mu 50 apart; a direction makes another case."""
+    check_rows([Row(1.0, 0.01, 0.1), Row(300.0, 0.5, 0.1), Row(90e3, 0.0, 0.1)], 3)
+    check_rows([Row(1.0, 0.3, 0.1), Row(1.0, 0.3, 0.1, sliding_direction=1.0)])

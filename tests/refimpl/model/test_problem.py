@@ -9,7 +9,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid, Window
+from refimpl.model.elasticity import Elasticity
 from refimpl.model.forces import resultants
+from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms, no_elements
 from refimpl.model.slopes import Slopes
 from refimpl.operators.dense import DenseInfluence
@@ -52,21 +54,9 @@ def test_the_gap_touches_and_heights_are_recovered() -> None:
     np.testing.assert_allclose(z_upper - z_lower, problem.gap, atol=1e-21)
 
 
-def test_load_or_approach_not_both() -> None:
-    by_load, by_approach = problem_with(), problem_with(approach=1e-7)
-    assert (by_load.load, by_load.approach, by_load.datum) == (1.0, None, 0.0)
-    assert (by_approach.load, by_approach.approach, by_approach.datum) == (None, 1e-7, 0.0)
-    assert by_load.nominal_load(0.9) == 1.0
-    assert by_approach.nominal_load(0.9) == 0.9
-
-
-def test_a_periodic_approach_counts_from_the_mean_planes() -> None:
-    scene = replace(SCENE, periodic=True)
-    periodic = discretise(scene, replace(GRID, periodic=True), approach=-1e-7)
-    assert periodic.approach == pytest.approx(periodic.gap.mean() - 1e-7, rel=1e-14)
-    assert periodic.datum == pytest.approx(periodic.gap.mean(), rel=1e-14)
-    assert not periodic.counts_from_first_contact
-    assert problem_with().counts_from_first_contact
+def test_the_nominal_load_is_the_one_prescribed() -> None:
+    assert problem_with().nominal_load(0.9) == 1.0
+    assert problem_with(approach=1e-7).nominal_load(0.9) == 0.9
 
 
 def test_displacements_are_of_pressure_and_shear() -> None:
@@ -155,6 +145,14 @@ def test_slopes_are_of_the_mean_of_both_deformed_surfaces() -> None:
     np.testing.assert_allclose(found.tan_x, expected.tan_x, atol=1e-17)
     np.testing.assert_allclose(found.tan_y, expected.tan_y, atol=1e-17)
     assert np.all(problem_with(Terms(oblique=False)).slopes(u_lower, u_upper).obliqueness == 1)
+
+
+@pytest.mark.parametrize(("lower", "upper", "sign"), [(1e6, None, -0.5), (2e6, 1e6, 0.5)])
+def test_the_softer_surface_yields_into_itself(lower: float, upper: float | None, sign: float) -> None:
+    pair = Pair(replace(SOFT, hardness=lower), replace(HARD, hardness=upper))
+    flat = replace(problem_with(), mean_surface=GRID.zeros, elasticity=Elasticity(pair))
+    found = flat.slopes(GRID.zeros, GRID.zeros, F)
+    np.testing.assert_allclose(found.tan_y, Slopes.of_surface(sign * F, GRID, 0.7).tan_y, rtol=1e-12)
 
 
 @pytest.mark.parametrize("terms", [Terms(), Terms(oblique=False)], ids=["oblique", "level"])

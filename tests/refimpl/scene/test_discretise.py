@@ -175,7 +175,7 @@ def test_error_bars_of_a_periodic_approach_do_not_hang_on_first_contact() -> Non
     assert found.features.first_contact == NO_PEAK
     assert found.features.numbers["approach"] == found.approach
     expected = found.certificate.largest * (found.approach + found.problem.datum)
-    assert found.uncertainty["approach"]["iteration"] == pytest.approx(expected)
+    assert found.uncertainty["approach"]["iteration"] == pytest.approx(expected, rel=1e-6, abs=0)
 
 
 def test_a_certified_state_counts_from_first_contact() -> None:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.model.friction import is_frictionless
 
 STEEL = rf.Material(200e9, 0.3)
 ROUGH = rf.GaussianRoughness(rms=1e-6, correlation_length=400e-6, seed=7)
@@ -69,12 +68,6 @@ def test_a_body_does_not_follow_its_array() -> None:
     body = rf.Body(STEEL, z)
     z[0, 0] = 1.0
     assert body.surface.heights(GRID).max() == 0
-
-
-def test_friction_defaults_to_none() -> None:
-    assert is_frictionless(rf.Friction())
-    assert not is_frictionless(rf.Friction(beta=1e-9))
-    assert not is_frictionless(rf.Friction(tau=1.0))
 
 
 def test_a_scenes_grid_has_its_side_and_its_kind() -> None:

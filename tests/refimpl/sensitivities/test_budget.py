@@ -12,7 +12,6 @@ import refimpl as rf
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.scene_file import read_tolerances, scene_to_toml
 from refimpl.sensitivities.budget import Budget, Budgets, budget
-from refimpl.sensitivities.sensitivity import NUMBERS
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 SCENE = rf.Scene(
@@ -56,13 +55,6 @@ def test_input_of_the_peak_is_what_a_changed_scene_gives(found: Budgets) -> None
     assert share == pytest.approx(change, rel=0.05)  # a step of 2 % is no derivative
 
 
-def test_numerical_is_the_solutions_own_bar(found: Budgets, solution: rf.Solution) -> None:
-    for number in NUMBERS:
-        bar = sum(solution.uncertainty[number].values())
-        assert found.numbers[number].numerical == pytest.approx(bar)
-    assert found.numbers["contact_area"].numerical > 0
-
-
 def test_cosines_are_those_of_the_exact_facets(found: Budgets, solution: rf.Solution) -> None:
     exact = facet_resultants(
         solution.pressure, solution.traction, solution.slopes, solution.grid.element_area
@@ -85,7 +77,7 @@ def test_cosines_misjudge_the_load(found: Budgets, solution: rf.Solution) -> Non
     assert found.numbers["max_pressure"].sources["cosines"] == pytest.approx(change, rel=0.02)
     share = found.derivatives.relative("contact_area", "load") * abs(exact.normal / solution.normal_force - 1)
     area = found.numbers["contact_area"]
-    assert area.sources["cosines"] == pytest.approx(share * area.value)
+    assert area.sources["cosines"] == pytest.approx(share * area.value, rel=1e-6, abs=0)
 
 
 def test_coefficients_act_like_a_change_of_both_moduli(found: Budgets, solution: rf.Solution) -> None:
@@ -104,11 +96,6 @@ def test_parts_add_in_squares_and_model_form_as_it_is() -> None:
     assert Budget(1.0, 3.0, {}, {}).total == 3.0
     with pytest.raises(FrozenInstanceError):
         part.numerical = 0.0  # type: ignore[misc]  # on purpose
-
-
-def test_sampling_is_stated_only_where_given(found: Budgets) -> None:
-    assert found.numbers["contact_area"].sampling == 1e-9
-    assert found.numbers["friction_coefficient"].sampling is None
 
 
 def test_tolerances_stand_in_the_scenes_file(tmp_path: Path) -> None:

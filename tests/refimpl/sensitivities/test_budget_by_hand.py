@@ -94,6 +94,17 @@ def test_the_half_space_counts_beyond_what_coefficients_count(
     assert {part.sources["half-space"] for part in budget(SCENE, given).numbers.values()} == {math.inf}
 
 
+def test_a_load_that_no_hardness_bears_has_no_bound_and_a_capped_one_no_difference(
+    solution: rf.Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """6 MPa on 4 x 4 mm bear 96 N."""
+    monkeypatch.setattr(module, "solved_again", lambda *_, **__: solution)
+    for load, change in ((96.1, math.inf), (95.9, 0.0)):
+        assert module._plasticity(replace(SCENE, load=load), solution) == dict.fromkeys(NUMBERS, change)
+    terms = replace(solution.problem.terms, plastic=True)
+    assert module._plasticity(SCENE, replace(solution, problem=solution.problem.with_terms(terms))) == {}
+
+
 @pytest.mark.parametrize("status", list(rf.Status))
 def test_a_capped_solve_that_fails_bounds_nothing(
     solution: rf.Solution, monkeypatch: pytest.MonkeyPatch, status: rf.Status

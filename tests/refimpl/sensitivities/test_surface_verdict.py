@@ -107,13 +107,13 @@ def rough(rms: float = 0.05) -> rf.ArraySurface:
 
 
 def test_a_surface_alone_is_pressed_by_a_twentieth_of_its_rms_gradient() -> None:
-    x = (np.arange(64) + 0.5) / 64
-    ramp = rf.ArraySurface(np.repeat(0.1 * x[:, None], 64, axis=1), pixel=1 / 64)
-    scene = pressed_on_a_flat(ramp, COPPER, grid=64)
-    # E* of one body: 118 / (1 - 0.09) GPa; the gradient is 0.1, the area 1 m^2
-    assert scene.load == pytest.approx(0.05 * 118e9 / 0.91 * 0.1, rel=1e-9)
-    assert scene.upper.material.is_rigid
-    assert pressed_on_a_flat(ramp, COPPER, grid=64, pressure=3e6).load == pytest.approx(3e6)
+    """Slopes of 0.1 and -0.2 on 1 x 2 m: the gradient is sqrt(0.05). E* of one body: 118 / (1 - 0.16) GPa."""
+    x, y = (np.arange(8) + 0.5) / 8, (np.arange(16) + 0.5) / 8
+    plane, law = rf.ArraySurface(0.1 * x[:, None] - 0.2 * y[None, :], pixel=1 / 8), rf.Friction(3e6, 0.2)
+    scene = pressed_on_a_flat(plane, rf.Material(118e9, 0.4), grid=16, friction=law)
+    assert scene.load == pytest.approx(0.05 * 118e9 / 0.84 * math.sqrt(0.05) * 2, rel=1e-9)
+    assert (scene.friction, scene.upper.material) == (law, rf.Material(math.inf, 0.4))
+    assert pressed_on_a_flat(plane, COPPER, grid=16, pressure=3e6).load == pytest.approx(6e6)
 
 
 @pytest.mark.parametrize("pressure", [None, -1.0, 0.0, math.inf])
@@ -132,6 +132,7 @@ def test_the_verdict_has_every_number_its_share_and_its_evidence() -> None:
     for name in ("friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force"):
         row = numbers[name]
         parts = abs(row["corrected"] - row["value"]) + row["second_order"] + row["finite_strain"]
+        assert row["corrected"] == row["value"] + verdict.error.first_order[name]
         assert row["stated"] == pytest.approx(parts)
     # rms gradient of the crossed waves: 0.05 * 2 pi * sqrt(1 + 4) / 2 = 0.351, times sqrt 2: 26.4 degrees
     assert verdict.evidence.startswith("slopes of 26 degrees")
@@ -152,6 +153,7 @@ def test_the_evidence_names_short_waves_from_a_tenth_of_the_mean_square_slope_on
 ) -> None:
     upper, lower = rf.Body(RIGID, rf.Sphere(5.0)), rf.Body(COPPER, rf.Flat())
     found = _evidence(rf.solve(rf.Scene(upper, lower, rf.Friction(), load=1e4, side=1.0), 16), short)
+    assert "rests on 56 plane contacts and 6 pairs" in found
     assert ("15% of the mean square slope is at wavelengths below ten elements" in found) is said
 
 

@@ -107,3 +107,10 @@ def test_what_an_array_lacks_is_asked_for(tmp_path: Path) -> None:
             writer(tmp_path / name, MAP)
             with pytest.raises(InputError, match="unit, pixel_size"):
                 read(tmp_path / name, unit="um")
+
+
+@pytest.mark.parametrize(("unit", "name", "size"), [("A", "A", 1e-10), ("Å", "A", 1e-10), ("μm", "um", 1e-6)])
+def test_units_have_names_in_ascii(tmp_path: Path, unit: str, name: str, size: float) -> None:
+    np.save(tmp_path / "a.npy", np.ones((4, 5)))
+    reading = read(tmp_path / "a.npy", unit=unit, pixel_size=PIXEL)
+    assert (reading.unit, reading.heights[0, 0]) == (name, size)

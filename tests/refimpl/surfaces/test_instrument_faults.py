@@ -119,6 +119,11 @@ def test_a_refusal_says_what_was_found(tmp_path: Path, content: str, said: str) 
         read(tmp_path / "a.csv", unit="um", pixel_size=PIXEL)
 
 
+def test_fortrans_exponents_and_rows_counted_from_one(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("\n".join(f"{k}\t{k}.5D-1\t2.5d0\t3.5\t4.5" for k in (1, 2, 3, 4)))
+    assert read(tmp_path / "a.txt", "m", PIXEL).heights[1].tolist() == [0.25, 2.5, 3.5, 4.5]
+
+
 def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
     blocks = ["\n".join(f"{i} {j} {i - 2 * j}" for j in range(6)) for i in range(5)]
     (tmp_path / "map.xyz").write_text("\n\n".join(blocks) + "\n")

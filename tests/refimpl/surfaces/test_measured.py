@@ -329,3 +329,18 @@ def test_fit_is_the_least_squares_polynomial(level: str) -> None:
         design = np.stack(columns, axis=1)
         expected = design @ np.linalg.lstsq(design, z.ravel(), rcond=None)[0]
     np.testing.assert_allclose(fit(x, y, z, degree)(x, y).ravel(), expected, rtol=0, atol=1e-12)
+
+
+def test_texts_are_of_the_map_as_it_lies(tmp_path: Path) -> None:
+    """Turned, the pixel is DY x DX."""
+    np.save(tmp_path / "a.npy", ROUGH)
+    surface = MeasuredSurface(
+        tmp_path / "a.npy", unit="m", pixel_size=(DX, DY), rotate_deg=90, centre=(4e-6, 7e-6)
+    )
+    grid = Grid((8, 12), (4e-6, 1.2e-6))
+    assert surface.pitch((1e-6, 1e-6)) == DX
+    assert surface.on_upper_body().reading is surface.reading
+    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.cautions(grid)[0]
+    assert (
+        "the window of 4e-06 x 1.2e-06 m about (4e-06, 7e-06) m is used, 13 x 8" in surface.describe(grid)[1]
+    )
