@@ -153,7 +153,7 @@ def test_help_does_not_wait_for_numpy() -> None:
         (["appendix-a", "map", "--jobs", "0"], "--jobs"),
         (["appendix-a", "map", "--wavelengths", "5,10001"], "4 to 10000 half-widths"),
         (["appendix-a", "map", "--positions", "0,0.51"], "0 to 0.5 wavelengths"),
-        ([*WEDGE, "--gamma-deg", "90"], "--gamma-deg = 90.0"),
+        ([*WEDGE, "--gamma-deg", "90"], "0 to below 90 degrees"),
         ([*ELEMENT, "--upper-nu=0.3"], "--upper-E = None: expected both"),
         ([*ELEMENT, "--upper-nu=0.3", "--upper-E=0"], "--upper-E = 0.0"),
         (["appendix-a", "surface", "hertz", "--pixel-size", "1e-6"], "--pixel-size = 1e-06"),

@@ -183,11 +183,11 @@ def test_further_outcomes_of_an_oblong_row() -> None:
 def test_each_coordinate_of_a_run() -> None:
     axes = {"grid": 6, "load": 3.0, "upper_rms": 2e-7, "lower_rms": 5e-7, "correlation_length": 3e-4}
     axes |= {"sliding_direction": 0.3, "sliding_offset": -2e-6, "tau": 1e6, "beta": 0.07}
-    table = {"scene": "table1-rough", "normalise": False, "vary": axes | {"upper.material.nu": 0.21}}
+    table = {"scene": "table1-rough", "vary": axes | {"upper.material.nu": 0.21}}
     (one,) = study_from_dict(table).runs()
     assert one.coordinates == {"realisation": 0, **axes, "parameters": '{"upper.material.nu": 0.21}'}
     upper, lower = (one.inputs["scene"][name]["surface"][-1] for name in ("upper", "lower"))
-    assert (upper["rms"], lower["rms"], lower["normalise"]) == (2e-7, 5e-7, False)
+    assert (upper["rms"], lower["rms"]) == (2e-7, 5e-7)
 
 
 def test_the_unit_of_every_column() -> None:
