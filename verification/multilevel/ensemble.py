@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from refimpl.errors import InputError
+from refimpl.scene.scene_file import scene_from_dict
 from verification.multilevel.estimator import (
     Array,
     Estimate,
@@ -163,7 +164,7 @@ def _solved(
     finer = by_grid[:, -1]
     samples = finer - by_grid[:, 0] if len(grids) > 1 else finer
     seconds = np.array(done.solve_seconds).reshape(number, len(grids)).mean(axis=0)
-    worth = {"contact_area": (study.scene["side"] / finest) ** 2}
+    worth = {"contact_area": scene_from_dict(study.scene, Path()).grid(finest).element_area}
     worth["friction_coefficient"] = tau * worth["contact_area"] / float(done.rows[0]["normal_force"])
     element = np.array([worth[name] for name in names])
     return _Term(samples, finer, element, float(seconds.sum()), float(seconds[-1]), {})

@@ -23,6 +23,7 @@ from verification.framework.case import Case, Measured, Metric, Status, Tier
 QUICK = "kernels/love-at-centre"
 FEM = ["appendix-a", "fem", "--slope-deg=6.5", "--wavelength=100", "--position=0.25", "--offsets=-3,3"]
 WEDGE = ["appendix-a", "wedge", "--r=1", "--theta-deg=0"]
+ELEMENT = ["appendix-a", "element", "--slope-deg=9", "--nu=0.3"]
 
 Capture = pytest.CaptureFixture[str]
 
@@ -150,6 +151,17 @@ def test_help_does_not_wait_for_numpy() -> None:
         (["appendix-a", "map", "--slopes-deg", "2.5,2.5"], "--slopes-deg = (2.5, 2.5)"),
         (["appendix-a", "map", "--positions", "0.5,0"], "--positions"),
         (["appendix-a", "map", "--jobs", "0"], "--jobs"),
+        (["appendix-a", "map", "--wavelengths", "5,10001"], "4 to 10000 half-widths"),
+        (["appendix-a", "map", "--positions", "0,0.51"], "0 to 0.5 wavelengths"),
+        ([*WEDGE, "--gamma-deg", "90"], "0 to below 90 degrees"),
+        ([*ELEMENT, "--upper-nu=0.3"], "--upper-E = None: expected both"),
+        ([*ELEMENT, "--upper-nu=0.3", "--upper-E=0"], "--upper-E = 0.0"),
+        (["appendix-a", "surface", "hertz", "--pixel-size", "1e-6"], "--pixel-size = 1e-06"),
+        (["identify", "hertz", "a.csv", "--loads", "5;8"], "'5;8' is no list of numbers"),
+        (["remake", "--list", "--seconds", "0"], "--seconds = 0.0"),
+        (["sweep", "table3", "--target-error", "5%%"], "'5%%' is no share"),
+        (["tradeoff", "hertz", "--grids", "3,8"], "fewer than 4 elements"),
+        (["verify", "--export", "/dev/null/d", "--list"], "no other action"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(arguments: list[str], says: str, capsys: Capture) -> None:

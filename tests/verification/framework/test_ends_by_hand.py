@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import time
+from dataclasses import asdict
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from verification.framework import provenance, workers
+from verification.framework import provenance, registry, runner, workers
 from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
 from verification.framework.files import write_text
 from verification.framework.rates import extrapolate
@@ -151,3 +152,19 @@ def test_results_come_in_the_order_of_the_cases(monkeypatch: pytest.MonkeyPatch)
     assert [result.id for result in found] == ["a/1", "b/1", "c/1"]
     assert sorted(ended) == ["a/1", "b/1", "c/1"]
     assert ended[-1] == "b/1"
+
+
+def test_each_field_of_a_result_is_that_of_its_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(registry, "_declared", {})
+    monkeypatch.setattr(runner, "provenance", dict)
+    own: Any = {"title": "t", "claim": "c", "source": "s", "metric": "absolute", "tolerance": 0.75}
+    own |= {"tolerance_reason": "r", "tier": "full", "tags": ["x"]}
+    registry.case("a/b", **own)(lambda: Measured(2.5, 2.0, 0.125, "N", {"h": 1}, "so"))
+    found = registry.find("a/b").run()
+    assert asdict(found) == own | {
+        "id": "a/b", "value": 2.5, "reference": 2.0, "reference_uncertainty": 0.125, "error": 0.5,
+        "seconds": found.seconds, "status": "pass", "unit": "N", "note": "so", "data": {"h": 1},
+    }  # fmt: skip
+    document = Run(Tier.FULL, ("a/*",), (found,), 1.23456).document()
+    assert [document[key] for key in ("tier", "only", "seconds")] == ["full", ["a/*"], 1.235]
+    assert result(Status.FAIL).seconds == 0.5

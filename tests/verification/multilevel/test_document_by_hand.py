@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+import refimpl as rf
 from tests.verification.multilevel.drawn import TABLE
 from verification.cli.ensemble import table
 from verification.multilevel.__main__ import document
-from verification.multilevel.ensemble import Ensemble, ensemble
+from verification.multilevel.ensemble import Ensemble, _solved, ensemble
 from verification.multilevel.estimator import Estimate
 from verification.multilevel.estimator import estimate as estimated
 from verification.sweep import engine
@@ -124,3 +126,16 @@ def test_degrees_of_freedom_are_satterthwaites() -> None:
     found = estimated([one, two], 0.0)
     assert found.standard_error == pytest.approx(math.sqrt(2))
     assert found.freedom == pytest.approx(4 / (1 / 3 + 1 / 7))
+
+
+def test_a_term_of_a_rectangle(tmp_path: Path) -> None:
+    """Of 2 x 0.5 mm on 32 x 8 elements; half of the corrections 1 and -1 is added on the coarse grid."""
+    scene = replace(rf.read_scene("table1-rough"), side=None, size=(2e-3, 5e-4))
+    (tmp_path / "s.toml").write_text(rf.scene_to_toml(scene))
+    study = study_from_dict(TABLE | {"scene": "s.toml"}, tmp_path)
+    row = {"contact_area_corrected": 1.0, "normal_force": 30.0, "status": "converged"}
+    done = engine.Sweep(0, 4, {}, [row | {"contact_area": float(k)} for k in range(4)], [1.0, 4.0] * 2, 0.0)
+    term = _solved(study, ["contact_area"], lambda _: done, 1, (16, 32), 2, 32)
+    assert term.element == pytest.approx([1e-6 / 256])
+    assert (term.seconds, term.finer_seconds, term.cost) == (5, 4, 10)
+    assert term.samples.ravel() == pytest.approx([0.5, 1.5])

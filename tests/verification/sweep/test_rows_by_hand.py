@@ -12,9 +12,11 @@ import pytest
 
 import refimpl as rf
 from refimpl.errors import InputError
+from refimpl.solution.limits import Limit, ModelWarning
 from verification.cli import main
 from verification.sweep import engine, run
 from verification.sweep.engine import Progress, Sweep
+from verification.sweep.export import EXPORTED, unit_of
 from verification.sweep.run import COORDINATES, OUTCOMES, outcome
 from verification.sweep.store import checksum, open_store
 from verification.sweep.study_file import study_from_dict
@@ -160,3 +162,43 @@ def test_a_row_under_another_key_is_damage(tmp_path: Path) -> None:
     connection.close()
     with pytest.raises(InputError, match="damaged"), open_store(path):
         pass
+
+
+def test_further_outcomes_of_an_oblong_row() -> None:
+    """Slopes of 0.03 and 0.04: their root mean square is sqrt(0.00125); E* / H is 1 / 0.91."""
+    tilt = 1e-3 * np.add.outer(0.03 * np.arange(12) / 6, 0.04 * np.arange(6) / 6)
+    lower = rf.Body(rf.Material(1e9, 0.3, hardness=1e9), rf.ArraySurface(tilt))
+    upper = rf.Body(rf.Material(float("inf"), 0.3), rf.Flat())
+    scene = rf.Scene(upper, lower, rf.Friction(), 2.0, size=(2e-3, 1e-3))
+    told = [ModelWarning(Limit(x), 1, 2, "") for x in ("border", "half-space", "border")]
+    s = replace(rf.solve(scene, (12, 6)), contact_area=5e-7, plastic_area=1e-7, warnings=tuple(told))
+    p = np.arange(72.0).reshape(12, 6)
+    row = outcome(replace(s, pressure=p, gap=p + 72), scene)
+    assert row["plasticity_index"] == pytest.approx(0.00125**0.5 / 0.91)
+    assert (row["plastic_area"], row["plastic_share"], row["contact_area_share"]) == (1e-7, 0.2, 0.25)
+    assert (row["mean_pressure"], row["mean_gap"], row["elements_x"], row["elements_y"]) == (36, 107.5, 12, 6)
+    assert row["warnings"] == "border; half-space"
+
+
+def test_each_coordinate_of_a_run() -> None:
+    axes = {"grid": 6, "load": 3.0, "upper_rms": 2e-7, "lower_rms": 5e-7, "correlation_length": 3e-4}
+    axes |= {"sliding_direction": 0.3, "sliding_offset": -2e-6, "tau": 1e6, "beta": 0.07}
+    table = {"scene": "table1-rough", "vary": axes | {"upper.material.nu": 0.21}}
+    (one,) = study_from_dict(table).runs()
+    assert one.coordinates == {"realisation": 0, **axes, "parameters": '{"upper.material.nu": 0.21}'}
+    upper, lower = (one.inputs["scene"][name]["surface"][-1] for name in ("upper", "lower"))
+    assert (upper["rms"], lower["rms"]) == (2e-7, 5e-7)
+
+
+def test_the_unit_of_every_column() -> None:
+    units = {
+        "N": "load normal_force friction_force elastic_friction binormal_force",
+        "m": "upper_rms lower_rms correlation_length sliding_offset approach mean_gap",
+        "m^2": "contact_area contact_area_corrected plastic_area contact_area_cycle",
+        "Pa": "tau max_pressure mean_pressure",
+        "rad": "sliding_direction",
+        "s": "seconds",
+    }
+    for unit, names in units.items():
+        found = [name for name in EXPORTED if unit_of(name) == unit and not name.endswith("_error")]
+        assert sorted(found) == sorted(names.split())
