@@ -214,3 +214,17 @@ def test_notes_are_of_the_last_grid() -> None:
     for M in (8, 16):
         asked.problem(scene.grid(M), FLAT)
         assert asked.notes == (f"on {M}",)
+
+
+@pytest.mark.parametrize("size", [(2e-3, 1e-3), (1e-3, 2e-3)])
+def test_heights_may_reach_the_longer_side_of_a_rectangle(size: tuple[float, float]) -> None:
+    def rough(height: float) -> rf.Scene:
+        heights = np.array([[0.0, height], [0.0, 0.0]])
+        pixel = (size[0] / 2, size[1] / 2)
+        body = rf.Body(SCENE.lower.material, rf.ArraySurface(heights, pixel=pixel))
+        flat = rf.Body(SCENE.upper.material, rf.Flat())
+        return replace(SCENE, upper=flat, lower=body, side=None, size=size)
+
+    rough(1.9e-3).sampled(Grid((2, 2), size))
+    with pytest.raises(rf.InputError, match=r"at most the longer side, 0\.002 m"):
+        rough(2.1e-3).sampled(Grid((2, 2), size))

@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import refimpl as rf
 from verification.cli import main
+from verification.cli.arrays import write_npz
 
 SOLVE = ["solve", "table1-rough", "--grid", "32"]
 
@@ -44,3 +46,20 @@ def test_netcdf_reads_back(tmp_path: Path) -> None:
 def test_another_suffix_is_refused(option: str, name: str, tmp_path: Path) -> None:
     assert main([*SOLVE, option, str(tmp_path / name)]) == 2
     assert not (tmp_path / name).exists()
+
+
+def test_coordinates_are_the_grids_along_x_and_y(tmp_path: Path) -> None:
+    """4 x 3 elements on 8 x 3 um."""
+    steel = rf.Material(E=200e9, nu=0.3)
+    scene = rf.Scene(
+        rf.Body(steel, rf.Sphere(1e-3)),
+        rf.Body(steel, rf.Flat()),
+        rf.Friction(),
+        load=1e-5,
+        size=(8e-6, 3e-6),
+    )
+    write_npz(rf.solve(scene, (4, 3), oblique=False), tmp_path / "s.npz")
+    with np.load(tmp_path / "s.npz") as found:
+        assert found["x"] == pytest.approx([1e-6, 3e-6, 5e-6, 7e-6])
+        assert found["y"] == pytest.approx([0.5e-6, 1.5e-6, 2.5e-6])
+        assert found["pressure"].shape == (4, 3)

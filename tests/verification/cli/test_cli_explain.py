@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 import refimpl
-from refimpl.planning.terms import LABELS
+from refimpl.planning.term_effects import Effect
+from refimpl.planning.terms import LABELS, Term
 from verification.cli import main
+from verification.cli.explain import _row
 
 Capture = pytest.CaptureFixture[str]
 
@@ -125,3 +127,8 @@ def test_steep_surfaces_are_told_before_anything_is_solved(tmp_path: Path, capsy
     # 0.7 tan(slope) for nu = 0 on a rigid flat
     assert "slopes of 19 degrees" in row
     assert row.endswith("N at a given approach may be off by 24%")
+
+
+def test_a_term_has_its_changes_of_mu_and_of_the_area_in_this_order() -> None:
+    term = Term("coupled", False, "small", Effect(friction=0.0123, area=0.0))
+    assert _row(term) == [LABELS["coupled"], "out", "1.2e-02", "0", "small"]

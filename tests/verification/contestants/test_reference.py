@@ -311,3 +311,11 @@ def test_only_a_problem_that_could_have_a_proof_fails_an_export(
     found = json.loads(capsys.readouterr().out)
     assert (found["problems"], found["largest_relative_bound"]) == (2, 0.25)
     assert (found["not_certified"], found["version"]) == ({"b": "why not"}, "v1")
+
+
+def test_codes_mean_what_the_index_says() -> None:
+    """Each text stands at its code."""
+    words = {CONTACT: "in contact, proven", SEPARATED: "separated, proven"}
+    words[APPARENTLY_CONTACT] = "in contact as exported, within the bounds of separation"
+    words[APPARENTLY_SEPARATED] = "separated as exported, within the bounds of contact"
+    assert [words[code] for code in range(4)] == list(files.CODES)

@@ -40,6 +40,7 @@ def test_parquet_reads_back_exactly(tmp_path: Path) -> None:
     found = parquet.read_table(tmp_path / "t.parquet").to_pylist()
     plain = [{name.partition(" [")[0]: value for name, value in row.items()} for row in found]
     assert plain == [row | {"seconds": None} for row in rows()]
+    assert list(found[0]) == [header(name) for name in plain[0]]
 
 
 def test_without_pyarrow_parquet_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
