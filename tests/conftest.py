@@ -20,6 +20,7 @@ from pathlib import Path
 
 import hypothesis
 import pytest
+from _pytest.approx import ApproxScalar
 
 from reports.result_files import read_result
 from verification.framework.files import write_result
@@ -29,6 +30,10 @@ from verification.framework.provenance import provenance
 # tests at random under load.
 hypothesis.settings.register_profile("unhurried", hypothesis.settings(), deadline=None)
 hypothesis.settings.load_profile("unhurried")
+
+# `pytest.approx` allows 1e-12 beside every relative tolerance: in SI units lengths, areas and compliances are
+# that small, and compared to nothing. A number that should be zero states its own tolerance, by ``abs``.
+ApproxScalar.DEFAULT_ABSOLUTE_TOLERANCE = 0.0
 
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 

@@ -113,7 +113,11 @@ def by_all_heights(problem: Problem) -> ExpectedContact:
 def assert_described(problem: Problem) -> ExpectedContact:
     """The expectation is that of all heights, to rounding."""
     found, expected = expected_contact(problem), by_all_heights(problem)
-    assert asdict(found) == {name: pytest.approx(value, rel=1e-9) for name, value in asdict(expected).items()}
+    stated = asdict(expected)
+    least = stated.pop("least_mean_slope"), asdict(found)["least_mean_slope"]
+    assert least[1] == pytest.approx(least[0], rel=1e-9, abs=1e-15)  # by symmetry a sum of rounding errors
+    described = {name: asdict(found)[name] for name in stated}
+    assert described == {name: pytest.approx(value, rel=1e-9) for name, value in stated.items()}
     return found
 
 

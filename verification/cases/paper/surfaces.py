@@ -48,9 +48,12 @@ def correlation(tier: str) -> Measured:
         f"{found.skewness.mean:+.3f} +- {found.skewness.half_width:.3f}, kurtosis "
         f"{found.kurtosis.mean:.3f} +- {found.kurtosis.half_width:.3f}, {found.radius.n} realisations"
     )
-    drawn = {"surface map": fig4.surface(0, DRAWN), "ball map": fig4.surface(0, DRAWN, ball=True)}
+    maps_of_either_tier = {
+        "surface map": fig4.surface(0, DRAWN),
+        "ball map": fig4.surface(0, DRAWN, ball=True),
+    }
     data = {
-        **(drawn if tier == "quick" else {}),  # of one surface: the same in both tiers
+        **(maps_of_either_tier if tier == "quick" else {}),
         "side (mm)": 1.61,
         "radius (um)": found.radius.mean * 1e6,
         "skewness": found.skewness.mean,
