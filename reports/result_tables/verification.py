@@ -9,6 +9,14 @@ from reports.evidence import Evidence
 from reports.result_tables.markdown import Row, link, section
 from reports.results import FORMAT, STATUSES
 
+_FAULTS = {
+    "meaningful faults, first list": "faults_by_hand",
+    "meaningful faults, second list (by the tests nearest to each)": "later_faults",
+    "meaningful faults, third list, drawn up blind": "third_faults",
+    "meaningful faults, fourth list, drawn up blind": "fourth_faults",
+    "random mutants of all areas": "mutation_areas",
+}
+
 
 def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
     """Counts of statuses, by result file."""
@@ -85,6 +93,16 @@ def studies(documents: Mapping[str, Any]) -> str:
                 ("mutants of the code, fresh sample", "mutation_fresh", documents["mutation_fresh"]),
                 ("mutants of the verification code", "mutation_judges", documents["mutation_judges"]),
             )
+        ),
+        *(
+            (
+                what,
+                f"{100 * found['first']:.0f} % of {found['judged']} detected at first; 95 % lower bound "
+                f"{100 * found['first_lower_bound']:.0f} %; {100 * found['now']:.0f} % today",
+                link(name),
+            )
+            for what, name in _FAULTS.items()
+            if (found := documents[name]["all"])
         ),
         (
             "tests in random order",

@@ -46,6 +46,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "extremes_drawn": (*SOLVES, "verification/extremes"),
     "fault_matrix": ("refimpl", "appendix_a", "verification/cases", "verification/matrix"),
     "faults_by_hand": ("refimpl", "appendix_a", "verification", "tests"),
+    "fourth_faults": ("refimpl", "appendix_a", "verification", "tests"),
     "fuzz": (*SOLVES, "verification/fuzz", "verification/sweep"),
     "identification": ("refimpl", "verification/coverage"),
     "hypothesis": (*SOLVES, "verification/properties"),
@@ -70,6 +71,7 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "sweeps": (*SOLVES, "verification/benchmarks", "verification/sweep"),
     "table2": (*SOLVES, "verification/variational"),
     "tau_shares": SOLVES,
+    "third_faults": ("refimpl", "appendix_a", "verification", "tests"),
     "tradeoff": (*SOLVES, "verification/tradeoff"),
     "variational": (*SOLVES, "verification/variational"),
 }

@@ -1,11 +1,11 @@
 """``python -m verification.mutation.campaign --log FILE --json FILE``: meaningful faults that tests notice.
 
-The faults of ``faults.toml``, and later those of ``later_faults.toml`` (``--table``), were invented from the
-source: a sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area
-instead, of all its modules. Each fault is written into a clone of the committed tree and judged there: by the
-doctests of its module, the tests that import it and the tests of its area, until one fails. A verdict is kept
-in the log and counts as long as the module stands as it was; an unnoticed fault is tried again when its tests
-have changed. Areas take turns: a run that is stopped, or has ``--tries``, has judged a stratified sample.
+The faults of ``faults.toml``, and of later lists beside it (``--table``), were invented from the source: a
+sign, a column, a lost row, a wrong unit. With ``--random N`` they are N mutants of each area instead, of all
+its modules. Each fault is written into a clone of the committed tree and judged there: by the doctests of its
+module, the tests that import it and the tests of its area, until one fails. A verdict is kept in the log and
+counts as long as the module stands as it was; an unnoticed fault is tried again when its tests have changed.
+Areas take turns: a run that is stopped, or has ``--tries``, has judged a stratified sample.
 """
 
 from __future__ import annotations
