@@ -7,12 +7,13 @@ import json
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from verification.cli import main
 from verification.cli.contestant import _source, add_options
-from verification.cli.contestant_report import unseen_faults
+from verification.cli.contestant_report import Judged, unseen_faults
 from verification.contestants import isolated, own
 from verification.contestants.check import Fault
 from verification.contestants.isolated import Named
@@ -274,3 +275,11 @@ def test_thorough_adds_problems_of_other_seeds_after_the_suite(tmp_path: Path, c
     assert main(words) == 2
     assert main([*words[:3], "--thorough", "--discretisation", "other"]) == 2
     assert "nothing beside --discretisation other" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("judged", [0, 1, 3])
+def test_what_an_interrupted_run_did_not_reach_begins_after_its_last_verdict(judged: int) -> None:
+    checks = suite()[:3]
+    verdicts: Any = ("verdict",) * judged
+    run = Judged(checks, verdicts, (), False, (), KeyboardInterrupt(), 1.0)
+    assert run.missing == [check.id for check in checks][judged:]
