@@ -26,7 +26,7 @@ def found(options: argparse.Namespace, study: Study, store: Path, **sweep: Any) 
     return ensemble(study, store, options.target_error, **sweep)
 
 
-def told(options: argparse.Namespace, found: Ensemble) -> int:
+def reported(options: argparse.Namespace, found: Ensemble) -> int:
     """Print and write what was found; status 1 when a run failed or the target was not met."""
     from verification.framework.provenance import provenance
 

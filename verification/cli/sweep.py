@@ -137,7 +137,7 @@ def run(options: argparse.Namespace) -> int:
     finally:
         line.close()
     if options.target_error is not None:
-        return ensemble.told(options, found)
+        return ensemble.reported(options, found)
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
 

@@ -55,15 +55,15 @@ def test_a_forecast_goes_no_farther_than_the_data_where_they_leave_more_than_the
 
 
 def test_an_interrupt_has_the_last_finished_grid_with_its_own_bars() -> None:
-    told: list[str] = []
+    shown: list[str] = []
 
     def progress(line: str) -> None:
-        told.append(line)
+        shown.append(line)
         if stop in line:
             raise KeyboardInterrupt
 
     for stop in ("32 x", "next"):
-        told.clear()
+        shown.clear()
         with pytest.raises(KeyboardInterrupt) as caught:
             rf.solve(replace(SCENE, side=None, size=(1e-3, 0.8e-3)), accuracy=1e-4, progress=progress)
         assert len(caught.value.args) == (stop == "next")
@@ -71,9 +71,9 @@ def test_an_interrupt_has_the_last_finished_grid_with_its_own_bars() -> None:
     assert (found.grid.shape, found.status) == ((32, 26), rf.Status.ACCURACY_NOT_REACHED)
     assert found.warnings[-1] == "interrupted: the finest grid that was finished"
     assert found.error("contact_area") > 0
-    assert told[-2] == f"32 x 26 elements, {sum(found.cost.applications.values())} transforms"
+    assert shown[-2] == f"32 x 26 elements, {sum(found.cost.applications.values())} transforms"
     memory = found.plan.on(rf.Grid((64, 52), (1e-3, 0.8e-3))).memory / 1e9
-    assert re.fullmatch(rf"64 x 52 elements next: about \S+ s, {memory:.2g} GB", told[-1])
+    assert re.fullmatch(rf"64 x 52 elements next: about \S+ s, {memory:.2g} GB", shown[-1])
 
 
 @pytest.mark.parametrize(("bound", "enough", "last"), [(0.01, None, 128), (0.2, 384, 384), (0.2, None, 1024)])

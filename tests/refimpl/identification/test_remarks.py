@@ -1,4 +1,4 @@
-"""What is made of a model that is linear by construction, and what is remarked on it."""
+"""Fits of a model that is linear by construction, and the remarks on them."""
 
 from __future__ import annotations
 

@@ -164,7 +164,7 @@ def test_without_friction_a_symmetric_scene_has_a_hundredth_of_its_edge_as_budge
 
 
 def test_reasons_of_terms_that_come_with_others() -> None:
-    """What the neglected coupling leaves of the budget is enough for the tilt, or not."""
+    """The budget less the neglected coupling, a hundredth more and less than the tilt takes."""
     problem, scales = discretise(SCENE, SCENE.grid(6)), Scales(CONTACT, PAIR, SCENE.friction)
     sizes = {name: effects_of(name, scales).larger for name in ("coupled", "tilted")}
     both, given = sum(sizes.values()), RequestedTerms(oblique=True)

@@ -1,4 +1,4 @@
-"""Scenes that are solved again for a derivative or a correction: with the options that they had."""
+"""Options of the solves that repeat a scene for a derivative or a correction, and solves that fail."""
 
 from __future__ import annotations
 

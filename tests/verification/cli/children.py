@@ -31,8 +31,8 @@ def forked(act: Callable[[], int], *, before: Callable[[], object] = lambda: Non
     """Run in a forked child, so that limits and signals touch nobody else and nothing is imported anew.
 
     An interrupt that comes while garbage is collected is raised in the first callback of the collector, and
-    lost there. Hypothesis has one; a child has none. The tracker of semaphores is this process's: the child's
-    own would complain of those of killed workers on the child's standard error, or not, as it happens.
+    lost there. Hypothesis has one; a child has none. The tracker of semaphores is this process's: one of the
+    child's own reports the semaphores of killed workers on the child's standard error, at random.
     """
     resource_tracker.ensure_running()
     with tempfile.TemporaryFile() as err:

@@ -1,4 +1,4 @@
-"""Problems that are told apart, a number's unit, and ends that are a success."""
+"""Keys of problems, units of disproved numbers, and statuses that are a success."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_problem_that_differs_in_one_number_is_another_one() -> None:
     assert len({_key(problem) for problem in posed}) == len(posed)
 
 
-def test_a_disproved_number_is_told_with_its_unit() -> None:
+def test_a_disproved_number_is_reported_with_its_unit() -> None:
     """Three elements of 3e-12 m^2, and half of one."""
     answer = Answer(np.where(GAP < 2.5e-7, 1.0, 0.0), True, contact_area=1e-12)
     said = r"contact area 1e-12 m\^2: its pressures give 9e-12 \+- [12]e-12 m\^2"

@@ -45,4 +45,4 @@ def test_scenes_are_counted_by_class(tmp_path: Path, monkeypatch: pytest.MonkeyP
     every = found["table"][-1]
     assert [every[key] for key in ("scenes", "held", "held_at_worst", "usable")] == [4, 0.75, 0.5, 0.75]
     assert (every["held_of_usable"], every["median_bar_over_error"]) == pytest.approx((2 / 3, 2.5), rel=1e-5)
-    assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # of at most three of four
+    assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # probability of three of four, or fewer

@@ -16,7 +16,7 @@ from refimpl.errors import InputError
 from reports.studies.multilevel import build
 from tests.verification.multilevel.drawn import TABLE, spied
 from verification.cli import main
-from verification.cli.ensemble import table, told
+from verification.cli.ensemble import reported, table
 from verification.multilevel.__main__ import document
 from verification.multilevel.ensemble import (
     _BLOCK,
@@ -228,5 +228,5 @@ def test_the_status_says_whether_the_target_was_met(
 ) -> None:
     estimate = Estimate(0.5, 0.01, 0.02, 8.0)
     found = Ensemble((16,), {"contact_area": estimate}, (9,), (0.1,), {"contact_area": 1.0}, {}, met, {})
-    assert told(argparse.Namespace(json=None), found) == status
+    assert reported(argparse.Namespace(json=None), found) == status
     assert capsys.readouterr().out

@@ -54,7 +54,7 @@ def test_a_larger_study_adds_to_the_store(tmp_path: Path) -> None:
     store = tmp_path / "s.sqlite"
     engine.sweep(small(1), store, workers=0)
     assert engine.sweep(small(3), store, workers=0).found == 2
-    last = engine.sweep(small(2), store, workers=0)  # of the six that are there
+    last = engine.sweep(small(2), store, workers=0)  # the store holds six
     assert (len(last.rows), last.found, last.finished) == (4, 4, 0)
 
 

@@ -170,8 +170,8 @@ def test_further_outcomes_of_an_oblong_row() -> None:
     lower = rf.Body(rf.Material(1e9, 0.3, hardness=1e9), rf.ArraySurface(tilt))
     upper = rf.Body(rf.Material(float("inf"), 0.3), rf.Flat())
     scene = rf.Scene(upper, lower, rf.Friction(), 2.0, size=(2e-3, 1e-3))
-    told = [ModelWarning(Limit(x), 1, 2, "") for x in ("border", "half-space", "border")]
-    s = replace(rf.solve(scene, (12, 6)), contact_area=5e-7, plastic_area=1e-7, warnings=tuple(told))
+    warned = [ModelWarning(Limit(x), 1, 2, "") for x in ("border", "half-space", "border")]
+    s = replace(rf.solve(scene, (12, 6)), contact_area=5e-7, plastic_area=1e-7, warnings=tuple(warned))
     p = np.arange(72.0).reshape(12, 6)
     row = outcome(replace(s, pressure=p, gap=p + 72), scene)
     assert row["plasticity_index"] == pytest.approx(0.00125**0.5 / 0.91)

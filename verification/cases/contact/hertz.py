@@ -21,7 +21,7 @@ EXACT = Sphere(load=SCENE.load, radius=RADIUS, modulus=SCENE.materials.reduced_m
 GRIDS = (32, 64, 128, 256, 512)
 FINE = 256
 COARSENED = 4
-"""Every second element is enough for a map in a report."""
+"""Every fourth element is enough for a map in a report."""
 
 
 @cache

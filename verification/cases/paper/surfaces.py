@@ -48,12 +48,9 @@ def correlation(tier: str) -> Measured:
         f"{found.skewness.mean:+.3f} +- {found.skewness.half_width:.3f}, kurtosis "
         f"{found.kurtosis.mean:.3f} +- {found.kurtosis.half_width:.3f}, {found.radius.n} realisations"
     )
-    maps_of_either_tier = {
-        "surface map": fig4.surface(0, DRAWN),
-        "ball map": fig4.surface(0, DRAWN, ball=True),
-    }
+    balls = {"surface map": False, "ball map": True} if tier == "quick" else {}
     data = {
-        **(maps_of_either_tier if tier == "quick" else {}),
+        **{name: fig4.surface(0, DRAWN, ball=ball) for name, ball in balls.items()},
         "side (mm)": 1.61,
         "radius (um)": found.radius.mean * 1e6,
         "skewness": found.skewness.mean,
