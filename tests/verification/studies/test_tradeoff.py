@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
@@ -11,10 +12,11 @@ import pytest
 
 import refimpl as rf
 from reports.studies.tradeoff import build
+from tests.verification.cli.children import forked
 from verification.cli import main
 from verification.cli.tradeoff import _table
 from verification.tradeoff import prices, study
-from verification.tradeoff.measure import QUANTITIES, Run, run
+from verification.tradeoff.measure import QUANTITIES, Run, _convolution_time, run
 from verification.tradeoff.settings import Setting, settings
 
 SHIPPED = {
@@ -174,3 +176,15 @@ def test_single_precision_settles_to_its_own_rounding_and_no_further() -> None:
         assert 0 <= abs(single.numbers[name] / value - 1) < 1e-5
     assert single.numbers["max_pressure"] != double.numbers["max_pressure"]
     assert run(scene, Setting("fft", 32, 1e-12, single=True), 1).status == "stagnated"
+
+
+def test_a_transform_takes_time_under_a_limit_of_processor_time() -> None:
+    """There the clock of the process advances in milliseconds: it gave 0 s, which ratios are taken over."""
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (600, 600))
+
+    def lasts() -> int:
+        return 0 if all(_convolution_time((8, 8)) > 0 for _ in range(20)) else 1
+
+    assert forked(lasts, before=limited).status == 0
