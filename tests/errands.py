@@ -14,7 +14,7 @@ from tests.layers import ROOT, imported_names
 
 READ = {
     "understand how mu is computed": ("model.certificate", "contact.certificate"),
-    "believe the dense solver": ("solvers.dense", "dense_solver"),
+    "believe the reference": ("plain", "solvers.dense"),
 }
 """Errands that read a module and all that it imports, by the module's present and former name."""
 ATTRIBUTES = {

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.layers import ROOT, attribute_reads, closure, modules, room, uses
@@ -94,7 +97,7 @@ def test_the_command_line_may_import_reports() -> None:
 
 # The rooms of refimpl: a module may import its own room and those of lower floors, and no other of its floor.
 FLOORS = (
-    {"errors"},
+    {"errors", "plain"},
     {"grid", "kernels"},
     {"model", "surfaces", "operators"},
     {"scene", "planning", "accuracy", "solvers"},
@@ -122,7 +125,7 @@ def test_rooms_import_lower_floors_only(name: str) -> None:
 
 
 def test_a_room_beside_or_above_is_a_breach() -> None:
-    assert not may_import("refimpl.solvers.dense", "refimpl.scene.scene")
+    assert not may_import("refimpl.solvers.paper", "refimpl.scene.scene")
     assert not may_import("refimpl.model.problem", "refimpl.operators.fft")
     assert may_import("refimpl.solution.limits", "refimpl.scene.scene")
 
@@ -146,17 +149,34 @@ def test_solvers_see_a_problem_alone(name: str) -> None:
     }
 
 
-def test_the_dense_solver_shares_no_transform_and_no_production_code() -> None:
-    found = closure("refimpl.solvers.dense")
-    fft = {
-        f"refimpl.operators.{name}" for name in ("fft", "periodic", "transforms", "symmetric", "influence")
-    }
-    assert not found & fft
-    assert not any(name.startswith("refimpl.solvers.production") for name in found)
-    assert {name for name in found if room(name) == "operators"} <= {
-        "refimpl.operators",
-        "refimpl.operators.dense",
-    }
+def test_the_plain_reference_shares_nothing_with_what_it_judges() -> None:
+    """It imports numpy alone, in a Python that has nothing else, and only the driver imports it."""
+    assert closure("refimpl.plain") <= {"refimpl.plain"}
+    assert [n for n in REFIMPL if "refimpl.plain" in uses(n, "refimpl")] == ["refimpl.driver.reference"]
+    others = (path for package in PACKAGES[1:] for path in (ROOT / package).rglob("*.py"))
+    assert not [path for path in others if "refimpl.plain" in path.read_text(encoding="utf-8")]
+    code = f"""
+import sys
+before = set(sys.modules)
+sys.path.insert(0, {str(Path(np.__file__).parents[1])!r})
+import numpy, numpy.typing
+kept = {{name.partition(".")[0] for name in set(sys.modules) - before}}
+class OnlyNumpy:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] not in kept | sys.stdlib_module_names:
+            raise ImportError(name)
+sys.meta_path.insert(0, OnlyNumpy())
+import runpy
+plain = runpy.run_path({str(ROOT / "refimpl" / "plain.py")!r})
+z = numpy.zeros((3, 3))
+assert plain["solve"](z, z, (1.0, 1.0), (1e9, 0.3), (1e9, 0.3), 0.0, 0.1, load=1.0).ended == "converged"
+"""
+    subprocess.run([sys.executable, "-I", "-S", "-c", code], check=True)
+
+
+def test_the_plain_reference_is_one_page() -> None:
+    lines = (ROOT / "refimpl" / "plain.py").read_text(encoding="utf-8").splitlines()
+    assert sum(bool(line.strip()) for line in lines) <= 210
 
 
 JUDGES = ("refimpl.model.certificate", "refimpl.solution.bounds", "refimpl.solution.limits")
@@ -188,10 +208,15 @@ def test_compliances_are_multiplied_in_one_module() -> None:
 
 def test_only_the_law_and_scene_files_know_tau_and_beta() -> None:
     readers = {n for n in REFIMPL if attribute_reads(n, "refimpl", {"tau", "beta"})}
-    assert readers <= {"refimpl.model.friction", "refimpl.scene.scene_file", "refimpl.scene.parameters"}
+    assert readers <= {
+        "refimpl.model.friction",
+        "refimpl.plain",
+        "refimpl.scene.scene_file",
+        "refimpl.scene.parameters",
+    }
 
 
-ASK_THE_GRID = {"grid", "operators", "scene", "surfaces"}
+ASK_THE_GRID = {"grid", "operators", "scene", "surfaces", "plain"}
 
 
 @pytest.mark.parametrize("name", [n for n in REFIMPL if room(n) not in ASK_THE_GRID])

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid, Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
@@ -19,7 +20,6 @@ from refimpl.planning.plan import Method, Plan
 from refimpl.scene.discretise import Discretiser
 from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.solved import Solved
-from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.nested_solver import solve_fft
@@ -54,7 +54,7 @@ def _solve_problem(
     if problem.approach is not None and problem.approach <= 0:
         return _without_contact(problem)
     if method == "dense":
-        return solve_dense(problem)
+        return solve_reference(problem)
     if method == "paper":
         result, state, _ = solve_paper(problem, tolerance, counter)
         return result, state

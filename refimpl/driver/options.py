@@ -150,7 +150,7 @@ class Options:
         """
         grid = self.solve_grid
         if self.grid is not None:
-            memory_of(self.method, grid, corrected=self.requested.slope_correction)
+            memory_of(self.method, grid)
         discretiser = discretiser or Discretiser(self.scene, self.approach)
         plan = make_plan(
             discretiser.with_all_terms(grid),

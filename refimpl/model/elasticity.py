@@ -10,12 +10,14 @@ r``, with ``a`` the sum and ``c`` lower minus upper; the common surface moves by
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
+from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.model.materials import Pair
 
@@ -123,13 +125,15 @@ class Elasticity:
         lower = share * normal
         upper = normal - lower
         if shear_product is not None:
-            into_lower, into_upper = self._shear_compliances()
+            into_lower, into_upper = self.shear_compliances()
             lower += into_lower * shear_product
             upper += into_upper * shear_product
         return lower, upper
 
-    def _shear_compliances(self) -> tuple[float, float]:
-        """Factors of ``I[s/rho^2]`` for each body: their sum couples, half their difference tilts (1/Pa)."""
+    def shear_compliances(self) -> tuple[float, float]:
+        """Return each body's factor of ``I[s/rho^2]`` (1/Pa): the sum couples, half the difference tilts."""
+        if not (self.coupled or self.tilted):
+            return 0.0, 0.0
         into_lower, into_upper = self.pair.lower.shear_compliance, -self.pair.upper.shear_compliance
         if not self.coupled:
             tilt = 0.5 * (into_lower - into_upper)
@@ -138,6 +142,27 @@ class Elasticity:
             closing = 0.5 * (into_lower + into_upper)
             return closing, closing
         return into_lower, into_upper
+
+    def equivalent_bodies(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return (E, nu) of half-spaces, lower and upper, that move as these do with the neglected terms.
+
+        ``c/a = (1 - 2 nu) / (2 (1 - nu))`` gives nu, and ``pi a = (1 - nu^2)/E`` gives E. Raises `InputError`
+        for a rigid body where one of coupled and tilted is neglected alone.
+        """
+        bodies, (into_lower, into_upper) = (self.pair.lower, self.pair.upper), self.shear_compliances()
+        if self.coupled and self.tilted:
+            return (bodies[0].E, bodies[0].nu), (bodies[1].E, bodies[1].nu)
+        found = []
+        for body, c in zip(bodies, (into_lower, -into_upper), strict=True):
+            if body.normal_compliance == 0:
+                if c != 0:
+                    raise InputError("tilted", self.tilted, "that of coupled: dense, with a rigid body")
+                found.append((math.inf, body.nu))
+                continue
+            ratio = c / body.normal_compliance
+            nu = (1 - 2 * ratio) / (2 - 2 * ratio)
+            found.append(((1 - nu**2) / (math.pi * body.normal_compliance), nu))
+        return found[0], found[1]
 
     def normal_matrix(self, operator: MatrixOperator) -> Array:
         """Return ``a`` between all pairs of elements (m/Pa)."""

@@ -19,11 +19,10 @@ DECISION_GRID = 256  # elements along the longer side on which terms are decided
 
 # Bytes per element at the peak, measured with slopes and coupling: of the grid, when the solution is built
 # from the certified state; of the contact's window before that: FFT work arrays, two kernel tables and their
-# transforms; or dense matrices of Eq. (7), 5.0 of them without and 8.0 with the slope correction, which has a
-# kernel more (24 to 56 elements a side).
+# transforms; or dense matrices of Eq. (7), 6.1 of them (24 to 48 elements a side).
 _GRID_BYTES, _WINDOW_BYTES = 176, 520
 _GROWTH = 1.5  # a window over the contact expected from heights: 0.7 to 2.3 of it on rough balls, as solved
-_DENSE_MATRICES, _DENSE_MATRICES_CORRECTED = 6, 9
+_DENSE_MATRICES = 7
 
 
 @dataclass(frozen=True)
@@ -77,8 +76,7 @@ class Plan:
 
     def on(self, grid: Grid) -> Plan:
         """Return the same terms on another grid, checked against the free memory."""
-        corrected, extent = self.requested.slope_correction, self.contact.extent
-        memory = memory_of(self.method, grid, corrected=corrected, extent=extent)
+        memory = memory_of(self.method, grid, extent=self.contact.extent)
         return replace(self, grid=grid, memory=memory)
 
     def restore(self, problem: Problem, name: str) -> Plan:
@@ -114,9 +112,7 @@ def make_plan(
         method=method,
         grid=problem.grid,
         terms=choose(problem, contact, requested, budget, for_mu=for_mu),
-        memory=estimated_memory(
-            method, problem.grid, corrected=requested.slope_correction, extent=contact.extent
-        ),
+        memory=estimated_memory(method, problem.grid, extent=contact.extent),
         demand=demand,
         budget=budget,
         requested=requested,
@@ -125,21 +121,20 @@ def make_plan(
     )
 
 
-def estimated_memory(method: Method, grid: Grid, *, corrected: bool = False, extent: float = 0.0) -> int:
+def estimated_memory(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
     """Return the estimated bytes at the peak of a solve.
 
-    ``corrected``: with the slope correction; ``extent``: share of the grid in the rectangle around the
+    ``extent``: share of the grid in the rectangle around the
     expected contact; by default only arrays of the whole grid are counted.
     """
     if method == "dense":
-        matrices = _DENSE_MATRICES_CORRECTED if corrected else _DENSE_MATRICES
-        return 8 * matrices * grid.elements**2
+        return 8 * _DENSE_MATRICES * grid.elements**2
     return round(max(_GRID_BYTES, _WINDOW_BYTES * min(1.0, _GROWTH * extent)) * grid.elements)
 
 
-def memory_of(method: Method, grid: Grid, *, corrected: bool = False, extent: float = 0.0) -> int:
+def memory_of(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
     """Return the `estimated_memory`; raise `InputError` if it exceeds the free memory."""
-    memory, free = estimated_memory(method, grid, corrected=corrected, extent=extent), free_memory()
+    memory, free = estimated_memory(method, grid, extent=extent), free_memory()
     if memory > free:
         allowed = f"a grid whose estimated {memory / 1e9:.3g} GB fit into the free {free / 1e9:.3g} GB"
         raise InputError("grid", max(grid.shape), allowed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array, Grid
-from refimpl.operators.dense import DenseInfluence
+from verification.exact.dense_influence import DenseInfluence
 
 GRIDS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 40)
 CG_TOLERANCE = 1e-10

@@ -17,7 +17,6 @@ from refimpl.kernels import points, quadrature, tables
 from refimpl.model import certificate, forces, friction
 from refimpl.model.problem import Problem
 from refimpl.model.state import Status
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
@@ -27,6 +26,7 @@ from refimpl.solution.solved import Solved
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import gaussian, noise_lattice, statistics
 from refimpl.surfaces.gaussian import GaussianRoughness
+from verification.exact.dense_influence import DenseInfluence
 from verification.matrix import replacements as wrong
 from verification.matrix.faults import Patch
 from verification.matrix.patches import LocalFault, everywhere, wrapped

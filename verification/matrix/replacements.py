@@ -17,7 +17,6 @@ from refimpl.model.certificate import State
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.scene.scene import Scene
@@ -25,6 +24,7 @@ from refimpl.solution import bounds, influence_error
 from refimpl.solution.solution import Solution
 from refimpl.solvers import paper, pivoting
 from refimpl.surfaces import white_noise
+from verification.exact.dense_influence import DenseInfluence
 
 _normal_symbol = vars(PeriodicInfluence)["_normal_symbol"].func
 _fft_across, _dense_along = FFTInfluence.shear_across, DenseInfluence._along

@@ -13,6 +13,7 @@ import refimpl as rf
 from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import NO_PEAK, deepest, highest
+from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid
 from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
@@ -20,7 +21,6 @@ from refimpl.model.forces import EDGE_SHARE
 from refimpl.model.problem import Problem
 from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
-from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.production.nested_solver import solve_fft
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
@@ -42,7 +42,7 @@ GRIDS = [
 
 def solved(grid: Grid, approach: float | None = None) -> tuple[Problem, State]:
     problem = discretise(BALL, grid, approach=approach)
-    return problem, solve_dense(problem)[1]
+    return problem, solve_reference(problem)[1]
 
 
 @pytest.mark.parametrize("grid", GRIDS, ids=str)
@@ -99,7 +99,7 @@ def test_a_turned_problem_has_the_same_features(
         mean_surface=np.ascontiguousarray(moved(problem.mean_surface)),
         direction=direction,
     )
-    one, other = (GridFeatures.of(p, solve_dense(p)[1]) for p in (problem, image))
+    one, other = (GridFeatures.of(p, solve_reference(p)[1]) for p in (problem, image))
     assert_same(one, other)
     sign = -1 if moved is turned else 1
     assert other.numbers["binormal_force"] == pytest.approx(sign * one.numbers["binormal_force"], rel=1e-7)
@@ -111,7 +111,7 @@ def test_a_periodic_problem_has_the_same_features_wherever_it_begins(shift: tupl
     problem = discretise(BALL, GRIDS[-1])
     gap, mean_surface = (np.roll(z, shift, (0, 1)) for z in (problem.gap, problem.mean_surface))
     rolled = replace(problem, gap=gap, mean_surface=mean_surface)
-    one, other = (GridFeatures.of(p, solve_dense(p)[1]) for p in (problem, rolled))
+    one, other = (GridFeatures.of(p, solve_reference(p)[1]) for p in (problem, rolled))
     assert_same(one, other)
     assert other.numbers["binormal_force"] == pytest.approx(one.numbers["binormal_force"], rel=1e-7)
 

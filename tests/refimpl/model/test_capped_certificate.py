@@ -9,9 +9,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.model.certificate import State, approach_from, certify, missed_approach
-from refimpl.operators.dense import DenseInfluence
 from refimpl.planning.plan import Method
 from tests.refimpl.solvers.production.levels import BALL
+from verification.exact.dense_influence import DenseInfluence
 
 HARD = replace(
     BALL,

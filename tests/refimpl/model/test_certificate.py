@@ -14,9 +14,9 @@ from refimpl.model.certificate import Certificate, State, certify, relative_gap
 from refimpl.model.forces import Forces, resultants
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.scene.discretise import discretise
+from verification.exact.dense_influence import DenseInfluence
 
 M = 10
 SCENE = rf.Scene(

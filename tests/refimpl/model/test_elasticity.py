@@ -9,8 +9,8 @@ import refimpl as rf
 from refimpl.grid import Array, Grid
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.influence import window_influence
+from verification.exact.dense_influence import DenseInfluence
 
 SOFT, HARD = rf.Material(2e9, 0.1), rf.Material(50e9, 0.4)
 PAIR = Pair(lower=SOFT, upper=HARD)

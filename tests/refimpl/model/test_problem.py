@@ -14,9 +14,9 @@ from refimpl.model.forces import resultants
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms, no_elements
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.scene.discretise import discretise
+from verification.exact.dense_influence import DenseInfluence
 
 SOFT, HARD = rf.Material(2e9, 0.1), rf.Material(50e9, 0.4)
 SIDE = 1e-3

@@ -15,8 +15,8 @@ from refimpl.model.elasticity import Elasticity
 from refimpl.model.forces import facet_resultants, perimeter_corrected_area, resultants
 from refimpl.model.materials import Pair
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.scene.discretise import discretise
+from verification.exact.dense_influence import DenseInfluence
 
 PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1, hardness=50e6))
 PRESSURE, TRACTION = np.array([[2.0, 5.0]]), np.array([[0.5, 1.5]])

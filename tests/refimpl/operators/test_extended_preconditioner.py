@@ -10,10 +10,10 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array, Grid, Mask, Window
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import ExtendedPreconditioner, SpectralPreconditioner, extended
 from refimpl.solvers.production import nested_solver
+from verification.exact.dense_influence import DenseInfluence
 
 SHAPE, COMPLIANCE = (18, 15), 1e-11
 AMPLE = (125, 128)  # 16,000 elements of a window, from which on twenty neighbours are asked

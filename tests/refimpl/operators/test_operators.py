@@ -12,10 +12,10 @@ import pytest
 
 from refimpl.grid import Array, Grid, Window
 from refimpl.kernels import normal_integral, tangential_integral
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.influence import whole_grid_influence, window_influence
 from refimpl.operators.periodic import PeriodicInfluence
+from verification.exact.dense_influence import DenseInfluence
 
 KINDS = ("normal", "shear", "shear_across")
 ANGLES = (0.0, 0.7, 2.0, -2.5)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Grid, Window
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.influence import WindowInfluence, window_influence
 from refimpl.operators.kernel_tables import unit_table
 from refimpl.operators.preconditioner import SpectralPreconditioner
 from refimpl.solution.energy_norm import SMALLEST_SYMBOL, smallest_symbol
+from verification.exact.dense_influence import DenseInfluence
 
 COMPLIANCE = 1e-11
 GRIDS = [Grid.square(1e-3, 10), Grid((10, 10), (1e-3, 3e-3)), Grid((14, 7), (1e-3, 1e-4))]

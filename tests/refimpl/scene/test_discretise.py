@@ -13,9 +13,9 @@ from refimpl.accuracy.peak import NO_PEAK
 from refimpl.grid import Array, Grid
 from refimpl.model.certificate import certify
 from refimpl.model.problem import Terms
-from refimpl.operators.dense import DenseInfluence
 from refimpl.scene.discretise import Discretiser, discretise
 from refimpl.surfaces import SurfaceWarning
+from verification.exact.dense_influence import DenseInfluence
 
 SCENE = rf.read_scene("table1-smooth")
 FLAT = Terms(coupled=False, oblique=False, tilted=False)

@@ -12,10 +12,10 @@ from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.bounds import Bounds
 from refimpl.solution.energy_norm import EnergyNorm
-from refimpl.solvers.pivoting import complementarity, restricted_solve
+from verification.exact.dense_influence import DenseInfluence
+from verification.exact.pivoting import complementarity, restricted_solve
 
 SIDE, M = 1e-3, 10
 POLYMER, STEEL = rf.Material(2.5e9, 0.1), rf.Material(200e9, 0.3)

@@ -10,9 +10,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
 from tests.refimpl.solution.frozen import M, posed, scene, widened
+from verification.exact.dense_influence import DenseInfluence
 
 
 def test_smallest_symbol_is_enclosed_from_below() -> None:

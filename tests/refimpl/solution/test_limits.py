@@ -245,7 +245,7 @@ def test_dense_matrices_fit_into_the_estimated_memory(corrected: bool) -> None:
     rf.solve(scene, 32, method="dense", slope_correction=corrected)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    estimate = plan.memory_of("dense", scene.grid(32), corrected=corrected)
+    estimate = plan.memory_of("dense", scene.grid(32))
     assert 0.75 * estimate < peak < estimate
 
 

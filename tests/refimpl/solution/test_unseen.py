@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
 from refimpl.solution.data_error import data_error
 from refimpl.solution.unseen import unseen_parts
-from refimpl.solvers.dense import solve_dense
 from refimpl.surfaces import Surface
 
 LENGTHS = (4e-3, 2e-3)
@@ -133,7 +133,7 @@ def test_shares_of_every_number(approach: float | None) -> None:
     """
     scene = waves(rf.Flat(), SHORT, periodic=False)
     problem = discretise(scene, GRID, Terms(oblique=False), approach=approach)
-    _, state = solve_dense(problem)
+    _, state = solve_reference(problem)
     share, found = data_error(scene, GRID), unseen_parts(problem, state, scene)
     assert 0.1 < share < 1
     sheared = 3e5 * state.contact_area
@@ -163,7 +163,7 @@ def ball(approach: float, elements: tuple[int, int]) -> tuple[Mask, dict[str, di
         size=LENGTHS,
     )
     problem = discretise(scene, Grid(elements, LENGTHS, False), Terms(oblique=False), approach=approach)
-    _, state = solve_dense(problem)
+    _, state = solve_reference(problem)
     return state.contact, unseen_parts(problem, state, scene), state.contact_area
 
 

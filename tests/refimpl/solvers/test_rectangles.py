@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid
 from refimpl.model.problem import Problem, Terms
 from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
-from refimpl.solvers.dense import solve_dense
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.nested_solver import solve_fft
 
@@ -68,7 +68,7 @@ def problem_on(grid: Grid, terms: Terms | None = None) -> Problem:
 @with_terms
 def test_the_reference_and_the_production_solver_agree(name: str, periodic: bool, terms: Terms) -> None:
     problem = problem_on(replace(GRIDS[name], periodic=periodic), terms)
-    (dense, exact), (fft, state) = solve_dense(problem), solve_fft(problem, TOLERANCE, Counter())
+    (dense, exact), (fft, state) = solve_reference(problem), solve_fft(problem, TOLERANCE, Counter())
     assert fft.status is dense.status
     assert np.array_equal(fft.excluded, dense.excluded)
     assert np.abs(fft.pressure - dense.pressure).max() <= SAME * dense.pressure.max()
@@ -81,7 +81,7 @@ def test_the_reference_and_the_production_solver_agree(name: str, periodic: bool
 @of_topologies
 def test_at_the_approach_found_under_a_load_is_the_same_state(name: str, periodic: bool) -> None:
     problem = problem_on(replace(GRIDS[name], periodic=periodic))
-    dense, exact = solve_dense(problem)
+    dense, exact = solve_reference(problem)
     again = replace(problem, load=None, approach=exact.approach)
     fft, state = solve_fft(again, TOLERANCE, Counter())
     assert np.abs(fft.pressure - dense.pressure).max() <= 1e-8 * dense.pressure.max()
@@ -91,7 +91,7 @@ def test_at_the_approach_found_under_a_load_is_the_same_state(name: str, periodi
 @on_grids
 def test_the_papers_scheme_agrees_too(name: str) -> None:
     problem = problem_on(GRIDS[name])
-    dense, _ = solve_dense(problem)
+    dense, _ = solve_reference(problem)
     paper, _, _ = solve_paper(problem, 1e-9, Counter())
     # pressure steps end at 1e-10 of the pressure; 100 of them for what steepest descent still had to go
     assert np.abs(paper.pressure - dense.pressure).max() <= 1e-8 * dense.pressure.max()

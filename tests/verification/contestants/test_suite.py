@@ -18,7 +18,6 @@ from refimpl.grid import Array
 from refimpl.model.certificate import certify
 from refimpl.model.problem import Terms
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.scene.discretise import discretise
 from verification.contestants import own, referee
 from verification.contestants.broken import BROKEN, Wrong, asked, periodic
@@ -28,6 +27,7 @@ from verification.contestants.gaps import rough_bump
 from verification.contestants.isolated import Limited
 from verification.contestants.protocol import Abilities, Answer, ContactProblem, Contestant, Coupling
 from verification.contestants.suite import run, select, suite
+from verification.exact.dense_influence import DenseInfluence
 from verification.exact.kernel_reference import normal, tangential
 
 TEN = (

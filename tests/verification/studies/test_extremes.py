@@ -14,10 +14,10 @@ import pytest
 import refimpl as rf
 import verification.extremes.axes  # noqa: F401  # registers the axes
 from appendix_a import wedge
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import FFTInfluence
 from reports.result_files import read_result
 from verification.cases.solvers.extremes import told
+from verification.exact.dense_influence import DenseInfluence
 from verification.extremes import (
     conditioning,
     exact_operators,

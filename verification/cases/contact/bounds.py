@@ -11,9 +11,9 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.solution.bounds import Bounds, proven_bounds
 from refimpl.solution.energy_norm import EnergyNorm
+from verification.exact.dense_influence import DenseInfluence
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.golden.store import Golden, named, stored

@@ -11,7 +11,6 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import Apply
@@ -26,6 +25,7 @@ from refimpl.solvers.production.lagged_terms import (
 from refimpl.solvers.production.projected_cg import ProjectedCG
 from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, problem_of
+from verification.exact.dense_influence import DenseInfluence
 
 M = 12
 ROUNDING = 1e-14  # of the largest displacement: transforms of a few hundred points

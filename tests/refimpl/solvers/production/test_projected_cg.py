@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Array, Grid
-from refimpl.operators.dense import DenseInfluence
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import Apply, SpectralPreconditioner
-from refimpl.solvers.pivoting import complementarity
 from refimpl.solvers.production.projected_cg import ProjectedCG
+from verification.exact.dense_influence import DenseInfluence
+from verification.exact.pivoting import complementarity
 
 M, SIDE, COMPLIANCE = 10, 1e-3, 1e-11
 GRID = Grid.square(SIDE, M)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from refimpl.grid import Mask
 from refimpl.solvers import pivoting
-from refimpl.solvers.pivoting import complementarity, restricted_solve
+from verification.exact.pivoting import complementarity, restricted_solve
 
 
 def by_enumeration(G: np.ndarray, q: np.ndarray) -> np.ndarray:
