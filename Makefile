@@ -28,13 +28,18 @@ nightly: $(READY)
 	@mkdir -p $(OUT)
 	$(BIN)/python -m verification.properties --examples 10000 --seed $$(date +%Y%m%d) --json $(OUT)/hypothesis.json
 
-# Small faults that the tests must notice, in a copy of the committed tree; resumed, and extended by a larger N.
-N := 450
+# Small faults that the tests must notice, N of them drawn at random, in a copy of the committed tree.
+N := 50
+SEED := 1
 mutation: $(READY)
 	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e ".[mutation]"
 	rm -rf $(OUT)/mutated && git clone -q . $(OUT)/mutated
-	cd $(OUT)/mutated && ../../$(BIN)/python -m verification.mutation --sample $(N) \
-		--log ../mutation.jsonl --json ../mutation.json
+	cd $(OUT)/mutated && export PATH="$(CURDIR)/$(BIN):$$PATH" && \
+		cosmic-ray init tests/mutation.toml ../mutation.sqlite --force && \
+		cr-filter-operators ../mutation.sqlite tests/mutation.toml && \
+		python tests/mutation_sample.py ../mutation.sqlite $(N) $(SEED) && \
+		cosmic-ray exec tests/mutation.toml ../mutation.sqlite && \
+		cr-report --surviving-only --show-diff ../mutation.sqlite
 
 setup: $(READY)
 

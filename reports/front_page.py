@@ -115,12 +115,6 @@ def _trust(studies: Mapping[str, Any]) -> list[str]:
         faults = studies["fault_matrix"]["faults"]
         seen = sum(bool(fault["caught_by"]) for fault in faults)
         said.append(f"{seen} of {len(faults)} seeded faults are detected by quick checks")
-    if "mutation_fresh" in studies:
-        fresh = studies["mutation_fresh"]
-        said.append(
-            f"{100 * fresh['score']:.0f} % of {fresh['tried'] - fresh['equivalent']} sampled mutants of the "
-            f"code are detected by tests (95 % lower bound {100 * fresh['score_lower_bound']:.0f} %)"
-        )
     if "extremes" in studies:
         counts = studies["extremes"]["counts"]
         said.append(

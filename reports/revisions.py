@@ -27,8 +27,8 @@ def one_revision(rows: Sequence[tuple[str, str, str, str]]) -> str:
     same = sum(revision == now != NOT_KNOWN for *_, revision in files)
     return (
         f"Solver: the first digits of a digest of refimpl but for refimpl/identification. {same} of "
-        f"{len(files)} files have that of this run. Those of mutants, of faults by hand and of samples "
-        "looked at once belong to the code of their commit."
+        f"{len(files)} files have that of this run. Those of samples looked at once "
+        "belong to the code of their commit."
     )
 
 

@@ -13,18 +13,6 @@ _EXTREMES = {
     "extreme inputs": "extremes",
     "extreme inputs, all parameters drawn at random": "extremes_drawn",
 }
-_MUTANTS = {
-    "mutants of the code, sample that tests were written for": "mutation",
-    "mutants of the code, fresh sample": "mutation_fresh",
-    "mutants of the verification code": "mutation_judges",
-}
-_FAULTS = {
-    "meaningful faults, first list": "faults_by_hand",
-    "meaningful faults, second list (by the tests nearest to each)": "later_faults",
-    "meaningful faults, third list, drawn up blind": "third_faults",
-    "meaningful faults, fourth list, drawn up blind": "fourth_faults",
-    "random mutants of all areas": "mutation_areas",
-}
 
 
 def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
@@ -89,35 +77,12 @@ def _faults(documents: Mapping[str, Any]) -> Iterator[Row]:
         f"{seen} of {len(seeded['faults'])} detected, by {len(seeded['checks'])} quick checks",
         link("fault_matrix"),
     )
-    for what, name in _MUTANTS.items():
-        found = documents[name]
-        yield (
-            what,
-            f"{100 * found['score']:.1f} % of {found['tried'] - found['equivalent']} detected; "
-            f"95 % lower bound {100 * found['score_lower_bound']:.1f} %",
-            link(name),
-        )
-    for what, name in _FAULTS.items():
-        found = documents[name]["all"]
-        yield (
-            what,
-            f"{100 * found['first']:.0f} % of {found['judged']} detected at first; 95 % lower bound "
-            f"{100 * found['first_lower_bound']:.0f} %; {100 * found['now']:.0f} % today",
-            link(name),
-        )
 
 
 def _repetitions(documents: Mapping[str, Any]) -> Iterator[Row]:
-    """Rows of what was repeated: tests in other orders, ensembles with other seeds."""
-    order, ensembles = documents["random_order"], documents["multilevel"]
-    tests = [run["tests"] for run in order["runs"]]
+    """Rows of what was repeated: ensembles with other seeds."""
+    ensembles = documents["multilevel"]
     covered = {name: found["covered"] for name, found in ensembles["quantities"].items()}
-    yield (
-        "tests in random order",
-        f"{len(tests)} orders of {' to '.join(dict.fromkeys((str(min(tests)), str(max(tests)))))} tests, "
-        + ("no test changes its outcome" if order["no_test_flips"] else "some tests change their outcome"),
-        link("random_order"),
-    )
     yield (
         "intervals of ensemble means",
         f"cover μ in {covered['friction_coefficient']} and A in {covered['contact_area']} of "

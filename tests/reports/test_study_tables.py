@@ -30,8 +30,6 @@ OTHERS = BARS | {"class": None, "number": None, "scenes": 7, "held_of_usable": 0
 OTHERS["median_bar_over_error"] = 3.456
 OFFERS = [{"quantity": "mu", "error": 0.001, "M": None}]
 OFFERS += [{"quantity": "mu", "error": 0.02, "M": 48, "transforms of 256": 1.2345}]
-AREAS = Names(all=Names(first=None, first_lower_bound=None, now=None), areas=[])
-AREAS["list"] = [Names(reason="", test="t.py::a"), Names(reason="", test=None), Names()]
 STATES = [("load", "fft", "right", d) for d in (12, 3, 7)] + [("load", "fft", "wrong", 5)]
 STATES += [("load", "dense", "honest failure", 1), ("scale", "fft", "crash", 1)]
 EXTREMES = Names(
@@ -41,9 +39,6 @@ EXTREMES = Names(
 )  # fmt: skip
 EXTREMES["lawful states"] = [Names(statuses={"fft": {"converged": 5, "cycle": 3, "stuck": 4}})]
 DRAWN = Names(ranges={"load": [1, 9], "nu": 3}, counts={}, rows=[Names(), Names(verdict="right")])
-MUTANTS = Names(by_subject={"solvers": Names()}, by_operator={}, seed=1, confidence=0.9,
-                score_raw=0.8, survivors=[Names(explained=None)], score=0.95)  # fmt: skip
-SCORES = ("killed", "timeout", "equivalent", "survived")
 ROWS: list[tuple[str, Any, int, list[Any]]] = [
     ("accuracy_costs", {"classes": [Names(prices=OFFERS)]}, 0, [("class", "mu", "48 (1.23)", "finer")]),
     ("coverage", COVERAGE, 0, [("A", 0.02, 9, 91.0, 82.0, 73.0, 2.35, 1.23, 64.0)]),
@@ -57,11 +52,6 @@ ROWS: list[tuple[str, Any, int, list[Any]]] = [
     ("extremes", EXTREMES, 3, [("N", 6.5, "sum", "it is this code's form")]),
     ("extremes_drawn", DRAWN, 0, [("load", 1, 9), ("nu", 3, 3)]),
     ("extremes_drawn", DRAWN, 1, [("at", "elements", "verdict", "status", "error", "note")]),
-    ("mutation", MUTANTS, 0, [("all", "tried", *SCORES, 0.95, "score_lower_bound"),
-                              ("solvers", "tried", *SCORES, "score", "score_lower_bound")]),
-    ("mutation", MUTANTS, 1, [("module:line", "before", "after", "not explained")]),
-    ("mutation_areas", AREAS, 1, [("area", "file", "breaks", "outcome", end)
-                                  for end in ("t.py", "a test is wanting", "reason")]),
 ]  # fmt: skip
 
 
@@ -75,9 +65,3 @@ def test_series_of_figures() -> None:
     (_, kept), _, (_, states), _ = exhibit("extremes", EXTREMES).figures
     assert kept == {"digits kept": {"load: s": [12, 3, 7, "wrong"]}}
     assert [*states.values()] == [["tau"], ["none"], ["one"], ["several"], [7]]
-
-
-def test_a_goal_is_met_by_its_own_value() -> None:
-    for goal, met in ((0.95, "met."), (0.96, "not met.")):
-        said = exhibit("mutation_judges", Names(MUTANTS, goal=goal)).paragraphs[-1]
-        assert said.endswith(f"{goal}, is {met}")

@@ -45,25 +45,17 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "extremes": (*SOLVES, "appendix_a", "verification/extremes"),
     "extremes_drawn": (*SOLVES, "verification/extremes"),
     "fault_matrix": ("refimpl", "appendix_a", "verification/cases", "verification/matrix"),
-    "faults_by_hand": ("refimpl", "appendix_a", "verification", "tests"),
-    "fourth_faults": ("refimpl", "appendix_a", "verification", "tests"),
     "fuzz": (*SOLVES, "verification/fuzz", "verification/sweep"),
     "identification": ("refimpl", "verification/coverage"),
     "hypothesis": (*SOLVES, "verification/properties"),
-    "later_faults": ("refimpl", "appendix_a", "verification", "tests"),
     "large_grids": (*SOLVES, "verification/benchmarks"),
     "model_form": (*SOLVES, "appendix_a"),
     "multilevel": (*SOLVES, "verification/multilevel"),
-    "mutation": ("refimpl", "appendix_a", "tests"),
-    "mutation_areas": ("refimpl", "appendix_a", "verification", "tests"),
-    "mutation_fresh": ("refimpl", "appendix_a", "tests"),
-    "mutation_judges": ("verification", "tests"),
     "named_faults": ("verification/contestants",),
     "planning": SOLVES,
     "priors": (*SOLVES, "verification/coverage"),
     "pulled": SOLVES,
     "quick": ("refimpl", "appendix_a", "verification/cases"),
-    "random_order": ("refimpl", "appendix_a", "verification", "tests"),
     "random_faults": ("verification/contestants",),
     "remade": (),
     "reproduction": SOLVES,
@@ -71,7 +63,6 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "sweeps": (*SOLVES, "verification/benchmarks", "verification/sweep"),
     "table2": (*SOLVES, "verification/variational"),
     "tau_shares": SOLVES,
-    "third_faults": ("refimpl", "appendix_a", "verification", "tests"),
     "tradeoff": (*SOLVES, "verification/tradeoff"),
     "variational": (*SOLVES, "verification/variational"),
 }
@@ -82,12 +73,7 @@ A file that is not listed judges all code.
 """
 
 
-ONCE = frozenset(
-    (
-        *("class_costs", "coverage_classes", "faults_by_hand", "mutation", "mutation_areas"),
-        *("mutation_fresh", "mutation_judges", "priors", "random_order"),
-    )
-)
+ONCE = frozenset(("class_costs", "coverage_classes", "priors"))
 """Files of a sample that is looked at once: they judge the code of their commit, and stay as a record."""
 
 
