@@ -79,7 +79,7 @@ CHAPTERS = (
         "Seeded faults, mutants, random examples, extreme and damaged inputs: how far the checks can be "
         "trusted.",
         ("extremes",),
-        ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
+        ("mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
          "later_faults", "third_faults", "fourth_faults", "hypothesis", "random_order", "extremes",
          "extremes_drawn", "fuzz", "chaos"),
     ),

@@ -82,13 +82,6 @@ def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
 
 def _faults(documents: Mapping[str, Any]) -> Iterator[Row]:
     """Rows of faults put into the code, and how many of them the checks detected."""
-    seeded = documents["fault_matrix"]
-    seen = sum(bool(fault["caught_by"]) for fault in seeded["faults"])
-    yield (
-        "seeded faults in the code",
-        f"{seen} of {len(seeded['faults'])} detected, by {len(seeded['checks'])} quick checks",
-        link("fault_matrix"),
-    )
     for what, name in _MUTANTS.items():
         found = documents[name]
         yield (

@@ -44,7 +44,6 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "cross_code": ("verification/adapters", "verification/contestants"),
     "extremes": (*SOLVES, "appendix_a", "verification/extremes"),
     "extremes_drawn": (*SOLVES, "verification/extremes"),
-    "fault_matrix": ("refimpl", "appendix_a", "verification/cases", "verification/matrix"),
     "faults_by_hand": ("refimpl", "appendix_a", "verification", "tests"),
     "fourth_faults": ("refimpl", "appendix_a", "verification", "tests"),
     "fuzz": (*SOLVES, "verification/fuzz", "verification/sweep"),
