@@ -76,12 +76,12 @@ CHAPTERS = (
     Chapter(
         "trust",
         "Appendix I: verification of the verification",
-        "Seeded faults, mutants, random examples, extreme and damaged inputs: how far the checks can be "
+        "Seeded faults, mutants, random examples, extreme inputs: how far the checks can be "
         "trusted.",
         ("extremes",),
         ("mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
          "later_faults", "third_faults", "fourth_faults", "hypothesis", "random_order", "extremes",
-         "extremes_drawn", "fuzz", "chaos"),
+         "extremes_drawn"),
     ),
     Chapter(
         "codes",

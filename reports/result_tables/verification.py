@@ -62,17 +62,7 @@ def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
             f"{found['wrong']} wrong, {found['crash']} crashes",
             link(name),
         )
-    chaos, fuzz, invariants = (documents[name] for name in ("chaos", "fuzz", "hypothesis"))
-    yield (
-        "sweeps that are killed, copied and cut off",
-        f"{chaos['sweeps']} tried, {chaos['different']} other tables, {chaos['tracebacks']} tracebacks",
-        link("chaos"),
-    )
-    yield (
-        "damaged input files",
-        f"{fuzz['inputs']} tried, {fuzz['tracebacks']} tracebacks, {fuzz['hangs']} hangs",
-        link("fuzz"),
-    )
+    invariants = documents["hypothesis"]
     yield (
         "random examples of invariants",
         f"{invariants['examples']} tried, {invariants['counterexamples']} counter-examples",
