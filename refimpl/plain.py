@@ -57,11 +57,11 @@ def integrals(shape: Any, spacing: Any, direction: float, periodic: bool) -> lis
     return [J, cos * Jx + sin * Jy, cos * Jy - sin * Jx]
 
 
-class Model:
+class Model(SimpleNamespace):
     """Matrices of a problem, and its state: f, q, delta, slopes, the part of each element."""
 
     def __init__(self, **arguments: Any) -> None:
-        vars(self).update(arguments)  # those of `solve`
+        super().__init__(**arguments)  # those of `solve`
         self.shape = self.z_lower.shape
         self.spacing = self.lengths[0] / self.shape[0], self.lengths[1] / self.shape[1]
         self.dA = self.spacing[0] * self.spacing[1]
@@ -147,8 +147,8 @@ class Model:
             row = (contact * (self.cos_x - self.beta * self.sin_x) * self.cos_y)[s] / s.size
             missing = (self.load - self.forces()[0]) / (self.dA * s.size)
             bordered = np.block([[matrix / unit, -self.K[s, None]], [row, np.zeros(1)]])
-            *x, delta = np.linalg.solve(bordered, np.append(right / unit, missing))
-            x, self.delta = np.array(x), delta * unit
+            x, (delta,) = np.split(np.linalg.solve(bordered, np.append(right / unit, missing)), [s.size])
+            self.delta = delta * unit
         self.f[contact], self.q[partial] = x[contact[s]], x[partial[s]]
 
     def exchange(self, active: Array | None) -> str:
@@ -173,7 +173,8 @@ class Model:
 
     def settle(self, active: Array | None) -> None:
         """Solve for pressures and slopes by turns, slopes mixed from six of them (Anderson 1965)."""
-        slopes, changes = [], []
+        slopes: list[Array] = []
+        changes: list[Array] = []
         for _ in range(300 if self.slopes else 1):
             self.ended = self.exchange(active)
             new = self.deformed_slopes() if self.slopes else self.tan

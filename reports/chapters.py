@@ -76,9 +76,9 @@ CHAPTERS = (
     Chapter(
         "trust",
         "Appendix I: verification of the verification",
-        "Seeded faults, random examples, extreme and damaged inputs: how far the checks can be trusted.",
+        "Random examples and extreme inputs: how far the checks can be trusted.",
         ("extremes",),
-        ("fault_matrix", "hypothesis", "extremes", "extremes_drawn", "fuzz", "chaos"),
+        ("hypothesis", "extremes", "extremes_drawn"),
     ),
     Chapter(
         "codes",

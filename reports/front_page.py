@@ -111,10 +111,6 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
 def _trust(studies: Mapping[str, Any]) -> list[str]:
     """One sentence a study of the verification itself."""
     said = []
-    if "fault_matrix" in studies:
-        faults = studies["fault_matrix"]["faults"]
-        seen = sum(bool(fault["caught_by"]) for fault in faults)
-        said.append(f"{seen} of {len(faults)} seeded faults are detected by quick checks")
     if "extremes" in studies:
         counts = studies["extremes"]["counts"]
         said.append(

@@ -41,8 +41,6 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
     ("verification/extremes/state.py", "honest failure"): VERDICT,
-    ("verification/matrix/appendix_faults.py", "left out"): FAULT,
-    ("verification/matrix/faults.py", "left out"): FAULT,
     ("verification/reproduction/fig6.py", "summit"): SUMMITS,
     ("verification/reproduction/fig6.py", "summits"): SUMMITS,
     ("verification/tradeoff/study.py", "left out"): KEY,

@@ -35,7 +35,7 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
 
 def studies(documents: Mapping[str, Any]) -> str:
     """Quality of the verification itself: single numbers of the studies."""
-    rows = [*_searches(documents), *_faults(documents), *_repetitions(documents)]
+    rows = [*_searches(documents), *_repetitions(documents)]
     text = "How far the verification itself can be trusted, and what broad searches found."
     return section("Studies", text, ("study", "result", "file"), rows)
 
@@ -50,32 +50,11 @@ def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
             f"{found['wrong']} wrong, {found['crash']} crashes",
             link(name),
         )
-    chaos, fuzz, invariants = (documents[name] for name in ("chaos", "fuzz", "hypothesis"))
-    yield (
-        "sweeps that are killed, copied and cut off",
-        f"{chaos['sweeps']} tried, {chaos['different']} other tables, {chaos['tracebacks']} tracebacks",
-        link("chaos"),
-    )
-    yield (
-        "damaged input files",
-        f"{fuzz['inputs']} tried, {fuzz['tracebacks']} tracebacks, {fuzz['hangs']} hangs",
-        link("fuzz"),
-    )
+    invariants = documents["hypothesis"]
     yield (
         "random examples of invariants",
         f"{invariants['examples']} tried, {invariants['counterexamples']} counter-examples",
         link("hypothesis"),
-    )
-
-
-def _faults(documents: Mapping[str, Any]) -> Iterator[Row]:
-    """Rows of faults put into the code, and how many of them the checks detected."""
-    seeded = documents["fault_matrix"]
-    seen = sum(bool(fault["caught_by"]) for fault in seeded["faults"])
-    yield (
-        "seeded faults in the code",
-        f"{seen} of {len(seeded['faults'])} detected, by {len(seeded['checks'])} quick checks",
-        link("fault_matrix"),
     )
 
 

@@ -18,7 +18,6 @@ COVERED = {name: {"covered": 0.9 + 0.011 * k, "median_bar_over_error": 1.234 + k
            enumerate(("friction_coefficient", "contact_area", "max_pressure"))}  # fmt: skip
 STUDIES: dict[str, Any] = {
     "coverage": {"accuracies": [{"accuracy": 0.02, "numbers": {}}, {"accuracy": 0.01, "numbers": COVERED}]},
-    "fault_matrix": {"faults": [{"caught_by": ["x"]}, {"caught_by": []}]},
     "extremes": {"counts": {"right": 5, "wrong": 1, "crash": 2, "honest failure": 3}},
 }
 
@@ -35,8 +34,7 @@ def test_the_first_page_by_hand() -> None:
     assert found.roughness == ["1.68 µm", "0 µm"]
     assert found.hertz == ["approach 2.5 for 2.4 µm (4.2e-02)"]
     assert found.quantities == [("μ, Table 3", 1, "+9.5 %", "", 0), ("A, Table 3", 1, "+0.1 %", "", 1)]
-    bars, faults, extremes = found.trust
+    bars, extremes = found.trust
     for text in ("μ in 90 % (1.2 times the error)", "A in 91 % (2.2 times", "p_max in 92 % (3.2 times"):
         assert text in bars
-    assert faults.startswith("1 of 2 seeded faults")
     assert extremes.startswith("1 of 11 extreme inputs gave a wrong answer, 2 a crash, and 3 a status")

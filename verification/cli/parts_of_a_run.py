@@ -39,7 +39,7 @@ def patterns_of(command: str) -> tuple[str, tuple[str, ...]] | None:
 
     >>> patterns_of("rough-friction verify --tier full --jobs 1 --only 'a/*' --only b/c --json FILE")
     ('full', ('a/*', 'b/c'))
-    >>> patterns_of("python -m verification.fuzz --json FILE")
+    >>> patterns_of("python -m verification.properties --json FILE")
     """
     words = shlex.split(command)
     if words[:3] == ["rough-friction", "verify", "--self-test"]:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.verification.cli.children import Ended, one_line, rows, small
-from verification.chaos.cluster import Cluster, cluster
+from tests.verification.sweep.own_cluster import Cluster, cluster
 from verification.framework.threads import THREADS, limited_to_one_thread
 from verification.sweep import engine
 from verification.sweep.export import to_csv
