@@ -14,13 +14,12 @@ def declare(erratum: Erratum, slug: str) -> None:
 
     @case(
         f"appendix-errata/{slug}",
+        metric="at_most",
+        tolerance=erratum.tolerance,
         title=f"Erratum to ({erratum.equation})",
         claim=f"{erratum.measure}: zero for the corrected form, {erratum.corrected}",
         source=f"paper Eq. ({erratum.equation}), derived anew",
-        metric="at_most",
-        tolerance=erratum.tolerance,
         tolerance_reason=erratum.tolerance_reason,
-        tags=("appendix", "errata"),
     )
     def holds() -> Measured:
         against, remains = erratum.evidence(), erratum.check()

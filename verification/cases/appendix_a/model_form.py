@@ -45,14 +45,13 @@ def declare(
 
     @case(
         f"model-form/{slug}",
+        metric="at_most",
+        tolerance=2.0,
+        tier="full",
         title=f"Model-form error, {name}, mean pressure {share} p*",
         claim="At a maximum slope of 2.5 degrees N, F, mu, A and approach are within 2 % of finite elements",
         source="scikit-fem, second-order elements, contact on the deformed facets",
-        metric="at_most",
-        tolerance=2.0,
         tolerance_reason="percent: the paper's 'less than 2 %' for its coefficients, applied to the results",
-        tier="full",
-        tags=("appendix", "model form"),
     )
     def model_form() -> Measured:
         data = over_slopes(*materials, share, shift=shift)
@@ -69,17 +68,14 @@ declare("metal-descending-medium", "steel descending copper", METAL, LOADS[1], D
 declare("metal-crest-medium", "steel on copper crest on crest", METAL, LOADS[1], CREST)
 
 
-@case(
-    "model-form/one-slope",
-    title="Model-form error at one slope, coarse meshes",
-    claim="Steel climbing copper at 2.5 degrees: F, mu, A and approach within 2 % of finite elements",
-    source="scikit-fem, second-order elements, contact on the deformed facets",
-    metric="at_most",
-    tolerance=2.0,
-    tolerance_reason="percent: the paper's 2 %; 0.5 % model form (full tier), the rest from coarse meshes",
-    tags=("appendix", "model form"),
-)
+@case("model-form/one-slope", metric="at_most", tolerance=2.0)
 def one_slope() -> Measured:
+    """Model-form error at one slope, coarse meshes.
+
+    Claim: Steel climbing copper at 2.5 degrees: F, mu, A and approach within 2 % of finite elements
+    Source: scikit-fem, second-order elements, contact on the deformed facets
+    Tolerance: percent: the paper's 2 %; 0.5 % model form (full tier), the rest from coarse meshes
+    """
     pair = pair_of(*METAL, 2.5)
     load = LOADS[1] * pair.full_contact_pressure
     lower, upper = (replace(plan, level=1) for plan in graded_plans(pair, load))
@@ -89,18 +85,14 @@ def one_slope() -> Measured:
     return Measured(value=max(map(abs, differences.values())), unit="%", data=differences)
 
 
-@case(
-    "model-form/vanishing-slope",
-    title="Model and finite elements agree where slopes vanish",
-    claim="At 0.02 degrees N, F, mu, A and approach agree within the discretisation errors stated for them",
-    source="two independent discretisations of one problem",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="differences in units of the sum of both errors; the model form is below 0.02 % here",
-    tier="full",
-    tags=("appendix", "model form"),
-)
+@case("model-form/vanishing-slope", metric="at_most", tolerance=1.0, tier="full")
 def vanishing_slope() -> Measured:
+    """Model and finite elements agree where slopes vanish.
+
+    Claim: At 0.02 degrees N, F, mu, A and approach agree within the discretisation errors stated for them
+    Source: two independent discretisations of one problem
+    Tolerance: differences in units of the sum of both errors; the model form is below 0.02 % here
+    """
     data: dict[str, object] = {}
     worst_ratio = 0.0
     for name, materials in (("steel on copper", METAL), ("stiff on nu = 0", COMPLIANT)):
@@ -113,18 +105,14 @@ def vanishing_slope() -> Measured:
     return Measured(value=worst_ratio, data=data, note="data: difference and discretisation error in percent")
 
 
-@case(
-    "model-form/exact-wave",
-    title="The finite-element contact against Westergaard's wave",
-    claim="Frictionless approach on three meshes converges to Johnson's closed form",
-    source="Westergaard 1939; Johnson 1985, section 13.2",
-    metric="at_most",
-    tolerance=1e-4,
-    tolerance_reason="relative; 3e-4, 3e-5 and below 1e-6 measured on the three meshes",
-    tier="full",
-    tags=("appendix", "model form"),
-)
+@case("model-form/exact-wave", metric="at_most", tolerance=1e-4, tier="full")
 def exact_wave() -> Measured:
+    """The finite-element contact against Westergaard's wave.
+
+    Claim: Frictionless approach on three meshes converges to Johnson's closed form
+    Source: Westergaard 1939; Johnson 1985, section 13.2
+    Tolerance: relative; 3e-4, 3e-5 and below 1e-6 measured on the three meshes
+    """
     pair = WavyPair(0.001, CREST, SOFT, STIFF)
     load = LOADS[1] * pair.full_contact_pressure
     exact = Wave(load, pair.gap_amplitude, 1.0, pair.reduced_modulus)
@@ -134,18 +122,14 @@ def exact_wave() -> Measured:
     return Measured(errors[-1], data={"approach by mesh": _by_mesh(errors), "length": _by_mesh(lengths)})
 
 
-@case(
-    "model-form/exact-sliding-wave",
-    title="The finite-element contact against the sliding wave with the strongest coupling",
-    claim="Ends and friction of a contact shifted by tau + beta f are those of the closed form",
-    source="Galin 1953, extended to a wave (verification/exact/sliding_wave.py)",
-    metric="at_most",
-    tolerance=3e-3,
-    tolerance_reason="of the contact length: ends are found between nodes to about 1e-3",
-    tier="full",
-    tags=("appendix", "model form"),
-)
+@case("model-form/exact-sliding-wave", metric="at_most", tolerance=3e-3, tier="full")
 def exact_sliding_wave() -> Measured:
+    """The finite-element contact against the sliding wave with the strongest coupling.
+
+    Claim: Ends and friction of a contact shifted by tau + beta f are those of the closed form
+    Source: Galin 1953, extended to a wave (verification/exact/sliding_wave.py)
+    Tolerance: of the contact length: ends are found between nodes to about 1e-3
+    """
     pair = pair_of(SOFT, STIFF, 0.2, 0.001, CREST)
     load = LOADS[1] * pair.full_contact_pressure
     exact = SlidingWave(

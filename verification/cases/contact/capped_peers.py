@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -20,8 +19,6 @@ M, SEEDS = 48, (11, 12)
 SHARES = (0.8, 0.5, 0.25)
 """Hardness over the elastic peak: 2 to 97 % of the contact is plastic."""
 LOAD = 0.02 * MODULUS
-
-row = partial(case, metric="at_most", tolerance=1e-9, tags=("capped", "peer"))
 
 
 def problems() -> dict[str, ContactProblem]:
@@ -56,24 +53,24 @@ def agreement(peer: Peer) -> Measured:
     return Measured(max(differences.values()), data=data, note=peer.version)
 
 
-@row(
-    "capped/tamaas",
-    title="Capped contact: pressures of Tamaas on the same gaps",
-    claim="free and periodic, with 2 to 97 % of the contact at the hardness, Tamaas finds the same pressures",
-    source="Tamaas' KatoSaturated (Stanley and Kato 1997; Almqvist and others 2007)",
-    tolerance_reason="relative to the hardness; measured 6e-11 after 3000 steps of a projected gradient",
-)
+@case("capped/tamaas", metric="at_most", tolerance=1e-9)
 def by_tamaas() -> Measured:
+    """Capped contact: pressures of Tamaas on the same gaps.
+
+    Claim: free and periodic, with 2 to 97 % of the contact at the hardness, Tamaas finds the same pressures
+    Source: Tamaas' KatoSaturated (Stanley and Kato 1997; Almqvist and others 2007)
+    Tolerance: relative to the hardness; measured 6e-11 after 3000 steps of a projected gradient
+    """
     return agreement(tamaas.solve)
 
 
-@row(
-    "capped/contactmechanics",
-    title="Capped contact: pressures of ContactMechanics on the same gaps",
-    claim="free and periodic, with 2 to 97 % of the contact at the hardness, ContactMechanics finds the "
-    "same pressures",
-    source="ContactMechanics 1.8.3, hardness of minimize_proxy (Pastewka, Sanner and others)",
-    tolerance_reason="relative to the hardness; measured 5e-11, with the tolerance 1e-12 of both solvers",
-)
+@case("capped/contactmechanics", metric="at_most", tolerance=1e-9)
 def by_contactmechanics() -> Measured:
+    """Capped contact: pressures of ContactMechanics on the same gaps.
+
+    Claim: free and periodic, with 2 to 97 % of the contact at the hardness, ContactMechanics finds the same
+    pressures
+    Source: ContactMechanics 1.8.3, hardness of minimize_proxy (Pastewka, Sanner and others)
+    Tolerance: relative to the hardness; measured 5e-11, with the tolerance 1e-12 of both solvers
+    """
     return agreement(contactmechanics.solve)

@@ -80,29 +80,31 @@ REASON = (
 
 @case(
     "accuracy/rectangles",
-    title="Error bars on rectangles",
-    claim="bars from grids of 32, 64 and 128 elements cover the numbers of 512, on rectangles to 4 : 1",
-    source="random scenes of seeds that no prior was fitted to; the finest grid as reference",
     metric="at_least",
     tolerance=0.9,
-    tolerance_reason=REASON.format("0.98"),
     tier="full",
-    tags=("accuracy", "rectangle"),
+    tolerance_reason=REASON.format("0.98"),
 )
 def rectangles() -> Measured:
+    """Error bars on rectangles.
+
+    Claim: bars from grids of 32, 64 and 128 elements cover the numbers of 512, on rectangles to 4 : 1
+    Source: random scenes of seeds that no prior was fitted to; the finest grid as reference
+    """
     return _least(oblong=False)
 
 
 @case(
     "accuracy/oblong-elements",
-    title="Error bars on oblong elements",
-    claim="bars from grids of oblong elements to 4 : 1 cover the numbers of four times finer ones",
-    source="random scenes of seeds that no prior was fitted to; the finest grid as reference",
     metric="at_least",
     tolerance=0.9,
-    tolerance_reason=REASON.format("0.97"),
     tier="full",
-    tags=("accuracy", "rectangle"),
+    tolerance_reason=REASON.format("0.97"),
 )
 def oblong_elements() -> Measured:
+    """Error bars on oblong elements.
+
+    Claim: bars from grids of oblong elements to 4 : 1 cover the numbers of four times finer ones
+    Source: random scenes of seeds that no prior was fitted to; the finest grid as reference
+    """
     return _least(oblong=True)

@@ -44,45 +44,34 @@ def digits_lost(
     return Measured(value=lost, unit="digits", data=errors, note=note)
 
 
-@case(
-    "kernels/textbook-normal-fails",
-    title="Love's corner sum loses its digits far from the load",
-    claim="at 1e6 elements the textbook form of I[1/rho] has lost at least 11 of a double's 16 digits",
-    source=LOVE_SOURCE,
-    metric="at_least",
-    tolerance=11.0,
-    tolerance_reason="terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread",
-    tags=("kernels", "textbook"),
-)
+@case("kernels/textbook-normal-fails", metric="at_least", tolerance=11.0, source=LOVE_SOURCE)
 def textbook_normal_fails() -> Measured:
+    """Love's corner sum loses its digits far from the load.
+
+    Claim: at 1e6 elements the textbook form of I[1/rho] has lost at least 11 of a double's 16 digits
+    Tolerance: terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread
+    """
     return digits_lost(reference.textbook_normal, normal_integral, reference.normal)
 
 
-@case(
-    "kernels/textbook-tangential-fails",
-    title="Cerruti's corner sum loses its digits far from the load",
-    claim="at 1e6 elements the textbook form of I[s/rho^2] has lost at least 11 of a double's 16 digits",
-    source=CERRUTI_SOURCE,
-    metric="at_least",
-    tolerance=11.0,
-    tolerance_reason="terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread",
-    tags=("kernels", "textbook"),
-)
+@case("kernels/textbook-tangential-fails", metric="at_least", tolerance=11.0, source=CERRUTI_SOURCE)
 def textbook_tangential_fails() -> Measured:
+    """Cerruti's corner sum loses its digits far from the load.
+
+    Claim: at 1e6 elements the textbook form of I[s/rho^2] has lost at least 11 of a double's 16 digits
+    Tolerance: terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread
+    """
     return digits_lost(reference.textbook_tangential, tangential_integral, reference.tangential)
 
 
-@case(
-    "kernels/quadrature-bound",
-    title="The error bound that chooses the quadrature order holds",
-    claim="truncation errors of 2 ... 9 points stay below the Bernstein-ellipse bound wherever tried",
-    source="refimpl/kernels/quadrature.py; Trefethen 2008 for the method",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="error over bound; a bound is a bound",
-    tags=("kernels", "bound"),
-)
+@case("kernels/quadrature-bound", metric="at_most", tolerance=1.0)
 def quadrature_bound() -> Measured:
+    """The error bound that chooses the quadrature order holds.
+
+    Claim: truncation errors of 2 ... 9 points stay below the Bernstein-ellipse bound wherever tried
+    Source: refimpl/kernels/quadrature.py; Trefethen 2008 for the method
+    Tolerance: error over bound; a bound is a bound
+    """
     ratios: dict[str, float] = {}
     kernels = (("normal", LOVE, reference.normal), ("tangential", CERRUTI, reference.tangential))
     for order, q, aspect, other in product(ORDERS, (2.0, 3.0, 6.0, 20.0, 100.0), ASPECTS, (1e-3, 0.5, 3.0)):
@@ -104,17 +93,14 @@ def quadrature_bound() -> Measured:
     )
 
 
-@case(
-    "kernels/love-at-centre",
-    title="Deflection at the centre of a uniformly loaded square",
-    claim="I[1/rho] at the centre of a unit square is 4 ln(1 + sqrt 2)",
-    source="Love 1929; Johnson 1985, Eq. (3.26)",
-    metric="relative",
-    tolerance=4 * EPS,
-    tolerance_reason="four equal terms of a few roundings each",
-    tags=("kernels",),
-)
+@case("kernels/love-at-centre", metric="relative", tolerance=4 * EPS)
 def love_at_centre() -> Measured:
+    """Deflection at the centre of a uniformly loaded square.
+
+    Claim: I[1/rho] at the centre of a unit square is 4 ln(1 + sqrt 2)
+    Source: Love 1929; Johnson 1985, Eq. (3.26)
+    Tolerance: four equal terms of a few roundings each
+    """
     return Measured(
         value=float(normal_integral(0.0, 0.0, 1.0, 1.0)),
         reference=3.525494348078172,  # 4 ln(1 + sqrt 2) = 3.52549434807817210093...
@@ -123,17 +109,14 @@ def love_at_centre() -> Measured:
     )
 
 
-@case(
-    "kernels/cerruti-at-edge",
-    title="Deflection at the edge of a uniformly sheared square",
-    claim="I[s/rho^2] at the middle of the leading edge of a unit square is ln(5)/2 + 2 atan(1/2)",
-    source="integral of 2 atan(1 / 2s) over 0 < s < 1, by parts",
-    metric="relative",
-    tolerance=4 * EPS,
-    tolerance_reason="four terms of a few roundings each",
-    tags=("kernels",),
-)
+@case("kernels/cerruti-at-edge", metric="relative", tolerance=4 * EPS)
 def cerruti_at_edge() -> Measured:
+    """Deflection at the edge of a uniformly sheared square.
+
+    Claim: I[s/rho^2] at the middle of the leading edge of a unit square is ln(5)/2 + 2 atan(1/2)
+    Source: integral of 2 atan(1 / 2s) over 0 < s < 1, by parts
+    Tolerance: four terms of a few roundings each
+    """
     return Measured(
         value=float(tangential_integral(0.5, 0.0, 1.0, 1.0)),
         reference=1.7320141742186624,  # ... = 1.732014174218662420...

@@ -52,15 +52,16 @@ def all_points() -> dict[str, Iterable[Point]]:
 
 @case(
     "kernels/normal-50-digits",
-    title="Normal influence integral against 50-digit values",
-    claim="I[1/rho] has a relative error below 1e-14 for offsets 0 ... 1e6 elements and aspects 1e-3 ... 1e3",
-    source=LOVE_SOURCE,
     metric="at_most",
     tolerance=TOLERANCE,
+    source=LOVE_SOURCE,
     tolerance_reason=REASON,
-    tags=("kernels", "eq7"),
 )
 def normal_accuracy() -> Measured:
+    """Normal influence integral against 50-digit values.
+
+    Claim: I[1/rho] has a relative error below 1e-14 for offsets 0 ... 1e6 elements and aspects 1e-3 ... 1e3
+    """
     return worst(
         normal_integral, lambda value, p: reference.relative_error(value, reference.normal(*p)), all_points()
     )
@@ -68,16 +69,17 @@ def normal_accuracy() -> Measured:
 
 @case(
     "kernels/tangential-50-digits",
-    title="Tangential influence integral against 50-digit values",
-    claim="I[s/rho^2] has a relative error below 1e-14 for offsets 0 ... 1e6 elements, aspects 1e-3 ... 1e3, "
-    "and close to its zero at x = 0",
-    source=CERRUTI_SOURCE,
     metric="at_most",
     tolerance=TOLERANCE,
+    source=CERRUTI_SOURCE,
     tolerance_reason=REASON,
-    tags=("kernels", "eq7"),
 )
 def tangential_accuracy() -> Measured:
+    """Tangential influence integral against 50-digit values.
+
+    Claim: I[s/rho^2] has a relative error below 1e-14 for offsets 0 ... 1e6 elements, aspects 1e-3 ... 1e3,
+    and close to its zero at x = 0
+    """
     return worst(
         tangential_integral,
         lambda value, p: reference.relative_error(value, reference.tangential(*p)),
@@ -93,15 +95,17 @@ def enclosed_points() -> dict[str, Iterable[Point]]:
 
 @case(
     "kernels/normal-enclosed",
-    title="Normal influence integral against rigorous enclosures",
-    claim="I[1/rho] is within 1e-14 of every number in a ball proved to contain the exact integral",
-    source=f"{LOVE_SOURCE}; Johansson 2017 (ball arithmetic)",
     metric="at_most",
     tolerance=TOLERANCE,
+    source=f"{LOVE_SOURCE}; Johansson 2017 (ball arithmetic)",
     tolerance_reason=REASON,
-    tags=("kernels", "rigorous"),
 )
 def normal_enclosed() -> Measured:
+    """Normal influence integral against rigorous enclosures.
+
+    Claim: I[1/rho] is within 1e-14 of every number in a ball proved to contain the exact integral
+    """
+
     def error(value: float, point: Point) -> float:
         return reference.relative_distance(value, reference.normal_enclosure(*point))
 
@@ -110,32 +114,31 @@ def normal_enclosed() -> Measured:
 
 @case(
     "kernels/tangential-enclosed",
-    title="Tangential influence integral against rigorous enclosures",
-    claim="I[s/rho^2] is within 1e-14 of every number in a ball proved to contain the exact integral",
-    source=f"{CERRUTI_SOURCE}; Johansson 2017 (ball arithmetic)",
     metric="at_most",
     tolerance=TOLERANCE,
+    source=f"{CERRUTI_SOURCE}; Johansson 2017 (ball arithmetic)",
     tolerance_reason=REASON,
-    tags=("kernels", "rigorous"),
 )
 def tangential_enclosed() -> Measured:
+    """Tangential influence integral against rigorous enclosures.
+
+    Claim: I[s/rho^2] is within 1e-14 of every number in a ball proved to contain the exact integral
+    """
+
     def error(value: float, point: Point) -> float:
         return reference.relative_distance(value, reference.tangential_enclosure(*point))
 
     return worst(tangential_integral, error, enclosed_points())
 
 
-@case(
-    "kernels/references-agree",
-    title="The 50-digit values against values without any antiderivative",
-    claim="corner sums and the Gaussian-transform integrals agree to 17 digits, for both kernels",
-    source="1/rho = 2/sqrt(pi) int exp(-rho^2 u^2) du",
-    metric="at_most",
-    tolerance=1e-17,
-    tolerance_reason="the trapezoidal rule is run for 20 digits; its bound has a constant that is not kept",
-    tags=("kernels", "oracle"),
-)
+@case("kernels/references-agree", metric="at_most", tolerance=1e-17)
 def references_agree() -> Measured:
+    """The 50-digit values against values without any antiderivative.
+
+    Claim: corner sums and the Gaussian-transform integrals agree to 17 digits, for both kernels
+    Source: 1/rho = 2/sqrt(pi) int exp(-rho^2 u^2) du
+    Tolerance: the trapezoidal rule is run for 20 digits; its bound has a constant that is not kept
+    """
     points: tuple[Point, ...] = (
         (0.3, 0.2, 1.0, 1.0),
         (1e-5, 0.7, 1.0, 1e-3),
@@ -153,15 +156,16 @@ def references_agree() -> Measured:
 
 @case(
     "kernels/tables-50-digits",
-    title="Tables for the convolution against 50-digit values",
-    claim="sampled entries of 1024-wide tables, for square and oblong elements, err by less than 1e-14",
-    source=f"{LOVE_SOURCE}; {CERRUTI_SOURCE}",
     metric="at_most",
     tolerance=TOLERANCE,
+    source=f"{LOVE_SOURCE}; {CERRUTI_SOURCE}",
     tolerance_reason=REASON,
-    tags=("kernels",),
 )
 def table_accuracy() -> Measured:
+    """Tables for the convolution against 50-digit values.
+
+    Claim: sampled entries of 1024-wide tables, for square and oblong elements, err by less than 1e-14
+    """
     rng = np.random.default_rng(2003)
     n, m, dx = 1024, 600, 2.0**-20
     far = np.column_stack([rng.integers(0, n, 60), rng.integers(0, m, 60)])

@@ -14,19 +14,16 @@ from verification.reproduction.table1 import rough
 GRID, SURFACES, FLAT_RMS, BALL_RMS = 128, 6, 1.680e-6, 0.084e-6
 
 
-@case(
-    "reproduction/section9-coupling",
-    title="Section 9: slopes couple the normal and the sliding direction",
-    claim="Section 9: contacts at asperity slopes give rise to force components in both the sliding "
-    "direction and normal to it",
-    source="paper section 9, Eqs (2) and (3)",
-    metric="at_least",
-    tolerance=1e-6,
-    tolerance_reason="rms of F / N without local friction, which is zero without slopes: a hundred times the "
-    "certificate's 1e-8 is no rounding",
-    tags=("reproduction", "section9"),
-)
+@case("reproduction/section9-coupling", metric="at_least", tolerance=1e-6)
 def coupling() -> Measured:
+    """Section 9: slopes couple the normal and the sliding direction.
+
+    Claim: Section 9: contacts at asperity slopes give rise to force components in both the sliding direction
+    and normal to it
+    Source: paper section 9, Eqs (2) and (3)
+    Tolerance: rms of F / N without local friction, which is zero without slopes: a hundred times the
+    certificate's 1e-8 is no rounding
+    """
     tangential, normal = [], []
     for k in range(SURFACES):
         scene = rough(FLAT_RMS, BALL_RMS, k)

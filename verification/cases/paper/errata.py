@@ -12,13 +12,12 @@ def _declare(erratum: Erratum) -> None:
 
     @case(
         f"errata/{erratum.slug}",
+        metric="at_most",
+        tolerance=erratum.tolerance,
         title=f"Erratum to {erratum.equation}",
         claim=f"{erratum.measure}: within the tolerance for the corrected form, {erratum.corrected}",
         source=f"paper, {erratum.equation}",
-        metric="at_most",
-        tolerance=erratum.tolerance,
         tolerance_reason=erratum.tolerance_reason,
-        tags=("reproduction", "errata"),
     )
     def holds() -> Measured:
         against, remains = erratum.evidence(), erratum.check()

@@ -97,49 +97,41 @@ TIGHT_REASON = (
 )
 
 
-@case(
-    "paper/own-tolerance",
-    title="The paper's scheme at its own tolerances",
-    claim="On twelve scenes the pressure is the dense reference's to what |dN|/P <= 1e-4, |df|/|f| <= 1e-5 "
-    "imply",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=OWN_REASON,
-    tags=("scheme",),
-)
+@case("paper/own-tolerance", metric="at_most", tolerance=1.0, source=SOURCE, tolerance_reason=OWN_REASON)
 def own_tolerance_quick() -> Measured:
+    """The paper's scheme at its own tolerances.
+
+    Claim: On twelve scenes the pressure is the dense reference's to what |dN|/P <= 1e-4, |df|/|f| <= 1e-5
+    imply
+    """
     return own_tolerance(QUICK)
 
 
 @case(
     "paper/own-tolerance-all",
-    title="The paper's scheme at its own tolerances, all scenes",
-    claim="On every aperiodic scene of the cross-check the pressure is the dense reference's to what they "
-    "imply",
-    source=SOURCE,
     metric="at_most",
     tolerance=1.0,
-    tolerance_reason=OWN_REASON,
     tier="full",
-    tags=("scheme",),
+    source=SOURCE,
+    tolerance_reason=OWN_REASON,
 )
 def own_tolerance_all() -> Measured:
+    """The paper's scheme at its own tolerances, all scenes.
+
+    Claim: On every aperiodic scene of the cross-check the pressure is the dense reference's to what they
+    imply
+    """
     return own_tolerance(tuple(trials()))
 
 
-@case(
-    "paper/own-tolerance-friction",
-    title="Friction coefficient at the paper's tolerances",
-    claim="mu is the dense reference's to what |dN|/P <= 1e-4 implies",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.5e-4,
-    tolerance_reason="mu = F/P with F at most proportional to N: 1e-4 of the load, plus five last steps of "
-    "1e-5 in the pressures. Relative; measured 2e-5",
-    tags=("scheme",),
-)
+@case("paper/own-tolerance-friction", metric="at_most", tolerance=1.5e-4, source=SOURCE)
 def own_tolerance_friction() -> Measured:
+    """Friction coefficient at the paper's tolerances.
+
+    Claim: mu is the dense reference's to what |dN|/P <= 1e-4 implies
+    Tolerance: mu = F/P with F at most proportional to N: 1e-4 of the load, plus five last steps of 1e-5 in
+    the pressures. Relative; measured 2e-5
+    """
     names = [name for name in QUICK if not is_frictionless(trials()[name].scene.friction)]
     found = [paper(name, PAPER_TOLERANCE).friction_coefficient for name in names]
     reference = [trials()[name].dense.friction_coefficient for name in names]
@@ -150,15 +142,16 @@ def own_tolerance_friction() -> Measured:
 
 @case(
     "paper/same-state",
-    title="Status, contact and tau's active set of the three solvers",
-    claim="Tightened, the paper's scheme ends as the dense reference does, on the same elements",
-    source=SOURCE + "; tau's rule: refimpl.solvers.tau_active_set",
     metric="equal",
     tolerance=0.0,
-    tolerance_reason="statuses and sets are equal or not; an active set of tau has one solution",
-    tags=("scheme",),
+    source=SOURCE + "; tau's rule: refimpl.solvers.tau_active_set",
 )
 def same_state() -> Measured:
+    """Status, contact and tau's active set of the three solvers.
+
+    Claim: Tightened, the paper's scheme ends as the dense reference does, on the same elements
+    Tolerance: statuses and sets are equal or not; an active set of tau has one solution
+    """
     differing = {}
     for name in QUICK:
         found, dense = paper(name, TIGHT), trials()[name].dense
@@ -167,47 +160,39 @@ def same_state() -> Measured:
     return Measured(sum(differing.values()), 0.0, unit="elements", data=differing)
 
 
-@case(
-    "paper/tightened",
-    title="Paper = fft = dense when tightened",
-    claim="With the tolerance 1e-9 the scheme has the dense reference's and the production solver's "
-    "pressure and mu",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-8,
-    tolerance_reason=TIGHT_REASON,
-    tags=("scheme",),
-)
+@case("paper/tightened", metric="at_most", tolerance=1e-8, source=SOURCE, tolerance_reason=TIGHT_REASON)
 def tightened_quick() -> Measured:
+    """Paper = fft = dense when tightened.
+
+    Claim: With the tolerance 1e-9 the scheme has the dense reference's and the production solver's pressure
+    and mu
+    """
     return tightened(QUICK)
 
 
 @case(
     "paper/tightened-all",
-    title="Paper = fft = dense when tightened, all scenes",
-    claim="The same on every aperiodic scene of the cross-check, alternating contact edges among them",
-    source=SOURCE,
     metric="at_most",
     tolerance=1e-8,
-    tolerance_reason=TIGHT_REASON,
     tier="full",
-    tags=("scheme",),
+    source=SOURCE,
+    tolerance_reason=TIGHT_REASON,
 )
 def tightened_all() -> Measured:
+    """Paper = fft = dense when tightened, all scenes.
+
+    Claim: The same on every aperiodic scene of the cross-check, alternating contact edges among them
+    """
     return tightened(tuple(trials()))
 
 
-@case(
-    "paper/convergence",
-    title="The scheme converges to the production state",
-    claim="Tightened from 1e-4 to 1e-9 the scheme's pressure approaches the production solver's",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-8,
-    tolerance_reason="stated goal for the last tolerance, 1e-9; measured 3e-11 to 1e-10",
-    tags=("scheme",),
-)
+@case("paper/convergence", metric="at_most", tolerance=1e-8, source=SOURCE)
 def convergence() -> Measured:
+    """The scheme converges to the production state.
+
+    Claim: Tightened from 1e-4 to 1e-9 the scheme's pressure approaches the production solver's
+    Tolerance: stated goal for the last tolerance, 1e-9; measured 3e-11 to 1e-10
+    """
     tolerances = 10.0 ** -np.arange(4, 10)
     data: dict[str, object] = {"tolerance": tolerances}
     last = 0.0

@@ -147,29 +147,27 @@ def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
 
 @case(
     "accuracy/tau-shares",
-    title="Alternating contact edges under tau: mu of a law without a jump, nine scenes",
-    claim=CLAIM,
-    source=SOURCE,
     metric="at_most",
     tolerance=1.0,
+    claim=CLAIM,
+    source=SOURCE,
     tolerance_reason=REASON,
-    tags=("tau", "uncertainty"),
 )
 def nine_scenes() -> Measured:
+    """Alternating contact edges under tau: mu of a law without a jump, nine scenes."""
     scenes = [*((seed, 64) for seed in AT_64), (APART, 128)]
     return apart(scenes, least=len(scenes))
 
 
 @case(
     "accuracy/tau-shares-128",
-    title="Alternating contact edges under tau at 128 x 128: mu of a law without a jump",
-    claim=CLAIM,
-    source=SOURCE,
     metric="at_most",
     tolerance=1.0,
-    tolerance_reason=REASON,
     tier="full",
-    tags=("tau", "uncertainty"),
+    claim=CLAIM,
+    source=SOURCE,
+    tolerance_reason=REASON,
 )
 def bars_at_128() -> Measured:
+    """Alternating contact edges under tau at 128 x 128: mu of a law without a jump."""
     return apart([(seed, 128) for seed in SCENES], least=20)  # one in twenty error bars of 95 % may miss

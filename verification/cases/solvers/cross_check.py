@@ -55,17 +55,13 @@ def approach_difference(trial: Trial) -> float:
     return abs(dense.approach - fft.approach) / abs(dense.approach + dense.problem.datum)
 
 
-@case(
-    "cross-check/contact-sets",
-    title="Contact sets of both solvers",
-    claim="dense and fft find the same contact, and exclude the same elements from tau, on every scene",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="the contact problem has one solution, and tau's rule is the same for both",
-    tags=("solvers",),
-)
+@case("cross-check/contact-sets", metric="equal", tolerance=0.0, source=SOURCE)
 def contact_sets() -> Measured:
+    """Contact sets of both solvers.
+
+    Claim: dense and fft find the same contact, and exclude the same elements from tau, on every scene
+    Tolerance: the contact problem has one solution, and tau's rule is the same for both
+    """
     differing = [
         trial.name
         for trial in trials()
@@ -84,17 +80,12 @@ def contact_sets() -> Measured:
     return Measured(value=len(differing), reference=0.0, data=data, note=note)
 
 
-@case(
-    "cross-check/pressure",
-    title="Pressures of both solvers",
-    claim="dense and fft agree in every element's pressure to 1e-9 of the peak",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
+@case("cross-check/pressure", metric="at_most", tolerance=1e-9, source=SOURCE, tolerance_reason=REASON)
 def pressure() -> Measured:
+    """Pressures of both solvers.
+
+    Claim: dense and fft agree in every element's pressure to 1e-9 of the peak
+    """
     measured = worst_of(by_scene(pressure_difference))
     rough = next(trial for trial in trials() if trial.name == "rough")
     peak, touching = rough.dense.max_pressure, rough.dense.contact
@@ -106,59 +97,40 @@ def pressure() -> Measured:
     return Measured(value=measured.value, data={**measured.data, **scatter}, note=measured.note)
 
 
-@case(
-    "cross-check/area",
-    title="Contact areas of both solvers",
-    claim="dense and fft report one contact area, to 1e-9",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="equal sets have equal areas",
-    tags=("solvers",),
-)
+@case("cross-check/area", metric="at_most", tolerance=1e-9, source=SOURCE)
 def area() -> Measured:
+    """Contact areas of both solvers.
+
+    Claim: dense and fft report one contact area, to 1e-9
+    Tolerance: equal sets have equal areas
+    """
     return worst_of(by_scene(lambda t: abs(t.fft.contact_area / t.dense.contact_area - 1)))
 
 
-@case(
-    "cross-check/approach",
-    title="Approaches of both solvers",
-    claim="dense and fft report one approach, to 1e-9 of it",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
+@case("cross-check/approach", metric="at_most", tolerance=1e-9, source=SOURCE, tolerance_reason=REASON)
 def approach() -> Measured:
+    """Approaches of both solvers.
+
+    Claim: dense and fft report one approach, to 1e-9 of it
+    """
     return worst_of(by_scene(approach_difference))
 
 
-@case(
-    "cross-check/friction",
-    title="Friction coefficients of both solvers",
-    claim="dense and fft report one mu, to 1e-9 absolute",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
+@case("cross-check/friction", metric="at_most", tolerance=1e-9, source=SOURCE, tolerance_reason=REASON)
 def friction() -> Measured:
+    """Friction coefficients of both solvers.
+
+    Claim: dense and fft report one mu, to 1e-9 absolute
+    """
     return worst_of(by_scene(lambda t: abs(t.dense.friction_coefficient - t.fft.friction_coefficient)))
 
 
-@case(
-    "cross-check/binormal",
-    title="Binormal forces of both solvers",
-    claim="dense and fft report one Q / P, to 1e-9 absolute",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
+@case("cross-check/binormal", metric="at_most", tolerance=1e-9, source=SOURCE, tolerance_reason=REASON)
 def binormal() -> Measured:
+    """Binormal forces of both solvers.
+
+    Claim: dense and fft report one Q / P, to 1e-9 absolute
+    """
     return worst_of(
         by_scene(lambda t: abs(t.dense.binormal_force - t.fft.binormal_force) / t.dense.normal_force)
     )

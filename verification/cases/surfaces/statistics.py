@@ -12,17 +12,14 @@ from verification.framework.case import Measured
 from verification.framework.registry import case
 
 
-@case(
-    "surfaces/skewness",
-    title="Skewness of sharp crests over wide valleys",
-    claim="z = cos t + 1/2 cos 2t has the skewness 3/8 / (5/8)^(3/2), positive: its crests are sharp",
-    source="moments of two harmonics: mean z^2 = 1/2 + 1/8, mean z^3 = 3/4 * 1/2",
-    metric="relative",
-    tolerance=1e-14,
-    tolerance_reason="equidistant points give these means exactly; 64 x 64 of them round by a few eps each",
-    tags=("statistics",),
-)
+@case("surfaces/skewness", metric="relative", tolerance=1e-14)
 def skewness() -> Measured:
+    """Skewness of sharp crests over wide valleys.
+
+    Claim: z = cos t + 1/2 cos 2t has the skewness 3/8 / (5/8)^(3/2), positive: its crests are sharp
+    Source: moments of two harmonics: mean z^2 = 1/2 + 1/8, mean z^3 = 3/4 * 1/2
+    Tolerance: equidistant points give these means exactly; 64 x 64 of them round by a few eps each
+    """
     t = 2 * math.pi * np.arange(64) / 64
     z = np.add.outer(np.cos(t) + 0.5 * np.cos(2 * t), np.zeros(64))
     return Measured(statistics.skewness(z), 0.375 / 0.625**1.5)
@@ -44,19 +41,16 @@ def whitened(seed: int, lengths: int, points: int) -> Array:
     return np.asarray(white / np.sqrt(np.mean(white**2)))
 
 
-@case(
-    "surfaces/white-moments",
-    title="The random field is Gaussian, not only of Eq. (9)'s covariance",
-    claim="divided mode by mode by Eq. (9)'s spectrum the heights are independent normal numbers: their "
-    "third moment is 0 and their fourth 3",
-    source="paper section 6.1: Gaussian heights",
-    metric="at_most",
-    tolerance=4.0,
-    tolerance_reason="in standard errors, sqrt(6 / n) and sqrt(24 / n): a Gaussian field strays farther in "
-    "1e-4 of all seeds. A smoothed field hides its noise's law from its own moments; uniform noise is 10 off",
-    tags=("eq9",),
-)
+@case("surfaces/white-moments", metric="at_most", tolerance=4.0)
 def white_moments() -> Measured:
+    """The random field is Gaussian, not only of Eq. (9)'s covariance.
+
+    Claim: divided mode by mode by Eq. (9)'s spectrum the heights are independent normal numbers: their third
+    moment is 0 and their fourth 3
+    Source: paper section 6.1: Gaussian heights
+    Tolerance: in standard errors, sqrt(6 / n) and sqrt(24 / n): a Gaussian field strays farther in 1e-4 of
+    all seeds. A smoothed field hides its noise's law from its own moments; uniform noise is 10 off
+    """
     z = whitened(seed=1, lengths=50, points=200)
     third, fourth = (float(np.mean(z**k)) for k in (3, 4))
     off = (third / math.sqrt(6 / z.size), (fourth - 3) / math.sqrt(24 / z.size))
