@@ -7,7 +7,7 @@ import pkgutil
 from collections.abc import Callable, Iterable, Mapping
 from fnmatch import fnmatchcase
 from functools import wraps
-from inspect import cleandoc, signature
+from inspect import cleandoc, signature, unwrap
 from typing import Any
 
 from verification.framework.case import Case, Measured, Metric, Tier
@@ -18,8 +18,9 @@ Function = Callable[[], Measured]
 
 LABELS = {"Claim": "claim", "Source": "source", "Tolerance": "tolerance_reason"}
 """Labels of a case's texts in its docstring, and the names of these texts."""
-TEXTS = ("title", *LABELS.values())
-DECLARED = (*TEXTS, "metric", "tolerance", "tier")
+DECLARED = ("title", *LABELS.values(), "metric", "tolerance", "tier")
+"""What a row of a family may declare for its case."""
+NOTHING: Mapping[str, Any] = {}
 
 _declared: dict[str, Case] = {}
 
@@ -31,14 +32,14 @@ def case(
 
     `metric` is one of "relative", "absolute", "at_most", "at_least", "equal" (see `Metric`), `tier` "quick"
     or "full". Title, claim, source and reason of the tolerance stand in the function's docstring (see
-    `described`); `texts` replaces them by name (title, claim, source, tolerance_reason).
+    `described`), which names the module's constants in braces; `texts` replaces them by name.
     Raises ValueError, at import, for a second case of the same id and for whatever `Case` refuses.
     """
 
     def declare(function: Function) -> Function:
         new = Case(
             id=id,
-            **{**described(function.__doc__), **texts},
+            **{**described(function), **texts},
             metric=Metric(metric),
             tolerance=tolerance,
             function=function,
@@ -54,16 +55,13 @@ def case(
     return declare
 
 
-def described(docstring: str | None) -> dict[str, str]:
-    r"""Return the texts of a case from its docstring: the title, then a paragraph of ``Label: text``.
+def described(function: Callable[..., Measured], row: Mapping[str, Any] = NOTHING) -> dict[str, str]:
+    """Return the texts of a case from its docstring: the title, then a paragraph of ``Label: text``.
 
-    Labels are Claim, Source and Tolerance. A line without a label continues the text before it; a
-    text that is not there is empty.
-
-    >>> described("Peak.\n\n    Claim: it is p0\n    Source: Hertz 1882\n    Tolerance: h^2,\n    measured")
-    {'title': 'Peak', 'claim': 'it is p0', 'source': 'Hertz 1882', 'tolerance_reason': 'h^2, measured'}
+    Labels are Claim, Source and Tolerance. A line without a label continues the text before it; a text
+    that is missing is empty. Braces hold an entry of the row, or a constant of the function's module.
     """
-    title, labelled, *_ = *cleandoc(docstring or "").split("\n\n"), ""
+    title, labelled, *_ = *cleandoc(function.__doc__ or "").split("\n\n"), ""
     name = "title"
     texts = {name: " ".join(title.split("\n")).removesuffix("."), **dict.fromkeys(LABELS.values(), "")}
     for line in labelled.splitlines():
@@ -73,7 +71,8 @@ def described(docstring: str | None) -> dict[str, str]:
             texts[name] = text
         elif name != "title":
             texts[name] += f" {line}"
-    return texts
+    words = {**unwrap(function).__globals__, **row}
+    return {name: text.format_map(words) for name, text in texts.items()}
 
 
 def family(
@@ -82,8 +81,7 @@ def family(
     """Declare one case for each of `rows`, by id; the decorated function computes all of them.
 
     The columns, named "a, b, c", are the function's arguments, what a case alone declares (`title`,
-    `tolerance`, ...), and words of the texts, which the docstring and the keywords hold for all rows and
-    which name columns in braces.
+    `tolerance`, ...), and words of the docstring, which holds for all rows and names columns in braces.
     """
 
     def declare(function: Callable[..., Measured]) -> Callable[..., Measured]:
@@ -91,14 +89,12 @@ def family(
             row = dict(zip(columns.split(", "), entries, strict=True))
             arguments = {name: row[name] for name in signature(function).parameters}
 
-            @wraps(function)  # takes over the module, where the runner's workers look for the case
+            @wraps(function, assigned=("__module__", "__name__"))  # where the runner's workers look for it
             def run(arguments: Mapping[str, Any] = arguments) -> Measured:
                 return function(**arguments)
 
             own = {name: entry for name, entry in row.items() if name in DECLARED}
-            shared = {**described(function.__doc__), **declared}
-            texts = {name: text.format(**row) if name in TEXTS else text for name, text in shared.items()}
-            case(id, **{**texts, **own})(run)
+            case(id, **{**described(function, row), **declared, **own})(run)
         return function
 
     return declare

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 import refimpl as rf
 from appendix_a.facet import facet_coefficient, neighbours
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.reproduction.ensemble import estimate
 from verification.reproduction.table1 import rough
 
@@ -158,27 +158,23 @@ def verdict(pair: str) -> str:
     return "; ".join(at(slope) for slope in (PAPER[1], 6.5, SLOPES[-1]))
 
 
-def declare(slug: str, pair: str) -> None:
-    """A full-tier case: what the correction changes in Table 1's scenes and steeper ones."""
+@family(
+    "pair",
+    {"appendix-correction/paper-pair": PAIRS[:1], "appendix-correction/rigid-rough-ball": PAIRS[1:]},
+    metric="at_most",
+    tolerance=2.0,
+    tier="full",
+)
+def effect(pair: str) -> Measured:
+    """Changes by the slope correction, {pair}.
 
-    @case(
-        f"appendix-correction/{slug}",
-        metric="at_most",
-        tolerance=2.0,
-        tier="full",
-        title=f"What the slope correction changes, {pair}",
-        claim="Up to the paper's rms slope of 2.5 degrees exact facet tractions change mu, A, f_max and Q by "
-        "less than 2 %, on the mean over eight surfaces",
-        source="exact facet tractions (refimpl.model.forces); paper, Table 1, section 8 and Appendix A",
-        tolerance_reason="percent: the paper's bound on its coefficients, applied to the results",
-    )
-    def effect() -> Measured:
-        paper = [changes(pair, slope)[TREATMENTS[0]].mean(axis=0) for slope in SLOPES if slope <= PAPER[1]]
-        return Measured(float(np.abs(paper).max()), unit="%", data=over_slopes(pair), note=verdict(pair))
-
-
-declare("paper-pair", PAIRS[0])
-declare("rigid-rough-ball", PAIRS[1])
+    Claim: Up to the paper's rms slope of 2.5 degrees exact facet tractions change mu, A, f_max and Q by less
+    than 2 %, on the mean over eight surfaces
+    Source: exact facet tractions (refimpl.model.forces); paper, Table 1, section 8 and Appendix A
+    Tolerance: percent: the paper's bound on its coefficients, applied to the results
+    """
+    paper = [changes(pair, slope)[TREATMENTS[0]].mean(axis=0) for slope in SLOPES if slope <= PAPER[1]]
+    return Measured(float(np.abs(paper).max()), unit="%", data=over_slopes(pair), note=verdict(pair))
 
 
 @case("appendix-correction/paper-remedy", metric="at_most", tolerance=0.5, tier="full")

@@ -107,18 +107,13 @@ def exact_bump() -> Measured:
     return Measured(value=max(worst), unit="percentage points", data=data | {"error": worst})
 
 
-@case(
-    "appendix-fem/nearly-incompressible",
-    metric="at_most",
-    tolerance=POINTS,
-    tier="full",
-    tolerance_reason=POINTS_REASON,
-)
+@case("appendix-fem/nearly-incompressible", metric="at_most", tolerance=POINTS, tier="full")
 def nearly_incompressible() -> Measured:
     """Wave of 20 degrees at nu = 0.4999.
 
     Claim: Michell's extrapolation in kappa agrees with a mixed displacement-pressure solve
     Source: Michell 1899; Taylor and Hood 1973
+    Tolerance: {POINTS_REASON}
     """
     nu, slope, wavelength, position = 0.4999, 20.0, 20.0, 0.2
     offsets = NEIGHBOURS[2:-2]
@@ -136,18 +131,13 @@ def nearly_incompressible() -> Measured:
     return Measured(value=float(np.max(np.abs(difference))), unit="percentage points", data=data)
 
 
-@case(
-    "appendix-fem/outer-boundary",
-    metric="at_most",
-    tolerance=POINTS,
-    tier="full",
-    tolerance_reason=POINTS_REASON,
-)
+@case("appendix-fem/outer-boundary", metric="at_most", tolerance=POINTS, tier="full")
 def outer_boundary() -> Measured:
     """Three outer radii on the steepest, shortest wave.
 
     Claim: the largest radius changes no coefficient by more than 0.02 percentage points
     Source: Flamant's field of the load's resultant on the outer boundary
+    Tolerance: {POINTS_REASON}
     """
     solved = departures(30.0, 16.0, 0.25, NEIGHBOURS, levels=(0, 0, 0))
     values = [percent(radius.at(0.3), 0.3, NEIGHBOURS) for radius in solved.radii]

@@ -108,17 +108,12 @@ def flank_uncertainty() -> Measured:
     return Measured(value=float(result.uncertainty.max()), data=data)
 
 
-@case(
-    "fem3d/correction",
-    metric="at_least",
-    tolerance=5.0,
-    tier="full",
-    source="exact tractions of a facet; " + SOURCE,
-)
+@case("fem3d/correction", metric="at_least", tolerance=5.0, tier="full")
 def correction() -> Measured:
     """Facet tractions remove the antisymmetric error, in three dimensions.
 
     Claim: with [c_s] f tan(theta) the antisymmetric error at 10 degrees falls at least five times
+    Source: exact tractions of a facet; {SOURCE}
     Tolerance: required of the correction; measured 33, 11 and 8 at 1, 2 and 3 elements
     """
     return correction_drop(NU)
@@ -138,17 +133,12 @@ def correction_drop(nu: float) -> Measured:
     return Measured(value=float(np.abs(plain / cured).min()), data=data)
 
 
-@case(
-    "fem3d/correction-and-growth",
-    metric="at_least",
-    tolerance=5.0,
-    tier="full",
-    source="appendix_a.fem3d.leading_order; " + SOURCE,
-)
+@case("fem3d/correction-and-growth", metric="at_least", tolerance=5.0, tier="full")
 def correction_and_growth() -> Measured:
     """Error that the correction leaves.
 
     Claim: at nu 0 the correction and the part that grows leave a fifth of the antisymmetric error
+    Source: appendix_a.fem3d.leading_order; {SOURCE}
     Tolerance: required of the first-order part; the correction alone reaches 9, 4.3 and 3.6 here
     """
     plain = flank(0.0).antisymmetric

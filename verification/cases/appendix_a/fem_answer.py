@@ -116,18 +116,13 @@ def remainder() -> Measured:
     return Measured(value=float((np.array(missed) / formula).max()), data=data)
 
 
-@case(
-    "appendix-fem/fig12-waves",
-    metric="at_most",
-    tolerance=POINTS,
-    tier="full",
-    tolerance_reason=POINTS_REASON,
-)
+@case("appendix-fem/fig12-waves", metric="at_most", tolerance=POINTS, tier="full")
 def waves() -> Measured:
     """Crest, flank and valley (Fig. 12).
 
     Claim: the coefficients of waves of 2.5, 6.5 and 15 degrees are known to 0.02 percentage points
     Source: paper Fig. 12, (A2)
+    Tolerance: {POINTS_REASON}
     """
     worst, data = 0.0, {"offset": CURVE.tolist()}
     for name, position in (("crest", 0.0), ("flank", 0.25), ("valley", 0.5)):
@@ -142,18 +137,13 @@ def waves() -> Measured:
     return Measured(value=worst, unit="percentage points", data=data, note="wavelength 50 a, nu 0.3")
 
 
-@case(
-    "appendix-fem/fig13-wedge-tip",
-    metric="at_most",
-    tolerance=POINTS,
-    tier="full",
-    tolerance_reason=POINTS_REASON,
-)
+@case("appendix-fem/fig13-wedge-tip", metric="at_most", tolerance=POINTS, tier="full")
 def fig13() -> Measured:
     """Wedge tip on a half-plane (Fig. 13).
 
     Claim: the relative differences of Fig. 13 are known to 0.02 percentage points
     Source: paper Fig. 13
+    Tolerance: {POINTS_REASON}
     """
     offsets = CURVE[CURVE > 0.0]
     worst, data = 0.0, {"offset": offsets.tolist()}

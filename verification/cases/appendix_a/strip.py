@@ -74,17 +74,13 @@ def a1_tractions() -> Measured:
     return Measured(value=errors[-1], data={"depth over a": depths, "largest departure": errors})
 
 
-@case(
-    "appendix-strip/first-order-wedge",
-    metric="at_most",
-    tolerance=1e-3,
-    source=SOURCE + "; wedge displacements from the Mellin transform",
-)
+@case("appendix-strip/first-order-wedge", metric="at_most", tolerance=1e-3)
 def first_order_wedge() -> Measured:
     """First-order theory against the exact wedge.
 
     Claim: the faces of a wedge of slope gamma -> 0 move as the first-order theory says for |x| tan(gamma):
     -(1+nu)(1-2nu) (p/E) gamma x up to the strip's end, and constant beyond
+    Source: {SOURCE}; wedge displacements from the Mellin transform
     Tolerance: what is left is of second order: gamma = 1e-5 times a coefficient below 100
     """
     x = np.array([0.05, 0.3, 0.7, 1.0, 1.5, 3.0, 10.0])
@@ -101,14 +97,13 @@ def first_order_wedge() -> Measured:
     return Measured(value=max(worst), data=series)
 
 
-@case(
-    "appendix-strip/superposition", metric="at_most", tolerance=2e-3, source="paper Eqs (A1)-(A3); " + SOURCE
-)
+@case("appendix-strip/superposition", metric="at_most", tolerance=2e-3)
 def superposition() -> Measured:
     """Pseudo tractions of (A3) against the first-order theory.
 
     Claim: with theta the direction of the normal and the load added, (A1)-(A3) and Flamant's superposition
     give the first-order change of the displacement beside the strip, on a crest
+    Source: paper Eqs (A1)-(A3); {SOURCE}
     Tolerance: second order: the slope of 1.7e-4 rad over the first order's pi a/lambda = 0.16
     """
     offsets = np.array([-5.0, -2.0, -1.2, 1.2, 2.0, 5.0])

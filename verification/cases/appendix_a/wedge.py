@@ -125,16 +125,12 @@ def corrected_series() -> Measured:
     return Measured(value=max(errors), data={"corrected": errors, "as printed": as_printed})
 
 
-@case(
-    "appendix-wedge/enclosures",
-    metric="at_most",
-    tolerance=1e-13,
-    source="Arb (Johansson 2017), acb.integral with a bounded tail; " + SOURCE,
-)
+@case("appendix-wedge/enclosures", metric="at_most", tolerance=1e-13)
 def enclosures() -> Measured:
     """Wedge: rigorous enclosures.
 
     Claim: balls of radius below 1e-18 enclose the stresses, and double precision is within 1e-13 of them
+    Source: Arb (Johansson 2017), acb.integral with a bounded tail; {SOURCE}
     Tolerance: rounding of the fast path; the enclosure's own radius is part of the value
     """
     errors, radii = [], []

@@ -121,17 +121,13 @@ def any_state() -> Measured:
     return Measured(value=max(ratios), data={"true over bound": ratios})
 
 
-@case(
-    "bounds/numbers",
-    metric="at_most",
-    tolerance=1.0,
-    source=SOURCE,
-    tolerance_reason=PROVEN + "; differences below 1e-15 of a number are the double's own and neglected",
-)
+@case("bounds/numbers", metric="at_most", tolerance=1.0)
 def numbers() -> Measured:
     """Bounds on pressure, approach, forces and friction.
 
     Claim: no number of a loosely solved scene is farther from its proven value than its bound
+    Source: {SOURCE}
+    Tolerance: {PROVEN}; differences below 1e-15 of a number are the double's own and neglected
     """
     worst: dict[str, float] = {}
     compared = 0

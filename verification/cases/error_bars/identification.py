@@ -13,16 +13,11 @@ from refimpl.scene.scene import Body
 from verification.coverage.identification import SETS, TwinSet, study, summary
 from verification.coverage.twins import KINDS, ROUGHNESS_TOLERANCE, SHARP_FIT_GRID
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
 MOST_SOLVES = 60
-
-
-def _third(twins: TwinSet) -> Measured:
-    """Judge every third twin of a study: all of them take longer than a tier should."""
-    return _coverage(twins, twins.seeds[::3])
 
 
 def _coverage(twins: TwinSet, seeds: range) -> Measured:
@@ -37,17 +32,6 @@ def _coverage(twins: TwinSet, seeds: range) -> Measured:
     return Measured(value=value, data=found, note=note)
 
 
-@case("identification/twins", metric="at_least", tolerance=0.90, tier="full")
-def twins() -> Measured:
-    """95 % intervals of tau, beta and a new load's mu, in random twins.
-
-    Claim: The intervals cover the truth, and the warning stands in every twin whose tau is not determined.
-    Source: twins whose friction is known; coverage as in ASME V&V 20 (2009)
-    Tolerance: 95 %, less two standard deviations of 100 twins (4.4 %) and rounding
-    """
-    return _third(SETS["drawn"])
-
-
 @case("identification/twins-sample", metric="at_least", tolerance=0.8)
 def twins_sample() -> Measured:
     """95 % intervals of tau, beta and a new load's mu, one twin of each kind.
@@ -60,52 +44,40 @@ def twins_sample() -> Measured:
     return _coverage(SETS["drawn"], range(stop, stop + len(KINDS)))
 
 
-@case(
-    "identification/sharp-twins",
-    metric="at_least",
-    tolerance=0.85,
-    tier="full",
-    claim="Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
-    f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is known "
-    "within 5 % has the warning.",
-)
-def sharp_twins() -> Measured:
-    """95 % intervals of tau below 5 %, without a warning.
-
-    Source: as identification/twins, other seeds
-    Tolerance: 95 %, less two standard deviations of 20 twins (9.7 %) and rounding
-    """
-    return _third(SETS["sharp"])
-
-
-@case("identification/hardness", metric="at_least", tolerance=0.83, tier="full")
-def hardness() -> Measured:
-    """95 % intervals of tau, beta, the hardness and a new load's mu.
-
-    Claim: Where balls yield at their larger loads, friction determines the hardness beside tau and beta, from
-    first guesses off by up to 40 %.
-    Source: twins whose friction and hardness are known
-    Tolerance: 95 %, less two standard deviations of 14 twins (11.6 %) and rounding
-    """
-    return _third(SETS["hardness"])
-
-
-@case(
-    "identification/roughness",
-    metric="at_least",
-    tolerance=0.83,
-    tier="full",
-    claim="Where a rough ball is known by its statistics alone, its rms height within "
-    f"{ROUGHNESS_TOLERANCE:.0%}, and a correlation length is six elements or more, four other realisations "
-    "determine tau and beta within their intervals.",
-)
-def roughness() -> Measured:
-    """95 % intervals of tau, beta and a new load's mu, from statistics of a surface.
-
-    Source: twins whose friction is known, of a realisation that no fit draws
-    Tolerance: 95 %, less two standard deviations of 14 twins (11.6 %) and rounding
-    """
-    return _third(SETS["roughness"])
+@family(
+    "twins, title, claim, source, tolerance, tolerance_reason",
+    {
+        "identification/twins": (
+            "drawn", "95 % intervals of tau, beta and a new load's mu, in random twins",
+            "The intervals cover the truth, and the warning stands in every twin whose tau is not determined.",
+            "twins whose friction is known; coverage as in ASME V&V 20 (2009)",
+            0.90, "95 %, less two standard deviations of 100 twins (4.4 %) and rounding"),
+        "identification/sharp-twins": (
+            "sharp", "95 % intervals of tau below 5 %, without a warning",
+            "Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
+            f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is known "
+            "within 5 % has the warning.",
+            "as identification/twins, other seeds",
+            0.85, "95 %, less two standard deviations of 20 twins (9.7 %) and rounding"),
+        "identification/hardness": (
+            "hardness", "95 % intervals of tau, beta, the hardness and a new load's mu",
+            "Where balls yield at their larger loads, friction determines the hardness beside tau and beta, "
+            "from first guesses off by up to 40 %.",
+            "twins whose friction and hardness are known",
+            0.83, "95 %, less two standard deviations of 14 twins (11.6 %) and rounding"),
+        "identification/roughness": (
+            "roughness", "95 % intervals of tau, beta and a new load's mu, from statistics of a surface",
+            "Where a rough ball is known by its statistics alone, its rms height within "
+            f"{ROUGHNESS_TOLERANCE:.0%}, and a correlation length is six elements or more, four other "
+            "realisations determine tau and beta within their intervals.",
+            "twins whose friction is known, of a realisation that no fit draws",
+            0.83, "95 %, less two standard deviations of 14 twins (11.6 %) and rounding"),
+    },
+    metric="at_least", tier="full",
+)  # fmt: skip
+def third(twins: str) -> Measured:
+    """Judge every third twin of a study: all of them take longer than a tier should."""
+    return _coverage(SETS[twins], SETS[twins].seeds[::3])
 
 
 @case("identification/effects", metric="at_most", tolerance=0.01)
@@ -157,15 +129,11 @@ def _effect(found: Identification) -> dict[str, float]:
     }
 
 
-@case(
-    "identification/solves",
-    metric="at_most",
-    tolerance=MOST_SOLVES,
-    claim=f"A fit without a first guess takes at most {MOST_SOLVES} solves.",
-)
+@case("identification/solves", metric="at_most", tolerance=MOST_SOLVES)
 def solves() -> Measured:
     """Forward solves of a fit to eight loads on 256 x 256, with friction and slopes.
 
+    Claim: A fit without a first guess takes at most {MOST_SOLVES} solves.
     Source: scene table1-rough, noise 1 %, seed 7; the limit is this project's own
     Tolerance: seven passes over eight rows, and further loads
     """

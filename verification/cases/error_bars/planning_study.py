@@ -101,8 +101,7 @@ def estimates_tight() -> Measured:
         for term in sorted({t.term for t in studied()})
     }
     return Measured(
-        float(np.median([ratio(trial) for trial in neglected()])),
-        data={"median over all scenes": by_term},
+        float(np.median([ratio(trial) for trial in neglected()])), data={"median over all scenes": by_term}
     )
 
 

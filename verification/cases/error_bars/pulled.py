@@ -128,18 +128,13 @@ def strongly_pulled() -> Measured:
     return Measured(max(of.share for of in found.values()), data=data)
 
 
-@case(
-    "accuracy/pulled-random",
-    metric="at_least",
-    tolerance=HELD,
-    tier="full",
-    claim=f"of {SCENES} scenes each on balls, at an approach and on planes that repeat, with tau of 0.05 to "
-    f"0.8 of the mean pressure, {HELD:.0%} have errors within the bars; the least of the shares counts",
-    source=SOURCE,
-)
+@case("accuracy/pulled-random", metric="at_least", tolerance=HELD, tier="full")
 def pulled_at_random() -> Measured:
     """Bars of approach, N and f_max of random pairs of unlike bodies under strong tau.
 
+    Claim: of {SCENES} scenes each on balls, at an approach and on planes that repeat, with tau of 0.05 to 0.8
+    of the mean pressure, {HELD:.0%} have errors within the bars; the least of the shares counts
+    Source: {SOURCE}
     Tolerance: a bar of 95 % passes it in 94 of 100 draws of 100 scenes
     """
     by_number: dict[str, list[Off]] = {}

@@ -127,16 +127,12 @@ def finer_grids() -> Measured:
     return Measured(max(medians.values()), data={"median": medians, "nine of ten": most}, note=note)
 
 
-@case(
-    "sensitivity/drawn-inputs",
-    metric="at_most",
-    tolerance=0.1,
-    source=f"{DRAWS} solves of a rough ball with normal inputs (Sobol points) as wide as the tolerances",
-)
+@case("sensitivity/drawn-inputs", metric="at_most", tolerance=0.1)
 def drawn_inputs() -> Measured:
     """Input uncertainty against drawn inputs.
 
     Claim: the budget's input part of mu, A, f_max and Q is the 95 % half-width of solves with drawn inputs
+    Source: {DRAWS} solves of a rough ball with normal inputs (Sobol points) as wide as the tolerances
     Tolerance: relative, on 192 x 192: so many Sobol points are good to 0.02, A counts elements, and Q bends
     within the inputs' 5 %; on half that grid by more, which the note states and nothing bounds
     """

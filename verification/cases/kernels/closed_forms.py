@@ -17,17 +17,34 @@ from verification.cases.kernels.kernels import CERRUTI_SOURCE, LOVE_SOURCE
 from verification.exact import kernel_reference as reference
 from verification.exact.kernel_points import ASPECTS, FARTHEST
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 
 Array = NDArray[np.float64]
 
 EPS = float(np.finfo(np.float64).eps)
 
 
+@family(
+    "textbook, kernel, exact, author, symbol, source",
+    {
+        "kernels/textbook-normal-fails": (
+            reference.textbook_normal, normal_integral, reference.normal, "Love", "1/rho", LOVE_SOURCE),
+        "kernels/textbook-tangential-fails": (
+            reference.textbook_tangential, tangential_integral, reference.tangential, "Cerruti", "s/rho^2",
+            CERRUTI_SOURCE),
+    },
+    metric="at_least", tolerance=11.0,
+)  # fmt: skip
 def digits_lost(
     textbook: Callable[..., Array], kernel: Callable[..., Array], exact: Callable[..., Any]
 ) -> Measured:
-    """log10(error / eps) of the textbook form at 1e6 elements, median over directions; data by distance."""
+    """{author}'s corner sum loses its digits far from the load.
+
+    Claim: at 1e6 elements the textbook form of I[{symbol}] has lost at least 11 of a double's 16 digits
+    Tolerance: terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread
+
+    The value is log10(error / eps), the median over directions; data by distance.
+    """
     distances = np.logspace(0, np.log10(FARTHEST), 13)
     tangents = np.linspace(0, 1, 9)
     errors: dict[str, list[float]] = {"offset": [], "textbook": [], "production": []}
@@ -42,26 +59,6 @@ def digits_lost(
     printed_error, made_error = errors["textbook"][-1], errors["production"][-1]
     note = f"error at 1e6 elements: textbook {printed_error:.1e}, production {made_error:.1e}"
     return Measured(value=lost, unit="digits", data=errors, note=note)
-
-
-@case("kernels/textbook-normal-fails", metric="at_least", tolerance=11.0, source=LOVE_SOURCE)
-def textbook_normal_fails() -> Measured:
-    """Love's corner sum loses its digits far from the load.
-
-    Claim: at 1e6 elements the textbook form of I[1/rho] has lost at least 11 of a double's 16 digits
-    Tolerance: terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread
-    """
-    return digits_lost(reference.textbook_normal, normal_integral, reference.normal)
-
-
-@case("kernels/textbook-tangential-fails", metric="at_least", tolerance=11.0, source=CERRUTI_SOURCE)
-def textbook_tangential_fails() -> Measured:
-    """Cerruti's corner sum loses its digits far from the load.
-
-    Claim: at 1e6 elements the textbook form of I[s/rho^2] has lost at least 11 of a double's 16 digits
-    Tolerance: terms of about n rounded to eps, a sum of about 1/n: n^2 eps, 12 digits; 1 for spread
-    """
-    return digits_lost(reference.textbook_tangential, tangential_integral, reference.tangential)
 
 
 @case("kernels/quadrature-bound", metric="at_most", tolerance=1.0)

@@ -11,14 +11,9 @@ import numpy as np
 
 from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
 from verification.exact import kernel_reference as reference
-from verification.exact.kernel_points import (
-    Point,
-    awkward_points,
-    boundary_points,
-    random_points,
-)
+from verification.exact.kernel_points import Point, awkward_points, boundary_points, random_points
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 
 LOVE_SOURCE = "Love 1929; Johnson 1985, Eq. (3.25); paper section 3"
 CERRUTI_SOURCE = "Cerruti 1882; Johnson 1985, section 3.6; paper section 3"
@@ -50,41 +45,25 @@ def all_points() -> dict[str, Iterable[Point]]:
     }
 
 
-@case(
-    "kernels/normal-50-digits",
-    metric="at_most",
-    tolerance=TOLERANCE,
-    source=LOVE_SOURCE,
-    tolerance_reason=REASON,
-)
-def normal_accuracy() -> Measured:
-    """Normal influence integral against 50-digit values.
+@family(
+    "kernel, exact, name, symbol, extent, source",
+    {
+        "kernels/normal-50-digits": (
+            normal_integral, reference.normal, "Normal", "I[1/rho]",
+            " and aspects 1e-3 ... 1e3", LOVE_SOURCE),
+        "kernels/tangential-50-digits": (
+            tangential_integral, reference.tangential, "Tangential", "I[s/rho^2]",
+            ", aspects 1e-3 ... 1e3, and close to its zero at x = 0", CERRUTI_SOURCE),
+    },
+    metric="at_most", tolerance=TOLERANCE,
+)  # fmt: skip
+def accuracy(kernel: Callable[..., Any], exact: Callable[..., Any]) -> Measured:
+    """{name} influence integral against 50-digit values.
 
-    Claim: I[1/rho] has a relative error below 1e-14 for offsets 0 ... 1e6 elements and aspects 1e-3 ... 1e3
+    Claim: {symbol} has a relative error below 1e-14 for offsets 0 ... 1e6 elements{extent}
+    Tolerance: {REASON}
     """
-    return worst(
-        normal_integral, lambda value, p: reference.relative_error(value, reference.normal(*p)), all_points()
-    )
-
-
-@case(
-    "kernels/tangential-50-digits",
-    metric="at_most",
-    tolerance=TOLERANCE,
-    source=CERRUTI_SOURCE,
-    tolerance_reason=REASON,
-)
-def tangential_accuracy() -> Measured:
-    """Tangential influence integral against 50-digit values.
-
-    Claim: I[s/rho^2] has a relative error below 1e-14 for offsets 0 ... 1e6 elements, aspects 1e-3 ... 1e3,
-    and close to its zero at x = 0
-    """
-    return worst(
-        tangential_integral,
-        lambda value, p: reference.relative_error(value, reference.tangential(*p)),
-        all_points(),
-    )
+    return worst(kernel, lambda value, p: reference.relative_error(value, exact(*p)), all_points())
 
 
 def enclosed_points() -> dict[str, Iterable[Point]]:
@@ -93,42 +72,24 @@ def enclosed_points() -> dict[str, Iterable[Point]]:
     return {"random": random, "centre, edges, corners": [p for p in awkward_points() if 1e-8 < p[0] < 3][::4]}
 
 
-@case(
-    "kernels/normal-enclosed",
-    metric="at_most",
-    tolerance=TOLERANCE,
-    source=f"{LOVE_SOURCE}; Johansson 2017 (ball arithmetic)",
-    tolerance_reason=REASON,
-)
-def normal_enclosed() -> Measured:
-    """Normal influence integral against rigorous enclosures.
+@family(
+    "kernel, ball, name, symbol, printed",
+    {
+        "kernels/normal-enclosed": (
+            normal_integral, reference.normal_enclosure, "Normal", "I[1/rho]", LOVE_SOURCE),
+        "kernels/tangential-enclosed": (
+            tangential_integral, reference.tangential_enclosure, "Tangential", "I[s/rho^2]", CERRUTI_SOURCE),
+    },
+    metric="at_most", tolerance=TOLERANCE,
+)  # fmt: skip
+def enclosed(kernel: Callable[..., Any], ball: Callable[..., Any]) -> Measured:
+    """{name} influence integral against rigorous enclosures.
 
-    Claim: I[1/rho] is within 1e-14 of every number in a ball proved to contain the exact integral
+    Claim: {symbol} is within 1e-14 of every number in a ball proved to contain the exact integral
+    Source: {printed}; Johansson 2017 (ball arithmetic)
+    Tolerance: {REASON}
     """
-
-    def error(value: float, point: Point) -> float:
-        return reference.relative_distance(value, reference.normal_enclosure(*point))
-
-    return worst(normal_integral, error, enclosed_points())
-
-
-@case(
-    "kernels/tangential-enclosed",
-    metric="at_most",
-    tolerance=TOLERANCE,
-    source=f"{CERRUTI_SOURCE}; Johansson 2017 (ball arithmetic)",
-    tolerance_reason=REASON,
-)
-def tangential_enclosed() -> Measured:
-    """Tangential influence integral against rigorous enclosures.
-
-    Claim: I[s/rho^2] is within 1e-14 of every number in a ball proved to contain the exact integral
-    """
-
-    def error(value: float, point: Point) -> float:
-        return reference.relative_distance(value, reference.tangential_enclosure(*point))
-
-    return worst(tangential_integral, error, enclosed_points())
+    return worst(kernel, lambda value, p: reference.relative_distance(value, ball(*p)), enclosed_points())
 
 
 @case("kernels/references-agree", metric="at_most", tolerance=1e-17)
@@ -154,17 +115,13 @@ def references_agree() -> Measured:
     return Measured(value=max(*errors["normal"], *errors["tangential"]), data={"points": points, **errors})
 
 
-@case(
-    "kernels/tables-50-digits",
-    metric="at_most",
-    tolerance=TOLERANCE,
-    source=f"{LOVE_SOURCE}; {CERRUTI_SOURCE}",
-    tolerance_reason=REASON,
-)
+@case("kernels/tables-50-digits", metric="at_most", tolerance=TOLERANCE)
 def table_accuracy() -> Measured:
     """Tables for the convolution against 50-digit values.
 
     Claim: sampled entries of 1024-wide tables, for square and oblong elements, err by less than 1e-14
+    Source: {LOVE_SOURCE}; {CERRUTI_SOURCE}
+    Tolerance: {REASON}
     """
     rng = np.random.default_rng(2003)
     n, m, dx = 1024, 600, 2.0**-20

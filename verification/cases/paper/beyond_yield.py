@@ -114,16 +114,12 @@ def estimate(tier: str) -> Measured:
     return judged(Verdict.CONDITIONAL, sentence, max(beyond), data=data)
 
 
-@in_both_tiers(
-    "reproduction/eq11-capped-slopes",
-    metric="at_most",
-    tolerance={"quick": 0.06, "full": 0.06},
-    source=SOURCE,
-)
+@in_both_tiers("reproduction/eq11-capped-slopes", metric="at_most", tolerance={"quick": 0.06, "full": 0.06})
 def slopes(tier: str) -> Measured:
     """Eq. (11) with slopes: does mu go below it?
 
     Claim: Eq. (11) holds for small asperity slopes
+    Source: {SOURCE}
     Tolerance: largest change of mu by slopes in one realisation: the mean slope under load is of either sign,
     its scatter some 0.1 of the rms slope of 2.5 to 3.7 degrees over the root of the number of contacts
     """

@@ -8,12 +8,12 @@ import numpy as np
 
 from verification.exact.coupled_indentation import first_order_shift
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.framework.verdict import Verdict, judged
 from verification.reproduction import fig5, fig6, fig7
 from verification.reproduction.printed import FIG6_RMS
 from verification.reproduction.table1 import SMOOTH, coupling, hertz
-from verification.reproduction.tiers import in_both_tiers
+from verification.reproduction.tiers import TIERS, in_both_tiers
 
 GRID = {"quick": 128, "full": 512}
 SIZES_FIG6 = {"quick": (4, 128), "full": (75, 256)}  # realisations, elements per side
@@ -101,8 +101,6 @@ def _fig6_data(rms: float, tier: str) -> dict[str, object]:
     }
 
 
-FIG6_VERDICTS = {"a": Verdict.REFUTED, "b": Verdict.CONDITIONAL, "c": Verdict.CONDITIONAL}
-FIG6_METRIC = {"a": "at_least", "b": "at_most", "c": "at_most"}
 FIG6_TOLERANCE = {
     "a": {"quick": 0.5, "full": 0.5},
     "b": {"quick": 0.95, "full": 0.5},
@@ -110,41 +108,48 @@ FIG6_TOLERANCE = {
 }
 
 
-def _declare_fig6(rms: float, panel: str) -> None:
-    @in_both_tiers(
-        f"reproduction/fig6{panel}",
-        metric=FIG6_METRIC[panel],
-        tolerance=FIG6_TOLERANCE[panel],
-        title=f"Fig. 6({panel}): effective pressure at sigma_e = {rms * 1e6:g} um",
-        claim=f"Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {rms * 1e6:g} um",
-        source="paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5",
-        tolerance_reason="rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure "
-        "from theirs, the effect of roughness: 1 for a solver without roughness, 0 for theirs. A curve more "
-        "than half the effect away is nearer to Hertz: no agreement, (a); less, (b) and (c). Sampling leaves "
-        "0.06 to 0.13 with 75 realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) "
-        "by 0.95 only; with 75 (c) is bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away",
+@family(
+    "panel, rms, um, tier, tolerance, metric, verdict",
+    {
+        f"reproduction/fig6{panel}{'' if tier == 'quick' else '-full'}": (
+            *(panel, rms, rms * 1e6, tier, FIG6_TOLERANCE[panel][tier]),
+            *(("at_least", Verdict.REFUTED) if panel == "a" else ("at_most", Verdict.CONDITIONAL)),
+        )
+        for panel, rms in zip("abc", FIG6_RMS, strict=True)
+        for tier in TIERS
+    },
+)
+def agreement(rms: float, tier: str, verdict: Verdict) -> Measured:
+    """Fig. 6({panel}): effective pressure at sigma_e = {um:g} um.
+
+    Claim: Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {um:g} um
+    Source: paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5
+    Tolerance: rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure from theirs, the
+    effect of roughness: 1 for a solver without roughness, 0 for theirs. A curve more than half the effect
+    away is nearer to Hertz: no agreement, (a); less, (b) and (c). Sampling leaves 0.06 to 0.13 with 75
+    realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) by 0.95 only; with 75 (c) is
+    bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away
+    """
+    found = _fig6(rms, tier)
+    ours, theirs = found.central(found.pressure), found.central(found.greenwood_tripp)
+    misfit, smooth = found.misfit(found.greenwood_tripp), found.without_roughness
+    sentence = (
+        f"rms difference {misfit:.3f} p0, Hertz' pressure {smooth:.3f} (sampling {found.noise:.3f}; "
+        f"{found.misfit(found.textbook):.3f} from the textbook's curve of mu = 4 and the caption's "
+        "alpha, which these surfaces do not have); over the inner half of the Hertz circle "
+        f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
+        "load outside a0"
     )
-    def agreement(tier: str) -> Measured:
-        found = _fig6(rms, tier)
-        ours, theirs = found.central(found.pressure), found.central(found.greenwood_tripp)
-        misfit, smooth = found.misfit(found.greenwood_tripp), found.without_roughness
-        sentence = (
-            f"rms difference {misfit:.3f} p0, Hertz' pressure {smooth:.3f} (sampling {found.noise:.3f}; "
-            f"{found.misfit(found.textbook):.3f} from the textbook's curve of mu = 4 and the caption's "
-            "alpha, which these surfaces do not have); over the inner half of the Hertz circle "
-            f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
-            "load outside a0"
-        )
-        edge = len(found.r) * fig6.BIN / hertz().contact_radius
-        half_side = SMOOTH.lengths[0] / 2 / hertz().contact_radius
-        carried, predicted = found.load_share(found.pressure), found.load_share(found.greenwood_tripp)
-        sentence += (
-            f"; to {edge:.2f} a0 (the domain ends at {half_side:.2f}) ours carries {carried:.1%} of the "
-            f"load, Greenwood-Tripp {predicted:.1%}"
-        )
-        data = _fig6_data(rms, tier)
-        data |= {"largest r/a0": edge, "load share": carried, "load share, Greenwood-Tripp": predicted}
-        return judged(FIG6_VERDICTS[panel], sentence, misfit / smooth, data=data)
+    edge = len(found.r) * fig6.BIN / hertz().contact_radius
+    half_side = SMOOTH.lengths[0] / 2 / hertz().contact_radius
+    carried, predicted = found.load_share(found.pressure), found.load_share(found.greenwood_tripp)
+    sentence += (
+        f"; to {edge:.2f} a0 (the domain ends at {half_side:.2f}) ours carries {carried:.1%} of the "
+        f"load, Greenwood-Tripp {predicted:.1%}"
+    )
+    data = _fig6_data(rms, tier)
+    data |= {"largest r/a0": edge, "load share": carried, "load share, Greenwood-Tripp": predicted}
+    return judged(verdict, sentence, misfit / smooth, data=data)
 
 
 @case("reproduction/fig6d", metric="at_least", tolerance=2.0)
@@ -200,7 +205,3 @@ def section(tier: str) -> Measured:
         "largest change (nm)": found.difference * 1e9,
     }
     return judged(Verdict.CONFIRMED, sentence, change, data=data)
-
-
-for _panel, _rms in zip("abc", FIG6_RMS, strict=True):
-    _declare_fig6(_rms, _panel)

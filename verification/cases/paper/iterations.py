@@ -43,17 +43,13 @@ def periodicity_after() -> Measured:
     return Measured(worst, data=data)
 
 
-@case(
-    "paper/periodicity-extent",
-    metric="at_most",
-    tolerance=STEPS_LEFT * 0.1 * TIGHT,
-    source=SOURCE + "; [31, 32]: the error of periodic extension",
-)
+@case("paper/periodicity-extent", metric="at_most", tolerance=STEPS_LEFT * 0.1 * TIGHT)
 def periodicity_extent() -> Measured:
     """The periodicity error sets in where contact exceeds half the side.
 
     Claim: While no two contacts are farther apart than half the side, the periodic inversion has no error at
     all
+    Source: {SOURCE}; [31, 32]: the error of periodic extension
     Tolerance: the periodic kernel is the true one up to half a period: what is left is the iteration's own
     tolerance, five last steps of 1e-10; measured 9e-12, and 1.4e-2 at 210 N, beyond
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -16,7 +15,7 @@ from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "paper section 5 and Fig. 3"
@@ -55,6 +54,11 @@ def distance(found: rf.Solution, reference: rf.Solution) -> float:
     return float(np.abs(found.pressure - reference.pressure).max()) / reference.max_pressure
 
 
+def chosen(scenes: str) -> tuple[str, ...]:
+    """Names of the "twelve" scenes or of "all"."""
+    return QUICK if scenes == "twelve" else tuple(trials())
+
+
 def load_share(trial: Trial) -> float:
     """Change of the pressure that the load's tolerance allows: over the peak when the load grows by 1e-4."""
     if "approach" in trial.options:
@@ -63,16 +67,53 @@ def load_share(trial: Trial) -> float:
     return distance(rf.solve(heavier, trial.M, tolerance=1e-10, **trial.options), trial.fft)
 
 
-def own_tolerance(names: Sequence[str]) -> Measured:
-    """Worst pressure error at the paper's tolerances over what they allow."""
+@family(
+    "scenes, tier, title, claim",
+    {
+        "paper/own-tolerance": (
+            "twelve", "quick", "The paper's scheme at its own tolerances",
+            "On twelve scenes the pressure is the dense reference's to what |dN|/P <= 1e-4, |df|/|f| <= 1e-5 "
+            "imply"),
+        "paper/own-tolerance-all": (
+            "all", "full", "The paper's scheme at its own tolerances, all scenes",
+            "On every aperiodic scene of the cross-check the pressure is the dense reference's to what they "
+            "imply"),
+    },
+    metric="at_most", tolerance=1.0, source=SOURCE,
+)  # fmt: skip
+def own_tolerance(scenes: str) -> Measured:
+    """Worst pressure error at the paper's tolerances over what they allow.
+
+    Tolerance: the allowed error itself: the production state's change when the load grows by the load
+    tolerance, plus five last steps of 1e-5 (contraction 0.83 a step). Measured 1e-6 to 7e-5 of the peak
+    """
+    names = chosen(scenes)
     errors = [distance(paper(name, PAPER_TOLERANCE), trials()[name].dense) for name in names]
     allowed = [load_share(trials()[name]) + STEPS_LEFT * PRESSURE_TOLERANCE for name in names]
     data = {"scene": list(names), "pressure error / peak": errors, "allowed": allowed}
     return Measured(float(np.max(np.divide(errors, allowed))), data=data)
 
 
-def tightened(names: Sequence[str]) -> Measured:
-    """Worst difference of pressure (over the peak) and friction coefficient from both other solvers."""
+@family(
+    "scenes, tier, title, claim",
+    {
+        "paper/tightened": (
+            "twelve", "quick", "Paper = fft = dense when tightened",
+            "With the tolerance 1e-9 the scheme has the dense reference's and the production solver's "
+            "pressure and mu"),
+        "paper/tightened-all": (
+            "all", "full", "Paper = fft = dense when tightened, all scenes",
+            "The same on every aperiodic scene of the cross-check, alternating contact edges among them"),
+    },
+    metric="at_most", tolerance=1e-8, source=SOURCE,
+)  # fmt: skip
+def tightened(scenes: str) -> Measured:
+    """Worst difference of pressure (over the peak) and friction coefficient from both other solvers.
+
+    Tolerance: stated goal; the scheme's pressure steps end at 1e-10 of the pressure, five of which
+    (contraction 0.83) are 5e-10. Measured 3e-10
+    """
+    names = chosen(scenes)
     data: dict[str, object] = {"scene": list(names)}
     worst = 0.0
     for other in ("dense", "fft"):
@@ -85,43 +126,6 @@ def tightened(names: Sequence[str]) -> Measured:
         data |= {f"pressure from {other}": pressures, f"mu from {other}": frictions}
         worst = max(worst, *pressures, *frictions)
     return Measured(worst, data=data)
-
-
-OWN_REASON = (
-    "the allowed error itself: the production state's change when the load grows by the load tolerance, "
-    "plus five last steps of 1e-5 (contraction 0.83 a step). Measured 1e-6 to 7e-5 of the peak"
-)
-TIGHT_REASON = (
-    "stated goal; the scheme's pressure steps end at 1e-10 of the pressure, five of which (contraction "
-    "0.83) are 5e-10. Measured 3e-10"
-)
-
-
-@case("paper/own-tolerance", metric="at_most", tolerance=1.0, source=SOURCE, tolerance_reason=OWN_REASON)
-def own_tolerance_quick() -> Measured:
-    """The paper's scheme at its own tolerances.
-
-    Claim: On twelve scenes the pressure is the dense reference's to what |dN|/P <= 1e-4, |df|/|f| <= 1e-5
-    imply
-    """
-    return own_tolerance(QUICK)
-
-
-@case(
-    "paper/own-tolerance-all",
-    metric="at_most",
-    tolerance=1.0,
-    tier="full",
-    source=SOURCE,
-    tolerance_reason=OWN_REASON,
-)
-def own_tolerance_all() -> Measured:
-    """The paper's scheme at its own tolerances, all scenes.
-
-    Claim: On every aperiodic scene of the cross-check the pressure is the dense reference's to what they
-    imply
-    """
-    return own_tolerance(tuple(trials()))
 
 
 @case("paper/own-tolerance-friction", metric="at_most", tolerance=1.5e-4, source=SOURCE)
@@ -140,16 +144,12 @@ def own_tolerance_friction() -> Measured:
     return Measured(float(errors.max()), data=data)
 
 
-@case(
-    "paper/same-state",
-    metric="equal",
-    tolerance=0.0,
-    source=SOURCE + "; tau's rule: refimpl.solvers.tau_active_set",
-)
+@case("paper/same-state", metric="equal", tolerance=0.0)
 def same_state() -> Measured:
     """Status, contact and tau's active set of the three solvers.
 
     Claim: Tightened, the paper's scheme ends as the dense reference does, on the same elements
+    Source: {SOURCE}; tau's rule: refimpl.solvers.tau_active_set
     Tolerance: statuses and sets are equal or not; an active set of tau has one solution
     """
     differing = {}
@@ -158,32 +158,6 @@ def same_state() -> Measured:
         elements = (found.contact != dense.contact) | (found.excluded != dense.excluded)
         differing[name] = int(np.count_nonzero(elements)) + (found.status is not dense.status)
     return Measured(sum(differing.values()), 0.0, unit="elements", data=differing)
-
-
-@case("paper/tightened", metric="at_most", tolerance=1e-8, source=SOURCE, tolerance_reason=TIGHT_REASON)
-def tightened_quick() -> Measured:
-    """Paper = fft = dense when tightened.
-
-    Claim: With the tolerance 1e-9 the scheme has the dense reference's and the production solver's pressure
-    and mu
-    """
-    return tightened(QUICK)
-
-
-@case(
-    "paper/tightened-all",
-    metric="at_most",
-    tolerance=1e-8,
-    tier="full",
-    source=SOURCE,
-    tolerance_reason=TIGHT_REASON,
-)
-def tightened_all() -> Measured:
-    """Paper = fft = dense when tightened, all scenes.
-
-    Claim: The same on every aperiodic scene of the cross-check, alternating contact edges among them
-    """
-    return tightened(tuple(trials()))
 
 
 @case("paper/convergence", metric="at_most", tolerance=1e-8, source=SOURCE)

@@ -13,7 +13,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.friction import friction_coefficient_at
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.framework.verdict import Verdict, judged
 from verification.reproduction import table3
 from verification.reproduction.ensemble import column, estimate
@@ -25,7 +25,7 @@ from verification.reproduction.printed import (
     TABLE3,
 )
 from verification.reproduction.table1 import SMOOTH, rough
-from verification.reproduction.tiers import in_both_tiers
+from verification.reproduction.tiers import TIERS, in_both_tiers
 from verification.sweep.run import Row
 
 TAU = SMOOTH.friction.tau
@@ -38,21 +38,39 @@ NAMES = {
 }
 DECIMAL = {"friction_coefficient": 0.01, "contact_area": 0.01e-6, "max_pressure": 0.01e9}  # mm^2, GPa
 TOLERANCE = {"quick": 5.0, "full": 1.0}
-REASON = (
-    "largest deviation of a rough column's mean on the finest mesh from print, in standard deviations of a "
-    "single realisation. Full, 75 realisations: 1 - a mean that is farther off is less alike than one pair "
-    "of surfaces chosen at random. Quick, six realisations on 128 x 128: three standard errors, 1.2, and "
-    "what print misses Eq. (10) by on that mesh, 4 % of mu (errata/table3-coarse), 3.5 standard deviations"
-)
 
 
 def _table3(tier: str) -> tuple[tuple[Row, ...], int]:
     return (table3.full_rows(), 512) if tier == "full" else (table3.quick_rows(), table3.QUICK_MESH)
 
 
-def _measured(quantity: str, *, full: bool) -> Measured:
-    rows, _ = _table3("full" if full else "quick")
-    table = table3.cells(rows, quantity) if full else table3.cells(rows, quantity, (table3.QUICK_MESH,))
+@family(
+    "quantity, name, tier, tolerance",
+    {
+        f"reproduction/table3-{slug}{'' if tier == 'quick' else '-full'}": (
+            quantity,
+            name,
+            tier,
+            TOLERANCE[tier],
+        )
+        for quantity, (slug, name) in NAMES.items()
+        for tier in TIERS
+    },
+    metric="at_most",
+)
+def reproduced(quantity: str, tier: str) -> Measured:
+    """Table 3: {name}.
+
+    Claim: Table 3: {name} of a smooth and three rough pairs
+    Source: paper Table 3
+    Tolerance: largest deviation of a rough column's mean on the finest mesh from print, in standard
+    deviations of a single realisation. Full, 75 realisations: 1 - a mean that is farther off is less alike
+    than one pair of surfaces chosen at random. Quick, six realisations on 128 x 128: three standard errors,
+    1.2, and what print misses Eq. (10) by on that mesh, 4 % of mu (errata/table3-coarse), 3.5 standard
+    deviations
+    """
+    rows, mesh = _table3(tier)
+    table = table3.cells(rows, quantity) if tier == "full" else table3.cells(rows, quantity, (mesh,))
     finest = max(cell.mesh for cell in table)
     judgeable = [cell for cell in table if cell.mesh == finest]
     rough = [cell for cell in judgeable if cell.column.flat_rms > 0]
@@ -69,26 +87,6 @@ def _measured(quantity: str, *, full: bool) -> Measured:
     data: dict[str, object] = {**table3.series(table), "largest deviation": largest}
     data |= {"beyond sampling": len(unlike), "judged": len(judgeable)}
     return judged(verdict, sentence, worst, data=data)
-
-
-def _declare(quantity: str) -> None:
-    slug, name = NAMES[quantity]
-
-    @in_both_tiers(
-        f"reproduction/table3-{slug}",
-        metric="at_most",
-        tolerance=TOLERANCE,
-        title=f"Table 3: {name}",
-        claim=f"Table 3: {name} of a smooth and three rough pairs",
-        source="paper Table 3",
-        tolerance_reason=REASON,
-    )
-    def reproduced(tier: str) -> Measured:
-        return _measured(quantity, full=tier == "full")
-
-
-for _quantity in NAMES:
-    _declare(_quantity)
 
 
 @in_both_tiers("reproduction/section8-scatter", metric="at_most", tolerance=0.25)

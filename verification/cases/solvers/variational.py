@@ -109,16 +109,12 @@ def approach_is_multiplier() -> Measured:
     return Measured(found.approach * assumed, reference().approach, unit="m")
 
 
-@case(
-    "variational/transform-work",
-    metric="at_most",
-    tolerance=1.0,
-    source=SOURCE + "; the paper credits its scheme with the advantage",
-)
+@case("variational/transform-work", metric="at_most", tolerance=1.0)
 def transform_work() -> Measured:
     """With products by FFT, a general minimiser needs no more work than the paper's scheme.
 
     Claim: Transformed points n log2 n of L-BFGS-B over those of the paper's scheme, for the same contact
+    Source: {SOURCE}; the paper credits its scheme with the advantage
     Tolerance: the statement itself: no more work; counts do not depend on the machine. Measured 0.4
     """
     contact = Contact.of(table2_scene(), 64)

@@ -88,8 +88,7 @@ def spectrum() -> Measured:
     grid, seeds = Grid.square(12.0, 96, periodic=True), range(1, 41)
     M, side = grid.shape[0], grid.lengths[0]
     power = np.mean(
-        [np.abs(np.fft.rfft2(GaussianRoughness(1.0, 1.0, s).heights(grid))) ** 2 for s in seeds],
-        axis=0,
+        [np.abs(np.fft.rfft2(GaussianRoughness(1.0, 1.0, s).heights(grid))) ** 2 for s in seeds], axis=0
     )
     # Fourier series of the periodic sum of exp(-2.3 r^2): L^-2 pi / 2.3 exp(-pi^2 k^2 / (2.3 L^2)); images
     # add exp(-2.3 * 144) to the variance. Only columns 1 ... M/2 - 1: each of their modes is met once.
