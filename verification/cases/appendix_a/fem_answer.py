@@ -15,7 +15,7 @@ from appendix_a.fem.sinusoid import departures, setup_for
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.leading_order import facet_prediction, first_order, plane_slope
 from appendix_a.wedge_tip import relative_difference
-from verification.cases.appendix_a.fem import NEIGHBOURS, POINTS, POINTS_REASON, percent
+from verification.cases.appendix_a.fem import NEIGHBOURS, POINTS, POINTS_REASON, percent  # noqa: F401  # in docstrings
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged

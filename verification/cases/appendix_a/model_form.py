@@ -8,45 +8,26 @@ import numpy as np
 
 from appendix_a.contact_fem.scene import Material, WavyPair
 from appendix_a.contact_fem.sequence import graded_plans, slide, slide_on_three_meshes
-from verification.cases.appendix_a.model_form_study import (
-    CLIMBING,
-    COPPER,
-    CREST,
-    DESCENDING,
-    GRIDS,
-    LOADS,
-    QUANTITIES,
-    SOFT,
-    STEEL,
-    STIFF,
-    VANISHING,
-    VARIANTS,
-    compared,
-    modelled,
-    over_slopes,
-    pair_of,
-    verdict,
-    worst,
-)
+from verification.cases.appendix_a import model_form_study as study
 from verification.exact.sliding_wave import SlidingWave
 from verification.exact.westergaard import Wave
 from verification.framework.case import Measured
 from verification.framework.registry import case, family
 
-
-METAL, COMPLIANT = (COPPER, STEEL, 0.08), (SOFT, STIFF, 0.2)
+METAL, COMPLIANT = (study.COPPER, study.STEEL, 0.08), (study.SOFT, study.STIFF, 0.2)
+LIGHT, MEDIUM = study.LOADS
 STIFF_ON_SOFT = "stiff body climbing one with nu = 0"
 
 
 @family(
     "name, materials, share, shift",
     {
-        "model-form/metal-climbing-light": ("steel climbing copper", METAL, LOADS[0], CLIMBING),
-        "model-form/metal-climbing-medium": ("steel climbing copper", METAL, LOADS[1], CLIMBING),
-        "model-form/compliant-climbing-light": (STIFF_ON_SOFT, COMPLIANT, LOADS[0], CLIMBING),
-        "model-form/compliant-climbing-medium": (STIFF_ON_SOFT, COMPLIANT, LOADS[1], CLIMBING),
-        "model-form/metal-descending-medium": ("steel descending copper", METAL, LOADS[1], DESCENDING),
-        "model-form/metal-crest-medium": ("steel on copper crest on crest", METAL, LOADS[1], CREST),
+        "model-form/metal-climbing-light": ("steel climbing copper", METAL, LIGHT, study.CLIMBING),
+        "model-form/metal-climbing-medium": ("steel climbing copper", METAL, MEDIUM, study.CLIMBING),
+        "model-form/compliant-climbing-light": (STIFF_ON_SOFT, COMPLIANT, LIGHT, study.CLIMBING),
+        "model-form/compliant-climbing-medium": (STIFF_ON_SOFT, COMPLIANT, MEDIUM, study.CLIMBING),
+        "model-form/metal-descending-medium": ("steel descending copper", METAL, MEDIUM, study.DESCENDING),
+        "model-form/metal-crest-medium": ("steel on copper crest on crest", METAL, MEDIUM, study.CREST),
     },
     metric="at_most",
     tolerance=2.0,
@@ -59,9 +40,9 @@ def model_form(materials: tuple[Material, Material, float], share: float, shift:
     Source: scikit-fem, second-order elements, contact on the deformed facets
     Tolerance: percent: the paper's 'less than 2 %' for its coefficients, applied to the results
     """
-    data = over_slopes(*materials, share, shift=shift)
-    value, _ = worst(data, VARIANTS[0], 2.5)
-    return Measured(value=value, unit="%", data=data, note=verdict(data))
+    data = study.over_slopes(*materials, share, shift=shift)
+    value, _ = study.worst(data, study.VARIANTS[0], 2.5)
+    return Measured(value=value, unit="%", data=data, note=study.verdict(data))
 
 
 @case("model-form/one-slope", metric="at_most", tolerance=2.0)
@@ -72,12 +53,12 @@ def one_slope() -> Measured:
     Source: scikit-fem, second-order elements, contact on the deformed facets
     Tolerance: percent: the paper's 2 %; 0.5 % model form (full tier), the rest from coarse meshes
     """
-    pair = pair_of(*METAL, 2.5)
-    load = LOADS[1] * pair.full_contact_pressure
+    pair = study.pair_of(*METAL, 2.5)
+    load = MEDIUM * pair.full_contact_pressure
     lower, upper = (replace(plan, level=1) for plan in graded_plans(pair, load))
     fem = slide(pair, load, (lower, upper))
-    model = modelled(pair, load, GRIDS[LOADS[1]][0], correction=False)
-    differences = {q: 100 * (getattr(model, q) / getattr(fem, q) - 1) for q in QUANTITIES}
+    model = study.modelled(pair, load, study.GRIDS[MEDIUM][0], correction=False)
+    differences = {q: 100 * (getattr(model, q) / getattr(fem, q) - 1) for q in study.QUANTITIES}
     return Measured(value=max(map(abs, differences.values())), unit="%", data=differences)
 
 
@@ -92,10 +73,10 @@ def vanishing_slope() -> Measured:
     data: dict[str, object] = {}
     worst_ratio = 0.0
     for name, materials in (("steel on copper", METAL), ("stiff on nu = 0", COMPLIANT)):
-        for share in LOADS:
-            found = compared(pair_of(*materials, VANISHING), share)
+        for share in study.LOADS:
+            found = study.compared(study.pair_of(*materials, study.VANISHING), share)
             for label, (difference, error) in found.items():
-                if label.endswith(VARIANTS[0]):
+                if label.endswith(study.VARIANTS[0]):
                     worst_ratio = max(worst_ratio, abs(difference) / error)
                     data[f"{name}, {share} p*, {label}"] = [difference, error]
     return Measured(value=worst_ratio, data=data, note="data: difference and discretisation error in percent")
@@ -109,8 +90,8 @@ def exact_wave() -> Measured:
     Source: Westergaard 1939; Johnson 1985, section 13.2
     Tolerance: relative; 3e-4, 3e-5 and below 1e-6 measured on the three meshes
     """
-    pair = WavyPair(0.001, CREST, SOFT, STIFF)
-    load = LOADS[1] * pair.full_contact_pressure
+    pair = WavyPair(0.001, study.CREST, study.SOFT, study.STIFF)
+    load = MEDIUM * pair.full_contact_pressure
     exact = Wave(load, pair.gap_amplitude, 1.0, pair.reduced_modulus)
     contacts = slide_on_three_meshes(pair, load).contacts
     errors = [abs(c.approach / exact.approach - 1) for c in contacts]
@@ -126,8 +107,8 @@ def exact_sliding_wave() -> Measured:
     Source: Galin 1953, extended to a wave (verification/exact/sliding_wave.py)
     Tolerance: of the contact length: ends are found between nodes to about 1e-3
     """
-    pair = pair_of(SOFT, STIFF, 0.2, 0.001, CREST)
-    load = LOADS[1] * pair.full_contact_pressure
+    pair = study.pair_of(study.SOFT, study.STIFF, 0.2, 0.001, study.CREST)
+    load = MEDIUM * pair.full_contact_pressure
     exact = SlidingWave(
         load, pair.gap_amplitude, 1.0, pair.reduced_modulus, pair.coupling, pair.tau, pair.beta
     )

@@ -110,12 +110,12 @@ def peak_pressure() -> Measured:
     {
         "hertz/peak-order": (
             peak_errors, "peak pressure", 0.25,
-            "the contact's fit to the grid scatters single errors by some 20 %, which over a factor of 16 in h "
-            "moves a fitted order by 0.1; twice that. Measured 2.04"),
+            "the contact's fit to the grid scatters single errors by some 20 %, which over a factor of 16 in "
+            "h moves a fitted order by 0.1; twice that. Measured 2.04"),
         "hertz/approach-order": (
             approach_errors, "approach", 0.15,
-            "counted from the lowest centres it lacks h^2/(4 R), which dominates and is exactly of second order; "
-            "the solver's own part is 10 % of it and of order 2.0 to 2.9. Measured 2.03"),
+            "counted from the lowest centres it lacks h^2/(4 R), which dominates and is exactly of second "
+            "order; the solver's own part is 10 % of it and of order 2.0 to 2.9. Measured 2.03"),
     },
     metric="absolute", source=SOURCE,
 )  # fmt: skip

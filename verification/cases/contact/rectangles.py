@@ -12,16 +12,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array, Grid, Mask
 from verification.cases.contact.scenes import MODULUS
-from verification.cases.solvers.cross_check import (
-    ENDED_WELL,
-    SOURCE,
-    approach_difference,
-    area_difference,
-    binormal_difference,
-    ended_well,
-    friction_difference,
-    pressure_difference,
-)
+from verification.cases.solvers import cross_check
 from verification.exact.hertz import Sphere
 from verification.exact.westergaard import Wave
 from verification.framework.case import Measured
@@ -34,7 +25,7 @@ from verification.scenes.rectangles import rectangles
 @cache
 def trials() -> tuple[Trial, ...]:
     """The scenes, each solved once for all rows."""
-    return ended_well(rectangles())
+    return cross_check.ended_well(rectangles())
 
 
 def largest(by_scene: Mapping[str, float]) -> Measured:
@@ -48,15 +39,16 @@ def largest(by_scene: Mapping[str, float]) -> Measured:
 def numbers_difference(trial: Trial) -> float:
     """Largest of the differences that `cross_check` judges one by one, and that of the corrected area."""
     corrected = abs(trial.dense.contact_area_corrected - trial.fft.contact_area_corrected)
-    others = (friction_difference, binormal_difference, area_difference, approach_difference)
-    return max(corrected / trial.dense.contact_area, *(difference(trial) for difference in others))
+    return max(
+        corrected / trial.dense.contact_area, *(difference(trial) for difference in cross_check.NUMBERS)
+    )
 
 
 def contact_difference(trial: Trial) -> float:
     """Largest difference of the pressures over the peak; infinite on another contact set."""
     if not np.array_equal(trial.dense.contact, trial.fft.contact):
         return math.inf
-    return pressure_difference(trial)
+    return cross_check.pressure_difference(trial)
 
 
 @family(
@@ -72,7 +64,7 @@ def contact_difference(trial: Trial) -> float:
             "mu, Q / N, A, the perimeter-corrected A and the approach of both solvers agree to 1e-9",
             "as for pressures"),
     },
-    metric="at_most", tolerance=1e-9, source=SOURCE,
+    metric="at_most", tolerance=1e-9, source=cross_check.SOURCE,
 )  # fmt: skip
 def both_solvers(difference: Callable[[Trial], float]) -> Measured:
     """Judge the largest difference of all scenes."""
@@ -261,7 +253,8 @@ def pressed_ball(domain: str, n: int) -> rf.Solution:
             "as on squares (hertz/peak-order): single errors scatter by 20 %. Measured 2.03"),
         "rectangles/hertz-approach-order": (
             "approach", SPHERE.approach, "approach", 0.15,
-            "the error of the approach, from first contact of the elements, falls with the square of the element",
+            "the error of the approach, from first contact of the elements, falls with the square of the "
+            "element",
             "as on squares (hertz/approach-order): the lift of the innermost centres dominates"),
     },
     metric="absolute",
@@ -394,7 +387,7 @@ def work(kind: str, ratio: float, oblong: float, seed: int) -> float:
     share = math.sqrt(ratio / oblong)
     grid = (round(WORK_M * share), round(WORK_M / share))
     found = rf.solve(work_scene(kind, size, seed), grid)
-    if found.status not in ENDED_WELL:
+    if found.status not in cross_check.ENDED_WELL:
         raise RuntimeError(f"{kind}, seed {seed}: ended {found.status.value} on {found.grid}")
     return found.cost.point_logs / found.grid.elements
 

@@ -49,14 +49,15 @@ def twins_sample() -> Measured:
     {
         "identification/twins": (
             "drawn", "95 % intervals of tau, beta and a new load's mu, in random twins",
-            "The intervals cover the truth, and the warning stands in every twin whose tau is not determined.",
+            "The intervals cover the truth, and the warning stands in every twin whose tau is not "
+            "determined.",
             "twins whose friction is known; coverage as in ASME V&V 20 (2009)",
             0.90, "95 %, less two standard deviations of 100 twins (4.4 %) and rounding"),
         "identification/sharp-twins": (
             "sharp", "95 % intervals of tau below 5 %, without a warning",
             "Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
-            f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is known "
-            "within 5 % has the warning.",
+            f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is "
+            "known within 5 % has the warning.",
             "as identification/twins, other seeds",
             0.85, "95 %, less two standard deviations of 20 twins (9.7 %) and rounding"),
         "identification/hardness": (

@@ -75,8 +75,8 @@ def sliding_wave_shift() -> Measured:
             4e-3, "the blunter edge, exponent 0.41, gives order 0.9: 2.2e-3 measured at M = 256"),
         "reference/sliding-wave-adhesive": (
             0.02 * STAR, "A sliding wave with the binomial law",
-            "Shear tau + beta p: a constant tau shifts the contact further, and without tau the error would be "
-            "2 % of p*",
+            "Shear tau + beta p: a constant tau shifts the contact further, and without tau the error would "
+            "be 2 % of p*",
             "verification.exact.sliding_wave; paper Eq. (8)",
             6e-3, "as without tau, 3.4e-3 measured at M = 256; the zone without pressure at the leading edge "
             "is below an element"),

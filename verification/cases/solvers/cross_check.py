@@ -74,6 +74,9 @@ def binormal_difference(trial: Trial) -> float:
     return abs(trial.dense.binormal_force - trial.fft.binormal_force) / trial.dense.normal_force
 
 
+NUMBERS = (area_difference, approach_difference, friction_difference, binormal_difference)
+
+
 @case("cross-check/contact-sets", metric="equal", tolerance=0.0, source=SOURCE)
 def contact_sets() -> Measured:
     """Contact sets of both solvers.
