@@ -73,7 +73,7 @@ CASE: Mapping[str, Kind] = {
     "value": _or_none(_number), "reference": _or_none(_number), "reference_uncertainty": _or_none(_size),
     "error": _or_none(_number), "tolerance": _number, "tolerance_reason": _text,
     "status": _one_of(*STATUSES), "seconds": _size, "unit": _text, "note": _text, "tier": _text,
-    "tags": _texts, "data": _table,
+    "data": _table,
 }  # fmt: skip
 ERRATUM: Mapping[str, Kind] = {
     "case": _text, "status": _one_of(*STATUSES), "equation": _text, "printed": _text, "corrected": _text,

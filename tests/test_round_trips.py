@@ -186,7 +186,7 @@ def test_a_case_keeps_its_numbers_to_the_report() -> None:
     measured = Measured(2.5, 2.0, 0.125, "N", {"h": [1.0, np.nan]}, "a note")
     case = Case(
         "subject/slug", "Title", "Claim", "Source", Metric.RELATIVE, 0.5, "Reason", lambda: measured,
-        Tier.FULL, ("tag",),
+        Tier.FULL,
     )  # fmt: skip
     result = case.run()
     document = json.loads(json.dumps(CasesRun(Tier.FULL, ("*",), (result,), 3.25).document()))
@@ -208,7 +208,6 @@ def test_a_case_keeps_its_numbers_to_the_report() -> None:
         "unit": "N",
         "note": "a note",
         "tier": "full",
-        "tags": ["tag"],
         "data": {"h": [1.0, None]},
     }
     assert set(expected) == {field.name for field in fields(Result)}

@@ -18,7 +18,7 @@ def case(id: str, status: str = "pass", **other: Any) -> dict[str, Any]:
         "id": id, "title": f"Title of {id}", "claim": "Eq. (7) holds", "source": "Johnson 1985",
         "metric": "relative", **numbers, "tolerance": 0.1,
         "tolerance_reason": "first order in h", "status": status, "seconds": 0.5, "unit": "Pa", "note": "",
-        "tier": "quick", "tags": ["eq7"], "data": {}, **other,
+        "tier": "quick", "data": {}, **other,
     }  # fmt: skip
     return made if "error" in made else {**made, "error": error_of(made)}
 

@@ -168,7 +168,7 @@ def test_texts_are_escaped() -> None:
     bad = "<script>alert(1)</script>"
     page = render(
         results(
-            case("a/1", title=bad, claim=bad, note=bad, source=bad, tags=[bad]),
+            case("a/1", title=bad, claim=bad, note=bad, source=bad),
             errata=[{**ERRATUM, "printed": bad}],
         )
     )

@@ -78,9 +78,7 @@ def run(options: argparse.Namespace) -> int:
     except LookupError as nothing:
         raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
     if options.list:
-        document = [
-            {"id": c.id, "tier": c.tier.value, "title": c.title, "tags": list(c.tags)} for c in chosen
-        ]
+        document = [{"id": c.id, "tier": c.tier.value, "title": c.title} for c in chosen]
         emit(document, options.json, columns([[c.id, c.tier.value, c.title] for c in chosen], indent=""))
         return 0
     done = runner.run(options.tier, only=options.only, jobs=options.jobs)

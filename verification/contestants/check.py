@@ -218,7 +218,6 @@ class Check:
             tolerance=self.tolerance,
             tolerance_reason=self.tolerance_reason,
             function=lambda: self.judge(Entrant(contestant)),
-            tags=("contestant",),
         )
 
 

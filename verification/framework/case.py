@@ -13,6 +13,8 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from inspect import unwrap
+from types import CodeType
 
 import numpy as np
 
@@ -99,7 +101,6 @@ class Result:
     unit: str
     note: str
     tier: str
-    tags: list[str]
     data: dict[str, object]
 
 
@@ -119,7 +120,6 @@ class Case:
     tolerance_reason: str
     function: Callable[[], Measured]
     tier: Tier = Tier.QUICK
-    tags: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "metric", Metric(self.metric))
@@ -141,9 +141,15 @@ class Case:
         return self.function.__module__
 
     @property
+    def code(self) -> CodeType:
+        """Compiled function, beneath what wraps it."""
+        code: CodeType = unwrap(self.function).__code__
+        return code
+
+    @property
     def line(self) -> int:
         """Line of the function in its module; orders the cases of one module."""
-        return self.function.__code__.co_firstlineno
+        return self.code.co_firstlineno
 
     def run(self) -> Result:
         """Run the function and judge what it returned; never raises for what the function does."""
@@ -196,7 +202,6 @@ class Case:
             unit="" if measured is None else measured.unit,
             note=note,
             tier=self.tier.value,
-            tags=list(self.tags),
             data=data if isinstance(data, dict) else {},
         )
 

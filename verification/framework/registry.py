@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from fnmatch import fnmatchcase
+from functools import wraps
+from inspect import cleandoc, signature, unwrap
+from typing import Any
 
 from verification.framework.case import Case, Measured, Metric, Tier
 
@@ -13,39 +16,34 @@ CASES_PACKAGE = "verification.cases"
 
 Function = Callable[[], Measured]
 
+LABELS = {"Claim": "claim", "Source": "source", "Tolerance": "tolerance_reason"}
+"""Labels of a case's texts in its docstring, and the names of these texts."""
+DECLARED = ("title", *LABELS.values(), "metric", "tolerance", "tier")
+"""What a row of a family may declare for its case."""
+NOTHING: Mapping[str, Any] = {}
+
 _declared: dict[str, Case] = {}
 
 
 def case(
-    id: str,
-    *,
-    title: str,
-    claim: str,
-    source: str,
-    metric: str,
-    tolerance: float,
-    tolerance_reason: str,
-    tier: str = "quick",
-    tags: Iterable[str] = (),
+    id: str, *, metric: str, tolerance: float, tier: str = "quick", **texts: str
 ) -> Callable[[Function], Function]:
-    """Declare the decorated function as a verification case; the function itself is returned unchanged.
+    """Declare the decorated function, which is returned unchanged, as a verification case.
 
     `metric` is one of "relative", "absolute", "at_most", "at_least", "equal" (see `Metric`), `tier` "quick"
-    or "full". Raises ValueError, at import, for a second case of the same id and for whatever `Case` refuses.
+    or "full". Title, claim, source and reason of the tolerance stand in the function's docstring (see
+    `described`), which names the module's constants in braces; `texts` replaces them by name.
+    Raises ValueError, at import, for a second case of the same id and for whatever `Case` refuses.
     """
 
     def declare(function: Function) -> Function:
         new = Case(
             id=id,
-            title=title,
-            claim=claim,
-            source=source,
+            **{**described(function), **texts},
             metric=Metric(metric),
             tolerance=tolerance,
-            tolerance_reason=tolerance_reason,
             function=function,
             tier=Tier(tier),
-            tags=tuple(tags),
         )
         old = _declared.get(id)
         if old is not None and not _imported_anew(old, new):
@@ -57,13 +55,58 @@ def case(
     return declare
 
 
+def described(function: Callable[..., Measured], row: Mapping[str, Any] = NOTHING) -> dict[str, str]:
+    """Return the texts of a case from its docstring: the title, then a paragraph of ``Label: text``.
+
+    Labels are Claim, Source and Tolerance. A line without a label continues the text before it; a text
+    that is missing is empty. Braces hold an entry of the row, or a constant of the function's module.
+    """
+    title, labelled, *_ = *cleandoc(function.__doc__ or "").split("\n\n"), ""
+    name = "title"
+    texts = {name: " ".join(title.split("\n")).removesuffix("."), **dict.fromkeys(LABELS.values(), "")}
+    for line in labelled.splitlines():
+        label, _, text = line.partition(": ")
+        if label in LABELS:
+            name = LABELS[label]
+            texts[name] = text
+        elif name != "title":
+            texts[name] += f" {line}"
+    words = {**unwrap(function).__globals__, **row}
+    return {name: text.format_map(words) for name, text in texts.items()}
+
+
+def family(
+    columns: str, rows: Mapping[str, tuple[Any, ...]], **declared: Any
+) -> Callable[[Callable[..., Measured]], Callable[..., Measured]]:
+    """Declare one case for each of `rows`, by id; the decorated function computes all of them.
+
+    The columns, named "a, b, c", are the function's arguments, what a case alone declares (`title`,
+    `tolerance`, ...), and words of the docstring, which holds for all rows and names columns in braces.
+    """
+
+    def declare(function: Callable[..., Measured]) -> Callable[..., Measured]:
+        for id, entries in rows.items():
+            row = dict(zip(columns.split(", "), entries, strict=True))
+            arguments = {name: row[name] for name in signature(function).parameters}
+
+            @wraps(function, assigned=("__module__", "__name__"))  # where the runner's workers look for it
+            def run(arguments: Mapping[str, Any] = arguments) -> Measured:
+                return function(**arguments)
+
+            own = {name: entry for name, entry in row.items() if name in DECLARED}
+            case(id, **{**described(function, row), **declared, **own})(run)
+        return function
+
+    return declare
+
+
 def _imported_anew(old: Case, new: Case) -> bool:
     """Whether the same line of the same module was compiled again, as `importlib.reload` does.
 
     One compiled line that declares twice is a loop whose ids are not all different.
     """
     same_line = (old.module, old.line) == (new.module, new.line)
-    return same_line and old.function.__code__ is not new.function.__code__
+    return same_line and old.code is not new.code
 
 
 def load(package: str = CASES_PACKAGE) -> tuple[Case, ...]:

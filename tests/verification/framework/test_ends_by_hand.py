@@ -158,7 +158,7 @@ def test_each_field_of_a_result_is_that_of_its_case(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(registry, "_declared", {})
     monkeypatch.setattr(runner, "provenance", dict)
     own: Any = {"title": "t", "claim": "c", "source": "s", "metric": "absolute", "tolerance": 0.75}
-    own |= {"tolerance_reason": "r", "tier": "full", "tags": ["x"]}
+    own |= {"tolerance_reason": "r", "tier": "full"}
     registry.case("a/b", **own)(lambda: Measured(2.5, 2.0, 0.125, "N", {"h": 1}, "so"))
     found = registry.find("a/b").run()
     assert asdict(found) == own | {

@@ -69,6 +69,39 @@ def test_a_module_that_cannot_be_imported_stops_the_run(make_package: Make, faul
         registry.load(package)
 
 
+FAMILY = '''
+@family("factor, tolerance, tier, name",
+        {"f/1": (2.0, 0.0, "quick", "two"), "f/2": (3.0, 0.5, "full", "three")},
+        metric="absolute", source="this test")
+def times(factor):
+    """Times {name}.
+
+    Claim: 2 times {factor:g} is twice it
+    Tolerance: of the row,
+    in two lines
+
+    Remarks are no part of the declaration.
+    """
+    return Measured(2 * factor, 4.0)
+'''
+
+
+def test_a_family_declares_a_case_for_each_row(make_package: Make) -> None:
+    one, two, later = registry.load(make_package(alpha=FAMILY + source("a/later")))
+    assert (one.id, one.title, one.claim) == ("f/1", "Times two", "2 times 2 is twice it")
+    assert (one.source, one.tolerance_reason) == ("this test", "of the row, in two lines")
+    assert (two.id, two.title, two.tolerance, two.tier) == ("f/2", "Times three", 0.5, Tier.FULL)
+    assert [c.run().value for c in (one, two)] == [4.0, 6.0]
+    assert one.line == two.line < later.line
+
+
+@pytest.mark.parametrize("fault", [FAMILY.replace("{name}", "{nome}"), FAMILY.replace("2.0, ", ""),
+                                   FAMILY.replace("Claim: ", "Clain: ")])  # fmt: skip
+def test_a_badly_declared_family_is_refused(make_package: Make, fault: str) -> None:
+    with pytest.raises((KeyError, ValueError)):
+        registry.load(make_package(alpha=fault))
+
+
 def test_selection_by_tier_and_glob(make_package: Make) -> None:
     package = make_package(alpha=source("a/1", "b/1"), beta=source("a/full", tier="full"))
     cases = registry.load(package)

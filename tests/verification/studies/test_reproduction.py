@@ -48,7 +48,7 @@ def test_both_tiers_are_declared_where_the_function_stands(monkeypatch: pytest.M
 
     @in_both_tiers(
         "a/b", title="t", claim="c", source="s", metric="at_most", tolerance={"quick": 2.0, "full": 1.0},
-        tolerance_reason="r", tags=(),
+        tolerance_reason="r",
     )  # fmt: skip
     def function(tier: str) -> ensemble.Estimate:  # type: ignore[return]  # only what it is told counts
         told.append(tier)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 import refimpl as rf
 from appendix_a.facet import facet_coefficient, neighbours
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.reproduction.ensemble import estimate
 from verification.reproduction.table1 import rough
 
@@ -158,44 +158,35 @@ def verdict(pair: str) -> str:
     return "; ".join(at(slope) for slope in (PAPER[1], 6.5, SLOPES[-1]))
 
 
-def declare(slug: str, pair: str) -> None:
-    """A full-tier case: what the correction changes in Table 1's scenes and steeper ones."""
-
-    @case(
-        f"appendix-correction/{slug}",
-        title=f"What the slope correction changes, {pair}",
-        claim="Up to the paper's rms slope of 2.5 degrees exact facet tractions change mu, A, f_max and Q by "
-        "less than 2 %, on the mean over eight surfaces",
-        source="exact facet tractions (refimpl.model.forces); paper, Table 1, section 8 and Appendix A",
-        metric="at_most",
-        tolerance=2.0,
-        tolerance_reason="percent: the paper's bound on its coefficients, applied to the results",
-        tier="full",
-        tags=("appendix-a", "correction"),
-    )
-    def effect() -> Measured:
-        paper = [changes(pair, slope)[TREATMENTS[0]].mean(axis=0) for slope in SLOPES if slope <= PAPER[1]]
-        return Measured(float(np.abs(paper).max()), unit="%", data=over_slopes(pair), note=verdict(pair))
-
-
-declare("paper-pair", PAIRS[0])
-declare("rigid-rough-ball", PAIRS[1])
-
-
-@case(
-    "appendix-correction/paper-remedy",
-    title="The paper's own remedy: near-field coefficients computed on the slope",
-    claim="It makes half to five quarters of the correction's change of the peak pressure, and less than "
-    "half of its change of friction",
-    source="paper, Appendix A: 'only a few of the terms in the flexibility matrices need to be modified'",
+@family(
+    "pair",
+    {"appendix-correction/paper-pair": PAIRS[:1], "appendix-correction/rigid-rough-ball": PAIRS[1:]},
     metric="at_most",
-    tolerance=0.5,
-    tolerance_reason="share of the correction's change of mu, the larger of both pairs; the rest is the "
-    "downward part of the friction itself, which no normal coefficient has",
+    tolerance=2.0,
     tier="full",
-    tags=("appendix-a", "correction"),
 )
+def effect(pair: str) -> Measured:
+    """Changes by the slope correction, {pair}.
+
+    Claim: Up to the paper's rms slope of 2.5 degrees exact facet tractions change mu, A, f_max and Q by less
+    than 2 %, on the mean over eight surfaces
+    Source: exact facet tractions (refimpl.model.forces); paper, Table 1, section 8 and Appendix A
+    Tolerance: percent: the paper's bound on its coefficients, applied to the results
+    """
+    paper = [changes(pair, slope)[TREATMENTS[0]].mean(axis=0) for slope in SLOPES if slope <= PAPER[1]]
+    return Measured(float(np.abs(paper).max()), unit="%", data=over_slopes(pair), note=verdict(pair))
+
+
+@case("appendix-correction/paper-remedy", metric="at_most", tolerance=0.5, tier="full")
 def paper_remedy() -> Measured:
+    """The paper's own remedy: near-field coefficients computed on the slope.
+
+    Claim: It makes half to five quarters of the correction's change of the peak pressure, and less than half
+    of its change of friction
+    Source: paper, Appendix A: 'only a few of the terms in the flexibility matrices need to be modified'
+    Tolerance: share of the correction's change of mu, the larger of both pairs; the rest is the downward part
+    of the friction itself, which no normal coefficient has
+    """
     shares = {f"{pair}: {q}": restored(pair, q) for pair in PAIRS for q in ("mu", "f_max")}
     scene = scene_of(PAIRS[1], 10.0, 0)
     reaches = (0, 1, 2, 4, 8, 16)
@@ -214,19 +205,15 @@ def paper_remedy() -> Measured:
     return Measured(value, data=data, note=f"share of the correction's change: {note}")
 
 
-@case(
-    "appendix-correction/two-formulations",
-    title="Facet tractions and coefficients computed on the slope agree to first order",
-    claim="Without friction, with every coefficient computed on the slope, the correction's pressures result",
-    source="appendix_a.facet (the plane's own frame) against exact facet tractions in Eq. (7)",
-    metric="at_most",
-    tolerance=0.05,
-    tolerance_reason="rest over the correction's change of the pressures at 0.5 degrees: second over first "
-    "order, measured to be in proportion to the slope",
-    tier="full",
-    tags=("appendix-a", "correction"),
-)
+@case("appendix-correction/two-formulations", metric="at_most", tolerance=0.05, tier="full")
 def two_formulations() -> Measured:
+    """Facet tractions and coefficients computed on the slope agree to first order.
+
+    Claim: Without friction, with every coefficient computed on the slope, the correction's pressures result
+    Source: appendix_a.facet (the plane's own frame) against exact facet tractions in Eq. (7)
+    Tolerance: rest over the correction's change of the pressures at 0.5 degrees: second over first order,
+    measured to be in proportion to the slope
+    """
     slopes, size, rests = (0.5, 1.0), 24, []
     for slope in slopes:
         scene = replace(scene_of(PAIRS[1], slope, 0), friction=rf.Friction(), side=0.9e-3)

@@ -49,17 +49,14 @@ def observed(rows: Sequence[tuple[float, float, float]]) -> Order:
     return fit_order([h for _, _, h in rows], [e for e, _, _ in rows])
 
 
-@case(
-    "appendix-fem/flat-2d",
-    title="Flat boundary under a strip, plane strain",
-    claim="surface displacements have a relative error below 1e-5, with quadratic and with cubic elements",
-    source="Johnson 1985, section 2.5; Flamant 1892 on the outer boundary",
-    metric="at_most",
-    tolerance=1e-5,
-    tolerance_reason="required; measured 4e-6 (quadratic, 140 000 unknowns) and 7e-7 (cubic, 90 000)",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/flat-2d", metric="at_most", tolerance=1e-5)
 def flat_2d() -> Measured:
+    """Flat boundary under a strip, plane strain.
+
+    Claim: surface displacements have a relative error below 1e-5, with quadratic and with cubic elements
+    Source: Johnson 1985, section 2.5; Flamant 1892 on the outer boundary
+    Tolerance: required; measured 4e-6 (quadratic, 140 000 unknowns) and 7e-7 (cubic, 90 000)
+    """
     series = {2: (1, 3, 5, 6), 3: (1, 3, 5)}  # cells halved from each to the next
     runs = {order: [flat_run(order, level, 0.3) for level in levels] for order, levels in series.items()}
     orders = {p: observed(rows) for p, rows in runs.items()}
@@ -73,34 +70,28 @@ def flat_2d() -> Measured:
     return Measured(value=max(rows[-1][0] for rows in runs.values()), data=data)
 
 
-@case(
-    "appendix-fem/flat-2d-order",
-    title="Observed order on the flat boundary",
-    claim="displacements with cubic elements converge with an order of at least 3",
-    source="a priori estimates of the finite element method, graded meshes",
-    metric="at_least",
-    tolerance=3.0,
-    tolerance_reason="displacements of degree 3 are interpolated to order 4; pointwise values may lose one",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/flat-2d-order", metric="at_least", tolerance=3.0)
 def flat_order() -> Measured:
+    """Observed order on the flat boundary.
+
+    Claim: displacements with cubic elements converge with an order of at least 3
+    Source: a priori estimates of the finite element method, graded meshes
+    Tolerance: displacements of degree 3 are interpolated to order 4; pointwise values may lose one
+    """
     rows = [flat_run(3, level, 0.3) for level in (1, 3, 5)]
     fit = observed(rows)
     data = {"relative error": [e for e, *_ in rows], "local orders": list(fit.local)}
     return Measured(value=fit.order, data=data)
 
 
-@case(
-    "appendix-fem/exact-bump",
-    title="Pressed flank of a smooth bump and of a dent, at finite slope",
-    claim="displacements agree with Muskhelishvili's solution for a rational map to 0.002 percentage points",
-    source="Muskhelishvili 1953, boundary equation for a half-plane mapped by a rational function",
-    metric="at_most",
-    tolerance=0.002,
-    tolerance_reason="a tenth of the 0.02 percentage points stated for maps; measured 0.0003",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/exact-bump", metric="at_most", tolerance=0.002)
 def exact_bump() -> Measured:
+    """Pressed flank of a smooth bump and of a dent, at finite slope.
+
+    Claim: displacements agree with Muskhelishvili's solution for a rational map to 0.002 percentage points
+    Source: Muskhelishvili 1953, boundary equation for a half-plane mapped by a rational function
+    Tolerance: a tenth of the 0.02 percentage points stated for maps; measured 0.0003
+    """
     worst: list[float] = []
     data: dict[str, object] = {"offset": NEIGHBOURS.tolist()}
     for name, strength, at in (("bump", 20.0, 3.0), ("dent", -15.0, -2.0)):
@@ -116,18 +107,14 @@ def exact_bump() -> Measured:
     return Measured(value=max(worst), unit="percentage points", data=data | {"error": worst})
 
 
-@case(
-    "appendix-fem/nearly-incompressible",
-    title="Wave of 20 degrees at nu = 0.4999",
-    claim="Michell's extrapolation in kappa agrees with a mixed displacement-pressure solve",
-    source="Michell 1899; Taylor and Hood 1973",
-    metric="at_most",
-    tolerance=POINTS,
-    tolerance_reason=POINTS_REASON,
-    tier="full",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/nearly-incompressible", metric="at_most", tolerance=POINTS, tier="full")
 def nearly_incompressible() -> Measured:
+    """Wave of 20 degrees at nu = 0.4999.
+
+    Claim: Michell's extrapolation in kappa agrees with a mixed displacement-pressure solve
+    Source: Michell 1899; Taylor and Hood 1973
+    Tolerance: {POINTS_REASON}
+    """
     nu, slope, wavelength, position = 0.4999, 20.0, 20.0, 0.2
     offsets = NEIGHBOURS[2:-2]
     reach = 60.0
@@ -144,18 +131,14 @@ def nearly_incompressible() -> Measured:
     return Measured(value=float(np.max(np.abs(difference))), unit="percentage points", data=data)
 
 
-@case(
-    "appendix-fem/outer-boundary",
-    title="Three outer radii on the steepest, shortest wave",
-    claim="the largest radius changes no coefficient by more than 0.02 percentage points",
-    source="Flamant's field of the load's resultant on the outer boundary",
-    metric="at_most",
-    tolerance=POINTS,
-    tolerance_reason=POINTS_REASON,
-    tier="full",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/outer-boundary", metric="at_most", tolerance=POINTS, tier="full")
 def outer_boundary() -> Measured:
+    """Three outer radii on the steepest, shortest wave.
+
+    Claim: the largest radius changes no coefficient by more than 0.02 percentage points
+    Source: Flamant's field of the load's resultant on the outer boundary
+    Tolerance: {POINTS_REASON}
+    """
     solved = departures(30.0, 16.0, 0.25, NEIGHBOURS, levels=(0, 0, 0))
     values = [percent(radius.at(0.3), 0.3, NEIGHBOURS) for radius in solved.radii]
     data: dict[str, object] = {"offset": NEIGHBOURS.tolist()}
@@ -172,18 +155,14 @@ def _flat_patch(level: int, nu: float) -> float:
     return float(np.max(np.abs(body.surface_values(u, radii) / circular_patch(radii, nu))))
 
 
-@case(
-    "appendix-fem/axisymmetric-flat",
-    title="Flat boundary under a circular patch",
-    claim="displacements, the centre's 2 (1 - nu^2) p a / E included, have a relative error below 1e-5",
-    source="Johnson 1985, Eqs (3.29)",
-    metric="at_most",
-    tolerance=1e-5,
-    tolerance_reason="as required for plane problems",
-    tier="full",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/axisymmetric-flat", metric="at_most", tolerance=1e-5, tier="full")
 def axisymmetric_flat() -> Measured:
+    """Flat boundary under a circular patch.
+
+    Claim: displacements, the centre's 2 (1 - nu^2) p a / E included, have a relative error below 1e-5
+    Source: Johnson 1985, Eqs (3.29)
+    Tolerance: as required for plane problems
+    """
     data: dict[str, object] = {
         f"relative error by mesh, nu {nu}": {str(level): _flat_patch(level, nu) for level in (1, 3, 5)}
         for nu in (0.0, 0.3, 0.4999)

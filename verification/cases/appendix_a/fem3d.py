@@ -45,34 +45,28 @@ def flat_errors(levels: Sequence[int] = LEVELS) -> list[Array]:
     return [flat_sample(WAVELENGTH, Kind.RIDGE, NU, NEAR, n).down / exact - 1 for n in levels]
 
 
-@case(
-    "fem3d/flat",
-    title="Flat boundary in three dimensions",
-    claim="on a flat surface the finite elements give Love's coefficients of self and neighbours",
-    source="Love 1929; Johnson 1985, 3.2",
-    metric="at_most",
-    tolerance=2e-3,
-    tolerance_reason="required of the flat boundary in 3-D; this middle mesh leaves 1.4e-3, the finest 2e-4",
-    tags=("appendix-a", "fem", "3-d"),
-)
+@case("fem3d/flat", metric="at_most", tolerance=2e-3)
 def flat_boundary() -> Measured:
+    """Flat boundary in three dimensions.
+
+    Claim: on a flat surface the finite elements give Love's coefficients of self and neighbours
+    Source: Love 1929; Johnson 1985, 3.2
+    Tolerance: required of the flat boundary in 3-D; this middle mesh leaves 1.4e-3, the finest 2e-4
+    """
     errors = flat_errors(LEVELS[:2])
     levels = {f"level {n}": e.tolist() for n, e in zip(LEVELS, errors, strict=False)}
     data = {"coefficient": list(LABELS), **levels}
     return Measured(value=float(np.abs(errors[-1]).max()), data=data)
 
 
-@case(
-    "fem3d/one-point",
-    title="One point of the shipped three-dimensional table, solved afresh",
-    claim="on a flank of 10 degrees one mesh gives the table's errors of self and neighbour coefficients",
-    source="refimpl/data/coefficient_error_3d.json",
-    metric="at_most",
-    tolerance=2e-3,
-    tolerance_reason="0.2 percentage points of flat, as required in 3-D; one mesh and boundary leave 6e-4",
-    tags=("appendix-a", "fem", "3-d", "map"),
-)
+@case("fem3d/one-point", metric="at_most", tolerance=2e-3)
 def one_point() -> Measured:
+    """One point of the shipped three-dimensional table, solved afresh.
+
+    Claim: on a flank of 10 degrees one mesh gives the table's errors of self and neighbour coefficients
+    Source: refimpl/data/coefficient_error_3d.json
+    Tolerance: 0.2 percentage points of flat, as required in 3-D; one mesh and boundary leave 6e-4
+    """
     tabulated = shipped().error(Series(WAVELENGTH, FLANK, NU), SLOPE)
     wavy = sample(ridge(SLOPE), NU, NEAR, 2).down
     fresh = (wavy - flat_sample(WAVELENGTH, Kind.RIDGE, NU, NEAR, 2).down) / normal_coefficient(X, Y, NU)
@@ -80,36 +74,27 @@ def one_point() -> Measured:
     return Measured(value=float(np.abs(fresh - tabulated).max()), data=data)
 
 
-@case(
-    "fem3d/flat-order",
-    title="Order of convergence on a flat boundary in three dimensions",
-    claim="the self coefficient converges at the third order at least that extrapolation assumes",
-    source="refinement by 2 and 3 of one mesh",
-    metric="at_least",
-    tolerance=3.0,
-    tolerance_reason="the order used to extrapolate; the jump of pressure limits it; measured 3.8 and 5.1",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d"),
-)
+@case("fem3d/flat-order", metric="at_least", tolerance=3.0, tier="full")
 def flat_order() -> Measured:
+    """Order of convergence on a flat boundary in three dimensions.
+
+    Claim: the self coefficient converges at the third order at least that extrapolation assumes
+    Source: refinement by 2 and 3 of one mesh
+    Tolerance: the order used to extrapolate; the jump of pressure limits it; measured 3.8 and 5.1
+    """
     errors = np.abs([e[0] for e in flat_errors()])
     orders = np.log(errors[:-1] / errors[1:]) / np.log([2.0, 1.5])
     data = {"self error": errors.tolist(), "orders": orders.tolist()}
     return Measured(value=float(orders.min()), data=data)
 
 
-@case(
-    "fem3d/flank-uncertainty",
-    title="Stated error of a wavy result in three dimensions",
-    claim="at 10 degrees on a flank, three meshes and three outer radii bound every coefficient's error",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=2e-3,
-    tolerance_reason="0.2 percentage points of the flat coefficient, as asked in 3-D; measured 3e-4",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d"),
-)
+@case("fem3d/flank-uncertainty", metric="at_most", tolerance=2e-3, tier="full", source=SOURCE)
 def flank_uncertainty() -> Measured:
+    """Stated error of a wavy result in three dimensions.
+
+    Claim: at 10 degrees on a flank, three meshes and three outer radii bound every coefficient's error
+    Tolerance: 0.2 percentage points of the flat coefficient, as asked in 3-D; measured 3e-4
+    """
     result = flank(NU)
     data = {
         "coefficient": list(LABELS),
@@ -123,18 +108,14 @@ def flank_uncertainty() -> Measured:
     return Measured(value=float(result.uncertainty.max()), data=data)
 
 
-@case(
-    "fem3d/correction",
-    title="Facet tractions remove the antisymmetric error, in three dimensions",
-    claim="with [c_s] f tan(theta) the antisymmetric error at 10 degrees falls at least five times",
-    source="exact tractions of a facet; " + SOURCE,
-    metric="at_least",
-    tolerance=5.0,
-    tolerance_reason="required of the correction; measured 33, 11 and 8 at 1, 2 and 3 elements",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d", "correction"),
-)
+@case("fem3d/correction", metric="at_least", tolerance=5.0, tier="full")
 def correction() -> Measured:
+    """Facet tractions remove the antisymmetric error, in three dimensions.
+
+    Claim: with [c_s] f tan(theta) the antisymmetric error at 10 degrees falls at least five times
+    Source: exact tractions of a facet; {SOURCE}
+    Tolerance: required of the correction; measured 33, 11 and 8 at 1, 2 and 3 elements
+    """
     return correction_drop(NU)
 
 
@@ -152,18 +133,14 @@ def correction_drop(nu: float) -> Measured:
     return Measured(value=float(np.abs(plain / cured).min()), data=data)
 
 
-@case(
-    "fem3d/correction-and-growth",
-    title="What the correction leaves",
-    claim="at nu 0 the correction and the part that grows leave a fifth of the antisymmetric error",
-    source="appendix_a.fem3d.leading_order; " + SOURCE,
-    metric="at_least",
-    tolerance=5.0,
-    tolerance_reason="required of the first-order part; the correction alone reaches 9, 4.3 and 3.6 here",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d", "correction"),
-)
+@case("fem3d/correction-and-growth", metric="at_least", tolerance=5.0, tier="full")
 def correction_and_growth() -> Measured:
+    """Error that the correction leaves.
+
+    Claim: at nu 0 the correction and the part that grows leave a fifth of the antisymmetric error
+    Source: appendix_a.fem3d.leading_order; {SOURCE}
+    Tolerance: required of the first-order part; the correction alone reaches 9, 4.3 and 3.6 here
+    """
     plain = flank(0.0).antisymmetric
     alone = correction_drop(0.0)
     left = np.asarray(alone.data["with, and without that part"])
@@ -186,18 +163,14 @@ def odd_part(surface: Waviness, nu: float, level: int = 2) -> Array:
     return (far + (far - near) / 3) / normal_coefficient(X, Y, nu)
 
 
-@case(
-    "fem3d/first-order",
-    title="First-order theory in three dimensions",
-    claim="at 1 degree the odd part is the facet's part plus the part that grows with the offset",
-    source="appendix_a.fem3d.leading_order",
-    metric="at_most",
-    tolerance=6e-5,
-    tolerance_reason="fraction of flat: mesh level 2 leaves 4e-5 at the next neighbours, third order 3e-6",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d", "leading-order"),
-)
+@case("fem3d/first-order", metric="at_most", tolerance=6e-5, tier="full")
 def first_order_theory() -> Measured:
+    """First-order theory in three dimensions.
+
+    Claim: at 1 degree the odd part is the facet's part plus the part that grows with the offset
+    Source: appendix_a.fem3d.leading_order
+    Tolerance: fraction of flat: mesh level 2 leaves 4e-5 at the next neighbours, third order 3e-6
+    """
     data: dict[str, object] = {"coefficient": list(LABELS)}
     worst = 0.0
     for kind in Kind:
@@ -211,18 +184,14 @@ def first_order_theory() -> Measured:
     return Measured(value=worst, data=data)
 
 
-@case(
-    "fem3d/growth",
-    title="Coefficient of the part that grows with offset / wavelength",
-    claim="fitted to the finite elements on a flank at nu 0 it is (1 - 2 nu)^2 / (4 (1 - nu)) = 1/4",
-    source="appendix_a.fem3d.leading_order, `growth`",
-    metric="relative",
-    tolerance=0.02,
-    tolerance_reason="mesh level 2 errs by 4e-5 of flat where the part itself is 1e-3 to 4e-3",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d", "leading-order"),
-)
+@case("fem3d/growth", metric="relative", tolerance=0.02, tier="full")
 def growth_fit() -> Measured:
+    """Coefficient of the part that grows with offset / wavelength.
+
+    Claim: fitted to the finite elements on a flank at nu 0 it is (1 - 2 nu)^2 / (4 (1 - nu)) = 1/4
+    Source: appendix_a.fem3d.leading_order, `growth`
+    Tolerance: mesh level 2 errs by 4e-5 of flat where the part itself is 1e-3 to 4e-3
+    """
     nu, surface = 0.0, ridge(1.0)
     flat = normal_coefficient(X, Y, nu)
     measured = (odd_part(surface, nu) - facet_part(surface, X, Y, nu) / flat)[1:4]
@@ -236,18 +205,14 @@ def growth_fit() -> Measured:
     return Measured(value=scale * growth_coefficient(nu), reference=growth_coefficient(nu), data=data)
 
 
-@case(
-    "fem3d/tilt",
-    title="Long waves: the exact tilted plane",
-    claim="on a flank of 10 degrees and 100 a, self and next coefficients are those of a tilted plane",
-    source="the flat solution in the plane's own frame",
-    metric="at_most",
-    tolerance=2e-3,
-    tolerance_reason="fraction of flat: curvature leaves (k a)^2 times the slope, 7e-4, and the meshes 5e-4",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d"),
-)
+@case("fem3d/tilt", metric="at_most", tolerance=2e-3, tier="full")
 def tilted() -> Measured:
+    """Long waves: the exact tilted plane.
+
+    Claim: on a flank of 10 degrees and 100 a, self and next coefficients are those of a tilted plane
+    Source: the flat solution in the plane's own frame
+    Tolerance: fraction of flat: curvature leaves (k a)^2 times the slope, 7e-4, and the meshes 5e-4
+    """
     result = coefficients(SLOPE, 100.0, FLANK, NU)
     plane = tilted_plane(X, Y, NU, SLOPE, projected=True) / result.flat - 1
     near = [0, 1, 4, 7]
@@ -256,18 +221,14 @@ def tilted() -> Measured:
     return Measured(value=gap, data=data)
 
 
-@case(
-    "fem3d/stated-error",
-    title="Stated errors are honest",
-    claim="finer meshes and wider boxes move no coefficient by more than the quick result's stated error",
-    source="meshes (1, 2, 3) against (2, 3, 4); boxes to 3 against 4 wavelengths",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="change over stated error; beyond 1 the statement would be wrong",
-    tier="full",
-    tags=("appendix-a", "fem", "3-d"),
-)
+@case("fem3d/stated-error", metric="at_most", tolerance=1.0, tier="full")
 def stated_error() -> Measured:
+    """Stated errors are honest.
+
+    Claim: finer meshes and wider boxes move no coefficient by more than the quick result's stated error
+    Source: meshes (1, 2, 3) against (2, 3, 4); boxes to 3 against 4 wavelengths
+    Tolerance: change over stated error; beyond 1 the statement would be wrong
+    """
     quick, full = flank(NU), coefficients(SLOPE, WAVELENGTH, FLANK, NU, quality="full")
     change = np.abs(quick.error - full.error) / quick.uncertainty
     data = {"coefficient": list(LABELS), "quick": quick.error.tolist(), "full": full.error.tolist()}

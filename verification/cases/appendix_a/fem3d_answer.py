@@ -42,17 +42,13 @@ def worst(slope: float, nu: float, group: str, *, pair: bool) -> float:
     return 100 * float(np.abs(found).max())
 
 
-@case(
-    "fem3d/less-than-two-percent",
-    title="'The maximum error is less than 2 %': true of what?",
-    claim="for Table 1's pair every coefficient is within 2 % up to the paper's largest slope, 6.5 degrees",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=2.0,
-    tolerance_reason="percent of the flat coefficient: the paper's own number",
-    tags=("appendix-a", "fem", "3-d", "map"),
-)
+@case("fem3d/less-than-two-percent", metric="at_most", tolerance=2.0, source=SOURCE)
 def less_than_two_percent() -> Measured:
+    """'The maximum error is less than 2 %': true of what?
+
+    Claim: for Table 1's pair every coefficient is within 2 % up to the paper's largest slope, 6.5 degrees
+    Tolerance: percent of the flat coefficient: the paper's own number
+    """
     slopes = {
         "max 2.5": RMS,
         "rms 2.5": equivalent_slope(RMS),
@@ -79,18 +75,14 @@ def less_than_two_percent() -> Measured:
     return judged(Verdict.CONDITIONAL, sentence + "; ".join(false), value, data=data, unit="%")
 
 
-@case(
-    "fem3d/two-percent",
-    title="The slope at which each coefficient is 2 % wrong, in three dimensions",
-    claim="for the next element downhill on a flank, nu 0.3, first-order theory gives that slope",
-    source=SOURCE,
-    metric="absolute",
-    tolerance=0.5,
-    tolerance_reason="degrees: second order adds 0.2 of the first at 4 degrees to one neighbour and takes it "
-    "from the other; here the mean of both",
-    tags=("appendix-a", "fem", "3-d", "map"),
-)
+@case("fem3d/two-percent", metric="absolute", tolerance=0.5, source=SOURCE)
 def two_percent() -> Measured:
+    """The slope at which each coefficient is 2 % wrong, in three dimensions.
+
+    Claim: for the next element downhill on a flank, nu 0.3, first-order theory gives that slope
+    Tolerance: degrees: second order adds 0.2 of the first at 4 degrees to one neighbour and takes it from the
+    other; here the mean of both
+    """
     data: dict[str, object] = {"coefficient": list(LABELS)}
     for place in PLACES:
         for nu in RATIOS:
@@ -106,17 +98,14 @@ def two_percent() -> Measured:
     return Measured(mean, expected, unit="degrees", data=data)
 
 
-@case(
-    "fem3d/error-map",
-    title="Errors of self and neighbour coefficients over the slope",
-    claim="every tabulated point is known to 0.2 percentage points of the flat coefficient",
-    source="three meshes and three outer boundaries each; appendix_a.fem3d.study",
-    metric="at_most",
-    tolerance=0.2,
-    tolerance_reason="percentage points, as required in three dimensions, a tenth of the paper's 2 %",
-    tags=("appendix-a", "fem", "3-d", "map"),
-)
+@case("fem3d/error-map", metric="at_most", tolerance=0.2)
 def error_map() -> Measured:
+    """Errors of self and neighbour coefficients over the slope.
+
+    Claim: every tabulated point is known to 0.2 percentage points of the flat coefficient
+    Source: three meshes and three outer boundaries each; appendix_a.fem3d.study
+    Tolerance: percentage points, as required in three dimensions, a tenth of the paper's 2 %
+    """
     slopes = np.arange(0.0, 30.1, 1.0)
     data: dict[str, object] = {"slope (degrees)": slopes}
     shown = {"self": 0, "+x 1": 1, "-x 1": 4, "across 1": 7}

@@ -15,7 +15,7 @@ from appendix_a.fem.sinusoid import departures, setup_for
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.leading_order import facet_prediction, first_order, plane_slope
 from appendix_a.wedge_tip import relative_difference
-from verification.cases.appendix_a.fem import NEIGHBOURS, POINTS, POINTS_REASON, percent
+from verification.cases.appendix_a.fem import NEIGHBOURS, POINTS, POINTS_REASON, percent  # noqa: F401  # in docstrings
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged
@@ -30,20 +30,15 @@ def odd(values: Array) -> Array:
     return (values - values[::-1]) / 2.0
 
 
-@case(
-    "appendix-fem/first-order",
-    title="The first-order formula as the limit of gentle slopes",
-    claim="rough minus flat over tan(slope) tends to -(1 + nu)(1 - 2 nu) [s(clip(x)) - s(0)] / tan(slope)",
-    source="perturbation of the flat boundary, appendix_a.leading_order",
-    metric="at_most",
-    tolerance=2e-3,
-    tolerance_reason=(
-        "extrapolated to slope 0 from 1, 2 and 4 degrees by a parabola: the neglected cubic term is "
-        "8 tan(1)^3 = 4e-5, mesh errors of 1e-5 are divided by tan(1) = 0.017"
-    ),
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/first-order", metric="at_most", tolerance=2e-3)
 def first_order_limit() -> Measured:
+    """The first-order formula as the limit of gentle slopes.
+
+    Claim: rough minus flat over tan(slope) tends to -(1 + nu)(1 - 2 nu) [s(clip(x)) - s(0)] / tan(slope)
+    Source: perturbation of the flat boundary, appendix_a.leading_order
+    Tolerance: extrapolated to slope 0 from 1, 2 and 4 degrees by a parabola: the neglected cubic term is 8
+    tan(1)^3 = 4e-5, mesh errors of 1e-5 are divided by tan(1) = 0.017
+    """
     offsets = NEIGHBOURS[3:-3]
     slopes = np.array([1.0, 2.0, 4.0])
     tangent = np.tan(np.radians(slopes))
@@ -78,17 +73,14 @@ def _correction(slope: float, wavelength: float) -> dict[str, Array]:
     }
 
 
-@case(
-    "appendix-fem/correction",
-    title="Facet tractions remove the first-order part, 10 degrees",
-    claim="exact facet tractions make the neighbour error's antisymmetric part at least 5 times smaller",
-    source="exact facet tractions (refimpl.model.forces); appendix_a.leading_order.facet_prediction",
-    metric="at_most",
-    tolerance=0.2,
-    tolerance_reason="asked; measured 0.012 (wavelength 20) and 0.003 (100): odd in the slope, third order",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/correction", metric="at_most", tolerance=0.2)
 def correction() -> Measured:
+    """Facet tractions remove the first-order part, 10 degrees.
+
+    Claim: exact facet tractions make the neighbour error's antisymmetric part at least 5 times smaller
+    Source: exact facet tractions (refimpl.model.forces); appendix_a.leading_order.facet_prediction
+    Tolerance: asked; measured 0.012 (wavelength 20) and 0.003 (100): odd in the slope, third order
+    """
     ratios, data = [], {"offset": NEIGHBOURS.tolist()}
     square = np.tan(np.radians(10.0)) ** 2
     for wavelength in (20.0, 100.0):
@@ -101,18 +93,15 @@ def correction() -> Measured:
     return Measured(value=max(ratios), data=data | {"antisymmetric, with over without": ratios})
 
 
-@case(
-    "appendix-fem/remainder",
-    title="What the correction leaves in the plane is an element's width",
-    claim="2 a along the facet: the rest is tan^2 (1 - nu^2) / pi ln(x^2 - 1); 2 a in projection: none",
-    source="the flat strip's displacement differentiated by its half-width, shortened by tan^2 / 2",
-    metric="at_most",
-    tolerance=2e-3,
-    tolerance_reason="relative to the formula, extrapolated from 5 and 10 degrees at a wavelength of 400 a: "
-    "tan(10)^4 is neglected, 1e-3, and curvature, (k x)^2 of a tenth",
-    tags=("appendix-a", "fem", "correction"),
-)
+@case("appendix-fem/remainder", metric="at_most", tolerance=2e-3)
 def remainder() -> Measured:
+    """Remainder of the correction in the plane: an element's width.
+
+    Claim: 2 a along the facet: the rest is tan^2 (1 - nu^2) / pi ln(x^2 - 1); 2 a in projection: none
+    Source: the flat strip's displacement differentiated by its half-width, shortened by tan^2 / 2
+    Tolerance: relative to the formula, extrapolated from 5 and 10 degrees at a wavelength of 400 a: tan(10)^4
+    is neglected, 1e-3, and curvature, (k x)^2 of a tenth
+    """
     ahead = NEIGHBOURS > 0
     formula = (1 - 0.3**2) / np.pi * np.log(NEIGHBOURS**2 - 1)[ahead]
     data: dict[str, object] = {"offset": NEIGHBOURS[ahead].tolist(), "formula": formula.tolist()}
@@ -127,18 +116,14 @@ def remainder() -> Measured:
     return Measured(value=float((np.array(missed) / formula).max()), data=data)
 
 
-@case(
-    "appendix-fem/fig12-waves",
-    title="Crest, flank and valley (Fig. 12)",
-    claim="the coefficients of waves of 2.5, 6.5 and 15 degrees are known to 0.02 percentage points",
-    source="paper Fig. 12, (A2)",
-    metric="at_most",
-    tolerance=POINTS,
-    tolerance_reason=POINTS_REASON,
-    tier="full",
-    tags=("appendix-a", "fem", "fig12"),
-)
+@case("appendix-fem/fig12-waves", metric="at_most", tolerance=POINTS, tier="full")
 def waves() -> Measured:
+    """Crest, flank and valley (Fig. 12).
+
+    Claim: the coefficients of waves of 2.5, 6.5 and 15 degrees are known to 0.02 percentage points
+    Source: paper Fig. 12, (A2)
+    Tolerance: {POINTS_REASON}
+    """
     worst, data = 0.0, {"offset": CURVE.tolist()}
     for name, position in (("crest", 0.0), ("flank", 0.25), ("valley", 0.5)):
         for slope in (2.5, 6.5, 15.0):
@@ -152,18 +137,14 @@ def waves() -> Measured:
     return Measured(value=worst, unit="percentage points", data=data, note="wavelength 50 a, nu 0.3")
 
 
-@case(
-    "appendix-fem/fig13-wedge-tip",
-    title="Wedge tip on a half-plane (Fig. 13)",
-    claim="the relative differences of Fig. 13 are known to 0.02 percentage points",
-    source="paper Fig. 13",
-    metric="at_most",
-    tolerance=POINTS,
-    tolerance_reason=POINTS_REASON,
-    tier="full",
-    tags=("appendix-a", "fem", "fig13"),
-)
+@case("appendix-fem/fig13-wedge-tip", metric="at_most", tolerance=POINTS, tier="full")
 def fig13() -> Measured:
+    """Wedge tip on a half-plane (Fig. 13).
+
+    Claim: the relative differences of Fig. 13 are known to 0.02 percentage points
+    Source: paper Fig. 13
+    Tolerance: {POINTS_REASON}
+    """
     offsets = CURVE[CURVE > 0.0]
     worst, data = 0.0, {"offset": offsets.tolist()}
     for slope in (1.0, 2.5, 6.5, 15.0, 30.0):
@@ -173,17 +154,14 @@ def fig13() -> Measured:
     return Measured(value=worst, unit="percentage points", data=data, note="base 32 a, nu 0.3")
 
 
-@case(
-    "appendix-fem/confined",
-    title="Is the difference confined to |x| < 3 a?",
-    claim="in the plane it is not: on a flank the antisymmetric difference at 20 a is that at 2 a",
-    source="paper, text on Fig. 13; exact solution on a plane slope, FEM on a wave of 100 a",
-    metric="at_least",
-    tolerance=0.9,
-    tolerance_reason="confinement would give 0; the exact value on a plane slope is 1",
-    tags=("appendix-a", "fem", "fig13"),
-)
+@case("appendix-fem/confined", metric="at_least", tolerance=0.9)
 def confined() -> Measured:
+    """Is the difference confined to |x| < 3 a?
+
+    Claim: in the plane it is not: on a flank the antisymmetric difference at 20 a is that at 2 a
+    Source: paper, text on Fig. 13; exact solution on a plane slope, FEM on a wave of 100 a
+    Tolerance: confinement would give 0; the exact value on a plane slope is 1
+    """
     difference = one_mesh(6.5, 100.0)
     exact = plane_slope(NEIGHBOURS, 0.3, 6.5) - pressed_strip(NEIGHBOURS, 0.3)
     data = {
@@ -204,18 +182,14 @@ def confined() -> Measured:
     return judged(Verdict.CONDITIONAL, sentence, far_over_near, data=data)
 
 
-@case(
-    "appendix-fem/independent-asperities",
-    title="Do neighbouring asperities act independently?",
-    claim="waves beyond one wavelength change no coefficient by over 0.02 percentage points at 6.5 degrees",
-    source="paper, text on Figs 12 and 13; first-order formula: no effect at all",
-    metric="at_most",
-    tolerance=POINTS,
-    tolerance_reason="a hundredth of the paper's 2 %; measured 0.005, and 0.15 at 20 degrees",
-    tier="full",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/independent-asperities", metric="at_most", tolerance=POINTS, tier="full")
 def independent_asperities() -> Measured:
+    """Do neighbouring asperities act independently?
+
+    Claim: waves beyond one wavelength change no coefficient by over 0.02 percentage points at 6.5 degrees
+    Source: paper, text on Figs 12 and 13; first-order formula: no effect at all
+    Tolerance: a hundredth of the paper's 2 %; measured 0.005, and 0.15 at 20 degrees
+    """
     worst, data = [], {"offset": NEIGHBOURS.tolist()}
     for slope in (6.5, 20.0):
         for wavelength in (20.0, 50.0):
@@ -231,18 +205,14 @@ def independent_asperities() -> Measured:
     return Measured(value=max(worst), unit="percentage points", data=data)
 
 
-@case(
-    "appendix-fem/axisymmetric-asperity",
-    title="Cone and paraboloid on a half-space under a patch at the tip",
-    claim="self and neighbour coefficients of a round asperity are known to 0.05 percentage points",
-    source="paper, Appendix A; not solved there",
-    metric="at_most",
-    tolerance=0.05,
-    tolerance_reason="a fortieth of the paper's 2 %",
-    tier="full",
-    tags=("appendix-a", "fem"),
-)
+@case("appendix-fem/axisymmetric-asperity", metric="at_most", tolerance=0.05, tier="full")
 def axisymmetric_asperity() -> Measured:
+    """Cone and paraboloid on a half-space under a patch at the tip.
+
+    Claim: self and neighbour coefficients of a round asperity are known to 0.05 percentage points
+    Source: paper, Appendix A; not solved there
+    Tolerance: a fortieth of the paper's 2 %
+    """
     radii = np.array([0.0, 2.0, 3.0, 4.0, 6.0, 10.0, 20.0])
     worst, data = 0.0, {"radius": radii.tolist()}
     for shape in ("cone", "paraboloid"):

@@ -27,17 +27,14 @@ def shipped_map() -> CoefficientMap:
         return CoefficientMap.read(path)
 
 
-@case(
-    "appendix-fem/six-map-points",
-    title="Six points of the shipped map, solved afresh between its nodes",
-    claim="the map, interpolated, gives the coefficients to 0.05 percentage points, on short waves as well",
-    source="refimpl/data/coefficient_error.json",
-    metric="at_most",
-    tolerance=0.05,
-    tolerance_reason="0.02 stated by the map, and the splines' error between nodes; measured 0.035",
-    tags=("appendix-a", "fem", "map"),
-)
+@case("appendix-fem/six-map-points", metric="at_most", tolerance=0.05)
 def six_map_points() -> Measured:
+    """Six points of the shipped map, solved afresh between its nodes.
+
+    Claim: the map, interpolated, gives the coefficients to 0.05 percentage points, on short waves as well
+    Source: refimpl/data/coefficient_error.json
+    Tolerance: 0.02 stated by the map, and the splines' error between nodes; measured 0.035
+    """
     table = shipped_map()
     offsets = np.array(table.offset)
     points = (
@@ -62,18 +59,14 @@ def six_map_points() -> Measured:
 RANDOM_POINTS, DRAWN_FROM, SEED = 120, 60, 2001  # the seed was chosen before any point was computed
 
 
-@case(
-    "appendix-fem/map-between-nodes",
-    title="The shipped map between its nodes, at 60 random points that its stated error was not drawn from",
-    claim="what is stated of interpolation holds on waves of 8 to 300 half-widths: next elements, and all",
-    source="refimpl/data/coefficient_error.json; appendix_a.fem.coefficient_map.interpolation_error",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="error over stated error, the largest; the bounds were drawn above 60 other points",
-    tier="full",
-    tags=("appendix-a", "fem", "map"),
-)
+@case("appendix-fem/map-between-nodes", metric="at_most", tolerance=1.0, tier="full")
 def map_between_nodes() -> Measured:
+    """The shipped map between its nodes, at 60 random points that its stated error was not drawn from.
+
+    Claim: what is stated of interpolation holds on waves of 8 to 300 half-widths: next elements, and all
+    Source: refimpl/data/coefficient_error.json; appendix_a.fem.coefficient_map.interpolation_error
+    Tolerance: error over stated error, the largest; the bounds were drawn above 60 other points
+    """
     table = shipped_map()
     offsets = np.array(table.offset)
     beside = np.abs(offsets) == 2.0
@@ -114,17 +107,14 @@ def _two_percent_slopes(table: CoefficientMap, position: float, nu: float) -> li
     return [float(slopes[np.argmax(column)]) if column.any() else None for column in columns]
 
 
-@case(
-    "appendix-fem/two-percent",
-    title="Where the next element's coefficient is 2 % wrong",
-    claim="on a flank, at nu = 0.3, the slope of 2 % is that of the first-order formula: 4.2 degrees",
-    source="paper, Appendix A: 'less than 2 %'; appendix_a.leading_order",
-    metric="absolute",
-    tolerance=0.6,
-    tolerance_reason="second order adds 0.3 tan^2 to 0.52 tan, 4 % at 4 degrees; slopes step by 0.25",
-    tags=("appendix-a", "fem", "map"),
-)
+@case("appendix-fem/two-percent", metric="absolute", tolerance=0.6)
 def two_percent() -> Measured:
+    """Slope at which the next element's coefficient is 2 % wrong.
+
+    Claim: on a flank, at nu = 0.3, the slope of 2 % is that of the first-order formula: 4.2 degrees
+    Source: paper, Appendix A: 'less than 2 %'; appendix_a.leading_order
+    Tolerance: second order adds 0.3 tan^2 to 0.52 tan, 4 % at 4 degrees; slopes step by 0.25
+    """
     table = shipped_map()
     data: dict[str, object] = {"offset": list(table.offset)}
     for nu in (0.0, 0.3, 0.45, 0.5):
@@ -140,19 +130,14 @@ def two_percent() -> Measured:
     return Measured(value=float(value or np.inf), reference=reference, unit="degrees", data=data)
 
 
-@case(
-    "appendix-fem/map",
-    title="The plane map on crest, flank and valley, solved afresh",
-    claim="these points are known to 0.02 percentage points, so is every other by the table's own "
-    "statement; the shipped table is this map",
-    source="appendix_a.fem.map2d",
-    metric="at_most",
-    tolerance=POINTS,
-    tolerance_reason=POINTS_REASON,
-    tier="full",
-    tags=("appendix-a", "fem", "map"),
-)
+@case("appendix-fem/map", metric="at_most", tolerance=POINTS, tier="full", tolerance_reason=POINTS_REASON)
 def whole_map() -> Measured:
+    """The plane map on crest, flank and valley, solved afresh.
+
+    Claim: these points are known to 0.02 percentage points, so is every other by the table's own statement;
+    the shipped table is this map
+    Source: appendix_a.fem.map2d
+    """
     start = time.perf_counter()
     fresh, shipped = compute(positions=CREST_FLANK_VALLEY), shipped_map()
     seconds = time.perf_counter() - start
@@ -174,17 +159,14 @@ def whole_map() -> Measured:
     return Measured(value=worst, unit="percentage points", data=data)
 
 
-@case(
-    "appendix-fem/small-slope-error",
-    title="What a solution states as its coefficient error, on a small slope",
-    claim="at 0.1 degrees on a flank the error read from the map is that of first-order theory",
-    source="appendix_a.strip.first_order; refimpl.solution.influence_error",
-    metric="relative",
-    tolerance=0.005,
-    tolerance_reason="second order over first: of the slope's size, 0.0017; 0.0010 measured, times five",
-    tags=("appendix-a", "map"),
-)
+@case("appendix-fem/small-slope-error", metric="relative", tolerance=0.005)
 def small_slope_error() -> Measured:
+    """Coefficient error that a solution states, on a small slope.
+
+    Claim: at 0.1 degrees on a flank the error read from the map is that of first-order theory
+    Source: appendix_a.strip.first_order; refimpl.solution.influence_error
+    Tolerance: second order over first: of the slope's size, 0.0017; 0.0010 measured, times five
+    """
     slope, wavelength, flank, nu = 0.1, 64.0, 0.25, 0.3
     wavy, flat = first_order(slope, wavelength, flank, nu, offsets=[-2.0, 2.0])
     body = Material(E=200e9, nu=nu)

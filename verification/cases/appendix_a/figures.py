@@ -17,20 +17,16 @@ DISTANCES = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0])
 HALF_BASE = 8.0
 
 
-@case(
-    "appendix-figures/fig12",
-    title="Fig. 12: strip theory beside finite elements",
-    claim="at 6.5 degrees first-order theory gives the change of the coefficient on a wavy line up to second "
-    "order, on the crest that the paper draws and on the flank that it does not",
-    source="paper Fig. 12, (A1)-(A3); first-order theory and finite elements, appendix_a",
-    metric="at_most",
-    tolerance=0.65,
-    tolerance_reason="percent of the flat coefficient; the neglected second order is half of "
-    "tan(6.5 degrees)^2 = 1.3 % at most, and the finite elements are off by 0.01 %",
-    tier="full",
-    tags=("appendix-a", "fig12"),
-)
+@case("appendix-figures/fig12", metric="at_most", tolerance=0.65, tier="full")
 def fig12() -> Measured:
+    """Fig. 12: strip theory beside finite elements.
+
+    Claim: at 6.5 degrees first-order theory gives the change of the coefficient on a wavy line up to second
+    order, on the crest that the paper draws and on the flank that it does not
+    Source: paper Fig. 12, (A1)-(A3); first-order theory and finite elements, appendix_a
+    Tolerance: percent of the flat coefficient; the neglected second order is half of tan(6.5 degrees)^2 = 1.3
+    % at most, and the finite elements are off by 0.01 %
+    """
     data: dict[str, object] = {"x over a": OFFSETS}
     worst = 0.0
     for name, position in (("crest", 0.0), ("flank", 0.25)):
@@ -46,20 +42,16 @@ def fig12() -> Measured:
     return Measured(value=worst, unit="%", data=data)
 
 
-@case(
-    "appendix-figures/fig13",
-    title="Fig. 13: wedge theory beside finite elements",
-    claim="up to 6.5 degrees the wedge tip whose load alone is matched at its base gives the displacement "
-    "of a real wedge tip on a half-plane; both counted from the apex",
-    source="paper Fig. 13, (A4)-(A9) corrected; finite elements of the tip on its half-plane",
-    metric="at_most",
-    tolerance=0.05,
-    tolerance_reason="percentage points; the unmatched part of the base's tractions is second order, "
-    "measured 0.001 points at 2.5 degrees and 0.018 at 6.5",
-    tier="full",
-    tags=("appendix-a", "fig13"),
-)
+@case("appendix-figures/fig13", metric="at_most", tolerance=0.05, tier="full")
 def fig13() -> Measured:
+    """Fig. 13: wedge theory beside finite elements.
+
+    Claim: up to 6.5 degrees the wedge tip whose load alone is matched at its base gives the displacement of a
+    real wedge tip on a half-plane; both counted from the apex
+    Source: paper Fig. 13, (A4)-(A9) corrected; finite elements of the tip on its half-plane
+    Tolerance: percentage points; the unmatched part of the base's tractions is second order, measured 0.001
+    points at 2.5 degrees and 0.018 at 6.5
+    """
     data: dict[str, object] = {"x over a": DISTANCES}
     differences = {}
     for slope in (2.5, 6.5, 15.0):

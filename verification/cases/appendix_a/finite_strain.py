@@ -123,10 +123,7 @@ def _wave(amplitude: float) -> _Wave:
     tie = csr_matrix(
         (
             np.ones(2 * len(rows)),
-            (
-                np.concatenate([at[rows], ups[rows]]),
-                np.concatenate([column[rows], len(free) + column[rows]]),
-            ),
+            (np.concatenate([at[rows], ups[rows]]), np.concatenate([column[rows], len(free) + column[rows]])),
         ),
         shape=(basis.N, 2 * len(free)),
     )

@@ -68,19 +68,14 @@ def _scatter(contacts: list[Judged] | list[solid_half_space.SolidJudged]) -> dic
     return data
 
 
-@case(
-    "model-form/half-space-plane",
-    title="Stated model-form error of 56 plane contacts that served to build nothing",
-    claim="What is stated of approach, N, mu, A and p_max holds in at least 90 % of them each",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=0.1,
-    tolerance_reason="share of contacts where the true error is larger, or the finite elements did not end: "
-    "what a 90 % statement allows",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/half-space-plane", metric="at_most", tolerance=0.1, tier="full", source=SOURCE)
 def plane() -> Measured:
+    """Stated model-form error of 56 plane contacts that served to build nothing.
+
+    Claim: What is stated of approach, N, mu, A and p_max holds in at least 90 % of them each
+    Tolerance: share of contacts where the true error is larger, or the finite elements did not end: what a 90
+    % statement allows
+    """
     contacts = _plane()
     rates = _rates(contacts)
     data = _scatter(contacts) | {"holds in, median of stated over true": rates}
@@ -93,35 +88,25 @@ def plane() -> Measured:
     )
 
 
-@case(
-    "model-form/half-space-sharpness",
-    title="What is stated is not much larger than the truth",
-    claim="In the median of the plane contacts the stated error is at most four times the true one",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=4.0,
-    tolerance_reason="a statement that is larger helps nobody to decide",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/half-space-sharpness", metric="at_most", tolerance=4.0, tier="full", source=SOURCE)
 def sharpness() -> Measured:
+    """Stated errors are not much larger than the true ones.
+
+    Claim: In the median of the plane contacts the stated error is at most four times the true one
+    Tolerance: a statement that is larger helps nobody to decide
+    """
     rates = _rates(_plane())
     return Measured(max(m for _, m in rates.values()), data={q: m for q, (_, m) in rates.items()})
 
 
-@case(
-    "model-form/half-space-warned",
-    title="No contact whose N is off by more than 5 % goes without a warning",
-    claim="Every plane contact of a seed that nothing was built on, and every three-dimensional contact, "
-    "with N off by more than 5 % has the warning",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=0.0,
-    tolerance_reason="contacts without a warning",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/half-space-warned", metric="at_most", tolerance=0.0, tier="full", source=SOURCE)
 def warned() -> Measured:
+    """No contact whose N is off by more than 5 % goes without a warning.
+
+    Claim: Every plane contact of a seed that nothing was built on, and every three-dimensional contact, with
+    N off by more than 5 % has the warning
+    Tolerance: contacts without a warning
+    """
     contacts: list[Judged | solid_half_space.SolidJudged] = [*_plane(WARNED_ON), *_space()]
     off = [c for c in contacts if abs(c.true["normal_force"]) > 0.05]
     missed = [c for c in off if not c.warned]
@@ -133,35 +118,26 @@ def warned() -> Measured:
     )
 
 
-@case(
-    "model-form/half-space-solid",
-    title="Stated model-form error of six pairs of asperities in three dimensions",
-    claim="What is stated of approach, N and mu holds for all",
-    source="scikit-fem, triquadratic hexahedra, contact on the deformed facets",
-    metric="at_most",
-    tolerance=0.1,
-    tolerance_reason="share of contacts where the true error is larger",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/half-space-solid", metric="at_most", tolerance=0.1, tier="full")
 def solid() -> Measured:
+    """Stated model-form error of six pairs of asperities in three dimensions.
+
+    Claim: What is stated of approach, N and mu holds for all
+    Source: scikit-fem, triquadratic hexahedra, contact on the deformed facets
+    Tolerance: share of contacts where the true error is larger
+    """
     rates = _rates(_space())
     data = _scatter(_space()) | {"holds in, median of stated over true": rates}
     return Measured(1 - min(holds for holds, _ in rates.values()), data=data)
 
 
-@case(
-    "model-form/half-space-correction",
-    title="The first order of the undeformed surfaces as a correction",
-    claim="In the median of the plane contacts it leaves less than a quarter of the error of N",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=0.25,
-    tolerance_reason="what is of second order, at slopes of 10 degrees in the mean",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/half-space-correction", metric="at_most", tolerance=0.25, tier="full", source=SOURCE)
 def correction() -> Measured:
+    """The first order of the undeformed surfaces as a correction.
+
+    Claim: In the median of the plane contacts it leaves less than a quarter of the error of N
+    Tolerance: what is of second order, at slopes of 10 degrees in the mean
+    """
     contacts = _plane()
     data: dict[str, object] = {}
     for name in ("approach", "normal_force", "friction_coefficient", "contact_area", "max_pressure"):
@@ -194,20 +170,14 @@ def elastic_wave(slope_deg: float) -> Profiles:
     )
 
 
-@case(
-    "model-form/half-space-wave",
-    title="An elastic wave under a rigid plane: slopes vanish in contact, and the half-space is off",
-    claim="The half-space's approach is 7.8 % too small at 15 degrees; its N at the approach is 16.6 % too "
-    "large there and 7.2 % at 6.5 degrees; both are stated, and the solution warns",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=0.3,
-    tolerance_reason="percentage points between these numbers and those found independently: other meshes "
-    "and grids",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/half-space-wave", metric="at_most", tolerance=0.3, tier="full", source=SOURCE)
 def wave() -> Measured:
+    """An elastic wave under a rigid plane: slopes vanish in contact, and the half-space is off.
+
+    Claim: The half-space's approach is 7.8 % too small at 15 degrees; its N at the approach is 16.6 % too
+    large there and 7.2 % at 6.5 degrees; both are stated, and the solution warns
+    Tolerance: percentage points between these numbers and those found independently: other meshes and grids
+    """
     over = {slope: judged(elastic_wave(slope)) for slope in WAVE_SLOPES}
     steep, paper = over[15.0], over[6.5]
     found = {
@@ -231,18 +201,13 @@ def wave() -> Measured:
     return Measured(max(abs(a - b) for a, b in found.values()), unit="percentage points", data=data)
 
 
-@case(
-    "model-form/half-space-crests",
-    title="Steel on copper, crest on crest: N off by 3.9 and 9.2 %",
-    claim="The stated error of N is between the true one and three times it",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=3.0,
-    tolerance_reason="stated over true, the larger of both slopes; infinite where it does not hold",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/half-space-crests", metric="at_most", tolerance=3.0, tier="full", source=SOURCE)
 def crests() -> Measured:
+    """Steel on copper, crest on crest: N off by 3.9 and 9.2 %.
+
+    Claim: The stated error of N is between the true one and three times it
+    Tolerance: stated over true, the larger of both slopes; infinite where it does not hold
+    """
     worst, data = 0.0, {}
     for slope in (6.5, 15.0):
         tangent = math.tan(math.radians(slope))
@@ -254,18 +219,14 @@ def crests() -> Measured:
     return Measured(worst, data=data)
 
 
-@case(
-    "model-form/finite-strain",
-    title="Share of finite strain, neo-Hookean against linear elasticity",
-    claim="A neo-Hookean wave adds 12 to 14 % to the approach's error: less than the stated share of 20 %",
-    source="scikit-fem, the same mesh and active set for both laws",
-    metric="at_most",
-    tolerance=0.2,
-    tolerance_reason="refimpl.solution.model_form.FINITE_STRAIN, stated of the first order",
-    tier="full",
-    tags=TAGS,
-)
+@case("model-form/finite-strain", metric="at_most", tolerance=0.2, tier="full")
 def strain() -> Measured:
+    """Share of finite strain, neo-Hookean against linear elasticity.
+
+    Claim: A neo-Hookean wave adds 12 to 14 % to the approach's error: less than the stated share of 20 %
+    Source: scikit-fem, the same mesh and active set for both laws
+    Tolerance: refimpl.solution.model_form.FINITE_STRAIN, stated of the first order
+    """
     found = {slope: finite_strain.approaches(slope, 0.0, 0.3) for slope in (2.5, 6.5, 15.0)}
     shares = {f"{slope:g} degrees": added / first for slope, (first, added) in found.items()}
     data: dict[str, object] = {"share of the first order": shares}
@@ -275,19 +236,16 @@ def strain() -> Measured:
     return Measured(max(shares.values()), data=data)
 
 
-@case(
-    "model-form/space-over-plane",
-    title="Coefficients in line with a slope: three dimensions against the plane",
-    claim="nu 0 at 10 degrees 12.7 against 8.8 %, nu 0.3 at 6.5 degrees 4.15 against 3.30 %, steel on copper "
-    "at 10 degrees 2.58 against 1.74 %",
-    source="refimpl.solution.influence_error_3d and influence_error, both tables by finite elements",
-    metric="at_most",
-    tolerance=0.06,
-    tolerance_reason="percentage points: half of the last digit of the numbers found independently, and the "
-    "tables' stated errors",
-    tags=TAGS,
-)
+@case("model-form/space-over-plane", metric="at_most", tolerance=0.06)
 def space_over_plane() -> Measured:
+    """Coefficients in line with a slope: three dimensions against the plane.
+
+    Claim: nu 0 at 10 degrees 12.7 against 8.8 %, nu 0.3 at 6.5 degrees 4.15 against 3.30 %, steel on copper
+    at 10 degrees 2.58 against 1.74 %
+    Source: refimpl.solution.influence_error_3d and influence_error, both tables by finite elements
+    Tolerance: percentage points: half of the last digit of the numbers found independently, and the tables'
+    stated errors
+    """
     copper, steel = Material(118e9, 0.3), Material(200e9, 0.3)
     rows = (
         ("nu 0, 10 degrees", 10.0, (Material(1e9, 0.0),), (12.7, 8.8)),

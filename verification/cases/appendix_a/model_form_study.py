@@ -16,11 +16,7 @@ from numpy.typing import NDArray
 import refimpl as rf
 from appendix_a.contact_fem import ends
 from appendix_a.contact_fem.scene import Material, WavyPair
-from appendix_a.contact_fem.sequence import (
-    Estimate,
-    Sequence,
-    slide_on_three_meshes,
-)
+from appendix_a.contact_fem.sequence import Estimate, Sequence, slide_on_three_meshes
 
 Array = NDArray[np.float64]
 Numbers = Mapping[str, Estimate]

@@ -36,17 +36,14 @@ def trace(x: Any, y: Any) -> Any:
     return sum(printed_stresses(x, y)[:2])
 
 
-@case(
-    "appendix-strip/a1-field",
-    title="(A1) is a stress field",
-    claim="(A1) satisfies both equations of equilibrium and compatibility at random points of the half-plane",
-    source="paper Eq. (A1); Johnson 1985, section 2.5",
-    metric="at_most",
-    tolerance=1e-30,
-    tolerance_reason="mpmath raises its precision for differences: rounding at 40 digits is expected",
-    tags=("appendix", "strip"),
-)
+@case("appendix-strip/a1-field", metric="at_most", tolerance=1e-30)
 def a1_field() -> Measured:
+    """(A1) is a stress field.
+
+    Claim: (A1) satisfies both equations of equilibrium and compatibility at random points of the half-plane
+    Source: paper Eq. (A1); Johnson 1985, section 2.5
+    Tolerance: mpmath raises its precision for differences: rounding at 40 digits is expected
+    """
     rng = np.random.default_rng(2001)
     worst = mp.mpf(0)
     with mp.workdps(DIGITS):
@@ -60,17 +57,14 @@ def a1_field() -> Measured:
     return Measured(value=float(worst))
 
 
-@case(
-    "appendix-strip/a1-tractions",
-    title="(A1) carries the strip's load",
-    claim="towards the boundary (A1) tends to sigma_y = -p under the strip, 0 beside it, and to no shear",
-    source="paper Eq. (A1)",
-    metric="at_most",
-    tolerance=1e-14,
-    tolerance_reason="shear goes like the square of the depth, 1e-9 a, over 0.1 a from the ends",
-    tags=("appendix", "strip"),
-)
+@case("appendix-strip/a1-tractions", metric="at_most", tolerance=1e-14)
 def a1_tractions() -> Measured:
+    """(A1) carries the strip's load.
+
+    Claim: towards the boundary (A1) tends to sigma_y = -p under the strip, 0 beside it, and to no shear
+    Source: paper Eq. (A1)
+    Tolerance: shear goes like the square of the depth, 1e-9 a, over 0.1 a from the ends
+    """
     x = np.array([-30.0, -1.1, -0.9, -0.3, 0.0, 0.6, 0.9, 1.1, 2.0])
     depths = [1e-3, 1e-5, 1e-7, 1e-9]
     errors = []
@@ -80,18 +74,15 @@ def a1_tractions() -> Measured:
     return Measured(value=errors[-1], data={"depth over a": depths, "largest departure": errors})
 
 
-@case(
-    "appendix-strip/first-order-wedge",
-    title="First-order theory against the exact wedge",
-    claim="the faces of a wedge of slope gamma -> 0 move as the first-order theory says for |x| tan(gamma): "
-    "-(1+nu)(1-2nu) (p/E) gamma x up to the strip's end, and constant beyond",
-    source=SOURCE + "; wedge displacements from the Mellin transform",
-    metric="at_most",
-    tolerance=1e-3,
-    tolerance_reason="what is left is of second order: gamma = 1e-5 times a coefficient below 100",
-    tags=("appendix", "strip", "wedge"),
-)
+@case("appendix-strip/first-order-wedge", metric="at_most", tolerance=1e-3)
 def first_order_wedge() -> Measured:
+    """First-order theory against the exact wedge.
+
+    Claim: the faces of a wedge of slope gamma -> 0 move as the first-order theory says for |x| tan(gamma):
+    -(1+nu)(1-2nu) (p/E) gamma x up to the strip's end, and constant beyond
+    Source: {SOURCE}; wedge displacements from the Mellin transform
+    Tolerance: what is left is of second order: gamma = 1e-5 times a coefficient below 100
+    """
     x = np.array([0.05, 0.3, 0.7, 1.0, 1.5, 3.0, 10.0])
     series: dict[str, object] = {"x over a": x}
     worst = []
@@ -106,18 +97,15 @@ def first_order_wedge() -> Measured:
     return Measured(value=max(worst), data=series)
 
 
-@case(
-    "appendix-strip/superposition",
-    title="Pseudo tractions of (A3) against the first-order theory",
-    claim="with theta the direction of the normal and the load added, (A1)-(A3) and Flamant's superposition "
-    "give the first-order change of the displacement beside the strip, on a crest",
-    source="paper Eqs (A1)-(A3); " + SOURCE,
-    metric="at_most",
-    tolerance=2e-3,
-    tolerance_reason="second order: the slope of 1.7e-4 rad over the first order's pi a/lambda = 0.16",
-    tags=("appendix", "strip"),
-)
+@case("appendix-strip/superposition", metric="at_most", tolerance=2e-3)
 def superposition() -> Measured:
+    """Pseudo tractions of (A3) against the first-order theory.
+
+    Claim: with theta the direction of the normal and the load added, (A1)-(A3) and Flamant's superposition
+    give the first-order change of the displacement beside the strip, on a crest
+    Source: paper Eqs (A1)-(A3); {SOURCE}
+    Tolerance: second order: the slope of 1.7e-4 rad over the first order's pi a/lambda = 0.16
+    """
     offsets = np.array([-5.0, -2.0, -1.2, 1.2, 2.0, 5.0])
     slopes, errors = [0.01, 0.1, 1.0], []
     for slope in slopes:
@@ -127,18 +115,15 @@ def superposition() -> Measured:
     return Measured(value=errors[0], data={"slope in degrees": slopes, "largest relative departure": errors})
 
 
-@case(
-    "appendix-strip/crest-small",
-    title="Fig. 12: a strip on a crest",
-    claim="on a crest (6.5 degrees, lambda = 100 a, nu = 0.3) strip theory moves the surface between a and "
-    "15 a by less than 2 % of the flat boundary's displacement relative to the centre",
-    source="paper Fig. 12 and its 2 %",
-    metric="at_most",
-    tolerance=0.02,
-    tolerance_reason="the paper's own bound",
-    tags=("appendix", "strip", "fig12"),
-)
+@case("appendix-strip/crest-small", metric="at_most", tolerance=0.02)
 def fig12() -> Measured:
+    """Fig. 12: a strip on a crest.
+
+    Claim: on a crest (6.5 degrees, lambda = 100 a, nu = 0.3) strip theory moves the surface between a and 15
+    a by less than 2 % of the flat boundary's displacement relative to the centre
+    Source: paper Fig. 12 and its 2 %
+    Tolerance: the paper's own bound
+    """
     x = np.linspace(-15.0, 15.0, 61)
     data: dict[str, object] = {"x over a": x, "flat": field.flat_displacement(x, 0.3)}
     change = np.zeros_like(x)
@@ -160,18 +145,14 @@ def fig12() -> Measured:
     return judged(Verdict.CONDITIONAL, sentence, value, data=data)
 
 
-@case(
-    "appendix-strip/flank-first-order",
-    title="A strip on a flank, to first order",
-    claim="on a flank the neighbours change by (1+nu)(1-2nu) tan(slope) p a / E relative to the centre, "
-    "those downhill rise, those uphill sink: at 6.5 degrees, nu = 0.3 by over 2 % of their coefficient",
-    source=SOURCE,
-    metric="at_least",
-    tolerance=0.02,
-    tolerance_reason="the paper's bound for the maximum slope, which first-order theory exceeds here",
-    tags=("appendix", "strip", "fig12"),
-)
+@case("appendix-strip/flank-first-order", metric="at_least", tolerance=0.02, source=SOURCE)
 def flank() -> Measured:
+    """A strip on a flank, to first order.
+
+    Claim: on a flank the neighbours change by (1+nu)(1-2nu) tan(slope) p a / E relative to the centre, those
+    downhill rise, those uphill sink: at 6.5 degrees, nu = 0.3 by over 2 % of their coefficient
+    Tolerance: the paper's bound for the maximum slope, which first-order theory exceeds here
+    """
     slopes = np.array([0.125, 0.5, 1.0, 2.5, 4.0, 6.5])
     offsets = np.array([-6.0, -4.0, -2.0, 2.0, 4.0, 6.0])
     relative = []

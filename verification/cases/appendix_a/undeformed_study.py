@@ -209,10 +209,7 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
     facets = rf.solve(
         scene, grid=(M, ACROSS), tolerance=TOLERANCE, approach=fine.approach - datum, slope_correction=True
     )
-    true = {
-        "approach": fine.approach / first - 1,
-        "normal_force": scene.load / at.normal_force - 1,
-    }
+    true = {"approach": fine.approach / first - 1, "normal_force": scene.load / at.normal_force - 1}
     change = {
         "approach": error.first_order["approach"] / first,
         "normal_force": error.first_order["normal_force"] / scene.load,

@@ -33,19 +33,15 @@ def departure(r: float, theta: float, gamma: float, expected: tuple[float, ...])
     return float(np.max(np.abs(values - np.array(expected))) / np.max(np.abs(values)))
 
 
-@case(
-    "appendix-wedge/faces",
-    title="Wedge: boundary values as limits of the integrals",
-    claim="at 1 - 10^-k of a face, k = 2 ... 8, the transform integrals themselves (nothing subtracted, no "
-    "special case) tend to sigma_theta = -1 on the pressed and 0 on the free part, and to zero shear",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-6,
-    tolerance_reason="sigma_theta and tau leave their boundary values like the distance from the face, "
-    "1e-8 (pi/2 - gamma), times an angular derivative of the stresses below 10 at these points",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/faces", metric="at_most", tolerance=1e-6, source=SOURCE)
 def faces() -> Measured:
+    """Wedge: boundary values as limits of the integrals.
+
+    Claim: at 1 - 10^-k of a face, k = 2 ... 8, the transform integrals themselves (nothing subtracted, no
+    special case) tend to sigma_theta = -1 on the pressed and 0 on the free part, and to zero shear
+    Tolerance: sigma_theta and tau leave their boundary values like the distance from the face, 1e-8 (pi/2 -
+    gamma), times an angular derivative of the stresses below 10 at these points
+    """
     powers = list(range(2, 9))
     series: dict[str, list[float]] = {}
     for gamma in (1e-6, 0.3, 1.5):
@@ -61,36 +57,29 @@ def faces() -> Measured:
     return Measured(value=max(e[-1] for e in series.values()), data={"k": powers, **series})
 
 
-@case(
-    "appendix-wedge/residuals",
-    title="Wedge: equilibrium and compatibility",
-    claim="r |div sigma| / max |sigma| and the departure of sigma_r + sigma_theta from its mean over a "
-    "circle, over max |sigma|, are at most 1e-10 at 200 random points (gamma 1e-6 ... 1.5, r/a 1e-4 ... 1e4)",
-    source="equilibrium and compatibility, by differences of order 16 and the mean value property",
-    metric="at_most",
-    tolerance=1e-10,
-    tolerance_reason="as required; rounding of 1e-15 over a step of at least 1e-4 gives 1e-11",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/residuals", metric="at_most", tolerance=1e-10)
 def balance() -> Measured:
+    """Wedge: equilibrium and compatibility.
+
+    Claim: r |div sigma| / max |sigma| and the departure of sigma_r + sigma_theta from its mean over a circle,
+    over max |sigma|, are at most 1e-10 at 200 random points (gamma 1e-6 ... 1.5, r/a 1e-4 ... 1e4)
+    Source: equilibrium and compatibility, by differences of order 16 and the mean value property
+    Tolerance: as required; rounding of 1e-15 over a step of at least 1e-4 gives 1e-11
+    """
     pairs = [residuals(*point) for point in random_points(200)]
     equilibrium, compatibility = map(list, zip(*pairs, strict=True))
     worst = {"equilibrium": max(equilibrium), "compatibility": max(compatibility)}
     return Measured(value=max(worst.values()), data=worst, note=f"200 points, seed {SEED}")
 
 
-@case(
-    "appendix-wedge/double-precision",
-    title="Wedge: double precision against 15 digits by another path",
-    claim="the fast path (half-planes and a trapezoidal remainder on a line) is within 1e-10 of the "
-    "unsubtracted polar integrals on a hyperbola, at random points and close to the faces",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-10,
-    tolerance_reason="as required; expected 1e-13, the rounding 1e-15 times (a/r)^(1/2) <= 100",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/double-precision", metric="at_most", tolerance=1e-10, source=SOURCE)
 def double_precision() -> Measured:
+    """Wedge: double precision against 15 digits by another path.
+
+    Claim: the fast path (half-planes and a trapezoidal remainder on a line) is within 1e-10 of the
+    unsubtracted polar integrals on a hyperbola, at random points and close to the faces
+    Tolerance: as required; expected 1e-13, the rounding 1e-15 times (a/r)^(1/2) <= 100
+    """
     errors = []
     for n, (r, theta, gamma) in enumerate(random_points(24)):
         near = np.copysign(np.pi / 2 - gamma, theta) * (1 - 10.0 ** -(2 + n % 7)) if n % 3 == 0 else theta
@@ -99,17 +88,13 @@ def double_precision() -> Measured:
     return Measured(value=max(errors), data={"error": errors}, note=f"24 points, seed {SEED}")
 
 
-@case(
-    "appendix-wedge/two-precisions",
-    title="Wedge: reference at two precisions and by residues",
-    claim="the hyperbola's integrals to 20 and to 40 digits, and the residue series to 30, agree to 19",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-19,
-    tolerance_reason="the coarser run has the tolerance 1e-20",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/two-precisions", metric="at_most", tolerance=1e-19, source=SOURCE)
 def two_precisions() -> Measured:
+    """Wedge: reference at two precisions and by residues.
+
+    Claim: the hyperbola's integrals to 20 and to 40 digits, and the residue series to 30, agree to 19
+    Tolerance: the coarser run has the tolerance 1e-20
+    """
     changes, series = [0.0], [0.0]
     for r, share, gamma in ((0.8, 1.0, 0.7), (3.0, -0.9, 1.2), (20.0, 0.2, 0.05)):
         theta = share * (np.pi / 2 - gamma)
@@ -121,17 +106,14 @@ def two_precisions() -> Measured:
     return Measured(value=max(worst.values()), data=worst)
 
 
-@case(
-    "appendix-wedge/corrected-series",
-    title="Wedge: (A4)-(A9) with the sign of (A5) corrected",
-    claim="the paper's integrals, (A5) beginning with a minus and xi inside cosh and sinh, give the stresses",
-    source="paper Eqs (A4)-(A9)",
-    metric="at_most",
-    tolerance=1e-12,
-    tolerance_reason="20-point Gauss panels and the rounding of up to 1e3 oscillations",
-    tags=("appendix", "wedge", "errata"),
-)
+@case("appendix-wedge/corrected-series", metric="at_most", tolerance=1e-12)
 def corrected_series() -> Measured:
+    """Wedge: (A4)-(A9) with the sign of (A5) corrected.
+
+    Claim: the paper's integrals, (A5) beginning with a minus and xi inside cosh and sinh, give the stresses
+    Source: paper Eqs (A4)-(A9)
+    Tolerance: 20-point Gauss panels and the rounding of up to 1e3 oscillations
+    """
     errors: list[float] = []
     as_printed: list[float] = []
     for gamma in (0.05, 0.6, 1.2, 1.5):
@@ -143,17 +125,14 @@ def corrected_series() -> Measured:
     return Measured(value=max(errors), data={"corrected": errors, "as printed": as_printed})
 
 
-@case(
-    "appendix-wedge/enclosures",
-    title="Wedge: rigorous enclosures",
-    claim="balls of radius below 1e-18 enclose the stresses, and double precision is within 1e-13 of them",
-    source="Arb (Johansson 2017), acb.integral with a bounded tail; " + SOURCE,
-    metric="at_most",
-    tolerance=1e-13,
-    tolerance_reason="rounding of the fast path; the enclosure's own radius is part of the value",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/enclosures", metric="at_most", tolerance=1e-13)
 def enclosures() -> Measured:
+    """Wedge: rigorous enclosures.
+
+    Claim: balls of radius below 1e-18 enclose the stresses, and double precision is within 1e-13 of them
+    Source: Arb (Johansson 2017), acb.integral with a bounded tail; {SOURCE}
+    Tolerance: rounding of the fast path; the enclosure's own radius is part of the value
+    """
     errors, radii = [], []
     for r, share, gamma in ((0.5, -0.6, 0.1), (0.9, 0.6, 1.3), (30.0, 0.0, 0.04)):
         theta = share * (np.pi / 2 - gamma)

@@ -10,18 +10,15 @@ from verification.framework.case import Measured
 from verification.framework.registry import case
 
 
-@case(
-    "appendix-wedge/tip",
-    title="Wedge: uniform pressure at the tip",
-    claim="sigma_r, sigma_theta, tau tend to -1, -1, 0 at the tip",
-    source="residue at z = -1; Williams 1952",
-    metric="at_most",
-    tolerance=2e-5,
-    tolerance_reason="the next power of r is 0.77 at gamma = 0.3 and higher beyond: 1e-8^0.77 = 7e-7, times "
-    "a coefficient; at gamma = 1e-6 it is nearly zero, with a coefficient of a few gamma",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/tip", metric="at_most", tolerance=2e-5)
 def tip() -> Measured:
+    """Wedge: uniform pressure at the tip.
+
+    Claim: sigma_r, sigma_theta, tau tend to -1, -1, 0 at the tip
+    Source: residue at z = -1; Williams 1952
+    Tolerance: the next power of r is 0.77 at gamma = 0.3 and higher beyond: 1e-8^0.77 = 7e-7, times a
+    coefficient; at gamma = 1e-6 it is nearly zero, with a coefficient of a few gamma
+    """
     radii = [1e-2, 1e-4, 1e-6, 1e-8]
     series = {}
     for gamma in (1e-6, 0.3, 1.0, 1.5):
@@ -32,17 +29,14 @@ def tip() -> Measured:
     return Measured(value=max(s[-1] for s in series.values()), data={"r over a": radii, **series})
 
 
-@case(
-    "appendix-wedge/far-field",
-    title="Wedge: radial field of the resultant far away",
-    claim="r sigma_r tends to -4 a cos(gamma) cos(theta) / (pi - 2 gamma + sin 2 gamma), the rest to zero",
-    source="Michell 1900; the resultant is 2 a p cos(gamma)",
-    metric="at_most",
-    tolerance=1e-7,
-    tolerance_reason="the next term falls like (a/r)^2 or faster against a/r, with a coefficient below 10",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/far-field", metric="at_most", tolerance=1e-7)
 def far_field() -> Measured:
+    """Wedge: radial field of the resultant far away.
+
+    Claim: r sigma_r tends to -4 a cos(gamma) cos(theta) / (pi - 2 gamma + sin 2 gamma), the rest to zero
+    Source: Michell 1900; the resultant is 2 a p cos(gamma)
+    Tolerance: the next term falls like (a/r)^2 or faster against a/r, with a coefficient below 10
+    """
     radii = [1e2, 1e4, 1e6, 1e8]
     series = {}
     for gamma in (1e-6, 0.3, 1.0, 1.5):
@@ -55,17 +49,14 @@ def far_field() -> Measured:
     return Measured(value=max(s[-1] for s in series.values()), data={"r over a": radii, **series})
 
 
-@case(
-    "appendix-wedge/half-plane",
-    title="Wedge: gamma -> 0 is the half-plane under a strip",
-    claim="at gamma = 1e-8 the stresses are those of (A1) on both sides of the strip's ends and below them",
-    source="paper Eq. (A1); Johnson 1985, section 2.5",
-    metric="at_most",
-    tolerance=1e-7,
-    tolerance_reason="first order in gamma, 1e-8, times a coefficient below 10 at these points",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/half-plane", metric="at_most", tolerance=1e-7)
 def half_plane() -> Measured:
+    """Wedge: gamma -> 0 is the half-plane under a strip.
+
+    Claim: at gamma = 1e-8 the stresses are those of (A1) on both sides of the strip's ends and below them
+    Source: paper Eq. (A1); Johnson 1985, section 2.5
+    Tolerance: first order in gamma, 1e-8, times a coefficient below 10 at these points
+    """
     x, y = np.meshgrid([-5.0, -1.3, -0.4, 0.2, 0.8, 2.0, 40.0], [1e-3, 0.1, 1.0, 7.0])
     differences = {}
     for gamma in (1e-4, 1e-6, 1e-8):
@@ -83,19 +74,16 @@ def half_plane() -> Measured:
     return Measured(value=differences["gamma 1e-08"], data=differences)
 
 
-@case(
-    "appendix-wedge/slender",
-    title="Wedge: gamma -> pi/2 is a slender strut",
-    claim="at gamma = 1.5 (half-angle 4 degrees) the wedge is under uniform pressure at r = 0.4 a, and under "
-    "the radial field at 2.5 a",
-    source="Saint-Venant; decay exponents of the wedge's eigenfunctions (Williams 1952)",
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="eigenfunctions fall like (r/a)^(4.2/(2 alpha)) = (r/a)^29.7: 2e-12 at both points, "
-    "times a coefficient of some tens",
-    tags=("appendix", "wedge"),
-)
+@case("appendix-wedge/slender", metric="at_most", tolerance=1e-9)
 def slender() -> Measured:
+    """Wedge: gamma -> pi/2 is a slender strut.
+
+    Claim: at gamma = 1.5 (half-angle 4 degrees) the wedge is under uniform pressure at r = 0.4 a, and under
+    the radial field at 2.5 a
+    Source: Saint-Venant; decay exponents of the wedge's eigenfunctions (Williams 1952)
+    Tolerance: eigenfunctions fall like (r/a)^(4.2/(2 alpha)) = (r/a)^29.7: 2e-12 at both points, times a
+    coefficient of some tens
+    """
     gamma = 1.5
     theta = np.linspace(-1, 1, 9) * (np.pi / 2 - gamma)
     inner = np.array(wedge.stresses(0.4, theta, gamma)) - np.array([[-1.0], [-1.0], [0.0]])
@@ -105,17 +93,14 @@ def slender() -> Measured:
     return Measured(value=max(worst.values()), data=worst)
 
 
-@case(
-    "appendix-wedge/base-load",
-    title="Wedge tip: its base carries the load",
-    claim="the base tractions of the wedge tip add up to 2 a p cos(gamma), the load on its faces",
-    source="equilibrium of the tip",
-    metric="at_most",
-    tolerance=1e-12,
-    tolerance_reason="graded Gauss panels, and rounding over some 2000 nodes",
-    tags=("appendix", "wedge", "fig13"),
-)
+@case("appendix-wedge/base-load", metric="at_most", tolerance=1e-12)
 def base_load() -> Measured:
+    """Wedge tip: its base carries the load.
+
+    Claim: the base tractions of the wedge tip add up to 2 a p cos(gamma), the load on its faces
+    Source: equilibrium of the tip
+    Tolerance: graded Gauss panels, and rounding over some 2000 nodes
+    """
     slopes, errors = [0.1, 2.5, 6.5, 20.0, 45.0], []
     for slope in slopes:
         gamma, half_base = np.radians(slope), 10.0
@@ -129,18 +114,15 @@ FIG13_SLOPES = (0.125, 1.0, 2.5, 6.5, 15.0)
 DATUM = 100.0
 
 
-@case(
-    "appendix-wedge/fig13",
-    title="Fig. 13: wedge tip against flat strip",
-    claim="for nu = 0.3 and slopes up to 6.5 degrees the displacement beyond 3 a, counted from a datum at "
-    "100 a, differs from a flat strip's by less than 2 %",
-    source="paper Fig. 13 and its 2 %; load matched at the base, half-base 10 a",
-    metric="at_most",
-    tolerance=0.02,
-    tolerance_reason="the paper's own bound",
-    tags=("appendix", "wedge", "fig13"),
-)
+@case("appendix-wedge/fig13", metric="at_most", tolerance=0.02)
 def fig13() -> Measured:
+    """Fig. 13: wedge tip against flat strip.
+
+    Claim: for nu = 0.3 and slopes up to 6.5 degrees the displacement beyond 3 a, counted from a datum at 100
+    a, differs from a flat strip's by less than 2 %
+    Source: paper Fig. 13 and its 2 %; load matched at the base, half-base 10 a
+    Tolerance: the paper's own bound
+    """
     x = np.concatenate([np.linspace(0.0, 4.0, 21), [5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0]])
     flat = field.flat_displacement(x, 0.3)
     from_datum = flat - field.flat_displacement(DATUM, 0.3)

@@ -43,32 +43,26 @@ def normal_force(solution: rf.Solution) -> float:
     return math.fsum(terms.ravel()) * solution.grid.element_area
 
 
-@case(
-    "balance/normal-force",
-    title="The contact carries the load",
-    claim="the sum of Eq. (2) over the contact, from the returned arrays, equals the load on four scenes",
-    source="paper Eq. (2)",
-    metric="at_most",
-    tolerance=1e-8,
-    tolerance_reason="the solver's default tolerance, which the sum's own rounding does not reach",
-    tags=("eq2",),
-)
+@case("balance/normal-force", metric="at_most", tolerance=1e-8)
 def carries_the_load() -> Measured:
+    """The contact carries the load.
+
+    Claim: the sum of Eq. (2) over the contact, from the returned arrays, equals the load on four scenes
+    Source: paper Eq. (2)
+    Tolerance: the solver's default tolerance, which the sum's own rounding does not reach
+    """
     misfit = {name: abs(normal_force(solved(name, 128)) / rf.read_scene(name).load - 1) for name in SCENES}
     return Measured(value=max(misfit.values()), data={"worst": misfit})
 
 
-@case(
-    "balance/prescribed-approach",
-    title="Prescribed approach against prescribed load",
-    claim="pressing to the approach that a load gave gives that load's pressure back, on every shipped scene",
-    source="paper section 5: the second iteration",
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="both are solved to 1e-12; a load follows its approach with an exponent of 3/2 to 2",
-    tags=("solvers",),
-)
+@case("balance/prescribed-approach", metric="at_most", tolerance=1e-9)
 def prescribed_approach() -> Measured:
+    """Prescribed approach against prescribed load.
+
+    Claim: pressing to the approach that a load gave gives that load's pressure back, on every shipped scene
+    Source: paper section 5: the second iteration
+    Tolerance: both are solved to 1e-12; a load follows its approach with an exponent of 3/2 to 2
+    """
     off = {}
     for name in SCENES:
         scene = rf.read_scene(name)
@@ -102,18 +96,15 @@ def loading_curve(nodes: int) -> tuple[Array, Array, float]:
     return 2 * end.approach * t * weight, loads, energy
 
 
-@case(
-    "balance/energy-is-work",
-    title="Elastic energy against the work of the load",
-    claim="the integral of the load over the approach equals half the sum of pressure times displacement",
-    source="Clapeyron's theorem; frictionless Hertz scene",
-    metric="relative",
-    tolerance=1e-5,
-    tolerance_reason="the load has a kink wherever elements join the contact, which slows the quadrature: "
-    "1.3e-5 measured with 48 points, 2.9e-6 with 96, 8e-7 with 192, 1.2e-8 with 400",
-    tags=("energy",),
-)
+@case("balance/energy-is-work", metric="relative", tolerance=1e-5)
 def energy_is_work() -> Measured:
+    """Elastic energy against the work of the load.
+
+    Claim: the integral of the load over the approach equals half the sum of pressure times displacement
+    Source: Clapeyron's theorem; frictionless Hertz scene
+    Tolerance: the load has a kink wherever elements join the contact, which slows the quadrature: 1.3e-5
+    measured with 48 points, 2.9e-6 with 96, 8e-7 with 192, 1.2e-8 with 400
+    """
     steps, loads, energy = loading_curve(96)
     coarse_steps, coarse_loads, _ = loading_curve(24)
     work, coarse = float(steps @ loads), float(coarse_steps @ coarse_loads)
@@ -132,17 +123,14 @@ def _fields(M: int) -> tuple[Array, Array]:
     return one, two
 
 
-@case(
-    "balance/reciprocity",
-    title="Betti's reciprocity of the normal influence",
-    claim="f1 . (A f2) = f2 . (A f1) for random tractions on 200 x 200 elements",
-    source="Maxwell 1864; Betti 1872",
-    metric="at_most",
-    tolerance=1e-14,
-    tolerance_reason="over |f1| |A f2|: an FFT of n points is accurate to eps log2(n) = 4e-15 in that norm",
-    tags=("operators",),
-)
+@case("balance/reciprocity", metric="at_most", tolerance=1e-14)
 def reciprocity() -> Measured:
+    """Betti's reciprocity of the normal influence.
+
+    Claim: f1 . (A f2) = f2 . (A f1) for random tractions on 200 x 200 elements
+    Source: Maxwell 1864; Betti 1872
+    Tolerance: over |f1| |A f2|: an FFT of n points is accurate to eps log2(n) = 4e-15 in that norm
+    """
     one, two = _fields(200)
     operator = FFTInfluence(Grid.square(1e-3, 200), 0.0)
     there, back = operator.normal(two), operator.normal(one)
@@ -150,17 +138,14 @@ def reciprocity() -> Measured:
     return Measured(value=abs(float(np.vdot(one, there) - np.vdot(two, back))) / scale)
 
 
-@case(
-    "balance/skew-coupling",
-    title="Shear does no work on the pressure it goes with",
-    claim="f . (C f) = 0 in any sliding direction, for random tractions on 200 x 200 elements",
-    source="c is odd in the offset, so its matrix is skew",
-    metric="at_most",
-    tolerance=1e-14,
-    tolerance_reason="over |f| |C f|: an FFT of n points is accurate to eps log2(n) = 4e-15 in that norm",
-    tags=("operators", "coupling"),
-)
+@case("balance/skew-coupling", metric="at_most", tolerance=1e-14)
 def skew_coupling() -> Measured:
+    """Shear does no work on the pressure it goes with.
+
+    Claim: f . (C f) = 0 in any sliding direction, for random tractions on 200 x 200 elements
+    Source: c is odd in the offset, so its matrix is skew
+    Tolerance: over |f| |C f|: an FFT of n points is accurate to eps log2(n) = 4e-15 in that norm
+    """
     one, _ = _fields(200)
     worst = 0.0
     for angle in (0.0, 0.7, 2.0):
@@ -170,18 +155,15 @@ def skew_coupling() -> Measured:
     return Measured(value=worst)
 
 
-@case(
-    "balance/flat-tips",
-    title="Friction of contact without slopes",
-    claim="with every cosine 1 and every sine 0 a solved contact's F / N is Eq. (10)'s tau / f_m + beta",
-    source="paper Eq. (10): Eqs (1)-(3) at theta = 0, an identity",
-    metric="relative",
-    tolerance=2e-14,
-    tolerance_reason="three sums of 4096 positive terms, in numpy's blocks of 128: 25 roundings each at "
-    "most, 75 eps in all; one measured",
-    tags=("eq10",),
-)
+@case("balance/flat-tips", metric="relative", tolerance=2e-14)
 def flat_tips() -> Measured:
+    """Friction of contact without slopes.
+
+    Claim: with every cosine 1 and every sine 0 a solved contact's F / N is Eq. (10)'s tau / f_m + beta
+    Source: paper Eq. (10): Eqs (1)-(3) at theta = 0, an identity
+    Tolerance: three sums of 4096 positive terms, in numpy's blocks of 128: 25 roundings each at most, 75 eps
+    in all; one measured
+    """
     scene = rf.read_scene("table1-smooth")
     solution = rf.solve(scene, 64, oblique=False)
     # sum over the elements that carry tau: an alternating contact edge excludes some, and Eq. (1) none
@@ -193,33 +175,27 @@ def flat_tips() -> Measured:
     )
 
 
-@case(
-    "balance/plasticity-index",
-    title="Plasticity index as printed",
-    claim="E' = 100 H and 50 nm of roughness over 11 um give psi = 2.2 x 100 x 0.05 / 11 = 1, the threshold",
-    source="paper Eq. (12)",
-    metric="relative",
-    tolerance=1e-15,
-    tolerance_reason="four factors in double precision, each wrong by eps = 2e-16 at most",
-    tags=("eq12",),
-)
+@case("balance/plasticity-index", metric="relative", tolerance=1e-15)
 def plasticity_threshold() -> Measured:
+    """Plasticity index as printed.
+
+    Claim: E' = 100 H and 50 nm of roughness over 11 um give psi = 2.2 x 100 x 0.05 / 11 = 1, the threshold
+    Source: paper Eq. (12)
+    Tolerance: four factors in double precision, each wrong by eps = 2e-16 at most
+    """
     return Measured(plasticity_index(80e9, 0.8e9, 50e-9, 11e-6), 1.0)
 
 
-@case(
-    "balance/facet-vectors",
-    title="Resultants of facets, added as vectors",
-    claim="N, F and Q of tilted facets are the sums of pressure times the facet's area vector (the cross "
-    "product of its edges) and of friction times its edge along the sliding direction",
-    source="exact tractions of a facet per projected area (refimpl.model.forces); statics",
-    metric="at_most",
-    tolerance=4e-15,
-    tolerance_reason="over the sum of magnitudes: 400 terms in numpy's blocks of 128 meet 18 roundings at "
-    "most; 5e-17 measured",
-    tags=("slope-correction",),
-)
+@case("balance/facet-vectors", metric="at_most", tolerance=4e-15)
 def facet_vectors() -> Measured:
+    """Resultants of facets, added as vectors.
+
+    Claim: N, F and Q of tilted facets are the sums of pressure times the facet's area vector (the cross
+    product of its edges) and of friction times its edge along the sliding direction
+    Source: exact tractions of a facet per projected area (refimpl.model.forces); statics
+    Tolerance: over the sum of magnitudes: 400 terms in numpy's blocks of 128 meet 18 roundings at most; 5e-17
+    measured
+    """
     random, edge = np.random.default_rng(12), 3e-6
     pressure, traction = random.uniform(0.0, 1e9, (2, 20, 20))
     tan_x, tan_y = random.uniform(-1.0, 1.0, (2, 20, 20))

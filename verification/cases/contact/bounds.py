@@ -68,17 +68,12 @@ def rough_states() -> list[tuple[Golden, float, rf.Solution]]:
     return [(golden, tol, loose(golden.scene.name, tol)) for golden in stored() for tol in TOLERANCES]
 
 
-@case(
-    "bounds/energy",
-    title="Bound on the error in the energy norm",
-    claim="(f - f*)' a (f - f*) is never above its bound, at tolerances from 1e-2 to 1e-8",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=PROVEN,
-    tags=("certificate", "rigorous"),
-)
+@case("bounds/energy", metric="at_most", tolerance=1.0, source=SOURCE, tolerance_reason=PROVEN)
 def energy() -> Measured:
+    """Bound on the error in the energy norm.
+
+    Claim: (f - f*)' a (f - f*) is never above its bound, at tolerances from 1e-2 to 1e-8
+    """
     ratios: dict[float, list[float]] = {tol: [] for tol in TOLERANCES}
     for golden, tol, found in rough_states():
         bound = bounds_of(golden, found.problem, found.pressure).energy
@@ -91,17 +86,12 @@ def energy() -> Measured:
     )
 
 
-@case(
-    "bounds/gap",
-    title="The certificate's own gap bounds the error",
-    claim="at flat slopes and exact load, (f - f*)' a (f - f*) is at most the complementarity gap",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=PROVEN,
-    tags=("certificate", "rigorous"),
-)
+@case("bounds/gap", metric="at_most", tolerance=1.0, source=SOURCE, tolerance_reason=PROVEN)
 def gap() -> Measured:
+    """The certificate's own gap bounds the error.
+
+    Claim: at flat slopes and exact load, (f - f*)' a (f - f*) is at most the complementarity gap
+    """
     ratios = {}
     for name in ("smooth", "rough", "near-tie-misses", "near-tie-touches"):
         golden, worst = named(name), 0.0
@@ -113,17 +103,12 @@ def gap() -> Measured:
     return Measured(value=max(ratios.values()), data={"true error over gap": ratios})
 
 
-@case(
-    "bounds/any-state",
-    title="Bounds for states that are far from feasible",
-    claim="noise on the pressure, negative pressures, penetration and a wrong load do not break the bound",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=PROVEN,
-    tags=("certificate", "rigorous"),
-)
+@case("bounds/any-state", metric="at_most", tolerance=1.0, source=SOURCE, tolerance_reason=PROVEN)
 def any_state() -> Measured:
+    """Bounds for states that are far from feasible.
+
+    Claim: noise on the pressure, negative pressures, penetration and a wrong load do not break the bound
+    """
     random, ratios = np.random.default_rng(5), []
     for golden in stored():
         problem = loose(golden.scene.name, 1e-8).problem
@@ -136,17 +121,14 @@ def any_state() -> Measured:
     return Measured(value=max(ratios), data={"true over bound": ratios})
 
 
-@case(
-    "bounds/numbers",
-    title="Bounds on pressure, approach, forces and friction",
-    claim="no number of a loosely solved scene is farther from its proven value than its bound",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=PROVEN + "; differences below 1e-15 of a number are the double's own and neglected",
-    tags=("certificate", "rigorous", "friction"),
-)
+@case("bounds/numbers", metric="at_most", tolerance=1.0)
 def numbers() -> Measured:
+    """Bounds on pressure, approach, forces and friction.
+
+    Claim: no number of a loosely solved scene is farther from its proven value than its bound
+    Source: {SOURCE}
+    Tolerance: {PROVEN}; differences below 1e-15 of a number are the double's own and neglected
+    """
     worst: dict[str, float] = {}
     compared = 0
     for golden, _, found in rough_states():
@@ -168,17 +150,13 @@ def numbers() -> Measured:
     )
 
 
-@case(
-    "bounds/contact-sets",
-    title="Elements proven in or out of contact",
-    claim="none is listed wrongly, and at 1e-8 all are listed but the near ties",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="one element on the wrong list refutes the proof",
-    tags=("certificate", "rigorous"),
-)
+@case("bounds/contact-sets", metric="equal", tolerance=0.0, source=SOURCE)
 def contact_sets() -> Measured:
+    """Elements proven in or out of contact.
+
+    Claim: none is listed wrongly, and at 1e-8 all are listed but the near ties
+    Tolerance: one element on the wrong list refutes the proof
+    """
     wrong, undecided = 0, dict.fromkeys(TOLERANCES, 0)
     for golden, tol, found in rough_states():
         bounds = bounds_of(golden, found.problem, found.pressure)
@@ -195,17 +173,14 @@ def contact_sets() -> Measured:
     return Measured(value=float(wrong), reference=0.0, unit="elements", data=data)
 
 
-@case(
-    "bounds/least-eigenvalue",
-    title="Least eigenvalue of the flexibility",
-    claim="the symbol's smallest value is below every grid's smallest eigenvalue, and within 0.5 % at M = 16",
-    source="refimpl/solution/energy_norm.py; numpy.linalg.eigvalsh",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="a lower bound that is exceeded once is none; eigvalsh errs by 1e-15",
-    tags=("certificate",),
-)
+@case("bounds/least-eigenvalue", metric="at_most", tolerance=1.0)
 def least_eigenvalue() -> Measured:
+    """Least eigenvalue of the flexibility.
+
+    Claim: the symbol's smallest value is below every grid's smallest eigenvalue, and within 0.5 % at M = 16
+    Source: refimpl/solution/energy_norm.py; numpy.linalg.eigvalsh
+    Tolerance: a lower bound that is exceeded once is none; eigvalsh errs by 1e-15
+    """
     sizes, ratios = (1, 2, 3, 5, 8, 12, 16), []
     for M in sizes:
         problem = pressed_problem(M)
@@ -221,17 +196,13 @@ def pressed_problem(M: int) -> Problem:
     return rf.solve(pressed(rms=None), M, tolerance=0.5, oblique=False).problem
 
 
-@case(
-    "bounds/production",
-    title="Bounds of a production solve",
-    claim="at the default tolerance the bound proves mu to 1e-6 and the contact set of Table 1's rough scene",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-6,
-    tolerance_reason="a hundredth of what the paper prints of mu; the bound is linear in residuals of 1e-8",
-    tags=("certificate", "friction"),
-)
+@case("bounds/production", metric="at_most", tolerance=1e-6, source=SOURCE)
 def production() -> Measured:
+    """Bounds of a production solve.
+
+    Claim: at the default tolerance the bound proves mu to 1e-6 and the contact set of Table 1's rough scene
+    Tolerance: a hundredth of what the paper prints of mu; the bound is linear in residuals of 1e-8
+    """
     found = rf.solve(rf.read_scene("table1-rough"), 64)
     bounds = found.bounds
     low, high = bounds.contact_area

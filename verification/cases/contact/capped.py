@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -19,8 +18,6 @@ GRID_OF_EXTREMES = 10
 WRONG = 1e-5  # share of the maximum pressure: a wrong state, and no rounding of a right one
 AGREE = 1e-9
 """Share of the hardness within which pressures of two solvers agree."""
-
-row = partial(case, tags=("capped",), metric="at_most")
 
 
 def rough_scene(seed: int) -> rf.Scene:
@@ -64,15 +61,14 @@ def apart(dense: rf.Solution, fft: rf.Solution) -> float:
     return max(float(pressures), *(abs(float(force)) / dense.normal_force for force in forces))
 
 
-@row(
-    "capped/dense-fft",
-    title="Capped contact: production against plain solver",
-    claim="the same sets, pressures to 1e-9 of H, F and Q to 1e-9 of the load: 20 squares and rectangles",
-    source="dense matrices and pivoting between two bounds (Judice and Pires 1994)",
-    tolerance=AGREE,
-    tolerance_reason="certificate of 1e-11, and a condition number of some 30 to 100",
-)
+@case("capped/dense-fft", metric="at_most", tolerance=AGREE)
 def dense_and_fft() -> Measured:
+    """Capped contact: production against plain solver.
+
+    Claim: the same sets, pressures to 1e-9 of H, F and Q to 1e-9 of the load: 20 squares and rectangles
+    Source: dense matrices and pivoting between two bounds (Judice and Pires 1994)
+    Tolerance: certificate of 1e-11, and a condition number of some 30 to 100
+    """
     off, shares = {}, {}
     for seed, share in enumerate(np.geomspace(0.9, 0.02, SCENES)):
         bare, grid, oblique = rough_scene(seed), (M, M), seed % 2 == 0
@@ -86,15 +82,13 @@ def dense_and_fft() -> Measured:
     return Measured(value=max(off.values()), data={"apart": off, "plastic share": shares})
 
 
-@row(
-    "capped/manufactured",
-    title="Manufactured states with elements at both bounds",
-    claim="both solvers return pressure, traction and approach where part of the contact yields",
-    source="method of manufactured solutions (Roache 2002); sums of 50-digit integrals",
-    tolerance=1e-12,
-    tolerance_reason=ROUNDING,
-)
+@case("capped/manufactured", metric="at_most", tolerance=1e-12, tolerance_reason=ROUNDING)
 def manufactured() -> Measured:
+    """Manufactured states with elements at both bounds.
+
+    Claim: both solvers return pressure, traction and approach where part of the contact yields
+    Source: method of manufactured solutions (Roache 2002); sums of 50-digit integrals
+    """
     off = {
         f"{method}, state {seed}, oblique {oblique}": misfit(
             manufacture(12, seed, 0.7, oblique, False, 0.6 * PEAK), method
@@ -106,15 +100,14 @@ def manufactured() -> Measured:
     return Measured(value=max(off.values()), data={"worst": off})
 
 
-@row(
-    "capped/full",
-    title="Fully plastic limit",
-    claim="just below P = H A0 mu is tau / H + beta and pressures are H, free and periodic, by both solvers",
-    source="Eq. (1) at f = H",
-    tolerance=2e-4,
-    tolerance_reason="the load is 1e-4 below the limit, which elements of the least pressure share",
-)
+@case("capped/full", metric="at_most", tolerance=2e-4)
 def full() -> Measured:
+    """Fully plastic limit.
+
+    Claim: just below P = H A0 mu is tau / H + beta and pressures are H, free and periodic, by both solvers
+    Source: Eq. (1) at f = H
+    Tolerance: the load is 1e-4 below the limit, which elements of the least pressure share
+    """
     off = {}
     for periodic in (False, True):
         bare = replace(rough_scene(1), periodic=periodic, friction=rf.Friction(15e6, 0.1))
@@ -131,15 +124,14 @@ def full() -> Measured:
     return Measured(value=max(off.values()), data={"off": off})
 
 
-@row(
-    "capped/infinite-hardness",
-    title="A hardness beyond all pressures",
-    claim="the capped solver returns the elastic solution",
-    source="the problem itself",
-    tolerance=AGREE,
-    tolerance_reason="two certificates of 1e-12, and the condition number of some 30 to 100",
-)
+@case("capped/infinite-hardness", metric="at_most", tolerance=AGREE)
 def infinite() -> Measured:
+    """A hardness beyond all pressures.
+
+    Claim: the capped solver returns the elastic solution
+    Source: the problem itself
+    Tolerance: two certificates of 1e-12, and the condition number of some 30 to 100
+    """
     off = {}
     for seed in range(1, 6):
         scene = rough_scene(seed)
@@ -149,15 +141,14 @@ def infinite() -> Measured:
     return Measured(value=max(off.values()), data={"apart": off})
 
 
-@row(
-    "capped/area-by-hardness",
-    title="Contact area against the hardness",
-    claim="the area grows as the hardness falls, and is never below P / H",
-    source="more room for pressure below the cap leaves less contact (a numerical finding, not a theorem)",
-    tolerance=0.0,
-    tolerance_reason="counts of elements: no decrease at all",
-)
+@case("capped/area-by-hardness", metric="at_most", tolerance=0.0)
 def area_by_hardness() -> Measured:
+    """Contact area against the hardness.
+
+    Claim: the area grows as the hardness falls, and is never below P / H
+    Source: more room for pressure below the cap leaves less contact (a numerical finding, not a theorem)
+    Tolerance: counts of elements: no decrease at all
+    """
     worst, areas = 0.0, {}
     for seed in (1, 2, 3):
         scene = replace(rough_scene(seed), friction=rf.Friction())
@@ -170,16 +161,14 @@ def area_by_hardness() -> Measured:
     return Measured(value=worst, unit="m^2", data=areas)
 
 
-@row(
-    "capped/extremes",
-    title="Hardnesses from just above P / A0 to 1e3 times the elastic peak",
-    claim="of 200 small states none that is called converged differs from the plain solver's",
-    source="dense matrices and pivoting between two bounds",
-    tolerance=0.0,
-    tolerance_reason="a count of wrong answers; wrong: farther apart than 1e-5 of the peak",
-    tier="full",
-)
+@case("capped/extremes", metric="at_most", tolerance=0.0, tier="full")
 def extremes() -> Measured:
+    """Hardnesses from just above P / A0 to 1e3 times the elastic peak.
+
+    Claim: of 200 small states none that is called converged differs from the plain solver's
+    Source: dense matrices and pivoting between two bounds
+    Tolerance: a count of wrong answers; wrong: farther apart than 1e-5 of the peak
+    """
     wrong: list[int] = []
     ends: dict[str, int] = {}
     for seed in range(STATES):

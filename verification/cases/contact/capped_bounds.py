@@ -50,18 +50,15 @@ def shares_of_bounds(seed: int) -> dict[str, list[float]]:
     return found
 
 
-@case(
-    "capped/bounds",
-    title="Proven bounds of capped states",
-    claim="no error of pressure, approach or mu exceeds its bound, and no element is marked wrongly as "
-    "plastic, in contact or apart: 16 scenes at three tolerances",
-    source="refimpl.solution.bounds, from the variational inequality with two bounds; dense matrices",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="proven; a bound that is met to rounding would be 1",
-    tags=("capped",),
-)
+@case("capped/bounds", metric="at_most", tolerance=1.0)
 def bounds() -> Measured:
+    """Proven bounds of capped states.
+
+    Claim: no error of pressure, approach or mu exceeds its bound, and no element is marked wrongly as
+    plastic, in contact or apart: 16 scenes at three tolerances
+    Source: refimpl.solution.bounds, from the variational inequality with two bounds; dense matrices
+    Tolerance: proven; a bound that is met to rounding would be 1
+    """
     found = {str(seed): shares_of_bounds(seed) for seed in range(SCENES)}
     worst = max(max(values) for numbers in found.values() for values in numbers.values())
     return Measured(value=worst, data={"error over bound": found})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -14,14 +13,12 @@ from verification.contestants.check import MODULUS
 from verification.contestants.gaps import rough_bump, waves
 from verification.contestants.protocol import ContactProblem
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import family
 
 M, SEEDS = 48, (11, 12)
 SHARES = (0.8, 0.5, 0.25)
 """Hardness over the elastic peak: 2 to 97 % of the contact is plastic."""
 LOAD = 0.02 * MODULUS
-
-row = partial(case, metric="at_most", tolerance=1e-9, tags=("capped", "peer"))
 
 
 def problems() -> dict[str, ContactProblem]:
@@ -40,8 +37,26 @@ def problems() -> dict[str, ContactProblem]:
     return found
 
 
+@family(
+    "peer, name, source, tolerance_reason",
+    {
+        "capped/tamaas": (
+            tamaas.solve, "Tamaas", "Tamaas' KatoSaturated (Stanley and Kato 1997; Almqvist and others 2007)",
+            "relative to the hardness; measured 6e-11 after 3000 steps of a projected gradient"),
+        "capped/contactmechanics": (
+            contactmechanics.solve, "ContactMechanics",
+            "ContactMechanics 1.8.3, hardness of minimize_proxy (Pastewka, Sanner and others)",
+            "relative to the hardness; measured 5e-11, with the tolerance 1e-12 of both solvers"),
+    },
+    metric="at_most", tolerance=1e-9,
+)  # fmt: skip
 def agreement(peer: Peer) -> Measured:
-    """Largest difference of pressures over the hardness; and the peer's own residuals of both bounds."""
+    """Capped contact: pressures of {name} on the same gaps.
+
+    Claim: free and periodic, with 2 to 97 % of the contact at the hardness, {name} finds the same pressures
+
+    The data have the peer's own residuals of both bounds.
+    """
     differences, residuals, shares = {}, {}, {}
     for name, problem in problems().items():
         assert problem.hardness is not None
@@ -54,26 +69,3 @@ def agreement(peer: Peer) -> Measured:
         shares[name] = float(np.mean(found[found > 0] >= problem.hardness))
     data = {"differences": differences, "residuals of the peer": residuals, "plastic share": shares}
     return Measured(max(differences.values()), data=data, note=peer.version)
-
-
-@row(
-    "capped/tamaas",
-    title="Capped contact: pressures of Tamaas on the same gaps",
-    claim="free and periodic, with 2 to 97 % of the contact at the hardness, Tamaas finds the same pressures",
-    source="Tamaas' KatoSaturated (Stanley and Kato 1997; Almqvist and others 2007)",
-    tolerance_reason="relative to the hardness; measured 6e-11 after 3000 steps of a projected gradient",
-)
-def by_tamaas() -> Measured:
-    return agreement(tamaas.solve)
-
-
-@row(
-    "capped/contactmechanics",
-    title="Capped contact: pressures of ContactMechanics on the same gaps",
-    claim="free and periodic, with 2 to 97 % of the contact at the hardness, ContactMechanics finds the "
-    "same pressures",
-    source="ContactMechanics 1.8.3, hardness of minimize_proxy (Pastewka, Sanner and others)",
-    tolerance_reason="relative to the hardness; measured 5e-11, with the tolerance 1e-12 of both solvers",
-)
-def by_contactmechanics() -> Measured:
-    return agreement(contactmechanics.solve)

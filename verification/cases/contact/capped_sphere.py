@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 
@@ -33,8 +33,6 @@ GRIDS = (64, 128, 256)
 RINGS = 1600
 NU, STEPS = 0.3, 24
 
-row = partial(case, tags=("capped",), metric="at_most")
-
 
 def sphere_scene(hardness: float, load: float = LOAD) -> rf.Scene:
     """The frictionless sphere on a flat of that hardness (Pa), in 2.6 times the contact's largest radius."""
@@ -59,15 +57,14 @@ def pair(share: float, grid: int) -> tuple[rf.Solution, Capped]:
     return found, capped_sphere(SPHERE, hardness, RINGS)
 
 
-@row(
-    "capped/sphere-rings",
-    title="The rings' own convergence",
-    claim="rings of uniform pressure return Hertz above his maximum pressure, and their approach settles",
-    source="Hertz 1882; Johnson 1985, section 3.4",
-    tolerance=3e-6,
-    tolerance_reason="approach against Hertz, and change from 800 to 1600 rings: four times the largest",
-)
+@case("capped/sphere-rings", metric="at_most", tolerance=3e-6)
 def rings() -> Measured:
+    """The rings' own convergence.
+
+    Claim: rings of uniform pressure return Hertz above his maximum pressure, and their approach settles
+    Source: Hertz 1882; Johnson 1985, section 3.4
+    Tolerance: approach against Hertz, and change from 800 to 1600 rings: four times the largest
+    """
     hertz = capped_sphere(SPHERE, 2 * SPHERE.peak_pressure, RINGS)
     off = {"against Hertz": abs(hertz.approach / SPHERE.approach - 1)}
     for share in SHARES:
@@ -76,15 +73,14 @@ def rings() -> Measured:
     return Measured(value=max(off.values()), data={"off": off})
 
 
-@row(
-    "capped/sphere-approach",
-    title="Capped sphere: approach against rings",
-    claim="the approach under a load is that of the axisymmetric problem, at hardnesses of 0.55 to 0.95 p0",
-    source="rings of uniform pressure (verification.exact.capped_sphere), 1600 of them, to 3e-6",
-    tolerance=1.5e-4,
-    tolerance_reason="128 elements a side: the error falls as the element's square; measured 1e-4 or less",
-)
+@case("capped/sphere-approach", metric="at_most", tolerance=1.5e-4)
 def approach() -> Measured:
+    """Capped sphere: approach against rings.
+
+    Claim: the approach under a load is that of the axisymmetric problem, at hardnesses of 0.55 to 0.95 p0
+    Source: rings of uniform pressure (verification.exact.capped_sphere), 1600 of them, to 3e-6
+    Tolerance: 128 elements a side: the error falls as the element's square; measured 1e-4 or less
+    """
     off: dict[str, list[float]] = {}
     for share in SHARES:
         pairs = [pair(share, M) for M in GRIDS[:2]]
@@ -92,16 +88,15 @@ def approach() -> Measured:
     return Measured(value=max(errors[-1] for errors in off.values()), data={"error at 64 and 128": off})
 
 
-@row(
-    "capped/sphere-pressure",
-    title="Capped sphere: pressure against rings",
-    claim="the pressure is that of the axisymmetric problem, and the hardness within the plastic core",
-    source="rings of uniform pressure (verification.exact.capped_sphere)",
-    tolerance=0.02,
-    tolerance_reason="128 elements, rms over the contact relative to H: elements at the edge hold means of a "
-    "square root; the error falls by 2^(3/2) or so a grid",
-)
+@case("capped/sphere-pressure", metric="at_most", tolerance=0.02)
 def pressure() -> Measured:
+    """Capped sphere: pressure against rings.
+
+    Claim: the pressure is that of the axisymmetric problem, and the hardness within the plastic core
+    Source: rings of uniform pressure (verification.exact.capped_sphere)
+    Tolerance: 128 elements, rms over the contact relative to H: elements at the edge hold means of a square
+    root; the error falls by 2^(3/2) or so a grid
+    """
     off: dict[str, list[float]] = {}
     for share in SHARES:
         for M in GRIDS[:2]:
@@ -115,16 +110,15 @@ def pressure() -> Measured:
     return Measured(value=max(errors[-1] for errors in off.values()), data={"rms error at 64 and 128": off})
 
 
-@row(
-    "capped/sphere-areas",
-    title="Capped sphere: contact and plastic core against rings",
-    claim="the corrected contact area and the plastic area are those of the axisymmetric problem",
-    source="rings of uniform pressure (verification.exact.capped_sphere): edges by extrapolated squares",
-    tolerance=0.03,
-    tolerance_reason="256 elements a side: the plastic area counts whole elements, and the hardness is "
-    "reached as a root is; the smallest core is 77 elements wide",
-)
+@case("capped/sphere-areas", metric="at_most", tolerance=0.03)
 def areas() -> Measured:
+    """Capped sphere: contact and plastic core against rings.
+
+    Claim: the corrected contact area and the plastic area are those of the axisymmetric problem
+    Source: rings of uniform pressure (verification.exact.capped_sphere): edges by extrapolated squares
+    Tolerance: 256 elements a side: the plastic area counts whole elements, and the hardness is reached as a
+    root is; the smallest core is 77 elements wide
+    """
     off: dict[str, dict[str, float]] = {"contact": {}, "core": {}}
     for share in SHARES:
         found, exact = pair(share, GRIDS[-1])
@@ -135,16 +129,14 @@ def areas() -> Measured:
     return Measured(value=worst, data=dict(off))
 
 
-@row(
-    "capped/sphere-plastic-limit",
-    title="Capped sphere: the fully plastic limit",
-    claim="far beyond yield the sphere sinks in as a uniformly loaded circle, with A = P / H",
-    source="Johnson 1985, Eq. (3.29): d = a^2 / 2R + 4 H a / (pi E*), a = sqrt(P / (pi H))",
-    tolerance=0.01,
-    tolerance_reason="128 elements a side: the circle's edge is staggered by half an element of its 49 to "
-    "its radius",
-)
+@case("capped/sphere-plastic-limit", metric="at_most", tolerance=0.01)
 def limit() -> Measured:
+    """Capped sphere: the fully plastic limit.
+
+    Claim: far beyond yield the sphere sinks in as a uniformly loaded circle, with A = P / H
+    Source: Johnson 1985, Eq. (3.29): d = a^2 / 2R + 4 H a / (pi E*), a = sqrt(P / (pi H))
+    Tolerance: 128 elements a side: the circle's edge is staggered by half an element of its 49 to its radius
+    """
     off = {}
     for share in (0.3, 0.1, 0.03):
         hardness = share * SPHERE.peak_pressure
@@ -157,15 +149,14 @@ def limit() -> Measured:
     return Measured(value=max(off.values()), data={"off": off})
 
 
-@row(
-    "capped/rough-plastic-limit",
-    title="Rough surfaces: the fully plastic limit",
-    claim="as the hardness falls, A nears P / H from above by what elements below the hardness leave",
-    source="load balance: A H - P = sum (H - f) dA over the contact",
-    tolerance=1e-7,
-    tolerance_reason="the balance to 1e-8 of the load; and A H / P - 1 falls to 3 % or less, else no number",
-)
+@case("capped/rough-plastic-limit", metric="at_most", tolerance=1e-7)
 def rough_limit() -> Measured:
+    """Rough surfaces: the fully plastic limit.
+
+    Claim: as the hardness falls, A nears P / H from above by what elements below the hardness leave
+    Source: load balance: A H - P = sum (H - f) dA over the contact
+    Tolerance: the balance to 1e-8 of the load; and A H / P - 1 falls to 3 % or less, else no number
+    """
     worst, near = 0.0, {}
     for seed in (1, 2, 4, 5):
         scene = replace(rough_scene(seed), friction=rf.Friction(15e6, 0.1))
@@ -211,16 +202,15 @@ def _first_yield(peak: float) -> Loaded:
     return Loaded(2 / 3 * np.pi * a**2 * peak, np.pi * a**2)
 
 
-@row(
-    "capped/sphere-kogut-etsion",
-    title="Model form: the cap against Kogut and Etsion's sphere",
-    claim="a cap yields at 5.2 times the load of first yield, and its contact area stays within a quarter of "
-    "the finite-element law's up to full plasticity",
-    source="Kogut and Etsion 2002: fits up to 110 critical interferences, H = 2.8 Y, nu = 0.3",
-    tolerance=0.25,
-    tolerance_reason="largest relative difference of A at equal load: model form, no numerical error",
-)
+@case("capped/sphere-kogut-etsion", metric="at_most", tolerance=0.25)
 def against_kogut_etsion() -> Measured:
+    """Model form: the cap against Kogut and Etsion's sphere.
+
+    Claim: a cap yields at 5.2 times the load of first yield, and its contact area stays within a quarter of
+    the finite-element law's up to full plasticity
+    Source: Kogut and Etsion 2002: fits up to 110 critical interferences, H = 2.8 Y, nu = 0.3
+    Tolerance: largest relative difference of A at equal load: model form, no numerical error
+    """
     hardness = 0.8e9
     K = hardness_factor(NU)
     laws = [kogut_etsion(float(w)) for w in np.geomspace(0.5, KOGUT_ETSION_LARGEST, STEPS)]
@@ -231,16 +221,15 @@ def against_kogut_etsion() -> Measured:
     return Measured(value=float(off.max()), data=data)
 
 
-@row(
-    "capped/sphere-jackson-green",
-    title="Model form: the cap against Jackson and Green's sphere",
-    claim="with H = 2.84 Y the contact area stays within a quarter of the finite-element law's up to 200 "
-    "critical interferences; beyond, the law's hardness falls and the cap's does not",
-    source="Jackson and Green 2005, Y / E* = 0.0042 (copper of 0.8 GPa), nu = 0.34",
-    tolerance=0.25,
-    tolerance_reason="largest relative difference of A at equal load: model form, no numerical error",
-)
+@case("capped/sphere-jackson-green", metric="at_most", tolerance=0.25)
 def against_jackson_green() -> Measured:
+    """Model form: the cap against Jackson and Green's sphere.
+
+    Claim: with H = 2.84 Y the contact area stays within a quarter of the finite-element law's up to 200
+    critical interferences; beyond, the law's hardness falls and the cap's does not
+    Source: Jackson and Green 2005, Y / E* = 0.0042 (copper of 0.8 GPa), nu = 0.34
+    Tolerance: largest relative difference of A at equal load: model form, no numerical error
+    """
     hardness, nu = 0.8e9, MATERIAL.nu
     strength = hardness / 2.84
     strain, C = strength / SPHERE.modulus, yield_factor(nu)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -12,7 +13,7 @@ from refimpl.grid import Array
 from verification.exact.hertz import UNCERTAINTY, Sphere
 from verification.framework.case import Measured
 from verification.framework.rates import Order, fit_order
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 
 SOURCE = "Hertz 1882; Johnson 1985, section 4.2; paper Table 1, P = 70 N"
 SCENE = rf.read_scene("hertz")
@@ -76,18 +77,14 @@ def profile_errors() -> list[float]:
     return errors
 
 
-@case(
-    "hertz/peak-pressure",
-    title="Peak pressure of the Hertz contact at 256 x 256",
-    claim="the peak pressure is p0 = (6 P E*^2 / (pi^3 R^2))^(1/3)",
-    source=SOURCE,
-    metric="relative",
-    tolerance=1e-4,
-    tolerance_reason="the innermost centres lie h/sqrt(2) off the axis, which costs (h/a)^2/4 = 5e-5; the "
-    "rest is the elements' own second order, of the other sign. Measured 3.7e-5",
-    tags=("hertz",),
-)
+@case("hertz/peak-pressure", metric="relative", tolerance=1e-4, source=SOURCE)
 def peak_pressure() -> Measured:
+    """Peak pressure of the Hertz contact at 256 x 256.
+
+    Claim: the peak pressure is p0 = (6 P E*^2 / (pi^3 R^2))^(1/3)
+    Tolerance: the innermost centres lie h/sqrt(2) off the axis, which costs (h/a)^2/4 = 5e-5; the rest is the
+    elements' own second order, of the other sign. Measured 3.7e-5
+    """
     solution, r = solved(FINE), distance(FINE)
     middle = FINE // 2
     x = (np.arange(FINE) + 0.5 - middle) * solution.grid.spacings[0] * 1e3
@@ -108,7 +105,26 @@ def peak_pressure() -> Measured:
     )
 
 
-def _order(errors: list[float], name: str) -> Measured:
+@family(
+    "error, name, tolerance, tolerance_reason",
+    {
+        "hertz/peak-order": (
+            peak_errors, "peak pressure", 0.25,
+            "the contact's fit to the grid scatters single errors by some 20 %, which over a factor of 16 in "
+            "h moves a fitted order by 0.1; twice that. Measured 2.04"),
+        "hertz/approach-order": (
+            approach_errors, "approach", 0.15,
+            "counted from the lowest centres it lacks h^2/(4 R), which dominates and is exactly of second "
+            "order; the solver's own part is 10 % of it and of order 2.0 to 2.9. Measured 2.03"),
+    },
+    metric="absolute", source=SOURCE,
+)  # fmt: skip
+def order(error: Callable[[], list[float]], name: str) -> Measured:
+    """Order of the {name} over 32 ... 512.
+
+    Claim: the error of the {name} falls with the square of the element
+    """
+    errors = error()
     found: Order = fit_order(spacings(), errors)
     return Measured(
         value=found.order,
@@ -118,33 +134,14 @@ def _order(errors: list[float], name: str) -> Measured:
     )
 
 
-@case(
-    "hertz/peak-order",
-    title="Order of the peak pressure over 32 ... 512",
-    claim="the error of the peak pressure falls with the square of the element",
-    source=SOURCE,
-    metric="absolute",
-    tolerance=0.25,
-    tolerance_reason="the contact's fit to the grid scatters single errors by some 20 %, which over a factor "
-    "of 16 in h moves a fitted order by 0.1; twice that. Measured 2.04",
-    tags=("hertz", "order"),
-)
-def peak_order() -> Measured:
-    return _order(peak_errors(), "peak pressure")
-
-
-@case(
-    "hertz/approach",
-    title="Approach of the Hertz contact at 256 x 256",
-    claim="the approach from the sphere's lowest point is a^2 / R",
-    source=SOURCE,
-    metric="relative",
-    tolerance=2e-5,
-    tolerance_reason="an integral of the pressure, so (h/a)^2 / 10 = 2e-5; measured 6e-6. From the elements' "
-    "first contact, h^2/(4 R) higher, it is 5e-5 short",
-    tags=("hertz",),
-)
+@case("hertz/approach", metric="relative", tolerance=2e-5, source=SOURCE)
 def approach() -> Measured:
+    """Approach of the Hertz contact at 256 x 256.
+
+    Claim: the approach from the sphere's lowest point is a^2 / R
+    Tolerance: an integral of the pressure, so (h/a)^2 / 10 = 2e-5; measured 6e-6. From the elements' first
+    contact, h^2/(4 R) higher, it is 5e-5 short
+    """
     return Measured(
         value=from_axis(FINE),
         reference=EXACT.approach,
@@ -154,33 +151,14 @@ def approach() -> Measured:
     )
 
 
-@case(
-    "hertz/approach-order",
-    title="Order of the approach over 32 ... 512",
-    claim="the error of the approach falls with the square of the element",
-    source=SOURCE,
-    metric="absolute",
-    tolerance=0.15,
-    tolerance_reason="counted from the lowest centres it lacks h^2/(4 R), which dominates and is exactly of "
-    "second order; the solver's own part is 10 % of it and of order 2.0 to 2.9. Measured 2.03",
-    tags=("hertz", "order"),
-)
-def approach_order() -> Measured:
-    return _order(approach_errors(), "approach")
-
-
-@case(
-    "hertz/profile",
-    title="Pressure within 0.8 radii at 256 x 256",
-    claim="the pressure is p0 sqrt(1 - r^2/a^2)",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-4,
-    tolerance_reason="second order away from the edge: p'' h^2/24 at 0.8 a is 4e-5 of p0, and twice that for "
-    "the smoothing by the collocation. Over p0; measured 3.4e-5",
-    tags=("hertz", "order"),
-)
+@case("hertz/profile", metric="at_most", tolerance=1e-4, source=SOURCE)
 def profile() -> Measured:
+    """Pressure within 0.8 radii at 256 x 256.
+
+    Claim: the pressure is p0 sqrt(1 - r^2/a^2)
+    Tolerance: second order away from the edge: p'' h^2/24 at 0.8 a is 4e-5 of p0, and twice that for the
+    smoothing by the collocation. Over p0; measured 3.4e-5
+    """
     errors = profile_errors()
     fitted = fit_order(spacings(), errors).order
     data = {"spacing": spacings(), "profile": errors}
@@ -222,54 +200,44 @@ def _radius_note(shifts: int, M: int) -> str:
     return f"{shifts**2} shifts at {M}: raw {raw:+.2e}, perimeter-corrected {corrected:+.2e}"
 
 
-@case(
-    "hertz/radius-corrected",
-    title="Contact radius from the perimeter-corrected area, 64 shifts at 256 x 256",
-    claim="averaged over the sphere's position in an element, the corrected area has the radius "
-    "(3 P R / 4 E*)^(1/3)",
-    source=SOURCE + "; Yastrebov et al. 2017 for the correction",
-    metric="relative",
-    tolerance=1e-3,
-    tolerance_reason="first order in h/a = 0.014: the correction subtracts the mean excess of whole elements "
-    "and a third more, so 5e-4 too small as measured, 2.5e-4 on half the element",
-    tags=("hertz", "area"),
-)
+@case("hertz/radius-corrected", metric="relative", tolerance=1e-3)
 def radius_corrected() -> Measured:
+    """Contact radius from the perimeter-corrected area, 64 shifts at 256 x 256.
+
+    Claim: averaged over the sphere's position in an element, the corrected area has the radius (3 P R / 4
+    E*)^(1/3)
+    Source: {SOURCE}; Yastrebov et al. 2017 for the correction
+    Tolerance: first order in h/a = 0.014: the correction subtracts the mean excess of whole elements and a
+    third more, so 5e-4 too small as measured, 2.5e-4 on half the element
+    """
     note = f"{_radius_note(8, 256)}; {_radius_note(4, 512)}"
     return Measured(
         value=mean_radii(256, 8)[1], reference=EXACT.contact_radius, unit="m", data=_radius_data(), note=note
     )
 
 
-@case(
-    "hertz/radius-raw",
-    title="Contact radius from the raw area, 16 shifts at 512 x 512",
-    claim="averaged over the sphere's position in an element, the counted area tends to the radius "
-    "(3 P R / 4 E*)^(1/3)",
-    source=SOURCE,
-    metric="relative",
-    tolerance=1e-3,
-    tolerance_reason="an element counts as soon as it is loaded at all, which adds about 0.12 h to the "
-    "radius: 1.6e-3 at 256 x 256, half of it at 512 x 512",
-    tags=("hertz", "area"),
-)
+@case("hertz/radius-raw", metric="relative", tolerance=1e-3, source=SOURCE)
 def radius_raw() -> Measured:
+    """Contact radius from the raw area, 16 shifts at 512 x 512.
+
+    Claim: averaged over the sphere's position in an element, the counted area tends to the radius (3 P R / 4
+    E*)^(1/3)
+    Tolerance: an element counts as soon as it is loaded at all, which adds about 0.12 h to the radius: 1.6e-3
+    at 256 x 256, half of it at 512 x 512
+    """
     note = f"{_radius_note(4, 512)}; {_radius_note(8, 256)}"
     return Measured(value=mean_radii(512, 4)[0], reference=EXACT.contact_radius, unit="m", note=note)
 
 
-@case(
-    "hertz/small-slope",
-    title="The classical small-slope theory against the slope terms",
-    claim="a rigid ball pressed to a / R = 0.33 into a soft flat has a 6 % larger maximum pressure with the "
-    "slope terms of Eqs (2) and (6) than by the classical theory that other codes solve (oblique=False)",
-    source="Eqs (2) and (6) as printed; Hertz 1882",
-    metric="absolute",
-    tolerance=0.005,
-    tolerance_reason="the quoted per cent is rounded; 6.45 % on 128 x 128 elements, 6.41 % on 64 x 64",
-    tags=("hertz", "slopes"),
-)
+@case("hertz/small-slope", metric="absolute", tolerance=0.005)
 def small_slope() -> Measured:
+    """The classical small-slope theory against the slope terms.
+
+    Claim: a rigid ball pressed to a / R = 0.33 into a soft flat has a 6 % larger maximum pressure with the
+    slope terms of Eqs (2) and (6) than by the classical theory that other codes solve (oblique=False)
+    Source: Eqs (2) and (6) as printed; Hertz 1882
+    Tolerance: the quoted per cent is rounded; 6.45 % on 128 x 128 elements, 6.41 % on 64 x 64
+    """
     radius, share, soft = 1e-3, 0.33, rf.Material(E=1e9, nu=0.3)
     a = share * radius
     load = 4 * soft.plane_strain_modulus * a**3 / (3 * radius)

@@ -44,19 +44,16 @@ def weak_forces(seed: int, direction: float) -> tuple[float, float]:
     return solution.friction_force, first_order
 
 
-@case(
-    "reference/lay-elastic-friction",
-    title="Ball on a weakly rough lay: elastic friction over the direction",
-    claim="without friction the force along any direction is int p dz/ds dA with Hertz' pressure, to first "
-    "order in the rms height: the work that the roughness does on the pressure",
-    source="reciprocity; Johnson 1985, section 4.2; paper Eq. (9) with lx = 4 ly",
-    metric="at_most",
-    tolerance=0.02,
-    tolerance_reason="rms difference over the rms force, of four seeds in four directions; the next order in "
-    "the rms, 1.0 %, 2.2 % and 4.4 % for 4, 8 and 16 nm, and the sampling of Hertz' pressure; measured 1.3 %",
-    tags=("reference", "rough", "lay", "fig10"),
-)
+@case("reference/lay-elastic-friction", metric="at_most", tolerance=0.02)
 def weak_lay() -> Measured:
+    """Ball on a weakly rough lay: elastic friction over the direction.
+
+    Claim: without friction the force along any direction is int p dz/ds dA with Hertz' pressure, to first
+    order in the rms height: the work that the roughness does on the pressure
+    Source: reciprocity; Johnson 1985, section 4.2; paper Eq. (9) with lx = 4 ly
+    Tolerance: rms difference over the rms force, of four seeds in four directions; the next order in the rms,
+    1.0 %, 2.2 % and 4.4 % for 4, 8 and 16 nm, and the sampling of Hertz' pressure; measured 1.3 %
+    """
     directions = (0.0, LAY, 0.5 * math.pi, LAY + 0.5 * math.pi)
     forces = np.array([[weak_forces(seed, phi) for phi in directions] for seed in range(1, 5)])
     found, exact = forces[..., 0], forces[..., 1]
@@ -94,20 +91,16 @@ def turned(name: str) -> Array:
     return np.array(rows)
 
 
-@case(
-    "reference/lay-friction",
-    title="Surface with a lay, as in Fig. 10: friction and real contact area over the sliding direction",
-    claim="with lx = 4 ly the elastic part of friction scatters more across the lay than along it; the real "
-    "contact area does not depend on the direction",
-    source="paper Eq. (9) and Fig. 10, for l_x different from l_y",
-    metric="at_least",
-    tolerance=1.63,
-    tolerance_reason="rms of the elastic part across the lay over that along it, of 24 realisations: equal "
-    "variances exceed it with a probability of 1 % (F distribution of 24 and 24 degrees of freedom, 2.66)",
-    tier="full",
-    tags=("rough", "lay", "fig10"),
-)
+@case("reference/lay-friction", metric="at_least", tolerance=1.63, tier="full")
 def fig10_lay() -> Measured:
+    """Surface with a lay, as in Fig. 10: friction and real contact area over the sliding direction.
+
+    Claim: with lx = 4 ly the elastic part of friction scatters more across the lay than along it; the real
+    contact area does not depend on the direction
+    Source: paper Eq. (9) and Fig. 10, for l_x different from l_y
+    Tolerance: rms of the elastic part across the lay over that along it, of 24 realisations: equal variances
+    exceed it with a probability of 1 % (F distribution of 24 and 24 degrees of freedom, 2.66)
+    """
     data: dict[str, object] = {"direction (deg)": np.degrees(DIRECTIONS)}
     for name in LENGTHS:
         mu, area, elastic = np.moveaxis(turned(name), 2, 0)

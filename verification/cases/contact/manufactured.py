@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.exact.manufactured import Manufactured, manufacture
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import family
 
 SOURCE = "method of manufactured solutions (Roache 2002); sums of 50-digit integrals"
 M, SEEDS, ANGLE = 12, (1, 2, 3), 0.7
@@ -18,9 +16,6 @@ METHODS: tuple[Method, ...] = ("dense", "fft")
 ROUNDING = (
     "the heights are rounded to 1e-16 of some 2e-6 m against displacements of 1e-6 m, and the flexibility's "
     "condition number on 12 x 12 elements is about 30: 1e-14 per element at random, ten times that at worst"
-)
-row = partial(
-    case, source=SOURCE, metric="at_most", tolerance=1e-12, tolerance_reason=ROUNDING, tags=("exact",)
 )
 
 
@@ -44,37 +39,25 @@ def misfit(state: Manufactured, method: Method) -> float:
     )
 
 
-def _worst(*, oblique: bool, slope_correction: bool) -> Measured:
+@family(
+    "oblique, slope_correction, title, claim",
+    {
+        "manufactured/friction": (
+            False, False, "Manufactured states with friction, without slopes",
+            "both solvers return the chosen pressure, traction and approach: a, c, tau, beta at 0.7 rad"),
+        "manufactured/oblique": (
+            True, False, "Manufactured states with friction on a wavy common surface",
+            "both solvers return the chosen state where the cosines of Eqs (2) and (6) differ from 1"),
+        "manufactured/slope-correction": (
+            True, True, "Manufactured states with exact facet tractions",
+            "both solvers return the chosen state with exact facet tractions in Eq. (7)"),
+    },
+    source=SOURCE, metric="at_most", tolerance=1e-12, tolerance_reason=ROUNDING,
+)  # fmt: skip
+def states(oblique: bool, slope_correction: bool) -> Measured:
     off = {
         f"{method}, state {seed}": misfit(manufacture(M, seed, ANGLE, oblique, slope_correction), method)
         for method in METHODS
         for seed in SEEDS
     }
     return Measured(value=max(off.values()), data={"worst": off})
-
-
-@row(
-    "manufactured/friction",
-    title="Manufactured states with friction, without slopes",
-    claim="both solvers return the chosen pressure, traction and approach: a, c, tau, beta at 0.7 rad",
-)
-def friction() -> Measured:
-    return _worst(oblique=False, slope_correction=False)
-
-
-@row(
-    "manufactured/oblique",
-    title="Manufactured states with friction on a wavy common surface",
-    claim="both solvers return the chosen state where the cosines of Eqs (2) and (6) differ from 1",
-)
-def oblique() -> Measured:
-    return _worst(oblique=True, slope_correction=False)
-
-
-@row(
-    "manufactured/slope-correction",
-    title="Manufactured states with exact facet tractions",
-    claim="both solvers return the chosen state with exact facet tractions in Eq. (7)",
-)
-def slope_correction() -> Measured:
-    return _worst(oblique=True, slope_correction=True)

@@ -33,19 +33,15 @@ def square_loads() -> list[float]:
     return [press(square, 3.0, M, approach=DEPTH).normal_force / DEPTH for M in SQUARE_GRIDS]
 
 
-@case(
-    "reference/square-punch-stiffness",
-    title="Square flat punch: stiffness, extrapolated",
-    claim="The stiffness extrapolates to 1.1523 E* (2a), the electrified plate's",
-    source="Read 1997 and Hwang and Mascagni 2004 (0.3667874); own graded collocation (0.3667880)",
-    metric="relative",
-    tolerance=1e-5,
-    tolerance_reason="least squares in 1, h (edges) and h^1.593 (corners) over six grids; a further h^2 "
-    "moves it by 1.4e-6. Measured 8e-7, half the difference between the two reference "
-    "values",
-    tags=("reference", "punch"),
-)
+@case("reference/square-punch-stiffness", metric="relative", tolerance=1e-5)
 def square_punch() -> Measured:
+    """Square flat punch: stiffness, extrapolated.
+
+    Claim: The stiffness extrapolates to 1.1523 E* (2a), the electrified plate's
+    Source: Read 1997 and Hwang and Mascagni 2004 (0.3667874); own graded collocation (0.3667880)
+    Tolerance: least squares in 1, h (edges) and h^1.593 (corners) over six grids; a further h^2 moves it by
+    1.4e-6. Measured 8e-7, half the difference between the two reference values
+    """
     loads, h = np.asarray(square_loads()), 1 / np.asarray(SQUARE_GRIDS, dtype=float)
     terms = np.column_stack([np.ones_like(h), h, h**CORNER_ORDER])
     (limit, edges, corners), *_ = np.linalg.lstsq(terms, loads, rcond=None)
@@ -54,35 +50,29 @@ def square_punch() -> Measured:
     return Measured(float(limit), exact, UNCERTAINTY_SQUARE * exact, "N/m", data)
 
 
-@case(
-    "reference/square-punch-order",
-    title="Square flat punch: order of the stiffness",
-    claim="Order 1: the row along an edge misplaces a share h of the load of its d^(-1/2) pressure",
-    source="edge exponent -1/2, corner exponent -0.7034 (Morrison and Lewis 1976)",
-    metric="absolute",
-    tolerance=0.05,
-    tolerance_reason="h^1.59 of the corner over a factor 6 of h; measured 0.02",
-    tags=("reference", "punch", "order"),
-)
+@case("reference/square-punch-order", metric="absolute", tolerance=0.05)
 def square_punch_order() -> Measured:
+    """Square flat punch: order of the stiffness.
+
+    Claim: Order 1: the row along an edge misplaces a share h of the load of its d^(-1/2) pressure
+    Source: edge exponent -1/2, corner exponent -0.7034 (Morrison and Lewis 1976)
+    Tolerance: h^1.59 of the corner over a factor 6 of h; measured 0.02
+    """
     exact = square_stiffness(2.0, MODULUS)
     errors = [abs(load / exact - 1) for load in square_loads()]
     fit = fit_order([1 / M for M in SQUARE_GRIDS], errors)
     return Measured(fit.order, 1.0, data={"M": list(SQUARE_GRIDS), "error": errors})
 
 
-@case(
-    "reference/circular-punch-stiffness",
-    title="Circular flat punch: stiffness within the staircase's uncertainty",
-    claim="The error of P = 2 a E* delta stays below 0.35 h/a on every grid: order 1 with scatter",
-    source="Johnson 1985, Eq. (3.36)",
-    metric="at_most",
-    tolerance=0.35,
-    tolerance_reason="in units of h/a: an outline off by half an element all round would err by 1/2; the "
-    "staircase's mean radius and edge row leave 0.22 measured, over five grids",
-    tags=("reference", "punch", "order"),
-)
+@case("reference/circular-punch-stiffness", metric="at_most", tolerance=0.35)
 def circular_punch() -> Measured:
+    """Circular flat punch: stiffness within the staircase's uncertainty.
+
+    Claim: The error of P = 2 a E* delta stays below 0.35 h/a on every grid: order 1 with scatter
+    Source: Johnson 1985, Eq. (3.36)
+    Tolerance: in units of h/a: an outline off by half an element all round would err by 1/2; the staircase's
+    mean radius and edge row leave 0.22 measured, over five grids
+    """
     exact = CircularPunch(2 * MODULUS * DEPTH, 1.0, MODULUS).load
     scaled = []
     for M in CIRCLE_GRIDS:
@@ -91,18 +81,15 @@ def circular_punch() -> Measured:
     return Measured(max(scaled), data={"M": list(CIRCLE_GRIDS), "error a/h": scaled})
 
 
-@case(
-    "reference/circular-punch-interior",
-    title="Circular flat punch: pressure away from the edge",
-    claim="Within 0.7 a the pressure is P/(2 pi a^2) (1 - r^2/a^2)^(-1/2)",
-    source="Boussinesq 1885; Johnson 1985, Eq. (3.34)",
-    metric="at_most",
-    tolerance=0.012,
-    tolerance_reason="the singular edge is felt inside as h/2a, 0.011 at M = 112; measured 7.7e-3; at the "
-    "edge itself the error does not fall at all",
-    tags=("reference", "punch"),
-)
+@case("reference/circular-punch-interior", metric="at_most", tolerance=0.012)
 def circular_interior() -> Measured:
+    """Circular flat punch: pressure away from the edge.
+
+    Claim: Within 0.7 a the pressure is P/(2 pi a^2) (1 - r^2/a^2)^(-1/2)
+    Source: Boussinesq 1885; Johnson 1985, Eq. (3.34)
+    Tolerance: the singular edge is felt inside as h/2a, 0.011 at M = 112; measured 7.7e-3; at the edge itself
+    the error does not fall at all
+    """
     M = 112
     punch = CircularPunch(2 * MODULUS * DEPTH, 1.0, MODULUS)
     r = np.hypot(*centres(2.4, M))

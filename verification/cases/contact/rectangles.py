@@ -12,27 +12,20 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array, Grid, Mask
 from verification.cases.contact.scenes import MODULUS
+from verification.cases.solvers import cross_check
 from verification.exact.hertz import Sphere
 from verification.exact.westergaard import Wave
 from verification.framework.case import Measured
 from verification.framework.rates import fit_order
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.scenes.cross_checks import Trial, pressed
 from verification.scenes.rectangles import rectangles
-
-ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
-SOLVERS = "principal pivoting on dense matrices (Murty 1974; Judice and Pires 1994)"
 
 
 @cache
 def trials() -> tuple[Trial, ...]:
     """The scenes, each solved once for all rows."""
-    found = rectangles()
-    for trial in found:
-        for solution in (trial.dense, trial.fft):
-            if solution.status not in ENDED_WELL:
-                raise RuntimeError(f"{trial.name}: {solution.plan.method} ended {solution.status.value}")
-    return found
+    return cross_check.ended_well(rectangles())
 
 
 def largest(by_scene: Mapping[str, float]) -> Measured:
@@ -43,62 +36,50 @@ def largest(by_scene: Mapping[str, float]) -> Measured:
     )
 
 
-@case(
-    "rectangles/dense-pressure",
-    title="Dense reference against production solver on rectangles",
-    claim="on rectangles with square and oblong elements both solvers find the same contact, and pressures "
-    "that agree to 1e-9 of the peak",
-    source=SOLVERS,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="both solvers have the tolerance 1e-12; a thousand times that",
-    tags=("solvers", "rectangle"),
-)
-def dense_pressure() -> Measured:
-    def difference(trial: Trial) -> float:
-        if not np.array_equal(trial.dense.contact, trial.fft.contact):
-            return math.inf
-        return float(np.abs(trial.dense.pressure - trial.fft.pressure).max()) / trial.dense.max_pressure
+def numbers_difference(trial: Trial) -> float:
+    """Largest of the differences that `cross_check` judges one by one, and that of the corrected area."""
+    corrected = abs(trial.dense.contact_area_corrected - trial.fft.contact_area_corrected)
+    return max(
+        corrected / trial.dense.contact_area, *(difference(trial) for difference in cross_check.NUMBERS)
+    )
 
+
+def contact_difference(trial: Trial) -> float:
+    """Largest difference of the pressures over the peak; infinite on another contact set."""
+    if not np.array_equal(trial.dense.contact, trial.fft.contact):
+        return math.inf
+    return cross_check.pressure_difference(trial)
+
+
+@family(
+    "difference, title, claim, tolerance_reason",
+    {
+        "rectangles/dense-pressure": (
+            contact_difference, "Dense reference against production solver on rectangles",
+            "on rectangles with square and oblong elements both solvers find the same contact, and pressures "
+            "that agree to 1e-9 of the peak",
+            "both solvers have the tolerance 1e-12; a thousand times that"),
+        "rectangles/dense-numbers": (
+            numbers_difference, "Numbers of both solvers on rectangles",
+            "mu, Q / N, A, the perimeter-corrected A and the approach of both solvers agree to 1e-9",
+            "as for pressures"),
+    },
+    metric="at_most", tolerance=1e-9, source=cross_check.SOURCE,
+)  # fmt: skip
+def both_solvers(difference: Callable[[Trial], float]) -> Measured:
+    """Judge the largest difference of all scenes."""
     return largest({trial.name: difference(trial) for trial in trials()})
 
 
-@case(
-    "rectangles/dense-numbers",
-    title="Numbers of both solvers on rectangles",
-    claim="mu, Q / N, A, the perimeter-corrected A and the approach of both solvers agree to 1e-9",
-    source=SOLVERS,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="as for pressures",
-    tags=("solvers", "rectangle"),
-)
-def dense_numbers() -> Measured:
-    def difference(trial: Trial) -> float:
-        one, other = trial.dense, trial.fft
-        from_touch = abs(one.approach + one.problem.datum)
-        return max(
-            abs(one.friction_coefficient - other.friction_coefficient),
-            abs(one.binormal_force - other.binormal_force) / one.normal_force,
-            abs(one.contact_area - other.contact_area) / one.contact_area,
-            abs(one.contact_area_corrected - other.contact_area_corrected) / one.contact_area,
-            abs(one.approach - other.approach) / from_touch,
-        )
-
-    return largest({trial.name: difference(trial) for trial in trials()})
-
-
-@case(
-    "rectangles/paper-scheme",
-    title="The paper's own scheme on rectangles",
-    claim="on free rectangles, with square and oblong elements, the scheme reaches the same pressures",
-    source="paper section 5 and Fig. 3; the production solver as reference",
-    metric="at_most",
-    tolerance=1e-4,
-    tolerance_reason="its own load tolerance; measured 4e-5 of the peak",
-    tags=("solvers", "rectangle"),
-)
+@case("rectangles/paper-scheme", metric="at_most", tolerance=1e-4)
 def paper_scheme() -> Measured:
+    """The paper's own scheme on rectangles.
+
+    Claim: on free rectangles, with square and oblong elements, the scheme reaches the same pressures
+    Source: paper section 5 and Fig. 3; the production solver as reference
+    Tolerance: its own load tolerance; measured 4e-5 of the peak
+    """
+
     def difference(trial: Trial) -> float:
         found = rf.solve(trial.scene, trial.M, method="paper", **trial.options)
         off = float(np.abs(found.pressure - trial.fft.pressure).max()) / trial.fft.max_pressure
@@ -174,18 +155,15 @@ def image_differences() -> dict[str, dict[str, float]]:
     return found
 
 
-@case(
-    "rectangles/images",
-    title="Mirrored and rotated copies of rectangular scenes",
-    claim="pressures of an image are the image of the pressures, to 1e-12 of the peak, and Q has its "
-    "sign, wherever the proven bounds decide on every element",
-    source="symmetry of Eqs (1)-(7) under reflections and quarter turns",
-    metric="at_most",
-    tolerance=1e-12,
-    tolerance_reason="rounding of the dense solver times a condition number below 2e3; measured 8e-15",
-    tags=("solvers", "rectangle", "axes"),
-)
+@case("rectangles/images", metric="at_most", tolerance=1e-12)
 def images() -> Measured:
+    """Mirrored and rotated copies of rectangular scenes.
+
+    Claim: pressures of an image are the image of the pressures, to 1e-12 of the peak, and Q has its sign,
+    wherever the proven bounds decide on every element
+    Source: symmetry of Eqs (1)-(7) under reflections and quarter turns
+    Tolerance: rounding of the dense solver times a condition number below 2e3; measured 8e-15
+    """
     found = image_differences()
     names = list(next(iter(found.values())))
     worst = max(max(row.values()) for row in found.values())
@@ -223,17 +201,14 @@ def embedded(before: int, after: int) -> tuple[rf.Solution, rf.Solution, Mask]:
     return one, rf.solve(large, grid.shape, tolerance=1e-12), inside
 
 
-@case(
-    "rectangles/embedded",
-    title="A square scene inside a longer rectangle",
-    claim="contact inside the square does not see the rest of a free half-space: pressures, mu and Q stay",
-    source="Eq. (7): the half-space ends nowhere",
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="residuals of 1e-12 are required; a thousand times that",
-    tags=("rectangle",),
-)
+@case("rectangles/embedded", metric="at_most", tolerance=1e-9)
 def embedding() -> Measured:
+    """A square scene inside a longer rectangle.
+
+    Claim: contact inside the square does not see the rest of a free half-space: pressures, mu and Q stay
+    Source: Eq. (7): the half-space ends nowhere
+    Tolerance: residuals of 1e-12 are required; a thousand times that
+    """
     differences = {}
     for before, after in ((12, 12), (0, 36), (50, 3), (7, 0)):
         one, other, inside = embedded(before, after)
@@ -263,22 +238,35 @@ SERIES = (64, 128, 256)
 
 
 @cache
-def pressed_ball(domain: str, n: int) -> tuple[rf.Solution, float]:
-    """The Hertz scene on a domain, and the distance (m) of the innermost centres from the axis."""
+def pressed_ball(domain: str, n: int) -> rf.Solution:
+    """The Hertz scene on a domain."""
     size, share = DOMAINS[domain]
-    shape = (round(n * share[0]), round(n * share[1]))
-    found = rf.solve(replace(HERTZ, side=None, size=size), shape)
-    apart = [
-        np.abs(axis - length / 2).min()
-        for axis, length in zip((found.grid.x, found.grid.y), size, strict=True)
-    ]
-    return found, float(np.hypot(*apart))
+    return rf.solve(replace(HERTZ, side=None, size=size), (round(n * share[0]), round(n * share[1])))
 
 
-def _orders(error: Callable[[str, int], float]) -> Measured:
+@family(
+    "number, exact, name, tolerance, claim, tolerance_reason",
+    {
+        "rectangles/hertz-peak-order": (
+            "max_pressure", SPHERE.peak_pressure, "peak pressure", 0.25,
+            "the error of the peak pressure falls with the square of the element, on any rectangle",
+            "as on squares (hertz/peak-order): single errors scatter by 20 %. Measured 2.03"),
+        "rectangles/hertz-approach-order": (
+            "approach", SPHERE.approach, "approach", 0.15,
+            "the error of the approach, from first contact of the elements, falls with the square of the "
+            "element",
+            "as on squares (hertz/approach-order): the lift of the innermost centres dominates"),
+    },
+    metric="absolute",
+)  # fmt: skip
+def hertz_order(number: str, exact: float) -> Measured:
+    """Hertz on rectangles with oblong elements: order of the {name}.
+
+    Source: Hertz 1882; Johnson 1985, section 4.2
+    """
     orders, data = {}, {}
     for domain in DOMAINS:
-        errors = [error(domain, n) for n in SERIES]
+        errors = [abs(getattr(pressed_ball(domain, n), number) / exact - 1) for n in SERIES]
         orders[domain] = fit_order([1 / n for n in SERIES], errors).order
         data[domain] = errors
     farthest = max(orders, key=lambda name: abs(orders[name] - 2))
@@ -287,49 +275,17 @@ def _orders(error: Callable[[str, int], float]) -> Measured:
     )
 
 
-@case(
-    "rectangles/hertz-peak-order",
-    title="Hertz on rectangles with oblong elements: order of the peak pressure",
-    claim="the error of the peak pressure falls with the square of the element, on any rectangle",
-    source="Hertz 1882; Johnson 1985, section 4.2",
-    metric="absolute",
-    tolerance=0.25,
-    tolerance_reason="as on squares (hertz/peak-order): single errors scatter by 20 %. Measured 2.03",
-    tags=("hertz", "order", "rectangle"),
-)
-def hertz_peak_order() -> Measured:
-    return _orders(lambda domain, n: abs(pressed_ball(domain, n)[0].max_pressure / SPHERE.peak_pressure - 1))
-
-
-@case(
-    "rectangles/hertz-approach-order",
-    title="Hertz on rectangles with oblong elements: order of the approach",
-    claim="the error of the approach, from first contact of the elements, falls with the square of the "
-    "element",
-    source="Hertz 1882; Johnson 1985, section 4.2",
-    metric="absolute",
-    tolerance=0.15,
-    tolerance_reason="as on squares (hertz/approach-order): the lift of the innermost centres dominates",
-    tags=("hertz", "order", "rectangle"),
-)
-def hertz_approach_order() -> Measured:
-    return _orders(lambda domain, n: abs(pressed_ball(domain, n)[0].approach / SPHERE.approach - 1))
-
-
-@case(
-    "rectangles/hertz-area",
-    title="Hertz on rectangles with oblong elements: perimeter-corrected area",
-    claim="the corrected area is that of the circle: the correction is right for elements of any shape",
-    source="Yastrebov, Anciaux and Molinari 2017, with dx dy for the element's area",
-    metric="at_most",
-    tolerance=0.01,
-    tolerance_reason="one position of the ball on some 100 elements along the edge, which come in and out "
-    "in fours: 0.5 % measured; the raw area is up to 2 % too large",
-    tags=("hertz", "area", "rectangle"),
-)
+@case("rectangles/hertz-area", metric="at_most", tolerance=0.01)
 def hertz_area() -> Measured:
+    """Hertz on rectangles with oblong elements: perimeter-corrected area.
+
+    Claim: the corrected area is that of the circle: the correction is right for elements of any shape
+    Source: Yastrebov, Anciaux and Molinari 2017, with dx dy for the element's area
+    Tolerance: one position of the ball on some 100 elements along the edge, which come in and out in fours:
+    0.5 % measured; the raw area is up to 2 % too large
+    """
     exact = math.pi * SPHERE.contact_radius**2
-    found = {name: pressed_ball(name, 128)[0] for name in DOMAINS}
+    found = {name: pressed_ball(name, 128) for name in DOMAINS}
     off = {name: abs(s.contact_area_corrected / exact - 1) for name, s in found.items()}
     raw = {name: s.contact_area / exact - 1 for name, s in found.items()}
     return Measured(max(off.values()), data={"corrected": off, "raw": raw})
@@ -382,31 +338,25 @@ def wave_errors(name: str, M: int) -> tuple[float, float]:
     return press_wave(axis, size, (M, round(M * share)))
 
 
-@case(
-    "rectangles/westergaard-pressure",
-    title="Westergaard on periodic rectangles with oblong elements",
-    claim="at half the full-contact load the pressure is Westergaard's, on any rectangle and along both axes",
-    source="Westergaard 1939; Johnson 1985, Eq. (13.7)",
-    metric="at_most",
-    tolerance=3e-3,
-    tolerance_reason="as on squares: square-root edges, order 1, 1.9e-3 measured at 128",
-    tags=("reference", "periodic", "rectangle"),
-)
+@case("rectangles/westergaard-pressure", metric="at_most", tolerance=3e-3)
 def westergaard_pressure() -> Measured:
+    """Westergaard on periodic rectangles with oblong elements.
+
+    Claim: at half the full-contact load the pressure is Westergaard's, on any rectangle and along both axes
+    Source: Westergaard 1939; Johnson 1985, Eq. (13.7)
+    Tolerance: as on squares: square-root edges, order 1, 1.9e-3 measured at 128
+    """
     return largest({name: wave_errors(name, 128)[0] for name in WAVES})
 
 
-@case(
-    "rectangles/westergaard-approach-order",
-    title="Westergaard on periodic rectangles: order of the approach",
-    claim="with the edge on element borders the approach of the mean planes converges with order 2",
-    source="approach integrated from Johnson's flat-punch increment: Delta s^2 (1 - ln s^2)",
-    metric="absolute",
-    tolerance=0.1,
-    tolerance_reason="as on squares: at half load the edges fall on borders; measured 2.04",
-    tags=("reference", "periodic", "order", "rectangle"),
-)
+@case("rectangles/westergaard-approach-order", metric="absolute", tolerance=0.1)
 def westergaard_order() -> Measured:
+    """Westergaard on periodic rectangles: order of the approach.
+
+    Claim: with the edge on element borders the approach of the mean planes converges with order 2
+    Source: approach integrated from Johnson's flat-punch increment: Delta s^2 (1 - ln s^2)
+    Tolerance: as on squares: at half load the edges fall on borders; measured 2.04
+    """
     sizes = (32, 64, 128)
     orders = {
         name: fit_order([1 / M for M in sizes], [wave_errors(name, M)[1] for M in sizes]).order
@@ -437,7 +387,7 @@ def work(kind: str, ratio: float, oblong: float, seed: int) -> float:
     share = math.sqrt(ratio / oblong)
     grid = (round(WORK_M * share), round(WORK_M / share))
     found = rf.solve(work_scene(kind, size, seed), grid)
-    if found.status not in ENDED_WELL:
+    if found.status not in cross_check.ENDED_WELL:
         raise RuntimeError(f"{kind}, seed {seed}: ended {found.status.value} on {found.grid}")
     return found.cost.point_logs / found.grid.elements
 
@@ -458,19 +408,15 @@ def relative_work(settings: Sequence[tuple[float, float]]) -> dict[str, dict[str
     return table
 
 
-@case(
-    "rectangles/work",
-    title="Work on rectangles over that on squares of as many elements",
-    claim="rectangles to 4 : 1 and elements to 2 : 1 cost at most 1.2 times a square of as many elements",
-    source="transforms counted as n log2 n, from the solver's own counter",
-    metric="at_most",
-    tolerance=1.2,
-    tolerance_reason="demanded; the mean over free and periodic rough planes and a rough ball, five surfaces "
-    "each. Single scenes scatter by 20 %, as squares of different seeds do",
-    tier="full",
-    tags=("cost", "rectangle"),
-)
+@case("rectangles/work", metric="at_most", tolerance=1.2, tier="full")
 def work_on_rectangles() -> Measured:
+    """Work on rectangles over that on squares of as many elements.
+
+    Claim: rectangles to 4 : 1 and elements to 2 : 1 cost at most 1.2 times a square of as many elements
+    Source: transforms counted as n log2 n, from the solver's own counter
+    Tolerance: demanded; the mean over free and periodic rough planes and a rough ball, five surfaces each.
+    Single scenes scatter by 20 %, as squares of different seeds do
+    """
     judged = relative_work([(2, 1), (4, 1), (1, 1.5), (1, 2), (1, 0.5), (2, 2), (4, 2)])
     beyond = relative_work([(8, 1), (16, 1), (60, 1), (1, 4), (1, 8)])
     worst = max(row["mean"] for row in judged.values())

@@ -28,18 +28,15 @@ def rough_sphere() -> RoughSphere:
     return RoughSphere(LOAD, RADIUS, modulus, *gaussian_summits(RMS, CORRELATION))
 
 
-@case(
-    "reference/greenwood-tripp-radius",
-    title="Rough sphere: effective contact radius against Greenwood and Tripp",
-    claim="Averaged over realisations, a* = (3 pi/4) int r p dr / int p dr is the summit model's",
-    source="Greenwood and Tripp 1967; Johnson 1985, section 13.5; summits by Nayak 1971",
-    metric="relative",
-    tolerance=0.05,
-    tolerance_reason="three standard errors of eight realisations (1.5 % each); the model's own omission, "
-    "elastic interaction of neighbouring summits, is not seen above that. Measured 0.8 %",
-    tags=("reference", "rough", "fig6"),
-)
+@case("reference/greenwood-tripp-radius", metric="relative", tolerance=0.05)
 def greenwood_tripp_radius() -> Measured:
+    """Rough sphere: effective contact radius against Greenwood and Tripp.
+
+    Claim: Averaged over realisations, a* = (3 pi/4) int r p dr / int p dr is the summit model's
+    Source: Greenwood and Tripp 1967; Johnson 1985, section 13.5; summits by Nayak 1971
+    Tolerance: three standard errors of eight realisations (1.5 % each); the model's own omission, elastic
+    interaction of neighbouring summits, is not seen above that. Measured 0.8 %
+    """
     sphere = rough_sphere()
     model, a0, p0 = greenwood_tripp.solve(sphere), sphere.smooth.contact_radius, sphere.smooth.peak_pressure
     M = 192
@@ -116,19 +113,15 @@ def area_curves(M: int) -> Array:
     return np.asarray(curves)
 
 
-@case(
-    "reference/rough-plane-slope",
-    title="Rough plane: slope of the area-load line",
-    claim="kappa = (A/A0) E* h'/p at light load lies between Persson's 1.596 and Bush, Gibson and Thomas' "
-    "2.507, in the 2.0 to 2.6 of simulations",
-    source="Bush, Gibson and Thomas 1975; Persson 2001; Yastrebov, Anciaux and Molinari 2017",
-    metric="absolute",
-    tolerance=0.3,
-    tolerance_reason="the published range is 2.3 +- 0.3; standard error of five realisations 0.05, measured "
-    "2.2",
-    tags=("reference", "rough", "periodic", "area"),
-)
+@case("reference/rough-plane-slope", metric="absolute", tolerance=0.3)
 def rough_plane_slope() -> Measured:
+    """Rough plane: slope of the area-load line.
+
+    Claim: kappa = (A/A0) E* h'/p at light load lies between Persson's 1.596 and Bush, Gibson and Thomas'
+    2.507, in the 2.0 to 2.6 of simulations
+    Source: Bush, Gibson and Thomas 1975; Persson 2001; Yastrebov, Anciaux and Molinari 2017
+    Tolerance: the published range is 2.3 +- 0.3; standard error of five realisations 0.05, measured 2.2
+    """
     curves = area_curves(192)
     kappa = np.mean(curves, axis=0) / np.asarray(LOADS)
     low, high = rough_plane.KAPPA_PUBLISHED
@@ -142,18 +135,15 @@ def rough_plane_slope() -> Measured:
     return Measured(float(kappa[1]), (low + high) / 2, 0.0, "", data)
 
 
-@case(
-    "reference/rough-plane-doubling",
-    title="Rough plane: twice the load, nearly twice the area",
-    claim="Roughness on all scales makes the area nearly proportional to the load, where one sphere has "
-    "2^(2/3)",
-    source="Archard 1957 (2/3, 8/9, 26/27, 1); Greenwood and Williamson 1966",
-    metric="absolute",
-    tolerance=0.1,
-    tolerance_reason="between Archard's second level, 2^(8/9) = 1.85, and 2: centre 1.93; measured 1.93",
-    tags=("reference", "rough", "periodic", "archard"),
-)
+@case("reference/rough-plane-doubling", metric="absolute", tolerance=0.1)
 def rough_plane_doubling() -> Measured:
+    """Rough plane: twice the load, nearly twice the area.
+
+    Claim: Roughness on all scales makes the area nearly proportional to the load, where one sphere has
+    2^(2/3)
+    Source: Archard 1957 (2/3, 8/9, 26/27, 1); Greenwood and Williamson 1966
+    Tolerance: between Archard's second level, 2^(8/9) = 1.85, and 2: centre 1.93; measured 1.93
+    """
     areas = np.mean(area_curves(192), axis=0)
     ratios = areas[1:] / areas[:-1]
     return Measured(float(np.mean(ratios)), (2.0 + 2 ** (8 / 9)) / 2, 0.0, "", {"area ratio": ratios})

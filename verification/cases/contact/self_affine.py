@@ -27,7 +27,7 @@ from verification.adapters.peer import Peer
 from verification.contestants.protocol import ContactProblem
 from verification.exact import rough_plane
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 
 MODULUS, SIDE = 1e9, 1e-3  # E* (Pa), m
 SPLIT = rf.Material(E=2 * MODULUS, nu=0.0)  # two of these have E*
@@ -51,8 +51,27 @@ def pressed(
     return solution
 
 
+@family(
+    "peer, name, source",
+    {
+        "reference/self-affine-tamaas": (
+            tamaas.solve, "Tamaas",
+            "Frerot, Anciaux, Rey, Pham-Ba and Molinari 2020 (J. Open Source Softw. 5, 2121)"),
+        "reference/self-affine-contactmechanics": (
+            contactmechanics.solve, "ContactMechanics",
+            "ContactMechanics 1.8.3 (Pastewka, Sanner and others)"),
+    },
+    metric="at_most", tolerance=1e-6,
+)  # fmt: skip
 def agreement(peer: Peer) -> Measured:
-    """Largest difference of pressures over the peak: two Hurst exponents, free and periodic, 128 x 128."""
+    """Self-affine surfaces: pressures of {name} on the same heights.
+
+    Claim: On the heights of a self-affine surface, free and periodic, {name} finds the same pressures
+    Tolerance: relative to the peak; both solvers have the tolerance 1e-12 of the gap, whose root bounds the
+    error in the energy norm. Measured 4e-12 with Tamaas 2.9.0 and ContactMechanics 1.8.3
+
+    Two Hurst exponents on 128 x 128 elements.
+    """
     M, differences = 128, {}
     for periodic in (False, True):
         for hurst in (0.3, 0.8):
@@ -75,42 +94,6 @@ def agreement(peer: Peer) -> Measured:
             off = np.abs(np.asarray(answer.pressure) - ours.pressure).max() / ours.max_pressure
             differences[f"H = {hurst}, {'periodic' if periodic else 'free'}"] = float(off)
     return Measured(max(differences.values()), data={"worst": differences}, note=peer.version)
-
-
-PEER_TOLERANCE = 1e-6
-PEER_REASON = (
-    "relative to the peak; both solvers have the tolerance 1e-12 of the gap, whose root bounds the error "
-    "in the energy norm. Measured 4e-12 with Tamaas 2.9.0 and ContactMechanics 1.8.3"
-)
-
-
-@case(
-    "reference/self-affine-tamaas",
-    title="Self-affine surfaces: pressures of Tamaas on the same heights",
-    claim="On the heights of a self-affine surface, free and periodic, Tamaas finds the same pressures",
-    source="Frerot, Anciaux, Rey, Pham-Ba and Molinari 2020 (J. Open Source Softw. 5, 2121)",
-    metric="at_most",
-    tolerance=PEER_TOLERANCE,
-    tolerance_reason=PEER_REASON,
-    tags=("reference", "rough", "self-affine", "peer"),
-)
-def by_tamaas() -> Measured:
-    return agreement(tamaas.solve)
-
-
-@case(
-    "reference/self-affine-contactmechanics",
-    title="Self-affine surfaces: pressures of ContactMechanics on the same heights",
-    claim="On the heights of a self-affine surface, free and periodic, ContactMechanics finds the same "
-    "pressures",
-    source="ContactMechanics 1.8.3 (Pastewka, Sanner and others)",
-    metric="at_most",
-    tolerance=PEER_TOLERANCE,
-    tolerance_reason=PEER_REASON,
-    tags=("reference", "rough", "self-affine", "peer"),
-)
-def by_contactmechanics() -> Measured:
-    return agreement(contactmechanics.solve)
 
 
 PRESSURE = 0.05  # p / (E* h'): about a tenth of the area in contact
@@ -190,20 +173,17 @@ def figure_data(found: Kappas) -> dict[str, object]:
     }
 
 
-@case(
-    "reference/self-affine-kappa",
-    title="Self-affine surfaces: slope of the area-load line over Nayak's parameter and the Hurst exponent",
-    claim="kappa at a tenth of the area lies in the 2.0 to 2.6 of simulations for every spectrum, between "
-    "Persson's and Bush, Gibson and Thomas' values",
-    source="Persson 2001; Bush, Gibson and Thomas 1975; Prodanov, Dapp and Mueser 2014; Yastrebov, Anciaux "
-    "and Molinari 2017",
-    metric="at_most",
-    tolerance=0.3,
-    tolerance_reason="largest distance of a spectrum's mean from 2.3, the middle of the published range; "
-    "standard errors of eight realisations are 0.01 to 0.02",
-    tags=("reference", "rough", "periodic", "area", "self-affine"),
-)
+@case("reference/self-affine-kappa", metric="at_most", tolerance=0.3)
 def kappa_range() -> Measured:
+    """Self-affine surfaces: slope of the area-load line over Nayak's parameter and the Hurst exponent.
+
+    Claim: kappa at a tenth of the area lies in the 2.0 to 2.6 of simulations for every spectrum, between
+    Persson's and Bush, Gibson and Thomas' values
+    Source: Persson 2001; Bush, Gibson and Thomas 1975; Prodanov, Dapp and Mueser 2014; Yastrebov, Anciaux and
+    Molinari 2017
+    Tolerance: largest distance of a spectrum's mean from 2.3, the middle of the published range; standard
+    errors of eight realisations are 0.01 to 0.02
+    """
     found = kappas()
     low, high = rough_plane.KAPPA_PUBLISHED
     off = np.abs(found.mean - 0.5 * (low + high))
@@ -212,18 +192,15 @@ def kappa_range() -> Measured:
     return Measured(float(off.max()), data=figure_data(found), note=note)
 
 
-@case(
-    "reference/self-affine-spectral-breadth",
-    title="Self-affine surfaces: the broader the spectrum, the smaller the area",
-    claim="At a given p / (E* h') the area falls with the logarithm of Nayak's parameter",
-    source="Yastrebov, Anciaux and Molinari 2017, section 5",
-    metric="at_least",
-    tolerance=3.0,
-    tolerance_reason="slope of kappa over ln(alpha) by least squares for each seed: mean over its standard "
-    "error, Student's t of seven degrees of freedom, which chance alone makes larger in 1 % of all ensembles",
-    tags=("reference", "rough", "periodic", "area", "self-affine"),
-)
+@case("reference/self-affine-spectral-breadth", metric="at_least", tolerance=3.0)
 def spectral_breadth() -> Measured:
+    """Self-affine surfaces: the broader the spectrum, the smaller the area.
+
+    Claim: At a given p / (E* h') the area falls with the logarithm of Nayak's parameter
+    Source: Yastrebov, Anciaux and Molinari 2017, section 5
+    Tolerance: slope of kappa over ln(alpha) by least squares for each seed: mean over its standard error,
+    Student's t of seven degrees of freedom, which chance alone makes larger in 1 % of all ensembles
+    """
     found = kappas()
     breadth = np.log(found.nayak) - np.mean(np.log(found.nayak))
     falls = -(breadth @ found.found) / float(breadth @ breadth)

@@ -42,17 +42,14 @@ def relative_l2(found: Array, exact: Array) -> float:
     return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
 
 
-@case(
-    "reference/hertz-ellipse-peak",
-    title="Elliptical Hertz contact: peak pressure",
-    claim="A paraboloid of curvature ratio 3 has its Hertz peak pressure; swapped axes would not change it",
-    source="Johnson 1985, section 4.2; Carlson's R_D for K and E",
-    metric="relative",
-    tolerance=5e-4,
-    tolerance_reason="order 2 with 4 h^2/a^2: 3.3e-4 measured at M = 96; 50 % on top",
-    tags=("reference", "hertz"),
-)
+@case("reference/hertz-ellipse-peak", metric="relative", tolerance=5e-4)
 def ellipse_peak() -> Measured:
+    """Elliptical Hertz contact: peak pressure.
+
+    Claim: A paraboloid of curvature ratio 3 has its Hertz peak pressure; swapped axes would not change it
+    Source: Johnson 1985, section 4.2; Carlson's R_D for K and E
+    Tolerance: order 2 with 4 h^2/a^2: 3.3e-4 measured at M = 96; 50 % on top
+    """
     solution, x, _ = press_ellipse(96)
     along = solution.pressure[:, 48] / ELLIPSE.peak_pressure
     data = {"x/a": x[:, 0] / ELLIPSE.semi_axes[0], "p/p0": along}
@@ -60,34 +57,27 @@ def ellipse_peak() -> Measured:
     return Measured(solution.max_pressure, peak, peak * HERTZ_UNCERTAINTY, "Pa", data)
 
 
-@case(
-    "reference/hertz-ellipse-pressure",
-    title="Elliptical Hertz contact: pressure element by element",
-    claim="The long semi-axis lies along x, where the curvature is smaller; axes exchanged would miss by 60 "
-    "%",
-    source="Johnson 1985, section 4.2",
-    metric="at_most",
-    tolerance=0.01,
-    tolerance_reason="an edge element errs by sqrt(h), so the norm by h: 6.3e-3 measured at M = 96",
-    tags=("reference", "hertz", "axes"),
-)
+@case("reference/hertz-ellipse-pressure", metric="at_most", tolerance=0.01)
 def ellipse_pressure() -> Measured:
+    """Elliptical Hertz contact: pressure element by element.
+
+    Claim: The long semi-axis lies along x, where the curvature is smaller; axes exchanged would miss by 60 %
+    Source: Johnson 1985, section 4.2
+    Tolerance: an edge element errs by sqrt(h), so the norm by h: 6.3e-3 measured at M = 96
+    """
     solution, x, y = press_ellipse(96)
     return Measured(relative_l2(solution.pressure, ELLIPSE.pressure(x, y)))
 
 
-@case(
-    "reference/hertz-ellipse-approach-order",
-    title="Elliptical Hertz contact: order of the approach",
-    claim="The approach converges with order 2 although the pressure's edge is a square root",
-    source="Johnson 1985, section 4.2",
-    metric="absolute",
-    tolerance=0.3,
-    tolerance_reason="an edge row misplaces h^(3/2) of load, of either sign, which averages to h^2 over the "
-    "outline; the outline's fit to the grid scatters the points by some 5 %",
-    tags=("reference", "hertz", "order"),
-)
+@case("reference/hertz-ellipse-approach-order", metric="absolute", tolerance=0.3)
 def ellipse_order() -> Measured:
+    """Elliptical Hertz contact: order of the approach.
+
+    Claim: The approach converges with order 2 although the pressure's edge is a square root
+    Source: Johnson 1985, section 4.2
+    Tolerance: an edge row misplaces h^(3/2) of load, of either sign, which averages to h^2 over the outline;
+    the outline's fit to the grid scatters the points by some 5 %
+    """
     errors = []
     for M in GRIDS:
         solution, x, y = press_ellipse(M)
@@ -97,17 +87,14 @@ def ellipse_order() -> Measured:
     return Measured(fit.order, 2.0, data={"M": list(GRIDS), "error": errors, "local": list(fit.local)})
 
 
-@case(
-    "reference/hertz-ellipse-outside",
-    title="Elliptical Hertz contact: separation of the surfaces outside",
-    claim="Outside the contact the deformed surfaces part as the potential of the Hertz pressure says",
-    source="Johnson 1985, Eq. (3.35); ellipsoidal potential from the confocal ellipse outwards",
-    metric="at_most",
-    tolerance=8e-4,
-    tolerance_reason="over the approach; 5.0e-4 measured at M = 96, at the elements beside the edge",
-    tags=("reference", "hertz"),
-)
+@case("reference/hertz-ellipse-outside", metric="at_most", tolerance=8e-4)
 def ellipse_outside() -> Measured:
+    """Elliptical Hertz contact: separation of the surfaces outside.
+
+    Claim: Outside the contact the deformed surfaces part as the potential of the Hertz pressure says
+    Source: Johnson 1985, Eq. (3.35); ellipsoidal potential from the confocal ellipse outwards
+    Tolerance: over the approach; 5.0e-4 measured at M = 96, at the elements beside the edge
+    """
     solution, x, y = press_ellipse(96)
     exact = ellipsoid(x, y) + ELLIPSE.displacement(x, y) - ELLIPSE.approach
     outside = ELLIPSE.pressure(x, y) == 0
@@ -122,19 +109,16 @@ def press_cone(M: int) -> tuple[rf.Solution, Array]:
     return press(cone, side, M), np.hypot(x, y)
 
 
-@case(
-    "reference/cone-approach-order",
-    title="Cone: order of the approach",
-    claim="Counted from the tip, which lies between element centres, the approach converges with order 2; "
-    "counted from the lowest centre it would have order 1",
-    source="Sneddon 1965; Johnson 1985, section 5.2",
-    metric="absolute",
-    tolerance=0.3,
-    tolerance_reason="the tip's logarithmic peak and the edge's root misplace h^2 of load; the outline's fit "
-    "to the grid scatters the points",
-    tags=("reference", "cone", "order"),
-)
+@case("reference/cone-approach-order", metric="absolute", tolerance=0.3)
 def cone_order() -> Measured:
+    """Cone: order of the approach.
+
+    Claim: Counted from the tip, which lies between element centres, the approach converges with order 2;
+    counted from the lowest centre it would have order 1
+    Source: Sneddon 1965; Johnson 1985, section 5.2
+    Tolerance: the tip's logarithmic peak and the edge's root misplace h^2 of load; the outline's fit to the
+    grid scatters the points
+    """
     errors = []
     for M in GRIDS:
         solution, r = press_cone(M)
@@ -143,33 +127,27 @@ def cone_order() -> Measured:
     return Measured(fit.order, 2.0, data={"M": list(GRIDS), "error": errors, "local": list(fit.local)})
 
 
-@case(
-    "reference/cone-pressure",
-    title="Cone: pressure element by element",
-    claim="The pressure is E* slope/2 arccosh(a/r), logarithmic at the tip",
-    source="Sneddon 1965; Johnson 1985, section 5.2",
-    metric="at_most",
-    tolerance=6e-3,
-    tolerance_reason="h (edge and tip alike): 3.9e-3 measured at M = 96",
-    tags=("reference", "cone"),
-)
+@case("reference/cone-pressure", metric="at_most", tolerance=6e-3)
 def cone_pressure() -> Measured:
+    """Cone: pressure element by element.
+
+    Claim: The pressure is E* slope/2 arccosh(a/r), logarithmic at the tip
+    Source: Sneddon 1965; Johnson 1985, section 5.2
+    Tolerance: h (edge and tip alike): 3.9e-3 measured at M = 96
+    """
     solution, r = press_cone(96)
     line = {"r/a": r[48:, 48] / CONE.contact_radius, "p/pm": solution.pressure[48:, 48] / CONE.mean_pressure}
     return Measured(relative_l2(solution.pressure, CONE.pressure(r)), data=line)
 
 
-@case(
-    "reference/load-doubling",
-    title="Load doubling of power-law indenters",
-    claim="Twice the load multiplies the area of r, r^2, r^4 by 2^(2/(n+1)) = 2, 1.587, 1.320",
-    source="Galin 1961; Sneddon 1965; Archard 1957 for the meaning",
-    metric="at_most",
-    tolerance=0.01,
-    tolerance_reason="perimeter-corrected areas of 40 elements' radius scatter by some 0.3 % each",
-    tags=("reference", "archard"),
-)
+@case("reference/load-doubling", metric="at_most", tolerance=0.01)
 def load_doubling() -> Measured:
+    """Load doubling of power-law indenters.
+
+    Claim: Twice the load multiplies the area of r, r^2, r^4 by 2^(2/(n+1)) = 2, 1.587, 1.320
+    Source: Galin 1961; Sneddon 1965; Archard 1957 for the meaning
+    Tolerance: perimeter-corrected areas of 40 elements' radius scatter by some 0.3 % each
+    """
     exponents, ratios, worst = (1.0, 2.0, 4.0), [], 0.0
     for n in exponents:
         indenter = PowerLaw(load=2.0, coefficient=0.05, exponent=n, modulus=MODULUS)
@@ -184,18 +162,14 @@ def load_doubling() -> Measured:
     return Measured(worst, data={"exponent": list(exponents), "area ratio": ratios})
 
 
-@case(
-    "reference/patch-displacement",
-    title="Uniform pressure on a rectangle: displacement inside and outside",
-    claim="The whole-grid convolution of a uniform block of elements is Love's displacement of the rectangle",
-    source="Love 1929; Johnson 1985, Eq. (3.25)",
-    metric="at_most",
-    tolerance=2e-13,
-    tolerance_reason="an FFT of 128^2 points loses 20 eps of its largest value; reference 1e-13. Measured "
-    "1e-15",
-    tags=("reference", "patch", "fft"),
-)
+@case("reference/patch-displacement", metric="at_most", tolerance=2e-13)
 def patch_displacement() -> Measured:
+    """Uniform pressure on a rectangle: displacement inside and outside.
+
+    Claim: The whole-grid convolution of a uniform block of elements is Love's displacement of the rectangle
+    Source: Love 1929; Johnson 1985, Eq. (3.25)
+    Tolerance: an FFT of 128^2 points loses 20 eps of its largest value; reference 1e-13. Measured 1e-15
+    """
     M, side = 48, 1.0
     x, y = centres(side, M)
     pressure = np.zeros((M, M))

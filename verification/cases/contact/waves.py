@@ -44,17 +44,14 @@ def touch(solution: rf.Solution, gap: Array) -> float:
     return first_contact_approach(solution, gap) + float(gap.min())
 
 
-@case(
-    "reference/westergaard-pressure",
-    title="One-dimensional wave in partial contact: pressure",
-    claim="At half the full-contact load the pressure is Westergaard's",
-    source="Westergaard 1939; Johnson 1985, Eq. (13.7)",
-    metric="at_most",
-    tolerance=3e-3,
-    tolerance_reason="square-root edges: order 1, 1.9e-3 measured at M = 128",
-    tags=("reference", "periodic"),
-)
+@case("reference/westergaard-pressure", metric="at_most", tolerance=3e-3)
 def westergaard_pressure() -> Measured:
+    """One-dimensional wave in partial contact: pressure.
+
+    Claim: At half the full-contact load the pressure is Westergaard's
+    Source: Westergaard 1939; Johnson 1985, Eq. (13.7)
+    Tolerance: square-root edges: order 1, 1.9e-3 measured at M = 128
+    """
     wave, solution, exact = press_ridge(0.5, 128)
     worst = float(np.linalg.norm(solution.pressure - exact) / np.linalg.norm(exact))
     data = {
@@ -64,17 +61,14 @@ def westergaard_pressure() -> Measured:
     return Measured(worst, reference_uncertainty=westergaard.UNCERTAINTY, data=data)
 
 
-@case(
-    "reference/westergaard-area",
-    title="One-dimensional wave: contact fraction against load",
-    claim="Mean pressure = p* sin^2(pi a/lambda) from a tenth to nine tenths of full contact",
-    source="Johnson 1985, Eq. (13.8)",
-    metric="at_most",
-    tolerance=2 / 128,
-    tolerance_reason="whole elements: each of the two edges is placed to one element of 1/128",
-    tags=("reference", "periodic"),
-)
+@case("reference/westergaard-area", metric="at_most", tolerance=2 / 128)
 def westergaard_area() -> Measured:
+    """One-dimensional wave: contact fraction against load.
+
+    Claim: Mean pressure = p* sin^2(pi a/lambda) from a tenth to nine tenths of full contact
+    Source: Johnson 1985, Eq. (13.8)
+    Tolerance: whole elements: each of the two edges is placed to one element of 1/128
+    """
     shares, worst, areas = (0.1, 0.3, 0.5, 0.7, 0.9), 0.0, []
     for share in shares:
         wave, solution, _ = press_ridge(share, 128)
@@ -83,18 +77,14 @@ def westergaard_area() -> Measured:
     return Measured(worst, data={"load/p*": list(shares), "contact fraction": areas})
 
 
-@case(
-    "reference/westergaard-approach-order",
-    title="One-dimensional wave: order of the approach",
-    claim="With the edge on element borders the approach of the mean planes converges with order 2",
-    source="approach integrated from Johnson's flat-punch increment: Delta s^2 (1 - ln s^2)",
-    metric="absolute",
-    tolerance=0.1,
-    tolerance_reason="at half load the edges fall on borders for every M divisible by 4: clean order, "
-    "measured 2.04",
-    tags=("reference", "periodic", "order"),
-)
+@case("reference/westergaard-approach-order", metric="absolute", tolerance=0.1)
 def westergaard_order() -> Measured:
+    """One-dimensional wave: order of the approach.
+
+    Claim: With the edge on element borders the approach of the mean planes converges with order 2
+    Source: approach integrated from Johnson's flat-punch increment: Delta s^2 (1 - ln s^2)
+    Tolerance: at half load the edges fall on borders for every M divisible by 4: clean order, measured 2.04
+    """
     errors = []
     for M in GRIDS:
         wave, solution, _ = press_ridge(0.5, M)
@@ -104,17 +94,14 @@ def westergaard_order() -> Measured:
     return Measured(fit.order, 2.0, data={"M": list(GRIDS), "error": errors, "local": list(fit.local)})
 
 
-@case(
-    "reference/westergaard-full",
-    title="One-dimensional wave in full contact",
-    claim="At p* and beyond the pressure is the mean plus p* cos, to rounding: the operator is band-limited",
-    source="Johnson 1985, Eq. (13.5)",
-    metric="at_most",
-    tolerance=1e-12,
-    tolerance_reason="one FFT pair on 64 x 64 and the solver's last step; measured 2e-14",
-    tags=("reference", "periodic", "full-contact"),
-)
+@case("reference/westergaard-full", metric="at_most", tolerance=1e-12)
 def westergaard_full() -> Measured:
+    """One-dimensional wave in full contact.
+
+    Claim: At p* and beyond the pressure is the mean plus p* cos, to rounding: the operator is band-limited
+    Source: Johnson 1985, Eq. (13.5)
+    Tolerance: one FFT pair on 64 x 64 and the solver's last step; measured 2e-14
+    """
     _, solution, exact = press_ridge(1.3, 64)
     return Measured(float(np.max(np.abs(solution.pressure - exact)) / exact.max()))
 
@@ -126,18 +113,15 @@ def press_egg_box(ratio: float, M: int) -> tuple[rf.Solution, Array]:
     return solution, egg_box(*centres(WAVELENGTH, M))
 
 
-@case(
-    "reference/jgh-area",
-    title="Two-dimensional wave: contact fraction between the asymptotes",
-    claim="The perimeter-corrected area follows the extrapolated curve from 0.02 to 0.9 of full contact",
-    source="Johnson, Greenwood and Higginson 1985; own 21-grid extrapolation between",
-    metric="at_most",
-    tolerance=4e-3,
-    tolerance_reason="corrected area on 128^2: 3.2e-3 where the patches touch corner to corner (load 0.3), "
-    "1e-3 elsewhere, measured; table 1.5e-3 at 0.2 and 4e-4 elsewhere",
-    tags=("reference", "periodic", "area"),
-)
+@case("reference/jgh-area", metric="at_most", tolerance=4e-3)
 def jgh_area() -> Measured:
+    """Two-dimensional wave: contact fraction between the asymptotes.
+
+    Claim: The perimeter-corrected area follows the extrapolated curve from 0.02 to 0.9 of full contact
+    Source: Johnson, Greenwood and Higginson 1985; own 21-grid extrapolation between
+    Tolerance: corrected area on 128^2: 3.2e-3 where the patches touch corner to corner (load 0.3), 1e-3
+    elsewhere, measured; table 1.5e-3 at 0.2 and 4e-4 elsewhere
+    """
     ratios = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9)
     areas = [press_egg_box(ratio, 128)[0].contact_area_corrected for ratio in ratios]
     table = [jgh.AREA_FRACTION[ratio][0] for ratio in ratios]
@@ -152,17 +136,14 @@ def jgh_area() -> Measured:
     return Measured(worst, reference_uncertainty=max(u for _, u in jgh.AREA_FRACTION.values()), data=data)
 
 
-@case(
-    "reference/jgh-approach",
-    title="Two-dimensional wave: approach of the mean planes",
-    claim="The approach over Delta agrees with the extrapolated curve to four digits",
-    source="Johnson, Greenwood and Higginson 1985; own 21-grid extrapolation",
-    metric="at_most",
-    tolerance=5e-5,
-    tolerance_reason="order 2 on 128^2: 2.6e-5 measured at a tenth of full contact; table 1e-5",
-    tags=("reference", "periodic"),
-)
+@case("reference/jgh-approach", metric="at_most", tolerance=5e-5)
 def jgh_approach() -> Measured:
+    """Two-dimensional wave: approach of the mean planes.
+
+    Claim: The approach over Delta agrees with the extrapolated curve to four digits
+    Source: Johnson, Greenwood and Higginson 1985; own 21-grid extrapolation
+    Tolerance: order 2 on 128^2: 2.6e-5 measured at a tenth of full contact; table 1e-5
+    """
     ratios = (0.1, 0.3, 0.5, 0.7, 0.9)
     found = [touch(*press_egg_box(ratio, 128)) / AMPLITUDE for ratio in ratios]
     worst = max(abs(a - jgh.APPROACH[ratio]) for a, ratio in zip(found, ratios, strict=True))
@@ -180,33 +161,26 @@ def band_limited(M: int, seed: int) -> Array:
     return np.asarray(AMPLITUDE * heights / np.std(heights))
 
 
-@case(
-    "reference/full-contact-rough",
-    title="A rough plane in full contact",
-    claim="Pressure and approach of a random surface pressed flat are its Fourier transform times E* q/2",
-    source="Johnson 1985, section 13.2, superposed",
-    metric="at_most",
-    tolerance=1e-11,
-    tolerance_reason="FFT rounding of 64 x 64 values: measured 2e-15; the solver may stop earlier, at its "
-    "1e-8 of gap",
-    tags=("reference", "periodic", "full-contact"),
-)
+@case("reference/full-contact-rough", metric="at_most", tolerance=1e-11)
 def full_contact_rough() -> Measured:
+    """A rough plane in full contact.
+
+    Claim: Pressure and approach of a random surface pressed flat are its Fourier transform times E* q/2
+    Source: Johnson 1985, section 13.2, superposed
+    Tolerance: FFT rounding of 64 x 64 values: measured 2e-15; the solver may stop earlier, at its 1e-8 of gap
+    """
     return Measured(_full_contact_error(rf.Friction(), coupling=0.0, direction=0.0))
 
 
-@case(
-    "reference/full-contact-sliding",
-    title="A rough plane sliding in full contact",
-    claim="With coupling the transform gains 1/(1 - i d beta q_s/q), for any sliding direction; a wrong sign "
-    "of c or exchanged axes miss by tens of per cent",
-    source="transform of s/rho^2, -2 pi i q_s/q^2; derived in verification.exact.fourier",
-    metric="at_most",
-    tolerance=1e-10,
-    tolerance_reason="here the coupling is iterated until its certificate is met: measured 5e-12",
-    tags=("reference", "periodic", "full-contact", "coupling", "axes"),
-)
+@case("reference/full-contact-sliding", metric="at_most", tolerance=1e-10)
 def full_contact_sliding() -> Measured:
+    """A rough plane sliding in full contact.
+
+    Claim: With coupling the transform gains 1/(1 - i d beta q_s/q), for any sliding direction; a wrong sign
+    of c or exchanged axes miss by tens of per cent
+    Source: transform of s/rho^2, -2 pi i q_s/q^2; derived in verification.exact.fourier
+    Tolerance: here the coupling is iterated until its certificate is met: measured 5e-12
+    """
     return Measured(_full_contact_error(rf.Friction(tau=1e4, beta=0.8), coupling=COUPLING, direction=0.7))
 
 

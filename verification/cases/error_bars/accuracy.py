@@ -39,18 +39,15 @@ def _moved(position: int) -> rf.Scene:
     )
 
 
-@case(
-    "accuracy/hertz-area",
-    title="Bars of accuracy=0.01 on the Hertz contact's area, at 41 places of the ball",
-    claim="the area is within its 95 % bar of pi a^2, and every bar is within 1 % of the area",
-    source="Hertz 1882; Johnson 1985, section 4.2",
-    metric="at_least",
-    tolerance=0.92,
-    tolerance_reason="share within a bar of 95 %; a ball in the middle or nearly so, whose edge's elements "
-    "come in by eights, is 1 % outside",
-    tags=("accuracy", "hertz"),
-)
+@case("accuracy/hertz-area", metric="at_least", tolerance=0.92)
 def hertz_area() -> Measured:
+    """Bars of accuracy=0.01 on the Hertz contact's area, at 41 places of the ball.
+
+    Claim: the area is within its 95 % bar of pi a^2, and every bar is within 1 % of the area
+    Source: Hertz 1882; Johnson 1985, section 4.2
+    Tolerance: share within a bar of 95 %; a ball in the middle or nearly so, whose edge's elements come in by
+    eights, is 1 % outside
+    """
     exact = math.pi * EXACT.contact_radius**2
     found = [rf.solve(_moved(position), accuracy=0.01, quantity="contact_area") for position in range(41)]
     bars = [sum(solution.uncertainty["contact_area"].values()) for solution in found]
@@ -65,17 +62,14 @@ def hertz_area() -> Measured:
     )
 
 
-@case(
-    "accuracy/hertz-summits",
-    title="Error bars of p_max, of the approach, and of the force at an approach on the Hertz contact",
-    claim="each is within its 95 % bar, of one grid, wherever between elements the peaks lie",
-    source="Hertz 1882; Johnson 1985, section 4.2",
-    metric="at_least",
-    tolerance=0.92,
-    tolerance_reason="share within bars of 95 %, of 82 under the load and 41 at the approach",
-    tags=("accuracy", "hertz"),
-)
+@case("accuracy/hertz-summits", metric="at_least", tolerance=0.92)
 def hertz_summits() -> Measured:
+    """Error bars of p_max, of the approach, and of the force at an approach on the Hertz contact.
+
+    Claim: each is within its 95 % bar, of one grid, wherever between elements the peaks lie
+    Source: Hertz 1882; Johnson 1985, section 4.2
+    Tolerance: share within bars of 95 %, of 82 under the load and 41 at the approach
+    """
     exact = {"max_pressure": EXACT.peak_pressure, "approach": EXACT.approach, "normal_force": EXACT.load}
     shares: dict[str, list[float]] = {name: [] for name in exact}
     for position in range(41):
@@ -93,17 +87,14 @@ def hertz_summits() -> Measured:
     )
 
 
-@case(
-    "accuracy/edge-size",
-    title="What whole elements add along the edge of the Hertz contact",
-    claim="the area that the edge's elements add, over the perimeter correction, is as the bars' prior says",
-    source="Hertz 1882; Yastrebov, Anciaux and Molinari 2017; `verification.coverage.priors` for the prior",
-    metric="at_most",
-    tolerance=2.0,
-    tolerance_reason="two standard deviations of the prior, fitted to scenes of which few are discs",
-    tags=("accuracy", "hertz", "area"),
-)
+@case("accuracy/edge-size", metric="at_most", tolerance=2.0)
 def edge_size() -> Measured:
+    """Area that whole elements add along the edge of the Hertz contact.
+
+    Claim: the area that the edge's elements add, over the perimeter correction, is as the bars' prior says
+    Source: Hertz 1882; Yastrebov, Anciaux and Molinari 2017; `verification.coverage.priors` for the prior
+    Tolerance: two standard deviations of the prior, fitted to scenes of which few are discs
+    """
     sizes = {}
     for M, shifts in ((128, 8), (256, 8)):
         raw, corrected = mean_radii(M, shifts)
@@ -113,18 +104,15 @@ def edge_size() -> Measured:
     return Measured(value=max(off), data={"size": sizes}, note=f"mean of 64 positions of the axis: {note}")
 
 
-@case(
-    "accuracy/stress-similarity",
-    title="Derivatives obey the similarity of stresses",
-    claim="moduli, tau and load times s change neither mu nor A and multiply f_max by s: their logarithmic "
-    "derivatives add to 0, 0 and 1",
-    source="dimensional analysis of Eqs (1)-(7)",
-    metric="at_most",
-    tolerance=2e-4,
-    tolerance_reason="exact on every grid; GMRES leaves 1e-6 of each of four derivatives, of sizes to 10",
-    tags=("sensitivity",),
-)
+@case("accuracy/stress-similarity", metric="at_most", tolerance=2e-4)
 def stress_similarity() -> Measured:
+    """Derivatives obey the similarity of stresses.
+
+    Claim: moduli, tau and load times s change neither mu nor A and multiply f_max by s: their logarithmic
+    derivatives add to 0, 0 and 1
+    Source: dimensional analysis of Eqs (1)-(7)
+    Tolerance: exact on every grid; GMRES leaves 1e-6 of each of four derivatives, of sizes to 10
+    """
     scene = rf.read_scene("table1-rough")
     found = rf.sensitivity(scene, rf.solve(scene, 64))
     stresses = ("load", "friction.tau", "upper.material.E", "lower.material.E")
@@ -136,18 +124,14 @@ def stress_similarity() -> Measured:
     return Measured(value=max(misfits.values()), data={"misfit": misfits})
 
 
-@case(
-    "accuracy/coverage",
-    title="Bars of accuracy=0.01 on random scenes",
-    claim="the true error of mu, A, corrected A and f_max lies inside the 95 % bar",
-    source="grids twice as fine as any requested; committed for 224 scenes in coverage.json",
-    metric="at_least",
-    tolerance=0.92,
-    tolerance_reason="what a perfect 95 % bar passes with 97 % probability on 200 scenes",
-    tier="full",
-    tags=("accuracy",),
-)
+@case("accuracy/coverage", metric="at_least", tolerance=0.92, tier="full")
 def coverage() -> Measured:
+    """Bars of accuracy=0.01 on random scenes.
+
+    Claim: the true error of mu, A, corrected A and f_max lies inside the 95 % bar
+    Source: grids twice as fine as any requested; committed for 224 scenes in coverage.json
+    Tolerance: what a perfect 95 % bar passes with 97 % probability on 200 scenes
+    """
     with tempfile.TemporaryDirectory() as folder:
         store = Path(folder) / "store.jsonl"
         climb(store, SEEDS, GRIDS)

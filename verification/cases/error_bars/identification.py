@@ -13,16 +13,11 @@ from refimpl.scene.scene import Body
 from verification.coverage.identification import SETS, TwinSet, study, summary
 from verification.coverage.twins import KINDS, ROUGHNESS_TOLERANCE, SHARP_FIT_GRID
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
 MOST_SOLVES = 60
-
-
-def _third(twins: TwinSet) -> Measured:
-    """Judge every third twin of a study: all of them take longer than a tier should."""
-    return _coverage(twins, twins.seeds[::3])
 
 
 def _coverage(twins: TwinSet, seeds: range) -> Measured:
@@ -37,98 +32,64 @@ def _coverage(twins: TwinSet, seeds: range) -> Measured:
     return Measured(value=value, data=found, note=note)
 
 
-@case(
-    "identification/twins",
-    title="95 % intervals of tau, beta and a new load's mu, in random twins",
-    claim="The intervals cover the truth, and the warning stands in every twin whose tau is not determined.",
-    source="twins whose friction is known; coverage as in ASME V&V 20 (2009)",
-    metric="at_least",
-    tolerance=0.90,
-    tolerance_reason="95 %, less two standard deviations of 100 twins (4.4 %) and rounding",
-    tier="full",
-    tags=("identification",),
-)
-def twins() -> Measured:
-    return _third(SETS["drawn"])
-
-
-@case(
-    "identification/twins-sample",
-    title="95 % intervals of tau, beta and a new load's mu, one twin of each kind",
-    claim="The intervals cover the truth on balls and planes, elastic and at the hardness.",
-    source="as identification/twins, other seeds",
-    metric="at_least",
-    tolerance=0.8,
-    tolerance_reason="four of five twins: one miss among five has a probability of 0.2 at 95 %",
-    tags=("identification",),
-)
+@case("identification/twins-sample", metric="at_least", tolerance=0.8)
 def twins_sample() -> Measured:
+    """95 % intervals of tau, beta and a new load's mu, one twin of each kind.
+
+    Claim: The intervals cover the truth on balls and planes, elastic and at the hardness.
+    Source: as identification/twins, other seeds
+    Tolerance: four of five twins: one miss among five has a probability of 0.2 at 95 %
+    """
     stop = SETS["drawn"].seeds.stop
     return _coverage(SETS["drawn"], range(stop, stop + len(KINDS)))
 
 
-@case(
-    "identification/sharp-twins",
-    title="95 % intervals of tau below 5 %, without a warning",
-    claim="Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
-    f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is known "
-    "within 5 % has the warning.",
-    source="as identification/twins, other seeds",
-    metric="at_least",
-    tolerance=0.85,
-    tolerance_reason="95 %, less two standard deviations of 20 twins (9.7 %) and rounding",
-    tier="full",
-    tags=("identification",),
-)
-def sharp_twins() -> Measured:
-    return _third(SETS["sharp"])
+@family(
+    "twins, title, claim, source, tolerance, tolerance_reason",
+    {
+        "identification/twins": (
+            "drawn", "95 % intervals of tau, beta and a new load's mu, in random twins",
+            "The intervals cover the truth, and the warning stands in every twin whose tau is not "
+            "determined.",
+            "twins whose friction is known; coverage as in ASME V&V 20 (2009)",
+            0.90, "95 %, less two standard deviations of 100 twins (4.4 %) and rounding"),
+        "identification/sharp-twins": (
+            "sharp", "95 % intervals of tau below 5 %, without a warning",
+            "Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
+            f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is "
+            "known within 5 % has the warning.",
+            "as identification/twins, other seeds",
+            0.85, "95 %, less two standard deviations of 20 twins (9.7 %) and rounding"),
+        "identification/hardness": (
+            "hardness", "95 % intervals of tau, beta, the hardness and a new load's mu",
+            "Where balls yield at their larger loads, friction determines the hardness beside tau and beta, "
+            "from first guesses off by up to 40 %.",
+            "twins whose friction and hardness are known",
+            0.83, "95 %, less two standard deviations of 14 twins (11.6 %) and rounding"),
+        "identification/roughness": (
+            "roughness", "95 % intervals of tau, beta and a new load's mu, from statistics of a surface",
+            "Where a rough ball is known by its statistics alone, its rms height within "
+            f"{ROUGHNESS_TOLERANCE:.0%}, and a correlation length is six elements or more, four other "
+            "realisations determine tau and beta within their intervals.",
+            "twins whose friction is known, of a realisation that no fit draws",
+            0.83, "95 %, less two standard deviations of 14 twins (11.6 %) and rounding"),
+    },
+    metric="at_least", tier="full",
+)  # fmt: skip
+def third(twins: str) -> Measured:
+    """Judge every third twin of a study: all of them take longer than a tier should."""
+    return _coverage(SETS[twins], SETS[twins].seeds[::3])
 
 
-@case(
-    "identification/hardness",
-    title="95 % intervals of tau, beta, the hardness and a new load's mu",
-    claim="Where balls yield at their larger loads, friction determines the hardness beside tau and beta, "
-    "from first guesses off by up to 40 %.",
-    source="twins whose friction and hardness are known",
-    metric="at_least",
-    tolerance=0.83,
-    tolerance_reason="95 %, less two standard deviations of 14 twins (11.6 %) and rounding",
-    tier="full",
-    tags=("identification",),
-)
-def hardness() -> Measured:
-    return _third(SETS["hardness"])
-
-
-@case(
-    "identification/roughness",
-    title="95 % intervals of tau, beta and a new load's mu, from statistics of a surface",
-    claim="Where a rough ball is known by its statistics alone, its rms height within "
-    f"{ROUGHNESS_TOLERANCE:.0%}, and a correlation length is six elements or more, four other realisations "
-    "determine tau and beta within their intervals.",
-    source="twins whose friction is known, of a realisation that no fit draws",
-    metric="at_least",
-    tolerance=0.83,
-    tolerance_reason="95 %, less two standard deviations of 14 twins (11.6 %) and rounding",
-    tier="full",
-    tags=("identification",),
-)
-def roughness() -> Measured:
-    return _third(SETS["roughness"])
-
-
-@case(
-    "identification/effects",
-    title="Wrong surface, wrong modulus and an outlier in an identification",
-    claim="Another realisation of the roughness and an outlier of 10 % are revealed by chi-square; the "
-    "outlier is named, and no other row. A modulus wrong by 10 % is not revealed and moves tau.",
-    source="scene table1-rough, 10 loads, noise 1 %, seed 7",
-    metric="at_most",
-    tolerance=0.01,
-    tolerance_reason="probability of chi-square from which `identify` warns",
-    tags=("identification",),
-)
+@case("identification/effects", metric="at_most", tolerance=0.01)
 def effects() -> Measured:
+    """Wrong surface, wrong modulus and an outlier in an identification.
+
+    Claim: Another realisation of the roughness and an outlier of 10 % are revealed by chi-square; the outlier
+    is named, and no other row. A modulus wrong by 10 % is not revealed and moves tau.
+    Source: scene table1-rough, 10 loads, noise 1 %, seed 7
+    Tolerance: probability of chi-square from which `identify` warns
+    """
     scene = rf.read_scene("table1-rough")
     rows = _noisy_rows(scene)
     rough = scene.lower.surface
@@ -169,17 +130,14 @@ def _effect(found: Identification) -> dict[str, float]:
     }
 
 
-@case(
-    "identification/solves",
-    title="Forward solves of a fit to eight loads on 256 x 256, with friction and slopes",
-    claim=f"A fit without a first guess takes at most {MOST_SOLVES} solves.",
-    source="scene table1-rough, noise 1 %, seed 7; the limit is this project's own",
-    metric="at_most",
-    tolerance=MOST_SOLVES,
-    tolerance_reason="seven passes over eight rows, and further loads",
-    tags=("identification",),
-)
+@case("identification/solves", metric="at_most", tolerance=MOST_SOLVES)
 def solves() -> Measured:
+    """Forward solves of a fit to eight loads on 256 x 256, with friction and slopes.
+
+    Claim: A fit without a first guess takes at most {MOST_SOLVES} solves.
+    Source: scene table1-rough, noise 1 %, seed 7; the limit is this project's own
+    Tolerance: seven passes over eight rows, and further loads
+    """
     scene = rf.read_scene("table1-rough")
     rows = _noisy_rows(scene, 8)
     found = identify(replace(scene, friction=rf.Friction()), rows, FINE, loads=(1.0, 100.0))

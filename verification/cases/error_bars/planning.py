@@ -65,18 +65,14 @@ def peak(run: Callable[[], object]) -> float:
         tracemalloc.stop()
 
 
-@case(
-    "planning/operations",
-    title="Operations of scenes that require normal contact alone",
-    claim="a frictionless smooth scene, identical materials and incompressible ones perform the operations of"
-    " a bare normal-contact solve, kind by kind, and no more",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="operations are counted",
-    tags=("planning",),
-)
+@case("planning/operations", metric="equal", tolerance=0.0, source=SOURCE)
 def operations() -> Measured:
+    """Operations of scenes that require normal contact alone.
+
+    Claim: a frictionless smooth scene, identical materials and incompressible ones perform the operations of
+    a bare normal-contact solve, kind by kind, and no more
+    Tolerance: operations are counted
+    """
     rows = {}
     for name, (scene, oblique) in scenes().items():
         planned = dict(rf.solve(scene, M, oblique=oblique).cost.applications)
@@ -88,18 +84,14 @@ def operations() -> Measured:
     return Measured(more + sheared, 0.0, data={"planned and bare": rows})
 
 
-@case(
-    "planning/cerruti",
-    title="Shear kernels that no scene requires",
-    claim="no tangential kernel is built or applied without friction, for identical materials without slope"
-    " terms, and at an accuracy that shear's tilt does not reach; one is where shear matters",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="kernels are counted",
-    tags=("planning",),
-)
+@case("planning/cerruti", metric="equal", tolerance=0.0, source=SOURCE)
 def cerruti() -> Measured:
+    """Shear kernels that no scene requires.
+
+    Claim: no tangential kernel is built or applied without friction, for identical materials without slope
+    terms, and at an accuracy that shear's tilt does not reach; one is where shear matters
+    Tolerance: kernels are counted
+    """
     table1 = rf.read_scene("table1-smooth")
     twins = scenes()["identical materials, no slopes"][0]
     frictionless = replace(rf.read_scene("table1-rough"), friction=rf.Friction())
@@ -122,19 +114,15 @@ def shear_operations(solution: rf.Solution) -> int:
     return sum(number for kind, number in solution.cost.applications.items() if "shear" in kind)
 
 
-@case(
-    "planning/memory",
-    title="Peak memory of a frictionless smooth scene",
-    claim="a frictionless smooth scene holds no more at its peak than a bare normal-contact solve and the"
-    " arrays that a solution returns beside it",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="over the bare solve's peak plus 32 bytes an element; 0.99 measured at 64 x 64,"
-    " where each array of the grid's size counts 0.06",
-    tags=("planning",),
-)
+@case("planning/memory", metric="at_most", tolerance=1.0, source=SOURCE)
 def memory() -> Measured:
+    """Peak memory of a frictionless smooth scene.
+
+    Claim: a frictionless smooth scene holds no more at its peak than a bare normal-contact solve and the
+    arrays that a solution returns beside it
+    Tolerance: over the bare solve's peak plus 32 bytes an element; 0.99 measured at 64 x 64, where each array
+    of the grid's size counts 0.06
+    """
     scene = scenes()["frictionless, smooth"][0]
     alone, planned = peak(lambda: bare(scene)), peak(lambda: rf.solve(scene, M))
     whole = peak(lambda: rf.solve(replace(scene, friction=rf.Friction(15e6, 0.08)), M))
@@ -142,18 +130,14 @@ def memory() -> Measured:
     return Measured(planned / (alone + RETURNED), data=data)
 
 
-@case(
-    "planning/explained",
-    title="--explain says so",
-    claim="for a frictionless smooth scene and for identical materials without slope terms the printed plan"
-    " has every term out",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="lines are counted",
-    tags=("planning",),
-)
+@case("planning/explained", metric="equal", tolerance=0.0, source=SOURCE)
 def explanation() -> Measured:
+    """--explain says so.
+
+    Claim: for a frictionless smooth scene and for identical materials without slope terms the printed plan
+    has every term out
+    Tolerance: lines are counted
+    """
     missing = []
     for name in ("frictionless, smooth", "identical materials, no slopes"):
         scene, oblique = scenes()[name]

@@ -57,19 +57,14 @@ def ratio(trial: Trial) -> float:
     return trial.estimate.larger / trial.effect.larger if trial.effect.larger > 0 else math.inf
 
 
-@case(
-    "planning/estimates-bound",
-    title="Estimates of neglected terms",
-    claim="in 95 % of the terms neglected in 100 random scenes, the change of mu and that of A are both"
-    " within the plan's estimates",
-    source=SOURCE,
-    metric="at_least",
-    tolerance=0.95,
-    tolerance_reason="required of estimates that stand in an error bar of 95 %",
-    tier="full",
-    tags=("planning",),
-)
+@case("planning/estimates-bound", metric="at_least", tolerance=0.95, tier="full", source=SOURCE)
 def estimates_bound() -> Measured:
+    """Estimates of neglected terms.
+
+    Claim: in 95 % of the terms neglected in 100 random scenes, the change of mu and that of A are both within
+    the plan's estimates
+    Tolerance: required of estimates that stand in an error bar of 95 %
+    """
     out = neglected()
     share = float(np.mean([trial.bounded for trial in out]))
     whole = float(np.mean([trial.bounded for trial in studied()]))
@@ -79,18 +74,14 @@ def estimates_bound() -> Measured:
     return Measured(share, data=series(studied()), note=note)
 
 
-@case(
-    "planning/correction-bound",
-    title="Estimate of the slope correction",
-    claim="in 95 % of 100 random scenes the slope correction changes mu and A by no more than the plan says",
-    source="difference of two solves, with exact facet tractions and with the printed ones, on 256 x 256",
-    metric="at_least",
-    tolerance=0.95,
-    tolerance_reason="required of all estimates",
-    tier="full",
-    tags=("planning",),
-)
+@case("planning/correction-bound", metric="at_least", tolerance=0.95, tier="full")
 def correction_bound() -> Measured:
+    """Estimate of the slope correction.
+
+    Claim: in 95 % of 100 random scenes the slope correction changes mu and A by no more than the plan says
+    Source: difference of two solves, with exact facet tractions and with the printed ones, on 256 x 256
+    Tolerance: required of all estimates
+    """
     found = [trial for trial in scenes() if trial.term == CORRECTION]
     missed = [t.scene for t in found if not t.bounded]
     tight = float(np.median([ratio(t) for t in found]))
@@ -98,41 +89,29 @@ def correction_bound() -> Measured:
     return Measured(1 - len(missed) / len(found), data=series(found), note=note)
 
 
-@case(
-    "planning/estimates-tight",
-    title="Estimates over effects",
-    claim="the median estimate of a neglected term is at most 20 times its effect, the larger of mu's and"
-    " A's",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=20.0,
-    tolerance_reason="required of estimates that justify neglected terms; no effect counts as infinite",
-    tier="full",
-    tags=("planning",),
-)
+@case("planning/estimates-tight", metric="at_most", tolerance=20.0, tier="full", source=SOURCE)
 def estimates_tight() -> Measured:
+    """Estimates over effects.
+
+    Claim: the median estimate of a neglected term is at most 20 times its effect, the larger of mu's and A's
+    Tolerance: required of estimates that justify neglected terms; no effect counts as infinite
+    """
     by_term = {
         term: float(np.median([ratio(t) for t in studied() if t.term == term]))
         for term in sorted({t.term for t in studied()})
     }
     return Measured(
-        float(np.median([ratio(trial) for trial in neglected()])),
-        data={"median over all scenes": by_term},
+        float(np.median([ratio(trial) for trial in neglected()])), data={"median over all scenes": by_term}
     )
 
 
-@case(
-    "planning/left-out",
-    title="What could be neglected and is",
-    claim="at least half of the terms whose effect is below the requested accuracy, 0.01, are neglected",
-    source=SOURCE,
-    metric="at_least",
-    tolerance=0.5,
-    tolerance_reason="required of a planner; terms that come with another's kernel count as not neglected",
-    tier="full",
-    tags=("planning",),
-)
+@case("planning/left-out", metric="at_least", tolerance=0.5, tier="full", source=SOURCE)
 def share_neglected() -> Measured:
+    """Share of the negligible terms that are neglected.
+
+    Claim: at least half of the terms whose effect is below the requested accuracy, 0.01, are neglected
+    Tolerance: required of a planner; terms that come with another's kernel count as not neglected
+    """
     below = [trial for trial in studied() if trial.effect.larger <= ACCURACY]
     wrongly = [trial for trial in neglected() if trial.effect.larger > ACCURACY]
     counts = {

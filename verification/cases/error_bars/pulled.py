@@ -110,18 +110,14 @@ def random_shares() -> Iterator[tuple[str, Off]]:
         yield from ((f"{name}, {kind}", found) for kind, e in of.items() for name, found in e.items())
 
 
-@case(
-    "accuracy/pulled",
-    title="Bars of approach, N and f_max of a smooth ball under tau of 0.7 of its pressure",
-    claim="a rigid ball on a soft flat of nu 0.1, 96 elements a side: errors against a grid four times "
-    "finer, and a third more for its own, are within the bars",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="the bar itself",
-    tags=("tau", "uncertainty"),
-)
+@case("accuracy/pulled", metric="at_most", tolerance=1.0, source=SOURCE)
 def strongly_pulled() -> Measured:
+    """Bars of approach, N and f_max of a smooth ball under tau of 0.7 of its pressure.
+
+    Claim: a rigid ball on a soft flat of nu 0.1, 96 elements a side: errors against a grid four times finer,
+    and a third more for its own, are within the bars
+    Tolerance: the bar itself
+    """
     scene, pressure = ball(1e-2, 2e-4, rf.Material(SOFT, 0.1), rf.Material(1e4 * SOFT, 0.3))
     scene = replace(scene, friction=rf.Friction(tau=0.7 * pressure, beta=0.1))
     found = off(scene, 96) | off(scene, 96, 3e-6)
@@ -132,19 +128,15 @@ def strongly_pulled() -> Measured:
     return Measured(max(of.share for of in found.values()), data=data)
 
 
-@case(
-    "accuracy/pulled-random",
-    title="Bars of approach, N and f_max of random pairs of unlike bodies under strong tau",
-    claim=f"of {SCENES} scenes each on balls, at an approach and on planes that repeat, with tau of 0.05 to "
-    f"0.8 of the mean pressure, {HELD:.0%} have errors within the bars; the least of the shares counts",
-    source=SOURCE,
-    metric="at_least",
-    tolerance=HELD,
-    tolerance_reason="a bar of 95 % passes it in 94 of 100 draws of 100 scenes",
-    tier="full",
-    tags=("tau", "uncertainty"),
-)
+@case("accuracy/pulled-random", metric="at_least", tolerance=HELD, tier="full")
 def pulled_at_random() -> Measured:
+    """Bars of approach, N and f_max of random pairs of unlike bodies under strong tau.
+
+    Claim: of {SCENES} scenes each on balls, at an approach and on planes that repeat, with tau of 0.05 to 0.8
+    of the mean pressure, {HELD:.0%} have errors within the bars; the least of the shares counts
+    Source: {SOURCE}
+    Tolerance: a bar of 95 % passes it in 94 of 100 draws of 100 scenes
+    """
     by_number: dict[str, list[Off]] = {}
     for name, found in random_shares():
         by_number.setdefault(name, []).append(found)

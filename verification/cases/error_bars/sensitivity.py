@@ -72,19 +72,16 @@ def _differences(seed: int) -> tuple[list[Compared], int]:
     return compared, skipped
 
 
-@case(
-    "sensitivity/finite-differences",
-    title="Derivatives against finite differences",
-    claim="f_max, Q, and mu but for tau on what the area grows by, change with every parameter as central"
-    " differences of full solves say",
-    source="solves to 1e-11 on one grid, parameters moved by 1e-5 where that leaves the contact set as it is",
-    metric="at_most",
-    tolerance=1e-4,
-    tolerance_reason="per cents for one per cent: a quotient of solves to 1e-11 and steps of 1e-5 errs by"
-    " 1e-6 of a number that is a hundred times its change, GMRES by 1e-6 of answers up to ten",
-    tags=("sensitivity",),
-)
+@case("sensitivity/finite-differences", metric="at_most", tolerance=1e-4)
 def finite_differences() -> Measured:
+    """Derivatives against finite differences.
+
+    Claim: f_max, Q, and mu but for tau on what the area grows by, change with every parameter as central
+    differences of full solves say
+    Source: solves to 1e-11 on one grid, parameters moved by 1e-5 where that leaves the contact set as it is
+    Tolerance: per cents for one per cent: a quotient of solves to 1e-11 and steps of 1e-5 errs by 1e-6 of a
+    number that is a hundred times its change, GMRES by 1e-6 of answers up to ten
+    """
     found = [_differences(seed) for seed in SEEDS]
     compared = [one for part, _ in found for one in part]
     skipped = sum(count for _, count in found)
@@ -98,19 +95,15 @@ def finite_differences() -> Measured:
     return Measured(max(worst.values()) if enough else float("inf"), data={"worst": worst}, note=note)
 
 
-@case(
-    "sensitivity/finer-grids",
-    title="Derivatives on 128 x 128 beside those on 512 x 512",
-    claim="what one per cent of a parameter changes mu, A, f_max and Q by is known to 0.01 per cent, in the"
-    " median over random scenes and their parameters",
-    source="the same derivatives on 512 x 512; Q over the load",
-    metric="at_most",
-    tolerance=0.01,
-    tolerance_reason="required of a budget: a hundredth of an input's tolerance",
-    tier="full",
-    tags=("sensitivity",),
-)
+@case("sensitivity/finer-grids", metric="at_most", tolerance=0.01, tier="full")
 def finer_grids() -> Measured:
+    """Derivatives on 128 x 128 beside those on 512 x 512.
+
+    Claim: what one per cent of a parameter changes mu, A, f_max and Q by is known to 0.01 per cent, in the
+    median over random scenes and their parameters
+    Source: the same derivatives on 512 x 512; Q over the load
+    Tolerance: required of a budget: a hundredth of an input's tolerance
+    """
     compared: list[Compared] = []
     for seed in STUDIED:
         scene = random_scene(seed).scene
@@ -134,18 +127,15 @@ def finer_grids() -> Measured:
     return Measured(max(medians.values()), data={"median": medians, "nine of ten": most}, note=note)
 
 
-@case(
-    "sensitivity/drawn-inputs",
-    title="Input uncertainty against drawn inputs",
-    claim="the budget's input part of mu, A, f_max and Q is the 95 % half-width of solves with drawn inputs",
-    source=f"{DRAWS} solves of a rough ball with normal inputs (Sobol points) as wide as the tolerances",
-    metric="at_most",
-    tolerance=0.1,
-    tolerance_reason="relative, on 192 x 192: so many Sobol points are good to 0.02, A counts elements, and Q"
-    " bends within the inputs' 5 %; on half that grid by more, which the note states and nothing bounds",
-    tags=("sensitivity",),
-)
+@case("sensitivity/drawn-inputs", metric="at_most", tolerance=0.1)
 def drawn_inputs() -> Measured:
+    """Input uncertainty against drawn inputs.
+
+    Claim: the budget's input part of mu, A, f_max and Q is the 95 % half-width of solves with drawn inputs
+    Source: {DRAWS} solves of a rough ball with normal inputs (Sobol points) as wide as the tolerances
+    Tolerance: relative, on 192 x 192: so many Sobol points are good to 0.02, A counts elements, and Q bends
+    within the inputs' 5 %; on half that grid by more, which the note states and nothing bounds
+    """
     ratio, half = _budget_over_draws(DRAWN_M), _budget_over_draws(DRAWN_M // 2)
     said = "; ".join(
         f"on {M} x {M} " + ", ".join(f"{number} {value:.3f}" for number, value in found.items())

@@ -54,18 +54,14 @@ def _percent(numbers: list[float], digits: int = 1) -> str:
     return ", ".join(f"{number:.{digits}%}" for number in numbers)
 
 
-@in_both_tiers(
-    "reproduction/eq11-capped-bound",
-    title="Eq. (11) with pressures that end at the hardness: a lower bound where slopes are small",
-    claim="Eq. (11): tau / H + beta is the smallest mu where contact slopes are small",
-    source=SOURCE,
-    metric="at_least",
-    tolerance=-1e-7,
-    tolerance_reason="least mu / (tau / H + beta) - 1 without slope terms: A >= P / H makes it 0 or more, "
-    "and the load is balanced to 1e-8",
-    tags=TAGS,
-)
+@in_both_tiers("reproduction/eq11-capped-bound", metric="at_least", tolerance=-1e-7, source=SOURCE)
 def lower_bound(tier: str) -> Measured:
+    """Eq. (11) with pressures that end at the hardness: a lower bound where slopes are small.
+
+    Claim: Eq. (11): tau / H + beta is the smallest mu where contact slopes are small
+    Tolerance: least mu / (tau / H + beta) - 1 without slope terms: A >= P / H makes it 0 or more, and the
+    load is balanced to 1e-8
+    """
     found = points(tier)
     least = min(float(p.values("flat", "friction").min()) / LOWEST - 1 for p in found)
     last = [curve[-1] for curve in _by_load(tier).values()]
@@ -81,18 +77,14 @@ def lower_bound(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, least, data=_series(tier))
 
 
-@in_both_tiers(
-    "reproduction/eq11-capped-estimate",
-    title="Eq. (11) as an estimate beyond psi = 1",
-    claim="Section 8: beyond psi = 1 Eq. (11) may be used to estimate the friction coefficient",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=0.15,
-    tolerance_reason="largest mean of mu over Eq. (11), less 1, where psi > 1: measured 14 % quick and full; "
-    "three realisations scatter by 2 %",
-    tags=TAGS,
-)
+@in_both_tiers("reproduction/eq11-capped-estimate", metric="at_most", tolerance=0.15, source=SOURCE)
 def estimate(tier: str) -> Measured:
+    """Eq. (11) as an estimate beyond psi = 1.
+
+    Claim: Section 8: beyond psi = 1 Eq. (11) may be used to estimate the friction coefficient
+    Tolerance: largest mean of mu over Eq. (11), less 1, where psi > 1: measured 14 % quick and full; three
+    realisations scatter by 2 %
+    """
     errors = {
         load: [p.mean("capped", "friction").mean / LOWEST - 1 for p in curve]
         for load, curve in _by_load(tier).items()
@@ -122,19 +114,15 @@ def estimate(tier: str) -> Measured:
     return judged(Verdict.CONDITIONAL, sentence, max(beyond), data=data)
 
 
-@in_both_tiers(
-    "reproduction/eq11-capped-slopes",
-    title="Eq. (11) with slopes: does mu go below it?",
-    claim="Eq. (11) holds for small asperity slopes",
-    source=SOURCE,
-    metric="at_most",
-    tolerance={"quick": 0.06, "full": 0.06},
-    tolerance_reason="largest change of mu by slopes in one realisation: the mean slope under load is of "
-    "either sign, its scatter some 0.1 of the rms slope of 2.5 to 3.7 degrees over the root of the number "
-    "of contacts",
-    tags=TAGS,
-)
+@in_both_tiers("reproduction/eq11-capped-slopes", metric="at_most", tolerance={"quick": 0.06, "full": 0.06})
 def slopes(tier: str) -> Measured:
+    """Eq. (11) with slopes: does mu go below it?
+
+    Claim: Eq. (11) holds for small asperity slopes
+    Source: {SOURCE}
+    Tolerance: largest change of mu by slopes in one realisation: the mean slope under load is of either sign,
+    its scatter some 0.1 of the rms slope of 2.5 to 3.7 degrees over the root of the number of contacts
+    """
     found = points(tier)
     largest = max(float(np.abs(p.slope_effect).max()) for p in found)
     below = sum(int(np.count_nonzero(p.above_lowest < 0)) for p in found)
@@ -153,18 +141,15 @@ def slopes(tier: str) -> Measured:
     return judged(Verdict.CONDITIONAL, sentence, largest, data=data)
 
 
-@in_both_tiers(
-    "reproduction/table3-capped",
-    title="Table 3 with pressures that end at the hardness",
-    claim="Table 3: mu falls to 0.089, A to 0.044 mm^2 and f_max rises to 5.3 GPa",
-    source="paper Table 3; pressures that end at copper's 0.8 GPa",
-    metric="at_least",
-    tolerance=0.08,
-    tolerance_reason="what the elastic mu at 1.68 um is too low by: mu is 0.089 there where Eq. (11) has "
-    "0.09875, so a tenth; sampling and mesh leave 1 %",
-    tags=("table3", *TAGS),
-)
+@in_both_tiers("reproduction/table3-capped", metric="at_least", tolerance=0.08)
 def table3(tier: str) -> Measured:
+    """Table 3 with pressures that end at the hardness.
+
+    Claim: Table 3: mu falls to 0.089, A to 0.044 mm^2 and f_max rises to 5.3 GPa
+    Source: paper Table 3; pressures that end at copper's 0.8 GPa
+    Tolerance: what the elastic mu at 1.68 um is too low by: mu is 0.089 there where Eq. (11) has 0.09875, so
+    a tenth; sampling and mesh leave 1 %
+    """
     found = cells(tier)
     mu, area = ([p.elastic_error(name) for p in found] for name in ("friction", "area"))
     capped = {name: [p.mean("capped", name) for p in found] for name in ("friction", "area", "plastic_share")}

@@ -8,12 +8,12 @@ import numpy as np
 
 from verification.exact.coupled_indentation import first_order_shift
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.framework.verdict import Verdict, judged
 from verification.reproduction import fig5, fig6, fig7
 from verification.reproduction.printed import FIG6_RMS
 from verification.reproduction.table1 import SMOOTH, coupling, hertz
-from verification.reproduction.tiers import in_both_tiers
+from verification.reproduction.tiers import TIERS, in_both_tiers
 
 GRID = {"quick": 128, "full": 512}
 SIZES_FIG6 = {"quick": (4, 128), "full": (75, 256)}  # realisations, elements per side
@@ -36,20 +36,17 @@ def _fig5_data(grid: int) -> dict[str, object]:
     }
 
 
-@in_both_tiers(
-    "reproduction/fig5-shift",
-    title="Fig. 5: the pressure shifts to the trailing edge",
-    claim="Section 7: friction slightly shifts the pressure of a hard sphere on a softer flat to the "
-    "trailing edge",
-    source="paper Fig. 5, section 7; verification.exact.coupled_indentation, by reciprocity",
-    metric="relative",
-    tolerance=0.01,
-    tolerance_reason="edge elements place the centroid, a quarter of an element from the axis on 128 of "
-    "them, to 1 % of the shift, as in reference/sheared-sphere-shift; what is left of higher order in the "
-    "coupling is its square, 1e-4. Measured 2e-3 and, on 512, 1e-4",
-    tags=("fig5",),
-)
+@in_both_tiers("reproduction/fig5-shift", metric="relative", tolerance=0.01)
 def shift(tier: str) -> Measured:
+    """Fig. 5: the pressure shifts to the trailing edge.
+
+    Claim: Section 7: friction slightly shifts the pressure of a hard sphere on a softer flat to the trailing
+    edge
+    Source: paper Fig. 5, section 7; verification.exact.coupled_indentation, by reciprocity
+    Tolerance: edge elements place the centroid, a quarter of an element from the axis on 128 of them, to 1 %
+    of the shift, as in reference/sheared-sphere-shift; what is left of higher order in the coupling is its
+    square, 1e-4. Measured 2e-3 and, on 512, 1e-4
+    """
     found = fig5.profiles(GRID[tier])
     along, across = found.shift
     sentence = (
@@ -60,19 +57,16 @@ def shift(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, along, reference=exact, unit="a0", data=_fig5_data(GRID[tier]))
 
 
-@in_both_tiers(
-    "reproduction/fig5-edge",
-    title="Fig. 5: tau dominates local friction at the contact's edge",
-    claim="Section 7: near the edges the Coulomb-like term vanishes, and tau remains",
-    source="paper Fig. 5, Eq. (1)",
-    metric="at_most",
-    tolerance=0.35,
-    tolerance_reason="mean traction of the edge's elements over tau, less 1: Hertz' pressure half an "
-    "element in, p0 sqrt(h / a), is 0.17 p0 on 128 elements (0.08 on 512), which times beta / tau is "
-    "0.15, and doubles where the staircase sets the edge's element one further in",
-    tags=("fig5", "eq1"),
-)
+@in_both_tiers("reproduction/fig5-edge", metric="at_most", tolerance=0.35)
 def edge(tier: str) -> Measured:
+    """Fig. 5: tau dominates local friction at the contact's edge.
+
+    Claim: Section 7: near the edges the Coulomb-like term vanishes, and tau remains
+    Source: paper Fig. 5, Eq. (1)
+    Tolerance: mean traction of the edge's elements over tau, less 1: Hertz' pressure half an element in, p0
+    sqrt(h / a), is 0.17 p0 on 128 elements (0.08 on 512), which times beta / tau is 0.15, and doubles where
+    the staircase sets the edge's element one further in
+    """
     found = fig5.profiles(GRID[tier])
     excess = float(found.edge_traction.mean()) / SMOOTH.friction.tau - 1
     top = float(found.solution.traction.max()) / SMOOTH.friction.tau
@@ -107,8 +101,6 @@ def _fig6_data(rms: float, tier: str) -> dict[str, object]:
     }
 
 
-FIG6_VERDICTS = {"a": Verdict.REFUTED, "b": Verdict.CONDITIONAL, "c": Verdict.CONDITIONAL}
-FIG6_METRIC = {"a": "at_least", "b": "at_most", "c": "at_most"}
 FIG6_TOLERANCE = {
     "a": {"quick": 0.5, "full": 0.5},
     "b": {"quick": 0.95, "full": 0.5},
@@ -116,55 +108,58 @@ FIG6_TOLERANCE = {
 }
 
 
-def _declare_fig6(rms: float, panel: str) -> None:
-    @in_both_tiers(
-        f"reproduction/fig6{panel}",
-        title=f"Fig. 6({panel}): effective pressure at sigma_e = {rms * 1e6:g} um",
-        claim=f"Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {rms * 1e6:g} um",
-        source="paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5",
-        metric=FIG6_METRIC[panel],
-        tolerance=FIG6_TOLERANCE[panel],
-        tolerance_reason="rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure "
-        "from theirs, the effect of roughness: 1 for a solver without roughness, 0 for theirs. A curve more "
-        "than half the effect away is nearer to Hertz: no agreement, (a); less, (b) and (c). Sampling leaves "
-        "0.06 to 0.13 with 75 realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) "
-        "by 0.95 only; with 75 (c) is bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away",
-        tags=("fig6",),
-    )
-    def agreement(tier: str) -> Measured:
-        found = _fig6(rms, tier)
-        ours, theirs = found.central(found.pressure), found.central(found.greenwood_tripp)
-        misfit, smooth = found.misfit(found.greenwood_tripp), found.without_roughness
-        sentence = (
-            f"rms difference {misfit:.3f} p0, Hertz' pressure {smooth:.3f} (sampling {found.noise:.3f}; "
-            f"{found.misfit(found.textbook):.3f} from the textbook's curve of mu = 4 and the caption's "
-            "alpha, which these surfaces do not have); over the inner half of the Hertz circle "
-            f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
-            "load outside a0"
+@family(
+    "panel, rms, um, tier, tolerance, metric, verdict",
+    {
+        f"reproduction/fig6{panel}{'' if tier == 'quick' else '-full'}": (
+            *(panel, rms, rms * 1e6, tier, FIG6_TOLERANCE[panel][tier]),
+            *(("at_least", Verdict.REFUTED) if panel == "a" else ("at_most", Verdict.CONDITIONAL)),
         )
-        edge = len(found.r) * fig6.BIN / hertz().contact_radius
-        half_side = SMOOTH.lengths[0] / 2 / hertz().contact_radius
-        carried, predicted = found.load_share(found.pressure), found.load_share(found.greenwood_tripp)
-        sentence += (
-            f"; to {edge:.2f} a0 (the domain ends at {half_side:.2f}) ours carries {carried:.1%} of the "
-            f"load, Greenwood-Tripp {predicted:.1%}"
-        )
-        data = _fig6_data(rms, tier)
-        data |= {"largest r/a0": edge, "load share": carried, "load share, Greenwood-Tripp": predicted}
-        return judged(FIG6_VERDICTS[panel], sentence, misfit / smooth, data=data)
-
-
-@case(
-    "reproduction/fig6d",
-    title="Fig. 6(d): contact outside the Hertz circle",
-    claim="Fig. 6(d): pressure peaks above Hertz' maximum, some of them outside the Hertz region",
-    source="paper Fig. 6(d)",
-    metric="at_least",
-    tolerance=2.0,
-    tolerance_reason="maximum pressure outside the Hertz circle over Hertz' peak; above 1 the claim holds",
-    tags=("reproduction", "fig6"),
+        for panel, rms in zip("abc", FIG6_RMS, strict=True)
+        for tier in TIERS
+    },
 )
+def agreement(rms: float, tier: str, verdict: Verdict) -> Measured:
+    """Fig. 6({panel}): effective pressure at sigma_e = {um:g} um.
+
+    Claim: Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {um:g} um
+    Source: paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5
+    Tolerance: rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure from theirs, the
+    effect of roughness: 1 for a solver without roughness, 0 for theirs. A curve more than half the effect
+    away is nearer to Hertz: no agreement, (a); less, (b) and (c). Sampling leaves 0.06 to 0.13 with 75
+    realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) by 0.95 only; with 75 (c) is
+    bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away
+    """
+    found = _fig6(rms, tier)
+    ours, theirs = found.central(found.pressure), found.central(found.greenwood_tripp)
+    misfit, smooth = found.misfit(found.greenwood_tripp), found.without_roughness
+    sentence = (
+        f"rms difference {misfit:.3f} p0, Hertz' pressure {smooth:.3f} (sampling {found.noise:.3f}; "
+        f"{found.misfit(found.textbook):.3f} from the textbook's curve of mu = 4 and the caption's "
+        "alpha, which these surfaces do not have); over the inner half of the Hertz circle "
+        f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
+        "load outside a0"
+    )
+    edge = len(found.r) * fig6.BIN / hertz().contact_radius
+    half_side = SMOOTH.lengths[0] / 2 / hertz().contact_radius
+    carried, predicted = found.load_share(found.pressure), found.load_share(found.greenwood_tripp)
+    sentence += (
+        f"; to {edge:.2f} a0 (the domain ends at {half_side:.2f}) ours carries {carried:.1%} of the "
+        f"load, Greenwood-Tripp {predicted:.1%}"
+    )
+    data = _fig6_data(rms, tier)
+    data |= {"largest r/a0": edge, "load share": carried, "load share, Greenwood-Tripp": predicted}
+    return judged(verdict, sentence, misfit / smooth, data=data)
+
+
+@case("reproduction/fig6d", metric="at_least", tolerance=2.0)
 def contact_map() -> Measured:
+    """Fig. 6(d): contact outside the Hertz circle.
+
+    Claim: Fig. 6(d): pressure peaks above Hertz' maximum, some of them outside the Hertz region
+    Source: paper Fig. 6(d)
+    Tolerance: maximum pressure outside the Hertz circle over Hertz' peak; above 1 the claim holds
+    """
     found = fig6.contact(FIG6_RMS[1], 0, MAP)
     x = found.grid.x - SMOOTH.lengths[0] / 2
     r = np.hypot(x[:, None], x[None, :])
@@ -180,18 +175,15 @@ def contact_map() -> Measured:
     return judged(Verdict.CONFIRMED, sentence, peak, data=data)
 
 
-@in_both_tiers(
-    "reproduction/fig7",
-    title="Fig. 7: does local friction change the deformed surface?",
-    claim="Fig. 7: the deformed profile without shear adhesion maps nearly identically onto that with it",
-    source="paper Fig. 7, section 7",
-    metric="at_most",
-    tolerance=0.01,
-    tolerance_reason="largest change on the contact over the approach. Shear moves the flat by up to (1 "
-    "+ nu)(1 - 2 nu) / 2E times the mean traction times the contact's width, 0.5 % of the approach",
-    tags=("fig7",),
-)
+@in_both_tiers("reproduction/fig7", metric="at_most", tolerance=0.01)
 def section(tier: str) -> Measured:
+    """Fig. 7: does local friction change the deformed surface?
+
+    Claim: Fig. 7: the deformed profile without shear adhesion maps nearly identically onto that with it
+    Source: paper Fig. 7, section 7
+    Tolerance: largest change on the contact over the approach. Shear moves the flat by up to (1 + nu)(1 - 2
+    nu) / 2E times the mean traction times the contact's width, 0.5 % of the approach
+    """
     found = fig7.section(GRID[tier])
     change = found.difference / found.approach
     ratio = found.mean_contact_displacement / fig7.FLAT_RMS
@@ -213,7 +205,3 @@ def section(tier: str) -> Measured:
         "largest change (nm)": found.difference * 1e9,
     }
     return judged(Verdict.CONFIRMED, sentence, change, data=data)
-
-
-for _panel, _rms in zip("abc", FIG6_RMS, strict=True):
-    _declare_fig6(_rms, _panel)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -16,7 +15,7 @@ from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "paper section 5 and Fig. 3"
@@ -55,6 +54,11 @@ def distance(found: rf.Solution, reference: rf.Solution) -> float:
     return float(np.abs(found.pressure - reference.pressure).max()) / reference.max_pressure
 
 
+def chosen(scenes: str) -> tuple[str, ...]:
+    """Names of the "twelve" scenes or of "all"."""
+    return QUICK if scenes == "twelve" else tuple(trials())
+
+
 def load_share(trial: Trial) -> float:
     """Change of the pressure that the load's tolerance allows: over the peak when the load grows by 1e-4."""
     if "approach" in trial.options:
@@ -63,16 +67,53 @@ def load_share(trial: Trial) -> float:
     return distance(rf.solve(heavier, trial.M, tolerance=1e-10, **trial.options), trial.fft)
 
 
-def own_tolerance(names: Sequence[str]) -> Measured:
-    """Worst pressure error at the paper's tolerances over what they allow."""
+@family(
+    "scenes, tier, title, claim",
+    {
+        "paper/own-tolerance": (
+            "twelve", "quick", "The paper's scheme at its own tolerances",
+            "On twelve scenes the pressure is the dense reference's to what |dN|/P <= 1e-4, |df|/|f| <= 1e-5 "
+            "imply"),
+        "paper/own-tolerance-all": (
+            "all", "full", "The paper's scheme at its own tolerances, all scenes",
+            "On every aperiodic scene of the cross-check the pressure is the dense reference's to what they "
+            "imply"),
+    },
+    metric="at_most", tolerance=1.0, source=SOURCE,
+)  # fmt: skip
+def own_tolerance(scenes: str) -> Measured:
+    """Worst pressure error at the paper's tolerances over what they allow.
+
+    Tolerance: the allowed error itself: the production state's change when the load grows by the load
+    tolerance, plus five last steps of 1e-5 (contraction 0.83 a step). Measured 1e-6 to 7e-5 of the peak
+    """
+    names = chosen(scenes)
     errors = [distance(paper(name, PAPER_TOLERANCE), trials()[name].dense) for name in names]
     allowed = [load_share(trials()[name]) + STEPS_LEFT * PRESSURE_TOLERANCE for name in names]
     data = {"scene": list(names), "pressure error / peak": errors, "allowed": allowed}
     return Measured(float(np.max(np.divide(errors, allowed))), data=data)
 
 
-def tightened(names: Sequence[str]) -> Measured:
-    """Worst difference of pressure (over the peak) and friction coefficient from both other solvers."""
+@family(
+    "scenes, tier, title, claim",
+    {
+        "paper/tightened": (
+            "twelve", "quick", "Paper = fft = dense when tightened",
+            "With the tolerance 1e-9 the scheme has the dense reference's and the production solver's "
+            "pressure and mu"),
+        "paper/tightened-all": (
+            "all", "full", "Paper = fft = dense when tightened, all scenes",
+            "The same on every aperiodic scene of the cross-check, alternating contact edges among them"),
+    },
+    metric="at_most", tolerance=1e-8, source=SOURCE,
+)  # fmt: skip
+def tightened(scenes: str) -> Measured:
+    """Worst difference of pressure (over the peak) and friction coefficient from both other solvers.
+
+    Tolerance: stated goal; the scheme's pressure steps end at 1e-10 of the pressure, five of which
+    (contraction 0.83) are 5e-10. Measured 3e-10
+    """
+    names = chosen(scenes)
     data: dict[str, object] = {"scene": list(names)}
     worst = 0.0
     for other in ("dense", "fft"):
@@ -87,59 +128,14 @@ def tightened(names: Sequence[str]) -> Measured:
     return Measured(worst, data=data)
 
 
-OWN_REASON = (
-    "the allowed error itself: the production state's change when the load grows by the load tolerance, "
-    "plus five last steps of 1e-5 (contraction 0.83 a step). Measured 1e-6 to 7e-5 of the peak"
-)
-TIGHT_REASON = (
-    "stated goal; the scheme's pressure steps end at 1e-10 of the pressure, five of which (contraction "
-    "0.83) are 5e-10. Measured 3e-10"
-)
-
-
-@case(
-    "paper/own-tolerance",
-    title="The paper's scheme at its own tolerances",
-    claim="On twelve scenes the pressure is the dense reference's to what |dN|/P <= 1e-4, |df|/|f| <= 1e-5 "
-    "imply",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=OWN_REASON,
-    tags=("scheme",),
-)
-def own_tolerance_quick() -> Measured:
-    return own_tolerance(QUICK)
-
-
-@case(
-    "paper/own-tolerance-all",
-    title="The paper's scheme at its own tolerances, all scenes",
-    claim="On every aperiodic scene of the cross-check the pressure is the dense reference's to what they "
-    "imply",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=OWN_REASON,
-    tier="full",
-    tags=("scheme",),
-)
-def own_tolerance_all() -> Measured:
-    return own_tolerance(tuple(trials()))
-
-
-@case(
-    "paper/own-tolerance-friction",
-    title="Friction coefficient at the paper's tolerances",
-    claim="mu is the dense reference's to what |dN|/P <= 1e-4 implies",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.5e-4,
-    tolerance_reason="mu = F/P with F at most proportional to N: 1e-4 of the load, plus five last steps of "
-    "1e-5 in the pressures. Relative; measured 2e-5",
-    tags=("scheme",),
-)
+@case("paper/own-tolerance-friction", metric="at_most", tolerance=1.5e-4, source=SOURCE)
 def own_tolerance_friction() -> Measured:
+    """Friction coefficient at the paper's tolerances.
+
+    Claim: mu is the dense reference's to what |dN|/P <= 1e-4 implies
+    Tolerance: mu = F/P with F at most proportional to N: 1e-4 of the load, plus five last steps of 1e-5 in
+    the pressures. Relative; measured 2e-5
+    """
     names = [name for name in QUICK if not is_frictionless(trials()[name].scene.friction)]
     found = [paper(name, PAPER_TOLERANCE).friction_coefficient for name in names]
     reference = [trials()[name].dense.friction_coefficient for name in names]
@@ -148,17 +144,14 @@ def own_tolerance_friction() -> Measured:
     return Measured(float(errors.max()), data=data)
 
 
-@case(
-    "paper/same-state",
-    title="Status, contact and tau's active set of the three solvers",
-    claim="Tightened, the paper's scheme ends as the dense reference does, on the same elements",
-    source=SOURCE + "; tau's rule: refimpl.solvers.tau_active_set",
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="statuses and sets are equal or not; an active set of tau has one solution",
-    tags=("scheme",),
-)
+@case("paper/same-state", metric="equal", tolerance=0.0)
 def same_state() -> Measured:
+    """Status, contact and tau's active set of the three solvers.
+
+    Claim: Tightened, the paper's scheme ends as the dense reference does, on the same elements
+    Source: {SOURCE}; tau's rule: refimpl.solvers.tau_active_set
+    Tolerance: statuses and sets are equal or not; an active set of tau has one solution
+    """
     differing = {}
     for name in QUICK:
         found, dense = paper(name, TIGHT), trials()[name].dense
@@ -167,47 +160,13 @@ def same_state() -> Measured:
     return Measured(sum(differing.values()), 0.0, unit="elements", data=differing)
 
 
-@case(
-    "paper/tightened",
-    title="Paper = fft = dense when tightened",
-    claim="With the tolerance 1e-9 the scheme has the dense reference's and the production solver's "
-    "pressure and mu",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-8,
-    tolerance_reason=TIGHT_REASON,
-    tags=("scheme",),
-)
-def tightened_quick() -> Measured:
-    return tightened(QUICK)
-
-
-@case(
-    "paper/tightened-all",
-    title="Paper = fft = dense when tightened, all scenes",
-    claim="The same on every aperiodic scene of the cross-check, alternating contact edges among them",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-8,
-    tolerance_reason=TIGHT_REASON,
-    tier="full",
-    tags=("scheme",),
-)
-def tightened_all() -> Measured:
-    return tightened(tuple(trials()))
-
-
-@case(
-    "paper/convergence",
-    title="The scheme converges to the production state",
-    claim="Tightened from 1e-4 to 1e-9 the scheme's pressure approaches the production solver's",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-8,
-    tolerance_reason="stated goal for the last tolerance, 1e-9; measured 3e-11 to 1e-10",
-    tags=("scheme",),
-)
+@case("paper/convergence", metric="at_most", tolerance=1e-8, source=SOURCE)
 def convergence() -> Measured:
+    """The scheme converges to the production state.
+
+    Claim: Tightened from 1e-4 to 1e-9 the scheme's pressure approaches the production solver's
+    Tolerance: stated goal for the last tolerance, 1e-9; measured 3e-11 to 1e-10
+    """
     tolerances = 10.0 ** -np.arange(4, 10)
     data: dict[str, object] = {"tolerance": tolerances}
     last = 0.0

@@ -38,19 +38,16 @@ def _series(curves: tuple[fig8.Curve, ...]) -> dict[str, object]:
     return data
 
 
-@in_both_tiers(
-    "reproduction/fig8-exponential",
-    title="Fig. 8(a): does friction fall exponentially with roughness?",
-    claim="Fig. 8(a): mu falls exponentially with sigma_e, at 14, 42 and 70 N",
-    source="paper Fig. 8(a), section 8",
-    metric="at_least",
-    tolerance=1.5,
-    tolerance_reason="least ratio, over the loads, of the exponential's rms misfit to that of 1 / (1 + "
-    "(sigma_e / s)^1.5) with as many parameters: 1 or less for an exponential law. Measured "
-    "2.2 with three realisations, 2.4 with 25",
-    tags=("fig8",),
-)
+@in_both_tiers("reproduction/fig8-exponential", metric="at_least", tolerance=1.5)
 def exponential(tier: str) -> Measured:
+    """Fig. 8(a): does friction fall exponentially with roughness?
+
+    Claim: Fig. 8(a): mu falls exponentially with sigma_e, at 14, 42 and 70 N
+    Source: paper Fig. 8(a), section 8
+    Tolerance: least ratio, over the loads, of the exponential's rms misfit to that of 1 / (1 + (sigma_e /
+    s)^1.5) with as many parameters: 1 or less for an exponential law. Measured 2.2 with three realisations,
+    2.4 with 25
+    """
     curves = _curves(tier)
     fits = [fig8.decay(c) for c in curves]
     if any(np.any(np.diff(c.friction) >= 0) for c in curves):
@@ -74,18 +71,15 @@ def exponential(tier: str) -> Measured:
     return judged(Verdict.REFUTED, sentence, ratio, data=data)
 
 
-@in_both_tiers(
-    "reproduction/fig8-rates",
-    title="Fig. 8(c): friction and area change at one rate",
-    claim="Fig. 8(c): mu and A have nearly identical normalised rates of change with sigma_e",
-    source="paper Fig. 8(c), section 8",
-    metric="at_most",
-    tolerance=0.01,
-    tolerance_reason="Eq. (10) makes them identical; what slopes add is of the order of the elastic "
-    "part of friction, below 1 %",
-    tags=("fig8",),
-)
+@in_both_tiers("reproduction/fig8-rates", metric="at_most", tolerance=0.01)
 def rates(tier: str) -> Measured:
+    """Fig. 8(c): friction and area change at one rate.
+
+    Claim: Fig. 8(c): mu and A have nearly identical normalised rates of change with sigma_e
+    Source: paper Fig. 8(c), section 8
+    Tolerance: Eq. (10) makes them identical; what slopes add is of the order of the elastic part of friction,
+    below 1 %
+    """
     curves = _curves(tier)
     worst = max(float(np.abs(c.rate(c.friction) - c.rate(c.area)).max()) for c in curves)
     highest = {f"{c.load:g} N": float(c.rate(c.friction).max()) for c in curves}
@@ -97,18 +91,14 @@ def rates(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, worst, data=_series(curves) | {"highest rate": highest})
 
 
-@in_both_tiers(
-    "reproduction/fig8-threshold",
-    title="Fig. 8: is the critical roughness that of the plasticity index?",
-    claim="Section 8: friction levels off at the roughness where psi reaches 1, about 0.5 um",
-    source="paper Fig. 8, Eq. (12), section 8",
-    metric="at_least",
-    tolerance=1.3,
-    tolerance_reason="psi does not know the load, so the ratio would be 1; the interpolated roughness "
-    "is good to 10 %",
-    tags=("fig8",),
-)
+@in_both_tiers("reproduction/fig8-threshold", metric="at_least", tolerance=1.3)
 def threshold(tier: str) -> Measured:
+    """Fig. 8: is the critical roughness that of the plasticity index?
+
+    Claim: Section 8: friction levels off at the roughness where psi reaches 1, about 0.5 um
+    Source: paper Fig. 8, Eq. (12), section 8
+    Tolerance: psi does not know the load, so the ratio would be 1; the interpolated roughness is good to 10 %
+    """
     curves = _curves(tier)
     critical = [_levelled(c) for c in curves]
     printed = float(fig8.plasticity(np.array([CRITICAL_RMS]), RESOLUTION)[0])
@@ -130,18 +120,15 @@ def _levelled(curve: fig8.Curve) -> float:
     return float(np.interp(-np.log(0.1), -log_rate, curve.middle))
 
 
-@in_both_tiers(
-    "reproduction/section8-beta0",
-    title="Section 8: scatter of friction with beta = 0",
-    claim="Section 8: with beta = 0 friction varies as much as the contact area",
-    source="paper section 8, Eq. (8)",
-    metric="at_most",
-    tolerance=0.25,
-    tolerance_reason="difference of the two scatters over A's: at 1.68 um the elastic part's own "
-    "scatter, 0.7 % of mu at beta = 0.08, is 6.6 % of mu at beta = 0 beside A's 10 %: 19 % in squares",
-    tags=("section8", "eq10"),
-)
+@in_both_tiers("reproduction/section8-beta0", metric="at_most", tolerance=0.25)
 def without_beta(tier: str) -> Measured:
+    """Section 8: scatter of friction with beta = 0.
+
+    Claim: Section 8: with beta = 0 friction varies as much as the contact area
+    Source: paper section 8, Eq. (8)
+    Tolerance: difference of the two scatters over A's: at 1.68 um the elastic part's own scatter, 0.7 % of mu
+    at beta = 0.08, is 6.6 % of mu at beta = 0 beside A's 10 %: 19 % in squares
+    """
     found = _beta0(tier)
     area = [estimate(column(found, "contact_area", lower_rms=flat)).scatter for flat in ROUGH]
     mu = [estimate(column(found, "friction_coefficient", lower_rms=flat)).scatter for flat in ROUGH]

@@ -11,18 +11,15 @@ from verification.reproduction.table1 import SMOOTH
 from verification.reproduction.tiers import in_both_tiers
 
 
-@in_both_tiers(
-    "reproduction/fig9",
-    title="Fig. 9: the binormal force over sliding distance and direction",
-    claim="Fig. 9: a binormal force Q exists, very small against the load",
-    source="paper Fig. 9, section 8",
-    metric="at_most",
-    tolerance=0.005,
-    tolerance_reason="largest |Q| over P: the rms slope under load, 0.004, averaged over some 20 "
-    "contacts, with three standard deviations",
-    tags=("fig9",),
-)
+@in_both_tiers("reproduction/fig9", metric="at_most", tolerance=0.005)
 def binormal(tier: str) -> Measured:
+    """Fig. 9: the binormal force over sliding distance and direction.
+
+    Claim: Fig. 9: a binormal force Q exists, very small against the load
+    Source: paper Fig. 9, section 8
+    Tolerance: largest |Q| over P: the rms slope under load, 0.004, averaged over some 20 contacts, with three
+    standard deviations
+    """
     found = slides.full_fig9() if tier == "full" else slides.quick_fig9()
     directions = sorted({row["sliding_direction"] for row in found})
     offsets = sorted({row["sliding_offset"] for row in found})
@@ -43,18 +40,15 @@ def binormal(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, largest, data=data)
 
 
-@in_both_tiers(
-    "reproduction/fig10-elastic",
-    title="Fig. 10(a): the elastic part of friction over the direction",
-    claim="Fig. 10(a): forces of elastic deformation contribute negligibly to friction",
-    source="paper Fig. 10(a), section 8",
-    metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="largest share of F: at 1.68 um one realisation scatters by 0.7 % (Table 3's "
-    "ensemble), and four standard deviations cover all directions of six realisations",
-    tags=("fig10",),
-)
+@in_both_tiers("reproduction/fig10-elastic", metric="at_most", tolerance=0.03)
 def elastic(tier: str) -> Measured:
+    """Fig. 10(a): the elastic part of friction over the direction.
+
+    Claim: Fig. 10(a): forces of elastic deformation contribute negligibly to friction
+    Source: paper Fig. 10(a), section 8
+    Tolerance: largest share of F: at 1.68 um one realisation scatters by 0.7 % (Table 3's ensemble), and four
+    standard deviations cover all directions of six realisations
+    """
     curves = slides.turning(slides.full_fig10() if tier == "full" else slides.quick_fig10())
     largest = max(float(np.abs(c.elastic).max()) for c in curves)
     shown = ", ".join(
@@ -64,18 +58,15 @@ def elastic(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, largest, data=_fig10_data(curves))
 
 
-@in_both_tiers(
-    "reproduction/fig10-anisotropy",
-    title="Fig. 10(b): friction over the direction of sliding",
-    claim="Fig. 10(b): friction varies with direction, very little, and more on rougher surfaces",
-    source="paper Fig. 10(b), section 8",
-    metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="largest departure from the mean over directions, which is that of the elastic "
-    "part: see the case of Fig. 10(a)",
-    tags=("fig10",),
-)
+@in_both_tiers("reproduction/fig10-anisotropy", metric="at_most", tolerance=0.03)
 def anisotropy(tier: str) -> Measured:
+    """Fig. 10(b): friction over the direction of sliding.
+
+    Claim: Fig. 10(b): friction varies with direction, very little, and more on rougher surfaces
+    Source: paper Fig. 10(b), section 8
+    Tolerance: largest departure from the mean over directions, which is that of the elastic part: see the
+    case of Fig. 10(a)
+    """
     curves = slides.turning(slides.full_fig10() if tier == "full" else slides.quick_fig10())
     largest = max(float(np.abs(c.anisotropy).max()) for c in curves)
     rms = [float(np.sqrt(np.mean(c.anisotropy**2))) for c in curves]
@@ -89,21 +80,18 @@ def anisotropy(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, largest, data=_fig10_data(curves))
 
 
-@in_both_tiers(
-    "reproduction/section9-cause",
-    title="Section 9: why does friction depend on the direction?",
-    claim="Section 9: the reason for directional dependence is the non-Gaussian distribution of roughness "
-    "within the contact",
-    source="paper sections 8 and 9, Figs 10 and 11",
-    metric="at_most",
-    tolerance=0.05,
-    tolerance_reason="share of the elastic part's variance over directions that its first harmonic leaves. "
-    "On one contact there is no other: a sum over slopes is a vector's component. What is measured is how "
-    "far the contact depends on the direction: coupling and tau's edge move it by 0.7 % of the Hertz radius, "
-    "3 % of a correlation length",
-    tags=("fig10", "fig11"),
-)
+@in_both_tiers("reproduction/section9-cause", metric="at_most", tolerance=0.05)
 def cause(tier: str) -> Measured:
+    """Section 9: why does friction depend on the direction?
+
+    Claim: Section 9: the reason for directional dependence is the non-Gaussian distribution of roughness
+    within the contact
+    Source: paper sections 8 and 9, Figs 10 and 11
+    Tolerance: share of the elastic part's variance over directions that its first harmonic leaves. On one
+    contact there is no other: a sum over slopes is a vector's component. What is measured is how far the
+    contact depends on the direction: coupling and tau's edge move it by 0.7 % of the Hertz radius, 3 % of a
+    correlation length
+    """
     curves = slides.turning(slides.full_fig10() if tier == "full" else slides.quick_fig10())
     left = [slides.beyond_mean_slope(c.direction, c.elastic) for c in curves]
     alike = [slides.beyond_mean_slope(c.direction, c.anisotropy) for c in curves]
@@ -119,20 +107,17 @@ def cause(tier: str) -> Measured:
     return judged(Verdict.REFUTED, sentence, max(left), data=data | {"left of friction": alike})
 
 
-@in_both_tiers(
-    "reproduction/steady-sliding",
-    title="Does a snapshot stand for steady sliding?",
-    claim="Section 8 takes single positions (and their average over surfaces) for steady sliding",
-    source="paper sections 5 to 8",
-    metric="at_most",
-    tolerance=0.005,
-    tolerance_reason="the slide's mean elastic force over friction. Elastic forces take back along a "
-    "slide what they gave, so the mean is but the tilt that shear gives to the common surface: -0.1 % of "
-    "F, measured by averaging forward and backward slides of 40 surfaces; and four standard errors of "
-    "0.04 % (full) or 0.06 % (quick)",
-    tags=("assumptions",),
-)
+@in_both_tiers("reproduction/steady-sliding", metric="at_most", tolerance=0.005)
 def snapshot(tier: str) -> Measured:
+    """Does a snapshot stand for steady sliding?
+
+    Claim: Section 8 takes single positions (and their average over surfaces) for steady sliding
+    Source: paper sections 5 to 8
+    Tolerance: the slide's mean elastic force over friction. Elastic forces take back along a slide what they
+    gave, so the mean is but the tilt that shear gives to the common surface: -0.1 % of F, measured by
+    averaging forward and backward slides of 40 surfaces; and four standard errors of 0.04 % (full) or 0.06 %
+    (quick)
+    """
     found = slides.full_slide() if tier == "full" else slides.quick_slide()
     mu, area, elastic, Q = (
         slides.trace(found, name)

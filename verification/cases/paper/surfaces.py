@@ -28,19 +28,16 @@ def _panels(tier: str) -> list[fig11.Panel]:
     return fig11.panels(*SIZES_FIG11[tier])
 
 
-@in_both_tiers(
-    "reproduction/fig4-correlation",
-    title="Fig. 4: correlation radius and Gaussian heights of the surfaces",
-    claim="Section 6.1: Gaussian heights, autocorrelation 10 % at 104 um",
-    source="paper section 6.1, Fig. 4, Eq. (9)",
-    metric="at_most",
-    tolerance=0.12,
-    tolerance_reason="bias of the estimate on 15 correlation lengths, whose mean is taken from the "
-    "sample: the correlation loses pi / 2.3 (l / side)^2 = 0.6 % everywhere, 1.3 % of the radius, "
-    "beside the sampling error of 12 realisations, 3 standard errors of 3 % each",
-    tags=("fig4", "eq9"),
-)
+@in_both_tiers("reproduction/fig4-correlation", metric="at_most", tolerance=0.12)
 def correlation(tier: str) -> Measured:
+    """Fig. 4: correlation radius and Gaussian heights of the surfaces.
+
+    Claim: Section 6.1: Gaussian heights, autocorrelation 10 % at 104 um
+    Source: paper section 6.1, Fig. 4, Eq. (9)
+    Tolerance: bias of the estimate on 15 correlation lengths, whose mean is taken from the sample: the
+    correlation loses pi / 2.3 (l / side)^2 = 0.6 % everywhere, 1.3 % of the radius, beside the sampling error
+    of 12 realisations, 3 standard errors of 3 % each
+    """
     found = _statistics(tier)
     error = abs(found.radius.mean / CORRELATION_LENGTH - 1)
     sentence = (
@@ -59,17 +56,14 @@ def correlation(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, error, data=data)
 
 
-@in_both_tiers(
-    "reproduction/fig4-slopes",
-    title="Section 6.1: the quoted slopes against surfaces of Eq. (9)",
-    claim="Section 6.1: rms slopes of 0.125 and 2.5 degrees for rms heights of 0.084 and 1.68 um",
-    source="paper section 6.1, Eq. (9)",
-    metric="relative",
-    tolerance=0.03,
-    tolerance_reason="sampling error of 12 realisations: 3 standard errors of 0.9 % each",
-    tags=("fig4", "eq9"),
-)
+@in_both_tiers("reproduction/fig4-slopes", metric="relative", tolerance=0.03)
 def quoted_slopes(tier: str) -> Measured:
+    """Section 6.1: the quoted slopes against surfaces of Eq. (9).
+
+    Claim: Section 6.1: rms slopes of 0.125 and 2.5 degrees for rms heights of 0.084 and 1.68 um
+    Source: paper section 6.1, Eq. (9)
+    Tolerance: sampling error of 12 realisations: 3 standard errors of 0.9 % each
+    """
     found = _statistics(tier)
     component = {rms: fig4.degrees(found.component_slope.mean, rms) for rms in FLAT_RMS}
     gradient = {rms: fig4.degrees(found.mean_gradient.mean, rms) for rms in FLAT_RMS}
@@ -90,19 +84,16 @@ def quoted_slopes(tier: str) -> Measured:
     )
 
 
-@in_both_tiers(
-    "reproduction/largest-slope",
-    title="Appendix A: the largest asperity slope",
-    claim="Appendix A: the largest asperity slope did not exceed 6.5 degrees",
-    source="paper Appendix A",
-    metric="at_least",
-    tolerance=1.1,
-    tolerance_reason="mean of the largest gradients of the undeformed 1.68 um surfaces over 6.5 degrees: the "
-    "expected maximum of a Rayleigh variable of 2 degrees over n = 240 l^2 per surface, sqrt(2 log n), "
-    "is 7 to 9 degrees; above 1 the printed number does not hold, and sampling leaves 4 % (12 surfaces)",
-    tags=("appendix",),
-)
+@in_both_tiers("reproduction/largest-slope", metric="at_least", tolerance=1.1)
 def largest(tier: str) -> Measured:
+    """Appendix A: the largest asperity slope.
+
+    Claim: Appendix A: the largest asperity slope did not exceed 6.5 degrees
+    Source: paper Appendix A
+    Tolerance: mean of the largest gradients of the undeformed 1.68 um surfaces over 6.5 degrees: the expected
+    maximum of a Rayleigh variable of 2 degrees over n = 240 l^2 per surface, sqrt(2 log n), is 7 to 9
+    degrees; above 1 the printed number does not hold, and sampling leaves 4 % (12 surfaces)
+    """
     found, contact = _statistics(tier), _panels(tier)[3]
     steepest = found.largest_gradient
     mean, least = (fig4.degrees(slope, FLAT_RMS[1]) for slope in (steepest.mean, found.least_steep))
@@ -135,18 +126,15 @@ def _fig11_data(tier: str) -> dict[str, object]:
     return found
 
 
-@in_both_tiers(
-    "reproduction/fig11-heights",
-    title="Fig. 11(a, c): heights before contact and in contact",
-    claim="Fig. 11(c): heights in true contact are not Gaussian, though the surface's are",
-    source="paper Fig. 11(a), (c), section 8",
-    metric="at_most",
-    tolerance=0.001,
-    tolerance_reason="p value of zero mean skewness in contact, Student's t over realisations; each "
-    "realisation is one observation, since a surface's points are correlated",
-    tags=("fig11",),
-)
+@in_both_tiers("reproduction/fig11-heights", metric="at_most", tolerance=0.001)
 def heights(tier: str) -> Measured:
+    """Fig. 11(a, c): heights before contact and in contact.
+
+    Claim: Fig. 11(c): heights in true contact are not Gaussian, though the surface's are
+    Source: paper Fig. 11(a), (c), section 8
+    Tolerance: p value of zero mean skewness in contact, Student's t over realisations; each realisation is
+    one observation, since a surface's points are correlated
+    """
     before, _, contact, _ = _panels(tier)
     sentence = (
         f"skewness {contact.skewness.mean:+.3f} +- {contact.skewness.half_width:.3f} in contact against "
@@ -155,19 +143,16 @@ def heights(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, contact.p_skewness, data=_fig11_data(tier))
 
 
-@in_both_tiers(
-    "reproduction/fig11-slopes",
-    title="Fig. 11(b, d): slopes before contact and in contact",
-    claim="Fig. 11(d): slopes in true contact have an overall negative skewness",
-    source="paper Fig. 11(b), (d), section 8",
-    metric="at_most",
-    tolerance=0.25,
-    tolerance_reason="magnitude of the mean skewness: with elastic, nearly uncoupled surfaces sliding "
-    "either way is alike but for friction's own shift (0.7 % of the Hertz radius), so the mean is zero "
-    "within sampling, 3 standard errors of 0.07 for 12 realisations",
-    tags=("fig11",),
-)
+@in_both_tiers("reproduction/fig11-slopes", metric="at_most", tolerance=0.25)
 def slopes(tier: str) -> Measured:
+    """Fig. 11(b, d): slopes before contact and in contact.
+
+    Claim: Fig. 11(d): slopes in true contact have an overall negative skewness
+    Source: paper Fig. 11(b), (d), section 8
+    Tolerance: magnitude of the mean skewness: with elastic, nearly uncoupled surfaces sliding either way is
+    alike but for friction's own shift (0.7 % of the Hertz radius), so the mean is zero within sampling, 3
+    standard errors of 0.07 for 12 realisations
+    """
     *_, contact = _panels(tier)
     e = contact.skewness
     sentence = (

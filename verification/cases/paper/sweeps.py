@@ -73,18 +73,13 @@ def _wait_for(store: Path, number: int, running: subprocess.Popen[bytes]) -> Non
         time.sleep(0.01)
 
 
-@case(
-    "sweep/killed-twenty-times",
-    title="A sweep killed twenty times against the undisturbed one",
-    claim=CLAIM,
-    source="this project's own claim",
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="lines of the exported CSV that differ: a run depends on its inputs only",
-    tier="full",
-    tags=("sweep",),
-)
+@case("sweep/killed-twenty-times", metric="equal", tolerance=0.0, tier="full", claim=CLAIM)
 def killed() -> Measured:
+    """A sweep killed twenty times against the undisturbed one.
+
+    Source: this project's own claim
+    Tolerance: lines of the exported CSV that differ: a run depends on its inputs only
+    """
     moments = random.Random(20010101)
     kept: list[int] = []
     with tempfile.TemporaryDirectory() as temporary:
@@ -109,35 +104,25 @@ def killed() -> Measured:
     return Measured(differing, 0, unit="lines", data={"kill": list(range(1, KILLS + 1)), "runs kept": kept})
 
 
-@case(
-    "sweep/workers",
-    title="One, two and three workers, and none",
-    claim=CLAIM,
-    source="this project's own claim",
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="different tables among them, less one",
-    tier="full",
-    tags=("sweep",),
-)
+@case("sweep/workers", metric="equal", tolerance=0.0, tier="full", claim=CLAIM)
 def workers() -> Measured:
+    """One, two and three workers, and none.
+
+    Source: this project's own claim
+    Tolerance: different tables among them, less one
+    """
     with tempfile.TemporaryDirectory() as folder:
         tables = {_table(_small(10), Path(folder) / f"{n}.sqlite", workers=n) for n in (0, 1, 2, 3)}
     return Measured(len(tables) - 1, 0, data={"workers": [0, 1, 2, 3], "lines": len(_small(10)) + 1})
 
 
-@case(
-    "sweep/cluster",
-    title="A dask.distributed cluster of two workers",
-    claim=CLAIM,
-    source="this project's own claim",
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="lines of the exported CSV that differ",
-    tier="full",
-    tags=("sweep",),
-)
+@case("sweep/cluster", metric="equal", tolerance=0.0, tier="full", claim=CLAIM)
 def cluster() -> Measured:
+    """A dask.distributed cluster of two workers.
+
+    Source: this project's own claim
+    Tolerance: lines of the exported CSV that differ
+    """
     try:
         import distributed
 

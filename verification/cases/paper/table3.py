@@ -13,7 +13,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.friction import friction_coefficient_at
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.framework.verdict import Verdict, judged
 from verification.reproduction import table3
 from verification.reproduction.ensemble import column, estimate
@@ -25,7 +25,7 @@ from verification.reproduction.printed import (
     TABLE3,
 )
 from verification.reproduction.table1 import SMOOTH, rough
-from verification.reproduction.tiers import in_both_tiers
+from verification.reproduction.tiers import TIERS, in_both_tiers
 from verification.sweep.run import Row
 
 TAU = SMOOTH.friction.tau
@@ -38,21 +38,39 @@ NAMES = {
 }
 DECIMAL = {"friction_coefficient": 0.01, "contact_area": 0.01e-6, "max_pressure": 0.01e9}  # mm^2, GPa
 TOLERANCE = {"quick": 5.0, "full": 1.0}
-REASON = (
-    "largest deviation of a rough column's mean on the finest mesh from print, in standard deviations of a "
-    "single realisation. Full, 75 realisations: 1 - a mean that is farther off is less alike than one pair "
-    "of surfaces chosen at random. Quick, six realisations on 128 x 128: three standard errors, 1.2, and "
-    "what print misses Eq. (10) by on that mesh, 4 % of mu (errata/table3-coarse), 3.5 standard deviations"
-)
 
 
 def _table3(tier: str) -> tuple[tuple[Row, ...], int]:
     return (table3.full_rows(), 512) if tier == "full" else (table3.quick_rows(), table3.QUICK_MESH)
 
 
-def _measured(quantity: str, *, full: bool) -> Measured:
-    rows, _ = _table3("full" if full else "quick")
-    table = table3.cells(rows, quantity) if full else table3.cells(rows, quantity, (table3.QUICK_MESH,))
+@family(
+    "quantity, name, tier, tolerance",
+    {
+        f"reproduction/table3-{slug}{'' if tier == 'quick' else '-full'}": (
+            quantity,
+            name,
+            tier,
+            TOLERANCE[tier],
+        )
+        for quantity, (slug, name) in NAMES.items()
+        for tier in TIERS
+    },
+    metric="at_most",
+)
+def reproduced(quantity: str, tier: str) -> Measured:
+    """Table 3: {name}.
+
+    Claim: Table 3: {name} of a smooth and three rough pairs
+    Source: paper Table 3
+    Tolerance: largest deviation of a rough column's mean on the finest mesh from print, in standard
+    deviations of a single realisation. Full, 75 realisations: 1 - a mean that is farther off is less alike
+    than one pair of surfaces chosen at random. Quick, six realisations on 128 x 128: three standard errors,
+    1.2, and what print misses Eq. (10) by on that mesh, 4 % of mu (errata/table3-coarse), 3.5 standard
+    deviations
+    """
+    rows, mesh = _table3(tier)
+    table = table3.cells(rows, quantity) if tier == "full" else table3.cells(rows, quantity, (mesh,))
     finest = max(cell.mesh for cell in table)
     judgeable = [cell for cell in table if cell.mesh == finest]
     rough = [cell for cell in judgeable if cell.column.flat_rms > 0]
@@ -71,40 +89,15 @@ def _measured(quantity: str, *, full: bool) -> Measured:
     return judged(verdict, sentence, worst, data=data)
 
 
-def _declare(quantity: str) -> None:
-    slug, name = NAMES[quantity]
-
-    @in_both_tiers(
-        f"reproduction/table3-{slug}",
-        title=f"Table 3: {name}",
-        claim=f"Table 3: {name} of a smooth and three rough pairs",
-        source="paper Table 3",
-        metric="at_most",
-        tolerance=TOLERANCE,
-        tolerance_reason=REASON,
-        tags=("table3",),
-    )
-    def reproduced(tier: str) -> Measured:
-        return _measured(quantity, full=tier == "full")
-
-
-for _quantity in NAMES:
-    _declare(_quantity)
-
-
-@in_both_tiers(
-    "reproduction/section8-scatter",
-    title="Section 8: scatter of friction between surface representations",
-    claim="Section 8: mu fluctuates by 1.0 %, less than A because of the constant term in Eq. (10)",
-    source="paper section 8, Eq. (10)",
-    metric="at_most",
-    tolerance=0.25,
-    tolerance_reason="relative difference of mu's scatter from what Eq. (10) makes of A's, tau A / N / "
-    "mu times it: at 1.68 um that is 1.0 % of mu, and the elastic part's own 0.7 % (measured) adds in "
-    "squares: 19 %",
-    tags=("section8", "eq10"),
-)
+@in_both_tiers("reproduction/section8-scatter", metric="at_most", tolerance=0.25)
 def scatter(tier: str) -> Measured:
+    """Section 8: scatter of friction between surface representations.
+
+    Claim: Section 8: mu fluctuates by 1.0 %, less than A because of the constant term in Eq. (10)
+    Source: paper section 8, Eq. (10)
+    Tolerance: relative difference of mu's scatter from what Eq. (10) makes of A's, tau A / N / mu times it:
+    at 1.68 um that is 1.0 % of mu, and the elastic part's own 0.7 % (measured) adds in squares: 19 %
+    """
     found, mesh = _table3(tier)
     area, mu, expected = [], [], []
     for flat in ROUGH:
@@ -131,18 +124,17 @@ def scatter(tier: str) -> Measured:
 
 
 @in_both_tiers(
-    "reproduction/section8-area-scatter",
-    title="Section 8: scatter of the contact area between surface representations",
-    claim="Section 8: A fluctuates by 7.5 % about its mean value",
-    source="paper section 8",
-    metric="at_most",
-    tolerance={"quick": 0.64, "full": 0.17},
-    tolerance_reason="relative difference of A's scatter from the printed 7.5 % at the roughness where it is "
-    "least (print states no roughness). A standard deviation of n realisations is known, at 95 %, to "
-    "2 / sqrt(2 n - 2) of itself: 0.63 of six, 0.164 of 75",
-    tags=("section8",),
+    "reproduction/section8-area-scatter", metric="at_most", tolerance={"quick": 0.64, "full": 0.17}
 )
 def area_scatter(tier: str) -> Measured:
+    """Section 8: scatter of the contact area between surface representations.
+
+    Claim: Section 8: A fluctuates by 7.5 % about its mean value
+    Source: paper section 8
+    Tolerance: relative difference of A's scatter from the printed 7.5 % at the roughness where it is least
+    (print states no roughness). A standard deviation of n realisations is known, at 95 %, to 2 / sqrt(2 n -
+    2) of itself: 0.63 of six, 0.164 of 75
+    """
     found, mesh = _table3(tier)
     area = [estimate(column(found, "contact_area", lower_rms=flat, grid=mesh)) for flat in ROUGH]
     scatter = [a.scatter for a in area]
@@ -157,18 +149,15 @@ def area_scatter(tier: str) -> Measured:
     return judged(Verdict.CONDITIONAL if inside else Verdict.REFUTED, sentence, nearest, data=data)
 
 
-@in_both_tiers(
-    "reproduction/eq10",
-    title="Eq. (10) against full solutions",
-    claim="Eq. (10): mu = tau A / N + beta approximates the friction of rough surfaces",
-    source="paper Eq. (10)",
-    metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="largest error of a single solution: the part that Eq. (10) neglects is elastic, "
-    "first order in the mean slope under load, whose scatter is 1 % of mu",
-    tags=("eq10",),
-)
+@in_both_tiers("reproduction/eq10", metric="at_most", tolerance=0.03)
 def equation10(tier: str) -> Measured:
+    """Eq. (10) against full solutions.
+
+    Claim: Eq. (10): mu = tau A / N + beta approximates the friction of rough surfaces
+    Source: paper Eq. (10)
+    Tolerance: largest error of a single solution: the part that Eq. (10) neglects is elastic, first order in
+    the mean slope under load, whose scatter is 1 % of mu
+    """
     found, mesh = _table3(tier)
     errors: dict[float, Array] = {}
     for flat in ROUGH:
@@ -186,18 +175,15 @@ def equation10(tier: str) -> Measured:
     return judged(Verdict.CONFIRMED, sentence, worst, data=data)
 
 
-@in_both_tiers(
-    "reproduction/eq11",
-    title="Eq. (11): is tau / H + beta the lowest friction?",
-    claim="Eq. (11): mu falls to 0.1, where the mean pressure is the hardness",
-    source="paper Eq. (11), Table 3",
-    metric="at_least",
-    tolerance=1.5,
-    tolerance_reason="mean pressure over hardness at 1.68 um: above 1 the elastic model passes the "
-    "limit that (11) assumes; the mesh and the sample leave 10 %",
-    tags=("eq11",),
-)
+@in_both_tiers("reproduction/eq11", metric="at_least", tolerance=1.5)
 def equation11(tier: str) -> Measured:
+    """Eq. (11): is tau / H + beta the lowest friction?
+
+    Claim: Eq. (11): mu falls to 0.1, where the mean pressure is the hardness
+    Source: paper Eq. (11), Table 3
+    Tolerance: mean pressure over hardness at 1.68 um: above 1 the elastic model passes the limit that (11)
+    assumes; the mesh and the sample leave 10 %
+    """
     found, mesh = _table3(tier)
     area = [estimate(column(found, "contact_area", lower_rms=flat, grid=mesh)).mean for flat in ROUGH]
     mu = [estimate(column(found, "friction_coefficient", lower_rms=flat, grid=mesh)).mean for flat in ROUGH]
@@ -219,19 +205,17 @@ def _percent(shares: list[float]) -> str:
     return ", ".join(f"{share:.1%}" for share in shares)
 
 
-@case(
-    "reproduction/table3-digits",
-    title="Table 3: do the numbers converge to two decimal places?",
-    claim="Section 8: A, mu and f_max converge up to two decimal places with the fine mesh",
-    source="paper section 8, Table 3 itself",
-    metric="at_least",
-    tolerance=2.0,
-    tolerance_reason="largest change from 256 to 512 elements, in units of the second decimal (mm^2, GPa): "
-    "it would be below 1, and 2 is beyond rounding",
-    tags=("reproduction", "table3"),
-)
+@case("reproduction/table3-digits", metric="at_least", tolerance=2.0)
 def digits() -> Measured:
-    """Check of the printed numbers alone."""
+    """Table 3: do the numbers converge to two decimal places?
+
+    Claim: Section 8: A, mu and f_max converge up to two decimal places with the fine mesh
+    Source: paper section 8, Table 3 itself
+    Tolerance: largest change from 256 to 512 elements, in units of the second decimal (mm^2, GPa): it would
+    be below 1, and 2 is beyond rounding
+
+    Check of the printed numbers alone.
+    """
     data: dict[str, object] = {"flat rms (um)": [found.flat_rms * 1e6 for found in TABLE3]}
     shown, largest = [], 0.0
     within: dict[bool, list[str]] = {True: [], False: []}
@@ -255,21 +239,18 @@ def digits() -> Measured:
 REALISATIONS, MESH, ROUGHER_BALL = 25, 256, 0.252e-6
 
 
-@case(
-    "reproduction/table3-ball-roughness-full",
-    title="Table 3: what would explain the trend of the deviations",
-    claim="The deviations of A from Table 3 fall with roughness; a ball of 0.252 um in place of 0.084 "
-    "um would make them alike",
-    source="paper Table 3",
-    metric="at_most",
-    tolerance=0.5,
-    tolerance_reason="share of the trend (deviation of A at 0.504 um less that at 1.68 um) that is "
-    "left; paired realisations leave 15 % of uncertainty in it",
-    tier="full",
-    tags=("reproduction", "table3"),
-)
+@case("reproduction/table3-ball-roughness-full", metric="at_most", tolerance=0.5, tier="full")
 def ball_roughness() -> Measured:
-    """A sensitivity, not a proof: the printed numbers behave as if the ball were three times as rough."""
+    """Table 3: what would explain the trend of the deviations.
+
+    Claim: The deviations of A from Table 3 fall with roughness; a ball of 0.252 um in place of 0.084 um would
+    make them alike
+    Source: paper Table 3
+    Tolerance: share of the trend (deviation of A at 0.504 um less that at 1.68 um) that is left; paired
+    realisations leave 15 % of uncertainty in it
+
+    A sensitivity, not a proof: the printed numbers behave as if the ball were three times as rough.
+    """
     ratios: dict[float, list[float]] = {}
     peaks: dict[float, list[float]] = {}
     for flat in (0.504e-6, 1.680e-6):

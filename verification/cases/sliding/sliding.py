@@ -12,7 +12,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from verification.exact.hertz import Sphere
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 
 SOURCE = "paper sections 3 and 7, Fig. 5; Johnson 1985, sections 3.6, 3.7"
 SCENE = rf.read_scene("table1-smooth")
@@ -56,19 +56,16 @@ def first_order_shift(tau: float, beta: float) -> float:
     return -math.pi * c0 * tau * RADIUS - 1.5 * E * c0 * beta * a
 
 
-@case(
-    "sliding/trailing-edge",
-    title="The pressure moves towards the trailing edge",
-    claim="a hard ball that slides along +x over a softer flat has its pressure's centroid at negative x, by "
-    "pi c0 tau R + 3/2 E* c0 beta a",
-    source=SOURCE + "; Betti's theorem with the tilted punch",
-    metric="relative",
-    tolerance=3e-3,
-    tolerance_reason="second order: shift/a = 7e-3, squared, is 5e-5; on the grid the edge of tau is a "
-    "staircase, worth 2e-3 at 128 and 7e-4 at 256 x 256. The other sign would be wrong by 2",
-    tags=("sign", "coupling"),
-)
+@case("sliding/trailing-edge", metric="relative", tolerance=3e-3)
 def trailing_edge() -> Measured:
+    """The pressure moves towards the trailing edge.
+
+    Claim: a hard ball that slides along +x over a softer flat has its pressure's centroid at negative x, by
+    pi c0 tau R + 3/2 E* c0 beta a
+    Source: {SOURCE}; Betti's theorem with the tilted punch
+    Tolerance: second order: shift/a = 7e-3, squared, is 5e-5; on the grid the edge of tau is a staircase,
+    worth 2e-3 at 128 and 7e-4 at 256 x 256. The other sign would be wrong by 2
+    """
     tau, beta = SCENE.friction.tau, SCENE.friction.beta
     solution, still = solved(tau, beta), solved(0.0, 0.0)
     middle, x = M // 2, offset() * 1e3
@@ -95,47 +92,33 @@ def trailing_edge() -> Measured:
     )
 
 
-@case(
-    "sliding/shift-by-tau",
-    title="Shift by the constant part of friction alone",
-    claim="tau alone moves the pressure by -pi c0 tau R",
-    source=SOURCE,
-    metric="relative",
-    tolerance=5e-3,
-    tolerance_reason="the staircase edge of tau on the grid: 1.3e-3 measured at 256 x 256",
-    tags=("sign", "coupling"),
-)
-def shift_by_tau() -> Measured:
-    value = centroid(solved(15e6, 0.0).pressure, 0.0)[0]
-    return Measured(value=value, reference=first_order_shift(15e6, 0.0), unit="m")
+@family(
+    "tau, beta, title, claim, tolerance_reason",
+    {
+        "sliding/shift-by-tau": (
+            15e6, 0.0, "Shift by the constant part of friction alone",
+            "tau alone moves the pressure by -pi c0 tau R",
+            "the staircase edge of tau on the grid: 1.3e-3 measured at 256 x 256"),
+        "sliding/shift-by-beta": (
+            0.0, 0.08, "Shift by the Coulomb part of friction alone",
+            "beta alone moves the pressure by -3/2 E* c0 beta a",
+            "the area's first-order excess, 0.15 h/a = 2e-3, enters through a; 1.2e-3 measured"),
+    },
+    metric="relative", tolerance=5e-3, source=SOURCE,
+)  # fmt: skip
+def shift(tau: float, beta: float) -> Measured:
+    """Judge the centroid of the pressure along the sliding direction."""
+    value = centroid(solved(tau, beta).pressure, 0.0)[0]
+    return Measured(value=value, reference=first_order_shift(tau, beta), unit="m")
 
 
-@case(
-    "sliding/shift-by-beta",
-    title="Shift by the Coulomb part of friction alone",
-    claim="beta alone moves the pressure by -3/2 E* c0 beta a",
-    source=SOURCE,
-    metric="relative",
-    tolerance=5e-3,
-    tolerance_reason="the area's first-order excess, 0.15 h/a = 2e-3, enters through a; 1.2e-3 measured",
-    tags=("sign", "coupling"),
-)
-def shift_by_beta() -> Measured:
-    value = centroid(solved(0.0, 0.08).pressure, 0.0)[0]
-    return Measured(value=value, reference=first_order_shift(0.0, 0.08), unit="m")
-
-
-@case(
-    "sliding/direction",
-    title="The shift follows the sliding direction",
-    claim="at 2 rad the centroid moves against that direction and not across it",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=5e-3,
-    tolerance_reason="of the shift: the grid's own directions show at the staircase's 2e-3",
-    tags=("sign", "direction"),
-)
+@case("sliding/direction", metric="at_most", tolerance=5e-3, source=SOURCE)
 def direction() -> Measured:
+    """The shift follows the sliding direction.
+
+    Claim: at 2 rad the centroid moves against that direction and not across it
+    Tolerance: of the shift: the grid's own directions show at the staircase's 2e-3
+    """
     tau, beta = SCENE.friction.tau, SCENE.friction.beta
     along, across = centroid(solved(tau, beta, 2.0).pressure, 2.0)
     expected = first_order_shift(tau, beta)
@@ -145,17 +128,14 @@ def direction() -> Measured:
     )
 
 
-@case(
-    "sliding/identical-materials",
-    title="Identical materials do not couple",
-    claim="without slopes, friction between two bodies of one material changes no pressure",
-    source="c is the lower body's minus the upper body's; Johnson 1985, section 5.4",
-    metric="at_most",
-    tolerance=1e-14,
-    tolerance_reason="c is exactly zero, so both solves do the same arithmetic; over the peak",
-    tags=("coupling",),
-)
+@case("sliding/identical-materials", metric="at_most", tolerance=1e-14)
 def identical_materials() -> Measured:
+    """Identical materials do not couple.
+
+    Claim: without slopes, friction between two bodies of one material changes no pressure
+    Source: c is the lower body's minus the upper body's; Johnson 1985, section 5.4
+    Tolerance: c is exactly zero, so both solves do the same arithmetic; over the peak
+    """
     copper = SCENE.lower.material
     alike = replace(SCENE, upper=rf.Body(copper, SCENE.upper.surface))
     rubbed = rf.solve(alike, 128, oblique=False)
@@ -164,19 +144,16 @@ def identical_materials() -> Measured:
     return Measured(value=difference, note=f"mu = {rubbed.friction_coefficient:.4f}")
 
 
-@case(
-    "sliding/offset",
-    title="Where two equal balls meet when one has slid",
-    claim="after the upper of two equal balls has slid by s, the contact lies s/2 behind its lowest point: "
-    "the lower ball has stayed where it was",
-    source="the frame rides with the upper body: the lower surface is sampled at x + offset; symmetry",
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="in elements: the offset is 8 by 6 elements, so the grid is symmetric about the exact "
-    "place; the solver's tolerance, 1e-10, times the 7 elements of the radius. The other sign is off by 10",
-    tags=("sign", "direction"),
-)
+@case("sliding/offset", metric="at_most", tolerance=1e-9)
 def offset_of_equal_balls() -> Measured:
+    """Contact of two equal balls when one has slid.
+
+    Claim: after the upper of two equal balls has slid by s, the contact lies s/2 behind its lowest point: the
+    lower ball has stayed where it was
+    Source: the frame rides with the upper body: the lower surface is sampled at x + offset; symmetry
+    Tolerance: in elements: the offset is 8 by 6 elements, so the grid is symmetric about the exact place; the
+    solver's tolerance, 1e-10, times the 7 elements of the radius. The other sign is off by 10
+    """
     spacing, copper, size = SCENE.lengths[0] / 32, SCENE.lower.material, 32
     scene = rf.Scene(
         upper=rf.Body(copper, rf.Sphere(RADIUS)),

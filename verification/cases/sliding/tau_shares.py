@@ -16,27 +16,16 @@ from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.tau_active_set import FixedSet
 from verification.coverage.scenes import random_scene
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import family
 
-SCENES = range(2000, 2200)
-AT_64 = (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)
-"""Those of the eleven scenes that cycle at 64 x 64 whose error bars are the longest."""
-APART = 2071
-"""The scene whose cycle's own states, at 128 x 128, are too close to each other to be its error bar."""
+NINE = [*((seed, 64) for seed in (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)), (2071, 128)]
+"""Seed and elements per side. Eight of the eleven scenes that cycle at 64 x 64, with the longest error bars;
+states of the last one's cycle are too close to each other to be its error bar."""
 ONSET = 1e-4
 """Of p_max: the pressure at which all of tau is on. A tenth of it moves mu of single elements by up to 0.3
 error bars, and none beyond its bar."""
 UPDATES = 60  # limit of updates of the shares
 TOLERANCE = 1e-9
-SOURCE = "Eq. (8); its jump is the limit of such laws"
-CLAIM = (
-    "if tau comes on between no pressure and a ten-thousandth of p_max, no active set cycles and no element "
-    "is excluded: mu is that of our rule within the error bar that it gives to tau's active set"
-)
-REASON = (
-    "the error bar itself. It contains all of tau on the contacts that the rule excludes; laws without a "
-    "jump leave them a share of tau"
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +99,26 @@ def _solver(solution: rf.Solution) -> Callable[[Array, Array], LevelSolver]:
     return solved
 
 
+@family(
+    "scenes, least, tier, title",
+    {
+        "accuracy/tau-shares": (
+            NINE, len(NINE), "quick",
+            "Alternating contact edges under tau: mu of a law without a jump, nine scenes"),
+        "accuracy/tau-shares-128": (  # one in twenty error bars of 95 % may miss
+            [(seed, 128) for seed in range(2000, 2200)], 20, "full",
+            "Alternating contact edges under tau at 128 x 128: mu of a law without a jump"),
+    },
+    metric="at_most", tolerance=1.0,
+)  # fmt: skip
 def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
     """Return the largest difference of mu over the error bar of tau's active set, of the scenes that cycle.
+
+    Claim: if tau comes on between no pressure and a ten-thousandth of p_max, no active set cycles and no
+    element is excluded: mu is that of our rule within the error bar that it gives to tau's active set
+    Source: Eq. (8); its jump is the limit of such laws
+    Tolerance: the error bar itself. It contains all of tau on the contacts that the rule excludes; laws
+    without a jump leave them a share of tau
 
     Scenes are given by seed and elements per side. Raises RuntimeError where fewer than ``least`` cycle.
     """
@@ -143,33 +150,3 @@ def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
         data={**found, "difference / bar": shares},
         note=f"{len(shares)} scenes that cycle, of {len(scenes)}",
     )
-
-
-@case(
-    "accuracy/tau-shares",
-    title="Alternating contact edges under tau: mu of a law without a jump, nine scenes",
-    claim=CLAIM,
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=REASON,
-    tags=("tau", "uncertainty"),
-)
-def nine_scenes() -> Measured:
-    scenes = [*((seed, 64) for seed in AT_64), (APART, 128)]
-    return apart(scenes, least=len(scenes))
-
-
-@case(
-    "accuracy/tau-shares-128",
-    title="Alternating contact edges under tau at 128 x 128: mu of a law without a jump",
-    claim=CLAIM,
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason=REASON,
-    tier="full",
-    tags=("tau", "uncertainty"),
-)
-def bars_at_128() -> Measured:
-    return apart([(seed, 128) for seed in SCENES], least=20)  # one in twenty error bars of 95 % may miss

@@ -24,17 +24,13 @@ def verdicts(fault: Fault) -> dict[str, str]:
     return {r.id.partition("/")[2]: r.status for r in run(BROKEN[fault](), NAMED)}
 
 
-@case(
-    "contestants/own-solver",
-    title="The project's own solver through the suite for other solvers",
-    claim="refimpl's production solver passes every case that other solvers are put to",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="a number of cases",
-    tags=("contestant",),
-)
+@case("contestants/own-solver", metric="equal", tolerance=0.0, source=SOURCE)
 def own_solver() -> Measured:
+    """The project's own solver through the suite for other solvers.
+
+    Claim: refimpl's production solver passes every case that other solvers are put to
+    Tolerance: a number of cases
+    """
     results = run(own.solve)
     left = [f"{r.id}: {r.status} {r.note}" for r in results if r.status != "pass"]
     data = {"error over tolerance": {r.id: (r.error or 0.0) / (r.tolerance or 1.0) for r in results}}
@@ -46,14 +42,13 @@ def _declare(fault: Fault) -> None:
 
     @case(
         "contestants/catches-" + "-".join(fault.replace("%", "percent").split()),
+        metric="equal",
+        tolerance=0.0,
+        tier="full",
         title=f"A solver with a fault: {fault}",
         claim="It claims success, and fails in each case of the suite whose description names the fault",
         source=SOURCE,
-        metric="equal",
-        tolerance=0.0,
         tolerance_reason="a number of cases that name the fault and do not fail",
-        tier="full",
-        tags=("contestant", "self-test"),
     )
     def caught() -> Measured:
         naming = [check.slug for check in suite() if fault in check.catches]
@@ -72,18 +67,13 @@ for _fault in BROKEN:
     _declare(_fault)
 
 
-@case(
-    "contestants/each-case-earns-its-place",
-    title="Cases of the suite against faulty solvers",
-    claim="Every case of the suite fails at least one of the faulty solvers",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="a number of cases that fail none",
-    tier="full",
-    tags=("contestant", "self-test"),
-)
+@case("contestants/each-case-earns-its-place", metric="equal", tolerance=0.0, tier="full", source=SOURCE)
 def each_case_earns_its_place() -> Measured:
+    """Cases of the suite against faulty solvers.
+
+    Claim: Every case of the suite fails at least one of the faulty solvers
+    Tolerance: a number of cases that fail none
+    """
     found = {fault: verdicts(fault) for fault in BROKEN}
     named = [c for c in suite() if c.id in NAMED]
     idle = [c.slug for c in named if not any(found[fault][c.slug] == "fail" for fault in found)]

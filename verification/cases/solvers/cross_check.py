@@ -9,7 +9,7 @@ import numpy as np
 
 import refimpl as rf
 from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework.registry import case, family
 from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "principal pivoting on dense matrices (Murty 1974; Judice and Pires 1994)"
@@ -17,15 +17,19 @@ REASON = "required of both solvers is 1e-12; a thousand times that is still belo
 ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
 
 
-@cache
-def trials() -> tuple[Trial, ...]:
-    """The scenes, each solved once for all rows."""
-    found = cross_checks()
-    for trial in found:
+def ended_well(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
+    """The trials; RuntimeError where a solver did not end with a certified state."""
+    for trial in trials:
         for solution in (trial.dense, trial.fft):
             if solution.status not in ENDED_WELL:
                 raise RuntimeError(f"{trial.name}: {solution.plan.method} ended {solution.status.value}")
-    return found
+    return trials
+
+
+@cache
+def trials() -> tuple[Trial, ...]:
+    """The scenes, each solved once for all rows."""
+    return ended_well(cross_checks())
 
 
 def by_scene(difference: Callable[[Trial], float]) -> Mapping[str, float]:
@@ -55,17 +59,31 @@ def approach_difference(trial: Trial) -> float:
     return abs(dense.approach - fft.approach) / abs(dense.approach + dense.problem.datum)
 
 
-@case(
-    "cross-check/contact-sets",
-    title="Contact sets of both solvers",
-    claim="dense and fft find the same contact, and exclude the same elements from tau, on every scene",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="the contact problem has one solution, and tau's rule is the same for both",
-    tags=("solvers",),
-)
+def area_difference(trial: Trial) -> float:
+    """Relative difference of the contact areas."""
+    return abs(trial.fft.contact_area / trial.dense.contact_area - 1)
+
+
+def friction_difference(trial: Trial) -> float:
+    """Difference of the friction coefficients."""
+    return abs(trial.dense.friction_coefficient - trial.fft.friction_coefficient)
+
+
+def binormal_difference(trial: Trial) -> float:
+    """Difference of the transverse forces over the load."""
+    return abs(trial.dense.binormal_force - trial.fft.binormal_force) / trial.dense.normal_force
+
+
+NUMBERS = (area_difference, approach_difference, friction_difference, binormal_difference)
+
+
+@case("cross-check/contact-sets", metric="equal", tolerance=0.0, source=SOURCE)
 def contact_sets() -> Measured:
+    """Contact sets of both solvers.
+
+    Claim: dense and fft find the same contact, and exclude the same elements from tau, on every scene
+    Tolerance: the contact problem has one solution, and tau's rule is the same for both
+    """
     differing = [
         trial.name
         for trial in trials()
@@ -84,17 +102,12 @@ def contact_sets() -> Measured:
     return Measured(value=len(differing), reference=0.0, data=data, note=note)
 
 
-@case(
-    "cross-check/pressure",
-    title="Pressures of both solvers",
-    claim="dense and fft agree in every element's pressure to 1e-9 of the peak",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
+@case("cross-check/pressure", metric="at_most", tolerance=1e-9, source=SOURCE, tolerance_reason=REASON)
 def pressure() -> Measured:
+    """Pressures of both solvers.
+
+    Claim: dense and fft agree in every element's pressure to 1e-9 of the peak
+    """
     measured = worst_of(by_scene(pressure_difference))
     rough = next(trial for trial in trials() if trial.name == "rough")
     peak, touching = rough.dense.max_pressure, rough.dense.contact
@@ -106,59 +119,21 @@ def pressure() -> Measured:
     return Measured(value=measured.value, data={**measured.data, **scatter}, note=measured.note)
 
 
-@case(
-    "cross-check/area",
-    title="Contact areas of both solvers",
-    claim="dense and fft report one contact area, to 1e-9",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="equal sets have equal areas",
-    tags=("solvers",),
-)
-def area() -> Measured:
-    return worst_of(by_scene(lambda t: abs(t.fft.contact_area / t.dense.contact_area - 1)))
+@family(
+    "difference, name, what, tolerance_reason",
+    {
+        "cross-check/area": (
+            area_difference, "Contact areas", "contact area, to 1e-9", "equal sets have equal areas"),
+        "cross-check/approach": (approach_difference, "Approaches", "approach, to 1e-9 of it", REASON),
+        "cross-check/friction": (
+            friction_difference, "Friction coefficients", "mu, to 1e-9 absolute", REASON),
+        "cross-check/binormal": (binormal_difference, "Binormal forces", "Q / P, to 1e-9 absolute", REASON),
+    },
+    metric="at_most", tolerance=1e-9, source=SOURCE,
+)  # fmt: skip
+def number(difference: Callable[[Trial], float]) -> Measured:
+    """{name} of both solvers.
 
-
-@case(
-    "cross-check/approach",
-    title="Approaches of both solvers",
-    claim="dense and fft report one approach, to 1e-9 of it",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
-def approach() -> Measured:
-    return worst_of(by_scene(approach_difference))
-
-
-@case(
-    "cross-check/friction",
-    title="Friction coefficients of both solvers",
-    claim="dense and fft report one mu, to 1e-9 absolute",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
-def friction() -> Measured:
-    return worst_of(by_scene(lambda t: abs(t.dense.friction_coefficient - t.fft.friction_coefficient)))
-
-
-@case(
-    "cross-check/binormal",
-    title="Binormal forces of both solvers",
-    claim="dense and fft report one Q / P, to 1e-9 absolute",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason=REASON,
-    tags=("solvers",),
-)
-def binormal() -> Measured:
-    return worst_of(
-        by_scene(lambda t: abs(t.dense.binormal_force - t.fft.binormal_force) / t.dense.normal_force)
-    )
+    Claim: dense and fft report one {what}
+    """
+    return worst_of(by_scene(difference))

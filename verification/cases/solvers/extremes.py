@@ -43,14 +43,13 @@ def declare(axis: str) -> None:
 
     @case(
         f"extremes/{axis.replace(' ', '-')}",
+        metric="at_most",
+        tolerance=0.0,
+        tier="full",
         title=f"Extremes of the axis {axis!r}",
         claim=CLAIM,
         source="exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes",
-        metric="at_most",
-        tolerance=0.0,
         tolerance_reason="a count",
-        tier="full",
-        tags=("extremes",),
     )
     def all_states() -> Measured:
         return told(list(run([axis])))
@@ -60,48 +59,38 @@ for name in axes():
     declare(name)
 
 
-@case(
-    "extremes/sample",
-    title="A sample of all cheap extremes",
-    claim=CLAIM,
-    source="exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes",
-    metric="at_most",
-    tolerance=0.0,
-    tolerance_reason="a count",
-    tags=("extremes",),
-)
+@case("extremes/sample", metric="at_most", tolerance=0.0, claim=CLAIM)
 def sample() -> Measured:
+    """A sample of all cheap extremes.
+
+    Source: exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes
+    Tolerance: a count
+    """
     cheap = [name for name in axes() if name not in COSTLY]
     return told([judged(state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
 
 
-@case(
-    "extremes/unit-scaling",
-    title="Powers of two in length, modulus and load change no bit",
-    claim="a scene scaled by powers of two from 1e-12 to 1e12 gives the same mantissas",
-    source="similarity of Eqs (1)-(7)",
-    metric="at_most",
-    tolerance=0.0,
-    tolerance_reason="exact: every operation of the solvers commutes with powers of two, short of underflow",
-    tags=("extremes", "units"),
-)
+@case("extremes/unit-scaling", metric="at_most", tolerance=0.0)
 def powers_of_two() -> Measured:
+    """Powers of two in length, modulus and load change no bit.
+
+    Claim: a scene scaled by powers of two from 1e-12 to 1e12 gives the same mantissas
+    Source: similarity of Eqs (1)-(7)
+    Tolerance: exact: every operation of the solvers commutes with powers of two, short of underflow
+    """
     chosen = [s for s in states("units") if "twos" in s.series][::6]
     errors = {s.id: s.run().error for s in chosen}
     return Measured(value=max(np.inf if e is None else e for e in errors.values()), data={"error": errors})
 
 
-@case(
-    "extremes/positive-definite",
-    title="a + beta c is positive definite for any beta",
-    claim="the symmetric part's least eigenvalue does not depend on beta and exceeds the symbol's least",
-    source="proof in verification.extremes.positive_definite",
-    metric="at_most",
-    tolerance=1e-9,
-    tolerance_reason="beta c of size 1e6 is skew to its own rounding, 1e6 x 1e-16; ten times that",
-    tags=("extremes", "eq7"),
-)
+@case("extremes/positive-definite", metric="at_most", tolerance=1e-9)
 def definite() -> Measured:
+    """a + beta c is positive definite for any beta.
+
+    Claim: the symmetric part's least eigenvalue does not depend on beta and exceeds the symbol's least
+    Source: proof in verification.extremes.positive_definite
+    Tolerance: beta c of size 1e6 is skew to its own rounding, 1e6 x 1e-16; ten times that
+    """
     bound = positive_definite.least_symbol()
     least = {
         M: [float(positive_definite.symmetric_part(M, b, 0.3)[0]) for b in (0.0, 1.0, 1e3, 1e6)]
@@ -116,18 +105,14 @@ def definite() -> Measured:
     return Measured(value=spread if above > 0 else np.inf, data=data)
 
 
-@case(
-    "extremes/lawful-states",
-    title="Lawful states counted by trying every contact set",
-    claim="every CONVERGED contact set is lawful; without tau there is exactly one, with tau none or several",
-    source="brute force over the 511 contact sets of 3 x 3 elements",
-    metric="at_most",
-    tolerance=0.0,
-    tolerance_reason="a count",
-    tier="full",
-    tags=("extremes", "friction"),
-)
+@case("extremes/lawful-states", metric="at_most", tolerance=0.0, tier="full")
 def lawful() -> Measured:
+    """Lawful states counted by trying every contact set.
+
+    Claim: every CONVERGED contact set is lawful; without tau there is exactly one, with tau none or several
+    Source: brute force over the 511 contact sets of 3 x 3 elements
+    Tolerance: a count
+    """
     found = [uniqueness.count(tau) for tau in uniqueness.TAUS]
     names = ("none", "one", "several")
     data: dict[str, object] = {name: [getattr(c, name) for c in found] for name in names}
@@ -136,17 +121,14 @@ def lawful() -> Measured:
     return Measured(value=float(broken), data=data)
 
 
-@case(
-    "extremes/precision",
-    title="Digits lost in float32, float64, long double and mpmath",
-    claim="this code's kernels lose less than a digit in every arithmetic; the textbook's lose up to nine",
-    source="80-digit values (mpmath)",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="10 eps in each arithmetic",
-    tags=("extremes", "kernels"),
-)
+@case("extremes/precision", metric="at_most", tolerance=1.0)
 def digits() -> Measured:
+    """Digits lost in float32, float64, long double and mpmath.
+
+    Claim: this code's kernels lose less than a digit in every arithmetic; the textbook's lose up to nine
+    Source: 80-digit values (mpmath)
+    Tolerance: 10 eps in each arithmetic
+    """
     table = precision.table()
     lost = table["digits lost"]
     assert isinstance(lost, dict)
@@ -156,34 +138,27 @@ def digits() -> Measured:
     return Measured(value=max(0.0, *own), data=table)
 
 
-@case(
-    "extremes/condition-numbers",
-    title="Condition number of the dense flexibility",
-    claim="it grows like the grid, 1.66 M: largest eigenvalue, 3.03 M, over the symbol's least value",
-    source="dense eigenvalues; symbol of positive_definite",
-    metric="relative",
-    tolerance=0.01,
-    tolerance_reason="the least eigenvalue approaches the symbol's minimum like 1/M^2: 0.2 % at 40",
-    tier="full",
-    tags=("extremes", "eq7"),
-)
+@case("extremes/condition-numbers", metric="relative", tolerance=0.01, tier="full")
 def condition() -> Measured:
+    """Condition number of the dense flexibility.
+
+    Claim: it grows like the grid, 1.66 M: largest eigenvalue, 3.03 M, over the symbol's least value
+    Source: dense eigenvalues; symbol of positive_definite
+    Tolerance: the least eigenvalue approaches the symbol's minimum like 1/M^2: 0.2 % at 40
+    """
     columns = conditioning.table()
     reference = columns["largest"][-1] / positive_definite.least_symbol()
     return Measured(value=columns["condition"][-1], reference=reference, data=columns)
 
 
-@case(
-    "extremes/beyond-rounding",
-    title="A tolerance below rounding is not met, and no solver reports success",
-    claim="with the tolerance 1e-18 every method returns another status than CONVERGED",
-    source="double precision: eps = 2.2e-16",
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="a count",
-    tags=("extremes", "certificate"),
-)
+@case("extremes/beyond-rounding", metric="equal", tolerance=0.0)
 def beyond_rounding() -> Measured:
+    """A tolerance below rounding is not met, and no solver reports success.
+
+    Claim: with the tolerance 1e-18 every method returns another status than CONVERGED
+    Source: double precision: eps = 2.2e-16
+    Tolerance: a count
+    """
     # without symmetry: of sixteen elements that are four, residuals may be zero by luck
     scene, beyond = rf.read_scene("table1-rough"), 1e-18
     found = {

@@ -46,17 +46,13 @@ def measured(errors: dict[str, list[float]]) -> Measured:
     return Measured(value=value, data={"scene": list(errors), "dense": dense, "fft": fft})
 
 
-@case(
-    "golden/contact-sets",
-    title="Proven contact sets",
-    claim="both solvers find the contact set that is proven, element by element, in near ties too",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="margins are proven, 1e-10 of the approach at least; solvers have the tolerance 1e-12",
-    tags=("solvers", "rigorous"),
-)
+@case("golden/contact-sets", metric="equal", tolerance=0.0, source=SOURCE)
 def contact_sets() -> Measured:
+    """Proven contact sets.
+
+    Claim: both solvers find the contact set that is proven, element by element, in near ties too
+    Tolerance: margins are proven, 1e-10 of the approach at least; solvers have the tolerance 1e-12
+    """
     errors = by_scene(lambda g, s: float(np.count_nonzero(s.contact != g.contact)))
     counts = {g.scene.name: int(g.contact.sum()) for g in stored()}
     margins = {
@@ -73,63 +69,46 @@ def pressure_error(golden: Golden, found: rf.Solution) -> float:
     return miss / float(golden.pressure.max())
 
 
-@case(
-    "golden/pressure",
-    title="Proven pressures",
-    claim="every element's pressure is its proven value, to 1e-11 of the peak with either solver",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-11,
-    tolerance_reason="residuals of 1e-12 are required, conditioning may cost a digit; 6e-13 was measured",
-    tags=("solvers", "rigorous"),
-)
+@case("golden/pressure", metric="at_most", tolerance=1e-11, source=SOURCE)
 def pressure() -> Measured:
+    """Proven pressures.
+
+    Claim: every element's pressure is its proven value, to 1e-11 of the peak with either solver
+    Tolerance: residuals of 1e-12 are required, conditioning may cost a digit; 6e-13 was measured
+    """
     return measured(by_scene(pressure_error))
 
 
-@case(
-    "golden/dense-pressure",
-    title="Proven pressures, dense reference",
-    claim="the plain reference reaches the proven pressures to rounding",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=2e-14,
-    tolerance_reason="condition numbers below 100 times the rounding unit; 1.4e-15 was measured",
-    tags=("solvers", "rigorous"),
-)
+@case("golden/dense-pressure", metric="at_most", tolerance=2e-14, source=SOURCE)
 def dense_pressure() -> Measured:
+    """Proven pressures, dense reference.
+
+    Claim: the plain reference reaches the proven pressures to rounding
+    Tolerance: condition numbers below 100 times the rounding unit; 1.4e-15 was measured
+    """
     errors = by_scene(pressure_error)
     dense = [pair[0] for pair in errors.values()]
     return Measured(value=max(dense), data={"scene": list(errors), "dense": dense})
 
 
-@case(
-    "golden/approach",
-    title="Proven approaches",
-    claim="the approach is its proven value, to 1e-12",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-12,
-    tolerance_reason=ASKED,
-    tags=("solvers", "rigorous"),
-)
+@case("golden/approach", metric="at_most", tolerance=1e-12, source=SOURCE, tolerance_reason=ASKED)
 def approaches() -> Measured:
+    """Proven approaches.
+
+    Claim: the approach is its proven value, to 1e-12
+    """
     return measured(
         by_scene(lambda g, s: relative(approach(s), g.numbers["approach"], g.numbers["approach"].mid))
     )
 
 
-@case(
-    "golden/forces",
-    title="Proven forces",
-    claim="N, F, Q and mu are their proven values, to 1e-12 of the load",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-12,
-    tolerance_reason=ASKED,
-    tags=("solvers", "rigorous", "friction"),
-)
+@case("golden/forces", metric="at_most", tolerance=1e-12, source=SOURCE, tolerance_reason=ASKED)
 def forces() -> Measured:
+    """Proven forces.
+
+    Claim: N, F, Q and mu are their proven values, to 1e-12 of the load
+    """
+
     def error(golden: Golden, found: rf.Solution) -> float:
         load = golden.numbers["normal_force"].mid
         return max(
@@ -141,17 +120,13 @@ def forces() -> Measured:
     return measured(by_scene(error))
 
 
-@case(
-    "golden/proven-anew",
-    title="The golden files are what the proof gives",
-    claim="proving stored scenes again gives balls that meet the stored ones, number by number",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="two enclosures of one number have it in common",
-    tags=("rigorous",),
-)
+@case("golden/proven-anew", metric="equal", tolerance=0.0, source=SOURCE)
 def proven_anew() -> Measured:
+    """The golden files are what the proof gives.
+
+    Claim: proving stored scenes again gives balls that meet the stored ones, number by number
+    Tolerance: two enclosures of one number have it in common
+    """
     apart = {}
     for name in ("friction", "periodic", "oblique", "near-tie-touches"):
         golden = named(name)

@@ -43,63 +43,47 @@ def departure(name: str) -> Measured:
     return Measured(error, data={f"operations: {k}": v for k, v in found.operations.items()})
 
 
-@case(
-    "variational/nnls",
-    title="Least squares over positive pressures give the contact",
-    claim="Non-negative least squares on the Cholesky factor of [a] returns the dense reference's pressure",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=2e-12,
-    tolerance_reason="rounding of a Cholesky factor: n eps cond(a) = 492 * 1.1e-16 * 37 = 2e-12 of the peak; "
-    "measured 6e-15",
-    tags=("table2",),
-)
+@case("variational/nnls", metric="at_most", tolerance=2e-12, source=SOURCE)
 def nnls_agrees() -> Measured:
+    """Least squares over positive pressures give the contact.
+
+    Claim: Non-negative least squares on the Cholesky factor of [a] returns the dense reference's pressure
+    Tolerance: rounding of a Cholesky factor: n eps cond(a) = 492 * 1.1e-16 * 37 = 2e-12 of the peak; measured
+    6e-15
+    """
     return departure("NNLS")
 
 
-@case(
-    "variational/quasi-newton",
-    title="A bound-constrained quasi-Newton method gives the contact",
-    claim="L-BFGS-B with products by FFT returns the dense reference's pressure",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1.2e-5,
-    tolerance_reason="it stops at a penetration of 1e-6 of the approach; over [a]'s least eigenvalue, 1.83, "
-    "and the peak, 0.049 (both in units of the problem), that is 1.1e-5 of the peak; measured 2.6e-6",
-    tags=("table2",),
-)
+@case("variational/quasi-newton", metric="at_most", tolerance=1.2e-5, source=SOURCE)
 def quasi_newton_agrees() -> Measured:
+    """A bound-constrained quasi-Newton method gives the contact.
+
+    Claim: L-BFGS-B with products by FFT returns the dense reference's pressure
+    Tolerance: it stops at a penetration of 1e-6 of the approach; over [a]'s least eigenvalue, 1.83, and the
+    peak, 0.049 (both in units of the problem), that is 1.1e-5 of the peak; measured 2.6e-6
+    """
     return departure("L-BFGS-B")
 
 
-@case(
-    "variational/interior-point",
-    title="A quadratic program gives the contact",
-    claim="PIQP on the dense matrix returns the dense reference's pressure",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=2.1e-4,
-    tolerance_reason="its duality gap of 1e-10 allows sqrt(2e-10 / 1.83) / 0.049 = 2.1e-4 of the peak (least "
-    "eigenvalue and peak as above); measured 9e-6",
-    tags=("table2",),
-)
+@case("variational/interior-point", metric="at_most", tolerance=2.1e-4, source=SOURCE)
 def interior_point_agrees() -> Measured:
+    """A quadratic program gives the contact.
+
+    Claim: PIQP on the dense matrix returns the dense reference's pressure
+    Tolerance: its duality gap of 1e-10 allows sqrt(2e-10 / 1.83) / 0.049 = 2.1e-4 of the peak (least
+    eigenvalue and peak as above); measured 9e-6
+    """
     return departure("PIQP")
 
 
-@case(
-    "variational/same-contact",
-    title="All minimisers find one contact",
-    claim="NNLS, L-BFGS-B, PIQP, the paper's scheme, FFT and dense solvers load the same elements",
-    source=SOURCE,
-    metric="equal",
-    tolerance=0.0,
-    tolerance_reason="the solution is unique (a is positive definite), and no element is in doubt at this "
-    "grid: a set has no tolerance",
-    tags=("table2",),
-)
+@case("variational/same-contact", metric="equal", tolerance=0.0, source=SOURCE)
 def one_contact() -> Measured:
+    """All minimisers find one contact.
+
+    Claim: NNLS, L-BFGS-B, PIQP, the paper's scheme, FFT and dense solvers load the same elements
+    Tolerance: the solution is unique (a is positive definite), and no element is in doubt at this grid: a set
+    has no tolerance
+    """
     loaded = reference().contact
     sets = {name: minimum(name)[0] > 0 for name in MINIMISERS}
     for method in ("fft", "paper"):
@@ -110,35 +94,29 @@ def one_contact() -> Measured:
     return Measured(max(differing.values()), 0.0, unit="elements", data=points | differing)
 
 
-@case(
-    "variational/load-multiplier",
-    title="The approach is the multiplier of the load",
-    claim="Minimised under sum f dA = P, the energy's multiplier is the dense reference's approach",
-    source="Johnson 1985, section 5.8; Kalker 1990",
-    metric="relative",
-    tolerance=1e-8,
-    tolerance_reason="PIQP's residuals of 1e-10 of the approach, times 100 because they are weighted by the "
-    "pressure's own error; measured 1e-11",
-    tags=("table2",),
-)
+@case("variational/load-multiplier", metric="relative", tolerance=1e-8)
 def approach_is_multiplier() -> Measured:
+    """The approach is the multiplier of the load.
+
+    Claim: Minimised under sum f dA = P, the energy's multiplier is the dense reference's approach
+    Source: Johnson 1985, section 5.8; Kalker 1990
+    Tolerance: PIQP's residuals of 1e-10 of the approach, times 100 because they are weighted by the
+    pressure's own error; measured 1e-11
+    """
     assumed = 1.2 * reference().approach
     energy = Energy(frictionless(table2_scene(), M_QUICK, assumed))
     found = interior_point(energy, load=table2_scene().load)
     return Measured(found.approach * assumed, reference().approach, unit="m")
 
 
-@case(
-    "variational/transform-work",
-    title="With products by FFT, a general minimiser needs no more work than the paper's scheme",
-    claim="Transformed points n log2 n of L-BFGS-B over those of the paper's scheme, for the same contact",
-    source=SOURCE + "; the paper credits its scheme with the advantage",
-    metric="at_most",
-    tolerance=1.0,
-    tolerance_reason="the statement itself: no more work; counts do not depend on the machine. Measured 0.4",
-    tags=("table2", "cost"),
-)
+@case("variational/transform-work", metric="at_most", tolerance=1.0)
 def transform_work() -> Measured:
+    """With products by FFT, a general minimiser needs no more work than the paper's scheme.
+
+    Claim: Transformed points n log2 n of L-BFGS-B over those of the paper's scheme, for the same contact
+    Source: {SOURCE}; the paper credits its scheme with the advantage
+    Tolerance: the statement itself: no more work; counts do not depend on the machine. Measured 0.4
+    """
     contact = Contact.of(table2_scene(), 64)
     work = {method: contact.run(method)[1]["n log2 n"] for method in ("paper", "L-BFGS-B", "production")}
     share = work["L-BFGS-B"] / work["paper"]
@@ -150,20 +128,15 @@ def transform_work() -> Measured:
     return judged(Verdict.CONDITIONAL, sentence, share, data={f"n log2 n: {k}": v for k, v in work.items()})
 
 
-@case(
-    "variational/table2-rerun",
-    title="Table 2's ratio, measured here and now",
-    claim="Processor time of a general solver with matrix (NNLS) over the paper's scheme's; printed: "
-    "13 to 14",
-    source="paper Table 2",
-    metric="at_least",
-    tolerance=13.3,
-    tolerance_reason="the lower of the printed ratios, 96 h / 7.21 h. Ours grows with the grid and depends "
-    "on machine and BLAS; on 64 x 64 it is several times that, so that a busy machine does not decide",
-    tier="full",
-    tags=("table2", "cost"),
-)
+@case("variational/table2-rerun", metric="at_least", tolerance=13.3, tier="full")
 def table2_rerun() -> Measured:
+    """Table 2's ratio, measured here and now.
+
+    Claim: Processor time of a general solver with matrix (NNLS) over the paper's scheme's; printed: 13 to 14
+    Source: paper Table 2
+    Tolerance: the lower of the printed ratios, 96 h / 7.21 h. Ours grows with the grid and depends on machine
+    and BLAS; on 64 x 64 it is several times that, so that a busy machine does not decide
+    """
     rows = measure((48, 64), ("paper", "production", *MINIMISERS), 2, 30.0)
     found = table(rows)
     ratios = found["ratio to paper"]
@@ -172,20 +145,16 @@ def table2_rerun() -> Measured:
     return Measured(ratios["NNLS"]["64"], data=data)
 
 
-@case(
-    "variational/table2-growth",
-    title="Growth of computing time with the number of elements",
-    claim="The time of a solver with matrix (NNLS) grows faster with the elements than that of the scheme",
-    source="paper Table 2; operation counts",
-    metric="at_least",
-    tolerance=1.0,
-    tolerance_reason="difference of exponents in the number of elements n: a factorisation takes n^3, "
-    "products by FFT n log n times some sqrt(n) iterations, a difference of 1.5; the active set of the least "
-    "grids takes 0.5 of that. The committed run is judged",
-    tier="full",
-    tags=("table2", "cost"),
-)
+@case("variational/table2-growth", metric="at_least", tolerance=1.0, tier="full")
 def table2_growth() -> Measured:
+    """Growth of computing time with the number of elements.
+
+    Claim: The time of a solver with matrix (NNLS) grows faster with the elements than that of the scheme
+    Source: paper Table 2; operation counts
+    Tolerance: difference of exponents in the number of elements n: a factorisation takes n^3, products by FFT
+    n log n times some sqrt(n) iterations, a difference of 1.5; the active set of the least grids takes 0.5 of
+    that. The committed run is judged
+    """
     found = read_result(COMMITTED)
     growths = found["growth"]
     data: dict[str, object] = {}

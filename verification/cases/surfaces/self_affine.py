@@ -42,19 +42,15 @@ def spectrum() -> tuple[Array, Array, Array]:
     return length[half], squares, psd[half] / psd.sum()
 
 
-@case(
-    "surfaces/self-affine-psd",
-    title="PSD of the self-affine surface, band by band",
-    claim="the power of every third of an octave from the long cut-off to the short one is that of the "
-    "specified PSD: a plateau to the roll-off, then q^(-2-2H)",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=4.0,
-    tolerance_reason="in standard errors sqrt(2 / n) of a chi-square of n degrees of freedom, two for each "
-    "pair of waves and seed: a correct surface strays farther in 1e-3 of all ensembles of 14 bands",
-    tags=("self-affine",),
-)
+@case("surfaces/self-affine-psd", metric="at_most", tolerance=4.0, source=SOURCE)
 def psd() -> Measured:
+    """PSD of the self-affine surface, band by band.
+
+    Claim: the power of every third of an octave from the long cut-off to the short one is that of the
+    specified PSD: a plateau to the roll-off, then q^(-2-2H)
+    Tolerance: in standard errors sqrt(2 / n) of a chi-square of n degrees of freedom, two for each pair of
+    waves and seed: a correct surface strays farther in 1e-3 of all ensembles of 14 bands
+    """
     q, squares, expected = spectrum()
     edges = 2 * math.pi / LONG_CUT * 2.0 ** (np.arange(15) / 3 - 1e-6)
     middle, ratio, error = [], [], []
@@ -68,19 +64,14 @@ def psd() -> Measured:
     return Measured(float(off.max()), data=data)
 
 
-@case(
-    "surfaces/self-affine-hurst",
-    title="Hurst exponent of the self-affine surface",
-    claim="beyond the roll-off the likeliest exponent of the waves' power is that of the given Hurst "
-    "exponent",
-    source=SOURCE,
-    metric="absolute",
-    tolerance=0.0125,
-    tolerance_reason="four standard errors 1 / (2 sqrt(N var(ln q))) of the maximum likelihood over N pairs "
-    "of waves, 0.0031 each",
-    tags=("self-affine",),
-)
+@case("surfaces/self-affine-hurst", metric="absolute", tolerance=0.0125, source=SOURCE)
 def hurst() -> Measured:
+    """Hurst exponent of the self-affine surface.
+
+    Claim: beyond the roll-off the likeliest exponent of the waves' power is that of the given Hurst exponent
+    Tolerance: four standard errors 1 / (2 sqrt(N var(ln q))) of the maximum likelihood over N pairs of waves,
+    0.0031 each
+    """
     q, squares, _ = spectrum()
     steep = q > 2 * math.pi / ROLL_OFF
     logs = np.tile(np.log(q[steep]), len(SEEDS))
@@ -95,18 +86,15 @@ def hurst() -> Measured:
     return Measured(0.5 * s - 1.0, HURST, note=f"standard error {error:.4f}")
 
 
-@case(
-    "surfaces/self-affine-one-surface",
-    title="One self-affine surface on all grids",
-    claim="grids of 63, 189 and 567 points a side, and slid ones, see the same heights at the same points",
-    source="the sum of waves depends on the point alone",
-    metric="at_most",
-    tolerance=1e-12,
-    tolerance_reason="of the rms height: the kernel of 16 points interpolates to 4e-16, and positions round "
-    "by eps of their distance from the origin times the slope; measured 3e-14",
-    tags=("self-affine",),
-)
+@case("surfaces/self-affine-one-surface", metric="at_most", tolerance=1e-12)
 def one_surface() -> Measured:
+    """One self-affine surface on all grids.
+
+    Claim: grids of 63, 189 and 567 points a side, and slid ones, see the same heights at the same points
+    Source: the sum of waves depends on the point alone
+    Tolerance: of the rms height: the kernel of 16 points interpolates to 4e-16, and positions round by eps of
+    their distance from the origin times the slope; measured 3e-14
+    """
     worst = 0.0
     for periodic in (False, True):
         coarse, middle, fine = (

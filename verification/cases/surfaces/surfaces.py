@@ -29,20 +29,14 @@ def ensemble() -> list[Array]:
     return [GaussianRoughness(1.0, 1.0, seed).heights(grid) for seed in SEEDS]
 
 
-@case(
-    "surfaces/covariance",
-    title="Exact covariance of the random field against Eq. (9)",
-    claim="two points of the field have the covariance rms^2 exp(-2.3 r^2 / l^2), wherever they lie",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=2e-15,
-    tolerance_reason=(
-        "Poisson's sum leaves 1.7e-17 and the cut-off 1e-16; the rest is rounding: the 35 terms of S S^T are "
-        "each wrong by a few eps, through positions and exponentials, and add up to at most 1"
-    ),
-    tags=("eq9",),
-)
+@case("surfaces/covariance", metric="at_most", tolerance=2e-15, source=SOURCE)
 def covariance() -> Measured:
+    """Exact covariance of the random field against Eq. (9).
+
+    Claim: two points of the field have the covariance rms^2 exp(-2.3 r^2 / l^2), wherever they lie
+    Tolerance: Poisson's sum leaves 1.7e-17 and the cut-off 1e-16; the rest is rounding: the 35 terms of S S^T
+    are each wrong by a few eps, through positions and exponentials, and add up to at most 1
+    """
     # x covers two lattice cells at steps that are no fraction of l / 6, so every position in a cell occurs
     x = np.linspace(0.0, 3.0, 98)
     _, smooth = GaussianRoughness(1.0, 1.0, seed=0).smoothing(x)
@@ -54,20 +48,14 @@ def covariance() -> Measured:
     return Measured(value=float(error.max()), data=data, note="per axis, relative to rms^2")
 
 
-@case(
-    "surfaces/ensemble",
-    title="Variance and autocorrelation of an ensemble against Eq. (9)",
-    claim="the heights that a user gets have the rms and autocorrelation of Eq. (9), at lags up to 2 l",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=SIGMAS,
-    tolerance_reason=(
-        "in standard errors of the mean product z(x) z(x + d): its variance is the integral of "
-        "R(s)^2 + R(s + d) R(s - d) over the area, rms^4 pi l^2 / 4.6 (1 + exp(-4.6 d^2 / l^2)) / area"
-    ),
-    tags=("eq9",),
-)
+@case("surfaces/ensemble", metric="at_most", tolerance=SIGMAS, source=SOURCE)
 def autocorrelation() -> Measured:
+    """Variance and autocorrelation of an ensemble against Eq. (9).
+
+    Claim: the heights that a user gets have the rms and autocorrelation of Eq. (9), at lags up to 2 l
+    Tolerance: in standard errors of the mean product z(x) z(x + d): its variance is the integral of R(s)^2 +
+    R(s + d) R(s - d) over the area, rms^4 pi l^2 / 4.6 (1 + exp(-4.6 d^2 / l^2)) / area
+    """
     lags = np.arange(2 * PER_LENGTH + 1)
     d = lags / PER_LENGTH
     fields = ensemble()
@@ -90,22 +78,17 @@ def _mean_product(z: Array, lag: int) -> float:
     return float((np.mean(z[:n] * z[lag:]) + np.mean(z[:, :n] * z[:, lag:])) / 2.0)
 
 
-@case(
-    "surfaces/spectrum",
-    title="Spectrum of the periodic field over twelve decades",
-    claim="mode by mode, the power of the periodic field is the Fourier transform of Eq. (9)",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=SIGMAS,
-    tolerance_reason="in standard errors: |Z|^2 of one Gaussian mode scatters by its mean, n by 1 / sqrt(n)",
-    tags=("eq9",),
-)
+@case("surfaces/spectrum", metric="at_most", tolerance=SIGMAS, source=SOURCE)
 def spectrum() -> Measured:
+    """Spectrum of the periodic field over twelve decades.
+
+    Claim: mode by mode, the power of the periodic field is the Fourier transform of Eq. (9)
+    Tolerance: in standard errors: |Z|^2 of one Gaussian mode scatters by its mean, n by 1 / sqrt(n)
+    """
     grid, seeds = Grid.square(12.0, 96, periodic=True), range(1, 41)
     M, side = grid.shape[0], grid.lengths[0]
     power = np.mean(
-        [np.abs(np.fft.rfft2(GaussianRoughness(1.0, 1.0, s).heights(grid))) ** 2 for s in seeds],
-        axis=0,
+        [np.abs(np.fft.rfft2(GaussianRoughness(1.0, 1.0, s).heights(grid))) ** 2 for s in seeds], axis=0
     )
     # Fourier series of the periodic sum of exp(-2.3 r^2): L^-2 pi / 2.3 exp(-pi^2 k^2 / (2.3 L^2)); images
     # add exp(-2.3 * 144) to the variance. Only columns 1 ... M/2 - 1: each of their modes is met once.
@@ -125,20 +108,14 @@ def spectrum() -> Measured:
     return Measured(value=float(np.max(np.abs(mean - 1.0) / sigma)), data=data, note=f"{len(seeds)} seeds")
 
 
-@case(
-    "surfaces/one-surface-per-seed",
-    title="The same surface on every grid, at every offset",
-    claim="nested grids and shifted windows see the same heights at the same points",
-    source=SOURCE,
-    metric="at_most",
-    tolerance=1e-13,
-    tolerance_reason=(
-        "coordinates round by eps side = 16 eps l, heights by 2.14 rms / l * 5 sigma of that, 4e-14 rms; "
-        "sums of 35 x 35 terms add a few eps"
-    ),
-    tags=("eq9",),
-)
+@case("surfaces/one-surface-per-seed", metric="at_most", tolerance=1e-13, source=SOURCE)
 def same_surface() -> Measured:
+    """One surface on every grid, at every offset.
+
+    Claim: nested grids and shifted windows see the same heights at the same points
+    Tolerance: coordinates round by eps side = 16 eps l, heights by 2.14 rms / l * 5 sigma of that, 4e-14 rms;
+    sums of 35 x 35 terms add a few eps
+    """
     side, M = 1.61e-3, 96
     roughness = GaussianRoughness(1.0, LENGTH, seed=1)
     coarse = roughness.heights(Grid.square(side, M))
@@ -150,20 +127,15 @@ def same_surface() -> Measured:
     return Measured(value=max(errors.values()), data={"largest difference / rms": errors})
 
 
-@case(
-    "surfaces/normalised-rms",
-    title="A normalised realisation has the requested rms",
-    claim="normalise=True gives the continuous surface, not some grid, that rms over the square",
-    source="paper section 6.1",
-    metric="relative",
-    tolerance=1e-9,
-    tolerance_reason=(
-        "variances of midpoint sums, whose error is even in h: Romberg's table over 64 ... 512 points an "
-        "axis, the last two columns of which differ by 3e-10 (in the data)"
-    ),
-    tags=("eq9",),
-)
+@case("surfaces/normalised-rms", metric="relative", tolerance=1e-9)
 def normalised_rms() -> Measured:
+    """A normalised realisation has the requested rms.
+
+    Claim: normalise=True gives the continuous surface, not some grid, that rms over the square
+    Source: paper section 6.1
+    Tolerance: variances of midpoint sums, whose error is even in h: Romberg's table over 64 ... 512 points an
+    axis, the last two columns of which differ by 3e-10 (in the data)
+    """
     roughness = GaussianRoughness(RMS, LENGTH, seed=3, normalise=True)
     variances = {M: float(np.var(roughness.heights(Grid.square(1.61e-3, M)))) for M in (64, 128, 256, 512)}
     table = [np.array(list(variances.values()))]
@@ -177,19 +149,16 @@ def normalised_rms() -> Measured:
 
 
 @case(
-    "surfaces/quoted-slope",
-    title="The slope that Eq. (9) has, and the slope that the paper quotes",
-    claim="the rms slope of Eq. (9) is rms sqrt(4.6) / l; the paper quotes another number (see the data)",
-    source="paper section 6.1: sigma 0.084 um, correlation radius 104 um, slope 0.125 degrees",
-    metric="relative",
-    tolerance=SIGMAS * math.sqrt(1.5 * math.pi / 4.6 / AREA) / 2.0,
-    tolerance_reason=(
-        "four standard errors of the ensemble: the mean square slope has the relative variance "
-        "2 int R_xx^2 / R_xx(0)^2 / area = 1.5 pi l^2 / (4.6 area), the rms slope half that error"
-    ),
-    tags=("eq9", "claim"),
+    "surfaces/quoted-slope", metric="relative", tolerance=SIGMAS * math.sqrt(1.5 * math.pi / 4.6 / AREA) / 2.0
 )
 def quoted_slope() -> Measured:
+    """The slope that Eq. (9) has, and the slope that the paper quotes.
+
+    Claim: the rms slope of Eq. (9) is rms sqrt(4.6) / l; the paper quotes another number (see the data)
+    Source: paper section 6.1: sigma 0.084 um, correlation radius 104 um, slope 0.125 degrees
+    Tolerance: four standard errors of the ensemble: the mean square slope has the relative variance 2 int
+    R_xx^2 / R_xx(0)^2 / area = 1.5 pi l^2 / (4.6 area), the rms slope half that error
+    """
     h = 1.0 / PER_LENGTH
     inner = [slopes(z, h)[0][1:-1] for z in ensemble()]
     # the central difference of step 2h sees (R(0) - R(2h)) / (2 h^2) of R''(0) = 4.6, exactly
