@@ -81,7 +81,7 @@ CHAPTERS = (
         ("extremes",),
         ("fault_matrix", "mutation", "mutation_fresh", "mutation_judges", "mutation_areas", "faults_by_hand",
          "later_faults", "third_faults", "fourth_faults", "hypothesis", "random_order", "extremes",
-         "extremes_drawn", "fuzz", "chaos"),
+         "fuzz", "chaos"),
     ),
     Chapter(
         "codes",

@@ -40,7 +40,6 @@ EXTREMES = Names(
     precision={"arithmetic": ["f4"], "digits lost": {"N": [6.5]}, "cause": {"N": "sum"}, "cure": {"N": ""}},
 )  # fmt: skip
 EXTREMES["lawful states"] = [Names(statuses={"fft": {"converged": 5, "cycle": 3, "stuck": 4}})]
-DRAWN = Names(ranges={"load": [1, 9], "nu": 3}, counts={}, rows=[Names(), Names(verdict="right")])
 MUTANTS = Names(by_subject={"solvers": Names()}, by_operator={}, seed=1, confidence=0.9,
                 score_raw=0.8, survivors=[Names(explained=None)], score=0.95)  # fmt: skip
 SCORES = ("killed", "timeout", "equivalent", "survived")
@@ -55,8 +54,6 @@ ROWS: list[tuple[str, Any, int, list[Any]]] = [
       ("all", "all", 7, "95.1%", "90.2%", "83%", "80.0%", "0.012", "3.46")]),
     ("extremes", EXTREMES, 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
     ("extremes", EXTREMES, 3, [("N", 6.5, "sum", "it is this code's form")]),
-    ("extremes_drawn", DRAWN, 0, [("load", 1, 9), ("nu", 3, 3)]),
-    ("extremes_drawn", DRAWN, 1, [("at", "elements", "verdict", "status", "error", "note")]),
     ("mutation", MUTANTS, 0, [("all", "tried", *SCORES, 0.95, "score_lower_bound"),
                               ("solvers", "tried", *SCORES, "score", "score_lower_bound")]),
     ("mutation", MUTANTS, 1, [("module:line", "before", "after", "not explained")]),
