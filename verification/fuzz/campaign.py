@@ -12,10 +12,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from verification.extremes.study import OutOfTime, processor_time
 from verification.framework.provenance import provenance
 from verification.fuzz.mutations import mutated
 from verification.fuzz.targets import Target, targets
+from verification.stress_tests.study import OutOfTime, processor_time
 
 FORMAT = "rough-friction fuzzing, version 1"
 SECONDS = 20.0  # processor time limit; the largest lattice of noise that a scene may request takes 5 s

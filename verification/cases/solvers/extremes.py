@@ -8,24 +8,23 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-import verification.extremes.axes  # noqa: F401  # registers the axes
-from verification.extremes import conditioning, positive_definite, precision, uniqueness
-from verification.extremes.state import Verdict, axes, states
-from verification.extremes.study import Row, judged, run, summary
+import verification.stress_tests.axes  # noqa: F401  # registers the axes
 from verification.framework.case import Measured
 from verification.framework.registry import case
+from verification.stress_tests import conditioning, positive_definite, precision, uniqueness
+from verification.stress_tests.state import Verdict, axes, states
+from verification.stress_tests.study import Row, counts, judged, run, summary
 
 CLAIM = "at the extremes a result is right, refused or named a failure: none is wrong and nothing crashes"
+SOURCE = "exact discrete states in 34 digits, scaling laws, closed forms; see verification.stress_tests"
 EVERY = 60
 COSTLY = ("grid", "finite elements", "wedge")
 
 
-def told(rows: list[Row]) -> Measured:
+def counted(rows: list[Row]) -> Measured:
     """The number of wrong results and of crashes, with the table of verdicts and digits."""
-    counts = {
-        verdict: sum(r["verdict"] == verdict for r in rows)
-        for verdict in ("right", "honest failure", "crash")
-    }
+    numbers = counts(rows)
+    numbers.pop("wrong")
     table = [
         [row[name] for name in ("series", "from", "to", "states", *Verdict, "fewest digits", "median digits")]
         for row in summary(rows)
@@ -34,8 +33,8 @@ def told(rows: list[Row]) -> Measured:
     for row in rows:
         digits.setdefault(row["series"], []).append(row["digits"] if row["verdict"] == "right" else None)
     broken = [r["id"] for r in rows if r["verdict"] in ("wrong", "crash")]
-    data = {"states": len(rows), **counts, "wrong or crashed": broken, "table": table, "digits": digits}
-    return Measured(value=float(len(broken)), data=data, note=f"{len(rows)} states: {counts}")
+    data = {"states": len(rows), **numbers, "wrong or crashed": broken, "table": table, "digits": digits}
+    return Measured(value=float(len(broken)), data=data, note=f"{len(rows)} states: {numbers}")
 
 
 def declare(axis: str) -> None:
@@ -45,7 +44,7 @@ def declare(axis: str) -> None:
         f"extremes/{axis.replace(' ', '-')}",
         title=f"Extremes of the axis {axis!r}",
         claim=CLAIM,
-        source="exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes",
+        source=SOURCE,
         metric="at_most",
         tolerance=0.0,
         tolerance_reason="a count",
@@ -53,7 +52,7 @@ def declare(axis: str) -> None:
         tags=("extremes",),
     )
     def all_states() -> Measured:
-        return told(list(run([axis])))
+        return counted(run([axis]))
 
 
 for name in axes():
@@ -64,7 +63,7 @@ for name in axes():
     "extremes/sample",
     title="A sample of all cheap extremes",
     claim=CLAIM,
-    source="exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes",
+    source=SOURCE,
     metric="at_most",
     tolerance=0.0,
     tolerance_reason="a count",
@@ -72,7 +71,7 @@ for name in axes():
 )
 def sample() -> Measured:
     cheap = [name for name in axes() if name not in COSTLY]
-    return told([judged(state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
+    return counted([judged(*state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
 
 
 @case(
@@ -86,8 +85,8 @@ def sample() -> Measured:
     tags=("extremes", "units"),
 )
 def powers_of_two() -> Measured:
-    chosen = [s for s in states("units") if "twos" in s.series][::6]
-    errors = {s.id: s.run().error for s in chosen}
+    chosen = [(unique, s) for unique, s in states("units") if "twos" in s.series][::6]
+    errors = {unique: s.run().error for unique, s in chosen}
     return Measured(value=max(np.inf if e is None else e for e in errors.values()), data={"error": errors})
 
 
@@ -95,7 +94,7 @@ def powers_of_two() -> Measured:
     "extremes/positive-definite",
     title="a + beta c is positive definite for any beta",
     claim="the symmetric part's least eigenvalue does not depend on beta and exceeds the symbol's least",
-    source="proof in verification.extremes.positive_definite",
+    source="proof in verification.stress_tests.positive_definite",
     metric="at_most",
     tolerance=1e-9,
     tolerance_reason="beta c of size 1e6 is skew to its own rounding, 1e6 x 1e-16; ten times that",
@@ -148,10 +147,12 @@ def lawful() -> Measured:
 )
 def digits() -> Measured:
     table = precision.table()
-    lost = table["digits lost"]
-    assert isinstance(lost, dict)
     own = [
-        value for row, values in lost.items() if "this code" in row for value in values if value is not None
+        value
+        for row, values in table["digits lost"].items()
+        if "this code" in row
+        for value in values
+        if value is not None
     ]
     return Measured(value=max(0.0, *own), data=table)
 
