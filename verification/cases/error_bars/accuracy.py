@@ -97,7 +97,7 @@ def hertz_summits() -> Measured:
     "accuracy/edge-size",
     title="What whole elements add along the edge of the Hertz contact",
     claim="the area that the edge's elements add, over the perimeter correction, is as the bars' prior says",
-    source="Hertz 1882; Yastrebov, Anciaux and Molinari 2017; `verification.coverage.priors` for the prior",
+    source="Hertz 1882; Yastrebov, Anciaux and Molinari 2017; the prior by likelihood of 200 random scenes",
     metric="at_most",
     tolerance=2.0,
     tolerance_reason="two standard deviations of the prior, fitted to scenes of which few are discs",
