@@ -78,7 +78,7 @@ CHAPTERS = (
         "Appendix I: verification of the verification",
         "Random examples and extreme inputs: how far the checks can be trusted.",
         ("extremes",),
-        ("hypothesis", "extremes", "extremes_drawn"),
+        ("hypothesis", "extremes"),
     ),
     Chapter(
         "codes",

@@ -18,8 +18,8 @@ Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k
   friction.
 
 The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1199; by
-likelihood in `verification.coverage.priors`); their coverage was judged on the scenes of other seeds. How
-bars widen where nothing is resolved was chosen on surfaces of noise and on measured ones as well
+likelihood, `verification/coverage/priors.py` at 43108c8); their coverage was judged on the scenes of other
+seeds. How bars widen where nothing is resolved was chosen on surfaces of noise and on measured ones as well
 (`test_estimates.py`).
 """
 

@@ -11,7 +11,6 @@ from reports.results import FORMAT, STATUSES
 
 _EXTREMES = {
     "extreme inputs": "extremes",
-    "extreme inputs, all parameters drawn at random": "extremes_drawn",
 }
 
 

@@ -16,7 +16,6 @@ NAMES = {
     "contact_area_corrected": "A, corrected",
     "max_pressure": "f_max",
 }
-BESIDE = {**NAMES, "approach": "approach", "binormal_force": "Q", "normal_force": "normal force"}
 LOWEST = 1e-6  # errors below are drawn there: they are rounding and iteration
 LONGEST = 0.5  # bars beyond are drawn there, and those that have no end
 
@@ -41,7 +40,7 @@ def build(document: Document) -> Exhibit:
     return Exhibit(
         "Accuracy requested, and kept",
         (summary, *_reference(document)),
-        (_by_number(document), *(_by_class(judged) for judged in document["accuracies"]), _beside(document)),
+        (_by_number(document), *(_by_class(judged) for judged in document["accuracies"])),
         tuple((_figure(document, judged), _series(judged)) for judged in document["accuracies"]),
     )
 
@@ -94,49 +93,6 @@ def _by_class(judged: dict[str, Any]) -> Table:
     ]
     caption = f"Share of bars that hold at accuracy {judged['accuracy']:g}, by class (%)."
     return Table(caption, ("class", *NAMES.values()), rows)
-
-
-def _beside(document: Document) -> Table:
-    """Where no accuracy is asked of a number."""
-    rows = [
-        (f"{BESIDE[number]}, mu to {judged['accuracy']:g}", None, *_columns(found))
-        for judged in document["accuracies"]
-        for number, found in judged["beside"].items()
-    ]
-    rows += [
-        (f"{BESIDE[number]}, at an approach", int(grid), *_columns(found))
-        for number, grids in document["at_approach"].items()
-        if any(found["scenes"] for found in grids.values())
-        for grid, found in grids.items()
-    ]
-    head = (
-        "number",
-        "grid",
-        "scenes",
-        "bar holds (%)",
-        "holds, reference off by its bound (%)",
-        "bar / error, median",
-        "bar, median",
-    )
-    caption = (
-        "Bars of numbers without a requested accuracy: on the last grid of the refinement for mu (without "
-        "friction, for A), and of the first scenes at a prescribed approach. References that are not those "
-        "above are the finest grid's numbers, bounded by their change from the grid before; approaches count "
-        "from the first contact of the surfaces themselves, and bars of Q are over the load."
-    )
-    return Table(caption, head, rows)
-
-
-def _columns(found: dict[str, Any]) -> tuple[float | None, ...]:
-    if not found["scenes"]:
-        return (0, None, None, None, None)
-    return (
-        found["scenes"],
-        _percent(found["covered"]),
-        _percent(found["covered_at_worst"]),
-        _rounded(found["median_bar_over_error"]),
-        found["median_bar"],
-    )
 
 
 def _percent(share: float | None) -> float | None:

@@ -19,11 +19,11 @@ class Names(dict[str, Any]):
 FOUND = {"scenes": 9, "met": 0.91, "covered": 0.82, "covered_at_worst": 0.73, "median_bar_over_error": 2.345,
          "median_cost": 1.234, "cost_at_most_2": 0.64, "median_bar": 0.056}  # fmt: skip
 NONE = {"scenes": 0}
-JUDGED = {"accuracy": 0.02, "numbers": {"contact_area": FOUND}, "beside": {"approach": NONE}, "verdicts": {},
+JUDGED = {"accuracy": 0.02, "numbers": {"contact_area": FOUND}, "verdicts": {},
           "classes": {"flat": {"a": FOUND, "b": NONE}}}  # fmt: skip
 COVERAGE = Names(accuracies=[JUDGED], seeds=[3, 12], reference_check={"seeds": []},
-                 solves={"count": 55, "seconds": 600, "worst_residual": 2e-9, "worst_apart": 3e-7},
-                 at_approach={"binormal_force": {"64": FOUND}, "approach": {"64": NONE}})  # fmt: skip
+                 solves={"count": 55, "seconds": 600, "worst_residual": 2e-9,
+                         "worst_apart": 3e-7})  # fmt: skip
 BARS = Names(held=0.951, held_at_worst=0.902, usable=0.83, held_of_usable=None, p=0.0123)
 BARS["median_bar_over_error"] = None
 OTHERS = BARS | {"class": None, "number": None, "scenes": 7, "held_of_usable": 0.8}
@@ -38,20 +38,15 @@ EXTREMES = Names(
     precision={"arithmetic": ["f4"], "digits lost": {"N": [6.5]}, "cause": {"N": "sum"}, "cure": {"N": ""}},
 )  # fmt: skip
 EXTREMES["lawful states"] = [Names(statuses={"fft": {"converged": 5, "cycle": 3, "stuck": 4}})]
-DRAWN = Names(ranges={"load": [1, 9], "nu": 3}, counts={}, rows=[Names(), Names(verdict="right")])
 ROWS: list[tuple[str, Any, int, list[Any]]] = [
     ("accuracy_costs", {"classes": [Names(prices=OFFERS)]}, 0, [("class", "mu", "48 (1.23)", "finer")]),
     ("coverage", COVERAGE, 0, [("A", 0.02, 9, 91.0, 82.0, 73.0, 2.35, 1.23, 64.0)]),
     ("coverage", COVERAGE, 1, [("flat", 82.0, None)]),
-    ("coverage", COVERAGE, 2, [("approach, mu to 0.02", None, 0, None, None, None, None),
-                               ("Q, at an approach", 64, 9, 82.0, 73.0, 2.35, 0.056)]),
     ("coverage_classes", {"table": [BARS, OTHERS]}, 0,
      [("class", "number", "scenes", "95.1%", "90.2%", "83%", "none", "0.012", "unbounded"),
       ("all", "all", 7, "95.1%", "90.2%", "83%", "80.0%", "0.012", "3.46")]),
     ("extremes", EXTREMES, 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
     ("extremes", EXTREMES, 3, [("N", 6.5, "sum", "it is this code's form")]),
-    ("extremes_drawn", DRAWN, 0, [("load", 1, 9), ("nu", 3, 3)]),
-    ("extremes_drawn", DRAWN, 1, [("at", "elements", "verdict", "status", "error", "note")]),
 ]  # fmt: skip
 
 

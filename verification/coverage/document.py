@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 
 from refimpl.accuracy.refinement import FIRST_GRIDS, GRID_SIZES
-from verification.coverage.beside import AT_APPROACH, BESIDE, Bar, at_approach, where_climbs_end
-from verification.coverage.beside import GRIDS as BARS
-from verification.coverage.beside import summary as summary_of_bars
 from verification.coverage.judge import moved, summary, verdicts
 from verification.coverage.scenes import CLASSES
-from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb, ladders, solved_at
+from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb, ladders
 from verification.framework.provenance import provenance
 
 GRIDS = (*FIRST_GRIDS, *(M for M in GRID_SIZES if FIRST_GRIDS[-1] < M <= FINEST))
 """Grids that may be requested: all of `refimpl.accuracy.refinement`."""
 CHECK, CHECK_SEEDS = 2048, range(8, 14)
 """References are checked on one more grid for one scene of each class that is not periodic."""
-APPROACH_SEEDS = range(72)
-"""Scenes that are solved at an approach as well, nine of each class."""
 REFERENCE, PERIODIC_REFERENCE = 1024, 512
 
 
@@ -49,7 +43,6 @@ def document(accuracies: Sequence[float], seeds: Sequence[int], store: Path) -> 
         "solves": solves(stored.values()),
         "reference_check": reference_check(seeds, store),
         "accuracies": [_judged(stored, accuracy) for accuracy in accuracies],
-        "at_approach": approaches(stored, store),
         "provenance": provenance(),
     }
 
@@ -69,23 +62,6 @@ def reference_check(seeds: Sequence[int], store: Path) -> dict[str, object]:
     }
 
 
-def approaches(stored: Mapping[int, Sequence[Rung]], store: Path) -> dict[str, dict[str, object]]:
-    """Bars of scenes at the approach to which their load brings them on the last of `BARS`."""
-    beside = store.with_name(f"{store.stem}-approach{store.suffix}")
-    chosen = {seed: rungs for seed, rungs in stored.items() if seed in APPROACH_SEEDS}
-    for seed, rungs in chosen.items():
-        loaded = {rung.M: rung.result for rung in rungs}
-        approach = loaded[BARS[-1]].numbers["approach"]
-        reference = grids_of(seed)[-1]
-        grids = dict.fromkeys((*FIRST_GRIDS, *BARS, reference // 2, reference))
-        climb(beside, [seed], grids, partial(solved_at, approach))
-    bars = at_approach({seed: rungs for seed, rungs in ladders(beside).items() if seed in chosen})
-    return {
-        number: {str(M): _beside([b for b in bars if (b.number, b.grid) == (number, M)]) for M in BARS}
-        for number in AT_APPROACH
-    }
-
-
 def solves(stored: Iterable[Sequence[Rung]]) -> dict[str, float]:
     """Number and time (s) of solves, worst residual, and largest change of an answer by the initial guess."""
     rungs = [rung for ladder in stored for rung in ladder]
@@ -100,7 +76,6 @@ def solves(stored: Iterable[Sequence[Rung]]) -> dict[str, float]:
 
 def _judged(stored: Mapping[int, Sequence[Rung]], accuracy: float) -> dict[str, object]:
     found = verdicts(stored, accuracy)
-    beside = where_climbs_end(stored, found)
     of = {number: [verdict for verdict in found if verdict.number == number] for number in NUMBERS}
     return {
         "accuracy": accuracy,
@@ -123,22 +98,6 @@ def _judged(stored: Mapping[int, Sequence[Rung]], accuracy: float) -> dict[str, 
                 "cost": _four_digits(v.cost for v in part),
             }
             for number, part in of.items()
-        },
-        "beside": {number: _beside([bar for bar in beside if bar.number == number]) for number in BESIDE},
-    }
-
-
-def _beside(found: Sequence[Bar]) -> dict[str, object]:
-    """Bars that no accuracy is asked of, by number and grid: a summary and every bar."""
-    return {
-        **summary_of_bars(found),
-        "bars": {
-            "seed": [bar.seed for bar in found],
-            "class": [bar.kind for bar in found],
-            "grid": [bar.grid for bar in found],
-            "bar": _four_digits(bar.bar for bar in found),
-            "error": _four_digits(bar.error for bar in found),
-            "reference_bound": _four_digits(bar.reference_bound for bar in found),
         },
     }
 

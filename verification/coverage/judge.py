@@ -14,7 +14,7 @@ from verification.coverage.scenes import random_scene
 from verification.coverage.store import NUMBERS, Rung
 
 EDGE_SIZE, EDGE_SIZE_BOUND = 0.79, 0.12
-"""Of the edge in the reference: between what all grids of 200 training scenes say, 0.774 (`priors.json`), and
+"""Of the edge in the reference: between what all grids of 200 training scenes gave by likelihood, 0.774, and
 their mean from 512 to 1024, 0.80 +- 0.01 (measured by hand); and its scatter. A disc's is 0.75 (case
 ``accuracy/edge-size``)."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -97,28 +97,10 @@ def ladders(path: Path) -> dict[int, list[Rung]]:
 
 
 def _solved(seed: int, M: int) -> Rung:
-    solution, seconds = _timed(seed, M)
-    begun = _begun(seed, M)
-    return replace(
-        _rung(seed, solution, seconds),
-        carried=begun.cost.point_logs if begun else None,
-        apart=_apart(begun, solution) if begun else None,
-    )
-
-
-def solved_at(approach: float, seed: int, M: int) -> Rung:
-    """The scene at a prescribed approach (m) in place of its load."""
-    return _rung(seed, *_timed(seed, M, approach))
-
-
-def _timed(seed: int, M: int, approach: float | None = None) -> tuple[rf.Solution, float]:
-    """A solution and its processor seconds."""
     started = time.process_time()
-    solution = rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE, approach=approach)
-    return solution, time.process_time() - started
-
-
-def _rung(seed: int, solution: rf.Solution, seconds: float) -> Rung:
+    solution = rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE)
+    seconds = time.process_time() - started
+    begun = _begun(seed, M)
     return Rung(
         seed=seed,
         result=solution.features,
@@ -126,6 +108,8 @@ def _rung(seed: int, solution: rf.Solution, seconds: float) -> Rung:
         worst=solution.certificate.largest,
         point_logs=solution.cost.point_logs,
         seconds=seconds,
+        carried=begun.cost.point_logs if begun else None,
+        apart=_apart(begun, solution) if begun else None,
     )
 
 

@@ -42,7 +42,7 @@ def test_a_file_holds_the_cases_of_its_command_with_their_counts_and_seconds(who
     commands = {
         "love": "rough-friction verify --tier full --jobs 1 --only 'love/*' --json FILE",
         "quick": "rough-friction verify --tier quick --jobs 2 --json FILE",
-        "extremes": "python -m verification.extremes --json FILE",
+        "extremes": "python -m verification.stress_tests --json FILE",
     }
     found = dict(parts(read_run(whole), commands))
     assert list(found) == ["love", "quick"]

@@ -13,7 +13,7 @@ from refimpl.model.friction import is_frictionless
 from reports.drawing import svg
 from reports.studies import exhibit
 from tests.verification.coverage.rungs import GRIDS, rung
-from verification.coverage import beside, document
+from verification.coverage import document
 from verification.coverage.document import grids_of, reference_check, solves
 from verification.coverage.judge import (
     summary,
@@ -78,31 +78,9 @@ def test_periodic_scenes_end_at_a_coarser_reference() -> None:
     assert grids_of(list(CLASSES).index("periodic waves")) == (*to_256, 512)
 
 
-def test_scenes_are_judged_at_an_approach_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """On grids small enough for a test; the store beside the study's lets it go on where it was."""
-    monkeypatch.setattr(document, "BARS", (64, 96))
-    monkeypatch.setattr(beside, "GRIDS", (64, 96))
-    monkeypatch.setattr(document, "grids_of", lambda _: (*FIRST_GRIDS, 96, 192))
-    store = tmp_path / "study.jsonl"
-    climb(store, [0, 80], [*FIRST_GRIDS, 96])
-    found = document.approaches(ladders(store), store)
-    assert set(found) == set(beside.AT_APPROACH)
-    sticky = [not is_frictionless(random_scene(seed).scene.friction) for seed in (0, 80)]
-    assert found["friction_coefficient"]["96"]["scenes"] == sum(sticky[:1])
-    force = found["normal_force"]
-    assert [force[M]["scenes"] for M in ("64", "96")] == [1, 1]
-    assert force["96"]["covered"] == 1.0
-    before = tmp_path.joinpath("study-approach.jsonl").read_bytes()
-    assert document.approaches(ladders(store), store) == found
-    assert tmp_path.joinpath("study-approach.jsonl").read_bytes() == before
-    assert len(before.splitlines()) == 4
-
-
 def test_the_document_solves_what_is_wanting_and_judges_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(document, "BARS", (64,))
-    monkeypatch.setattr(beside, "GRIDS", (64,))
     monkeypatch.setattr(document, "grids_of", lambda _: (*FIRST_GRIDS, 128, 256))
     frictionless = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
     store, seeds = tmp_path / "study.jsonl", [0, frictionless]
@@ -115,28 +93,13 @@ def test_the_document_solves_what_is_wanting_and_judges_it(
     assert {number: verdicts["seed"] for number, verdicts in judged["verdicts"].items()} == {
         name: [0] if name == "friction_coefficient" else seeds for name in NUMBERS
     }
-    for number in beside.BESIDE:
-        assert judged["beside"][number]["scenes"] == 2
-        assert judged["beside"][number]["bars"]["seed"] == seeds
-    kept = {
-        seed: [r for r in rungs if r.M in (*FIRST_GRIDS, 128, 256)] for seed, rungs in ladders(store).items()
-    }
-    bars = beside.where_climbs_end(kept, verdicts({seed: kept[seed] for seed in seeds}, 0.05))
-    for number in beside.BESIDE:
-        expected = [bar.bar for bar in bars if bar.number == number]
-        assert judged["beside"][number]["bars"]["bar"] == pytest.approx(expected, rel=5e-4)
     by_class = [judged["classes"][kind]["contact_area"]["scenes"] for kind in CLASSES]
     assert sum(by_class) == 2
-    at_approach = found["at_approach"]
-    assert {n: grids["64"]["scenes"] for n, grids in at_approach.items()} == {
-        name: 1 if name == "friction_coefficient" else 2 for name in beside.AT_APPROACH
-    }
 
 
 def test_the_report_shows_the_study() -> None:
     ladder = {3: [rung(M) for M in GRIDS]}
     found = verdicts(ladder, 0.02)
-    bars = beside.where_climbs_end(ladder, found)
     columns = ("seed", "class", "grid", "met", "bar", "error", "cost")
     judged = {
         "accuracy": 0.02,
@@ -148,23 +111,15 @@ def test_the_report_shows_the_study() -> None:
             )
             for v in found
         },
-        "beside": {number: beside.summary(bars[k::2]) for k, number in enumerate(beside.BESIDE)},
     }
     study = {
         "seeds": [3, 3],
         "solves": {"count": 7, "seconds": 1.0, "worst_residual": 1e-8, "worst_apart": 1e-9},
         "reference_check": {"grid": 1024, "seeds": [3], "worst_over_bound": 0.5},
         "accuracies": [judged],
-        "at_approach": {"normal_force": {"128": beside.summary(bars[:1]), "256": beside.summary([])}},
     }
     shown = exhibit("coverage", study)
     assert shown.tables[0].rows[0][:5] == ("mu", 0.02, 1, 100.0, 100.0)
-    assert [row[:4] for row in shown.tables[-1].rows] == [
-        ("approach, mu to 0.02", None, 1, 100.0),
-        ("Q, mu to 0.02", None, 1, 100.0),
-        ("normal force, at an approach", 128, 1, 100.0),
-        ("normal force, at an approach", 256, 0, None),
-    ]
     ((figure, data),) = shown.figures
     drawn = svg(figure, data)
     assert drawn is not None

@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from refimpl.accuracy.peak import NO_PEAK, Peak
+from refimpl.accuracy.peak import Peak
 from refimpl.model.friction import is_frictionless
 from tests.verification.coverage.rungs import GRIDS, rung
-from verification.coverage import beside
 from verification.coverage.judge import (
     EDGE_SIZE,
     EDGE_SIZE_BOUND,
@@ -137,50 +136,3 @@ def test_frictionless_scenes_have_no_friction_to_judge() -> None:
     seed = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
     found = verdicts({seed: [rung(M, seed=seed) for M in GRIDS]}, 0.02)
     assert [verdict.number for verdict in found] == list(NUMBERS[1:])
-
-
-def test_numbers_beside_are_judged_where_the_climb_for_mu_ends() -> None:
-    ladder = {3: [rung(M) for M in GRIDS]}
-    found = verdicts(ladder, 0.02)
-    approach, binormal = beside.where_climbs_end(ladder, found)
-    assert (approach.number, binormal.number) == beside.BESIDE
-    assert approach.grid == binormal.grid == found[0].grids[-1]
-    assert beside.summary([approach])["covered"] == 1.0
-    made = [replace(approach, bar=bar, error=0.5, reference_bound=0.5) for bar in (0.25, 0.5, 1.0, 2.0)]
-    assert beside.summary(made) == {
-        "scenes": 4,
-        "covered": 0.75,
-        "covered_at_worst": 0.5,
-        "median_bar_over_error": 1.5,
-        "median_bar": 0.75,
-    }
-    fine = ladder[3][-1]
-    for number in beside.BESIDE:
-        off = replace(fine.result, numbers={**fine.result.numbers, number: 1.5})
-        wrong = beside.where_climbs_end({3: [*ladder[3][:-1], replace(fine, result=off)]}, found)
-        bar = wrong[beside.BESIDE.index(number)]
-        assert bar.error == pytest.approx(0.5)
-        assert bar.reference_bound == pytest.approx(0.5)
-        assert beside.summary([bar])["covered"] == 0.0
-
-
-def test_numbers_beside_go_by_the_area_where_nothing_rubs() -> None:
-    seed = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
-    ladders_of = {s: [rung(M, seed=s) for M in GRIDS] for s in (3, seed)}
-    # beside tau's share mu has 0.1, so that it is known better than the area
-    found = verdicts(ladders_of, 0.005)
-    ends = {(v.seed, v.number): v.grids[-1] for v in found}
-    assert ends[3, "friction_coefficient"] != ends[3, "contact_area"]
-    bars = beside.where_climbs_end(ladders_of, found)
-    expected = {3: ends[3, "friction_coefficient"], seed: ends[seed, "contact_area"]}
-    assert {bar.seed: bar.grid for bar in bars} == expected
-    assert {bar.kind for bar in bars} == {random_scene(s).kind for s in expected}
-
-
-def test_approaches_are_judged_from_where_surfaces_touch() -> None:
-    ladder = [rung(M) for M in GRIDS]
-    peak = replace(NO_PEAK, height=0.25)
-    ladder[-1] = replace(ladder[-1], result=replace(ladder[-1].result, first_contact=peak))
-    approach, binormal = beside.where_climbs_end({3: ladder}, verdicts({3: ladder}, 0.02))
-    assert approach.error == pytest.approx(0.25)
-    assert binormal.error == 0.0

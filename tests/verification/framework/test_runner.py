@@ -148,7 +148,7 @@ def test_the_command_names_no_directory(monkeypatch: pytest.MonkeyPatch) -> None
     assert provenance.command() == "verify --json out.json --map maps/a.x3p"
 
 
-@pytest.mark.parametrize("module", ["verification.properties", "verification.coverage.priors"])
+@pytest.mark.parametrize("module", ["verification.properties", "verification.coverage.classes"])
 def test_the_command_of_a_module_can_be_typed(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
     found = importlib.util.find_spec(module)
     assert found is not None

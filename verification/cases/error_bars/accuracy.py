@@ -92,7 +92,7 @@ def edge_size() -> Measured:
     """Area that whole elements add along the edge of the Hertz contact.
 
     Claim: the area that the edge's elements add, over the perimeter correction, is as the bars' prior says
-    Source: Hertz 1882; Yastrebov, Anciaux and Molinari 2017; `verification.coverage.priors` for the prior
+    Source: Hertz 1882; Yastrebov, Anciaux and Molinari 2017; `the prior by likelihood of 200 random scenes
     Tolerance: two standard deviations of the prior, fitted to scenes of which few are discs
     """
     sizes = {}

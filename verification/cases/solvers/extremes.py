@@ -8,24 +8,23 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-import verification.extremes.axes  # noqa: F401  # registers the axes
-from verification.extremes import conditioning, positive_definite, precision, uniqueness
-from verification.extremes.state import Verdict, axes, states
-from verification.extremes.study import Row, judged, run, summary
+import verification.stress_tests.axes  # noqa: F401  # registers the axes
 from verification.framework.case import Measured
 from verification.framework.registry import case
+from verification.stress_tests import conditioning, positive_definite, precision, uniqueness
+from verification.stress_tests.state import Verdict, axes, states
+from verification.stress_tests.study import Row, counts, judged, run, summary
 
 CLAIM = "at the extremes a result is right, refused or named a failure: none is wrong and nothing crashes"
+SOURCE = "exact discrete states in 34 digits, scaling laws, closed forms; see verification.stress_tests"
 EVERY = 60
 COSTLY = ("grid", "finite elements", "wedge")
 
 
-def told(rows: list[Row]) -> Measured:
+def counted(rows: list[Row]) -> Measured:
     """The number of wrong results and of crashes, with the table of verdicts and digits."""
-    counts = {
-        verdict: sum(r["verdict"] == verdict for r in rows)
-        for verdict in ("right", "honest failure", "crash")
-    }
+    numbers = counts(rows)
+    numbers.pop("wrong")
     table = [
         [row[name] for name in ("series", "from", "to", "states", *Verdict, "fewest digits", "median digits")]
         for row in summary(rows)
@@ -34,8 +33,8 @@ def told(rows: list[Row]) -> Measured:
     for row in rows:
         digits.setdefault(row["series"], []).append(row["digits"] if row["verdict"] == "right" else None)
     broken = [r["id"] for r in rows if r["verdict"] in ("wrong", "crash")]
-    data = {"states": len(rows), **counts, "wrong or crashed": broken, "table": table, "digits": digits}
-    return Measured(value=float(len(broken)), data=data, note=f"{len(rows)} states: {counts}")
+    data = {"states": len(rows), **numbers, "wrong or crashed": broken, "table": table, "digits": digits}
+    return Measured(value=float(len(broken)), data=data, note=f"{len(rows)} states: {numbers}")
 
 
 def declare(axis: str) -> None:
@@ -48,11 +47,11 @@ def declare(axis: str) -> None:
         tier="full",
         title=f"Extremes of the axis {axis!r}",
         claim=CLAIM,
-        source="exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes",
+        source=SOURCE,
         tolerance_reason="a count",
     )
     def all_states() -> Measured:
-        return told(list(run([axis])))
+        return counted(run([axis]))
 
 
 for name in axes():
@@ -63,11 +62,11 @@ for name in axes():
 def sample() -> Measured:
     """A sample of all cheap extremes.
 
-    Source: exact discrete states in 34 digits, scaling laws, closed forms; see verification.extremes
+    Source: exact discrete states in 34 digits, scaling laws, closed forms; see verification.stress_tests
     Tolerance: a count
     """
     cheap = [name for name in axes() if name not in COSTLY]
-    return told([judged(state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
+    return counted([judged(*state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
 
 
 @case("extremes/unit-scaling", metric="at_most", tolerance=0.0)
@@ -78,8 +77,8 @@ def powers_of_two() -> Measured:
     Source: similarity of Eqs (1)-(7)
     Tolerance: exact: every operation of the solvers commutes with powers of two, short of underflow
     """
-    chosen = [s for s in states("units") if "twos" in s.series][::6]
-    errors = {s.id: s.run().error for s in chosen}
+    chosen = [(unique, s) for unique, s in states("units") if "twos" in s.series][::6]
+    errors = {unique: s.run().error for unique, s in chosen}
     return Measured(value=max(np.inf if e is None else e for e in errors.values()), data={"error": errors})
 
 
@@ -88,7 +87,7 @@ def definite() -> Measured:
     """a + beta c is positive definite for any beta.
 
     Claim: the symmetric part's least eigenvalue does not depend on beta and exceeds the symbol's least
-    Source: proof in verification.extremes.positive_definite
+    Source: proof in verification.stress_tests.positive_definite
     Tolerance: beta c of size 1e6 is skew to its own rounding, 1e6 x 1e-16; ten times that
     """
     bound = positive_definite.least_symbol()
@@ -130,10 +129,12 @@ def digits() -> Measured:
     Tolerance: 10 eps in each arithmetic
     """
     table = precision.table()
-    lost = table["digits lost"]
-    assert isinstance(lost, dict)
     own = [
-        value for row, values in lost.items() if "this code" in row for value in values if value is not None
+        value
+        for row, values in table["digits lost"].items()
+        if "this code" in row
+        for value in values
+        if value is not None
     ]
     return Measured(value=max(0.0, *own), data=table)
 

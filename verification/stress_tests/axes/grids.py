@@ -10,9 +10,9 @@ import numpy as np
 
 import refimpl as rf
 from verification.exact import hertz
-from verification.extremes.judge import GOOD, SOLVERS, TOLERANCE, by_oracle, guarded, verdict
-from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes.cross_checks import POLYMER, STEEL, pressed
+from verification.stress_tests.judge import GOOD, SOLVERS, TOLERANCE, guarded, state, verdict
+from verification.stress_tests.state import Extreme, Judged, axis
 
 TINY, PRIMES, LARGEST = (1, 2, 3, 5, 7), (11, 13, 17, 19, 23), 2048
 LINES = (1, 2, 4, 8, 16)
@@ -65,20 +65,16 @@ def grids() -> Iterator[Extreme]:
     """Tiny grids by the oracle, primes by the dense solver, large ones by Hertz, ridges of any aspect."""
     scene = pressed(lower=POLYMER, load=30.0, direction=0.7)
     flat = replace(scene, upper=rf.Body(STEEL, rf.Flat()), periodic=True)
+    scenes = {"half-space": scene, "periodic": flat}
     for M in TINY:
         for method in SOLVERS:
-            for name, what in (("half-space", scene), ("periodic", flat)):
-                yield Extreme(
-                    "grid", f"{name}, {method}", f"{M}", float(M),
-                    partial(by_oracle, what, M, method),
-                )  # fmt: skip
+            for name, what in scenes.items():
+                yield state(name, f"{M}", float(M), what, method, elements=M)
     for M in PRIMES:
-        for name, what in (("half-space", scene), ("periodic", flat)):
-            yield Extreme("grid", f"{name} primes, fft", f"{M}", float(M), partial(against_dense, what, M))
+        for name, what in scenes.items():
+            yield Extreme(f"{name} primes, fft", f"{M}", float(M), partial(against_dense, what, M))
     for M in (31, 61, 127, 257, 509, LARGEST):
-        yield Extreme("grid", "Hertz, fft", f"{M}", float(M), partial(against_hertz, M), seconds=300.0)
+        yield Extreme("Hertz, fft", f"{M}", float(M), partial(against_hertz, M), seconds=300.0)
     for across in LINES:
-        yield Extreme(
-            "grid", "ridge of 24 elements, fft", f"{across} across", float(across),
-            partial(against_dense, ridge(24, across), 24), 30.0,
-        )  # fmt: skip
+        run = partial(against_dense, ridge(24, across), 24)
+        yield Extreme("ridge of 24 elements, fft", f"{across} across", float(across), run, seconds=30.0)

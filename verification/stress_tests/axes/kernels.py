@@ -9,8 +9,8 @@ from typing import Any
 
 from refimpl.kernels import normal_integral, tangential_integral
 from verification.exact import kernel_reference as reference
-from verification.extremes.judge import guarded
-from verification.extremes.state import Extreme, Judged, axis, number
+from verification.stress_tests.judge import guarded
+from verification.stress_tests.state import Extreme, Judged, axis, number
 
 LIMIT = 1e-13
 """The relative error promised by `refimpl.kernels`."""
@@ -45,18 +45,12 @@ def kernels() -> Iterator[Extreme]:
     for kind in INTEGRALS:
         for x in OFFSETS:
             for direction, y in (("on the axis", 0.0), ("off the axis", 0.75)):
-                yield Extreme(
-                    "kernel", f"{kind} {direction}", f"{x:g} elements", x,
-                    partial(against_digits, kind, x, y, 1.0, 1.0),
-                )  # fmt: skip
+                run = partial(against_digits, kind, x, y, 1.0, 1.0)
+                yield Extreme(f"{kind} {direction}", f"{x:g} elements", x, run)
         for aspect in ASPECTS:
             for x in (0.25, 2.0, 50.0):
-                yield Extreme(
-                    "kernel", f"{kind}, thin element", f"dy/dx = {aspect:.0e}, x = {x:g}", aspect,
-                    partial(against_digits, kind, x, 0.3 * aspect, 1.0, aspect),
-                )  # fmt: skip
+                run = partial(against_digits, kind, x, 0.3 * aspect, 1.0, aspect)
+                yield Extreme(f"{kind}, thin element", f"dy/dx = {aspect:.0e}, x = {x:g}", aspect, run)
         for length in LENGTHS:
-            yield Extreme(
-                "kernel", f"{kind}, length", f"{length:.1e} m", length,
-                partial(against_digits, kind, 1.5 * length, 0.25 * length, length, length),
-            )  # fmt: skip
+            run = partial(against_digits, kind, 1.5 * length, 0.25 * length, length, length)
+            yield Extreme(f"{kind}, length", f"{length:.1e} m", length, run)

@@ -7,7 +7,6 @@ exactly one (`positive_definite`); with tau there may be none, one or several.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,9 +14,9 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.extremes.exact_operators import normal, tangential
-from verification.extremes.judge import SOLVERS
 from verification.scenes.cross_checks import POLYMER, STEEL
+from verification.stress_tests.exact_operators import normal, tangential
+from verification.stress_tests.judge import SOLVERS
 
 M = 3
 TAUS = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
@@ -99,8 +98,3 @@ def count(tau: float, scenes: int = SCENES) -> Count:
             wrong += solution.status is rf.Status.CONVERGED and not among
     several = [n for n in numbers if n > 1]
     return Count(tau, numbers.count(0), numbers.count(1), len(several), max(numbers), statuses, wrong)
-
-
-def without_tau(scene: rf.Scene) -> rf.Scene:
-    """Return the scene with tau = 0."""
-    return replace(scene, friction=replace(scene.friction, tau=0.0))

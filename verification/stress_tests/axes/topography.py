@@ -12,11 +12,10 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.planning.plan import Method
-from verification.extremes.judge import GOOD, SOLVERS, TOLERANCE, by_oracle, guarded, verdict
-from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes.cross_checks import POLYMER, STEEL, TABLE1
+from verification.stress_tests.judge import GOOD, SOLVERS, TOLERANCE, M, guarded, state, verdict
+from verification.stress_tests.state import Extreme, Judged, axis
 
-M = 5
 SIDE = 1e-3
 NOISE = np.random.default_rng(45).standard_normal((M, M))
 SLOPES = [math.radians(d) for d in (0.01, 0.1, 1, 3, 6.5, 10, 15, 20, 25, 30, 35, 40, 45)]
@@ -46,7 +45,7 @@ def sloped(angle: float) -> Array:
     return np.asarray(NOISE * (math.tan(angle) / step))
 
 
-def moved(offset: float, *, dyadic: bool, method: Method) -> Judged:
+def shifted(offset: float, *, dyadic: bool, method: Method) -> Judged:
     """Heights plus an offset against the same heights without one: no more is lost than the data lost."""
 
     def run() -> Judged:
@@ -89,29 +88,15 @@ def topography() -> Iterator[Extreme]:
     """Amplitudes, slopes, offsets and ties for both solvers."""
     for method in SOLVERS:
         for amplitude in AMPLITUDES:
-            yield Extreme(
-                "topography", f"rms, {method}", f"{amplitude:.0e} m", amplitude,
-                partial(by_oracle, rough_ball(amplitude * NOISE), M, method),
-            )  # fmt: skip
+            yield state("rms", f"{amplitude:.0e} m", amplitude, rough_ball(amplitude * NOISE), method)
         for angle in SLOPES:
-            for correction in (False, True):
-                series = f"largest slope, {'corrected, ' * correction}{method}"
-                yield Extreme(
-                    "topography", series, f"{math.degrees(angle):.3g} deg", math.degrees(angle),
-                    partial(
-                        by_oracle, rough_ball(sloped(angle), load=1e3), M, method, slope_correction=correction
-                    ),
-                )  # fmt: skip
+            degrees, scene = math.degrees(angle), rough_ball(sloped(angle), load=1e3)
+            for series, correction in (("largest slope", False), ("largest slope, corrected", True)):
+                yield state(series, f"{degrees:.3g} deg", degrees, scene, method, slope_correction=correction)
         for offset in OFFSETS:
-            for dyadic in (True, False):
-                yield Extreme(
-                    "topography", f"offset, {'dyadic ' * dyadic}heights, {method}", f"{offset:.3g}", offset,
-                    partial(moved, offset, dyadic=dyadic, method=method),
-                )  # fmt: skip
+            for kind, dyadic in (("dyadic heights", True), ("heights", False)):
+                run = partial(shifted, offset, dyadic=dyadic, method=method)
+                yield Extreme(f"offset, {kind}, {method}", f"{offset:.3g}", offset, run)
         for k, (name, heights) in enumerate(ties().items()):
-            for radius in (0.14, 1e300):
-                series = f"ties, {'ball' if radius < 1 else 'flat'}, {method}"
-                yield Extreme(
-                    "topography", series, name, float(k),
-                    partial(by_oracle, rough_ball(heights, radius), M, method),
-                )  # fmt: skip
+            for body, radius in (("ball", 0.14), ("flat", 1e300)):
+                yield state(f"ties, {body}", name, float(k), rough_ball(heights, radius), method)

@@ -15,9 +15,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
-from verification.extremes.judge import guarded, verdict
-from verification.extremes.state import Extreme, Judged, axis
 from verification.scenes.cross_checks import COPPER, STEEL
+from verification.stress_tests.judge import guarded, verdict
+from verification.stress_tests.state import Extreme, Judged, axis
 
 TOLERANCE = 1e-12
 LIMIT = 1e-12
@@ -138,7 +138,4 @@ def units() -> Iterator[Extreme]:
                 continue
             seen.add((series, at))
             kind = "twos" if at.startswith("2^") else "tens"
-            yield Extreme(
-                "units", f"{series}, {kind}", at, factor,
-                partial(run, method, periodic, *parts, limit),
-            )  # fmt: skip
+            yield Extreme(f"{series}, {kind}", at, factor, partial(run, method, periodic, *parts, limit))

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.extremes import exact_operators as operators
-from verification.extremes.exact_operators import DIGITS, Exact
+from verification.stress_tests import exact_operators as operators
+from verification.stress_tests.exact_operators import DIGITS, Exact
 
 EXCHANGES, SLOPE_UPDATES = 80, 150
 SETTLED = mp.mpf(10) ** -20  # relative change of pressure by an update of slopes: below a double's digits

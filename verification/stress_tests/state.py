@@ -1,4 +1,4 @@
-"""Extreme states, their verdicts, and the register of axes."""
+"""States of the stress tests, their verdicts, and the register of axes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Judged:
     """The outcome of one state.
 
     ``error`` is relative to the scale of what is judged, None where no number was given; ``limit`` is the
-    error from which a number counts as wrong; ``oracle`` says what it was held against.
+    error from which a number counts as wrong; ``oracle`` names the reference.
     """
 
     verdict: Verdict
@@ -44,19 +44,13 @@ class Judged:
 
 @dataclass(frozen=True)
 class Extreme:
-    """One state: ``axis`` and ``series`` it belongs to, where on the axis it is, and how it is run."""
+    """One state: its series on the axis, its place there (as text and number), its run, its time limit."""
 
-    axis: str
     series: str
     at: str
     x: float
     run: Callable[[], Judged]
     seconds: float = 4.0  # processor time limit; beyond it the state counts as one that does not end
-
-    @property
-    def id(self) -> str:
-        """Unique name, stable between runs."""
-        return f"{self.axis}/{self.series}/{self.at}"
 
 
 def digits_kept(error: float) -> float:
@@ -69,7 +63,7 @@ def digits_kept(error: float) -> float:
 
 
 def number(error: float, limit: float, status: str, oracle: str, note: str = "", **data: float) -> Judged:
-    """The verdict on a number that was given as good: right within the limit, else (NaN too) wrong."""
+    """Judge a number that was given as good: right within the limit, else (NaN too) wrong."""
     verdict = Verdict.RIGHT if error <= limit else Verdict.WRONG
     return Judged(verdict, status, error if math.isfinite(error) else 1e300, limit, oracle, note, data)
 
@@ -79,7 +73,7 @@ _AXES: dict[str, Axis] = {}
 
 
 def axis(name: str) -> Callable[[Axis], Axis]:
-    """Decorator that registers a function which yields the states of an axis."""
+    """Register a function that yields the states of an axis."""
 
     def register(states: Axis) -> Axis:
         if name in _AXES:
@@ -95,11 +89,12 @@ def axes() -> tuple[str, ...]:
     return tuple(_AXES)
 
 
-def states(name: str) -> Iterator[Extreme]:
-    """The states of an axis; raises ValueError when two have one id."""
+def states(name: str) -> Iterator[tuple[str, Extreme]]:
+    """Ids and states of an axis; raises ValueError when two have one id."""
     seen = set()
     for extreme in _AXES[name]():
-        if extreme.id in seen:
-            raise ValueError(f"two states are called {extreme.id!r}")
-        seen.add(extreme.id)
-        yield extreme
+        unique = f"{name}/{extreme.series}/{extreme.at}"
+        if unique in seen:
+            raise ValueError(f"two states are called {unique!r}")
+        seen.add(unique)
+        yield unique, extreme

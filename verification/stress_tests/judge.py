@@ -1,9 +1,10 @@
-"""Solve a state and judge what came back: by the oracle, by a scaling law, or by a known answer."""
+"""Solve a state and judge the solution: by the oracle, by a scaling law, or by a known answer."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import mpmath as mp
@@ -11,45 +12,56 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
-from verification.extremes.oracle import NotSettled, Oracle
-from verification.extremes.state import Judged, Verdict, number
+from verification.stress_tests.oracle import NotSettled, Oracle
+from verification.stress_tests.state import Extreme, Judged, Verdict, number
 
 TOLERANCE = 1e-10
 """Tolerance of every solve, a hundredth of the default: larger errors belong to the state."""
 WRONG_FROM = 1e-6
 """Relative error of a number that counts as wrong although the certificate met `TOLERANCE`. The certificate's
 gap bounds the square of the error in energy, so 1e-5 would be lawful; measured errors stay below 1e-7."""
+M = 5
+"""Elements a side of states that the oracle judges, unless an axis varies them."""
 SOLVERS: tuple[Method, ...] = ("fft", "dense")
 GOOD = (rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.NO_CONTACT)
 
 
 def guarded(run: Callable[[], Judged]) -> Judged:
     """The run's verdict; a refusal is a detected failure, an unforeseen exception a crash."""
+
+    def failed(verdict: Verdict, status: str, error: Exception) -> Judged:
+        oracle = "refused" if verdict is Verdict.HONEST else "none"
+        return Judged(verdict, status, None, WRONG_FROM, oracle, str(error).partition("\n")[0])
+
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return run()
     except rf.InputError as refused:
-        return Judged(Verdict.HONEST, "InputError", None, WRONG_FROM, "refused", str(refused))
+        return failed(Verdict.HONEST, "InputError", refused)
     except NotSettled as unsettled:
-        return Judged(Verdict.CRASH, "unjudged", None, WRONG_FROM, "none", str(unsettled))
-    except ArithmeticError as hopeless:
-        if type(hopeless) is not ArithmeticError:  # a division by zero was not foreseen
-            return Judged(Verdict.CRASH, type(hopeless).__name__, None, WRONG_FROM, "none", str(hopeless))
-        # documented: the frozen problem has no solution, or no approach carries the load
-        return Judged(Verdict.HONEST, "ArithmeticError", None, WRONG_FROM, "refused", str(hopeless))
-    # A study of extremes is after exceptions of any kind: this is where they are found, named and counted.
+        return failed(Verdict.CRASH, "unjudged", unsettled)
+    # Exceptions of any kind are what the stress tests look for: here they are found, named and counted.
     except Exception as broken:
-        return Judged(
-            Verdict.CRASH, type(broken).__name__, None, WRONG_FROM, "none", str(broken).splitlines()[0]
-        )
+        # documented: the frozen problem has no solution, or no approach carries the load
+        documented = type(broken) is ArithmeticError
+        return failed(Verdict.HONEST if documented else Verdict.CRASH, type(broken).__name__, broken)
 
 
-def by_oracle(scene: rf.Scene, M: int, method: Method = "fft", **options: Any) -> Judged:
+def state(
+    series: str, at: str, x: float, scene: rf.Scene, method: Method,
+    elements: int = M, seconds: float = 4.0, **options: Any,
+) -> Extreme:  # fmt: skip
+    """A state that the oracle judges; the solver's name ends the name of its series."""
+    run = partial(by_oracle, scene, elements, method, **options)
+    return Extreme(f"{series}, {method}", at, x, run, seconds)
+
+
+def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options: Any) -> Judged:
     """Pressure, approach and forces against the exact discrete state."""
 
     def run() -> Judged:
-        solution = rf.solve(scene, M, method=method, tolerance=TOLERANCE, **options)
+        solution = rf.solve(scene, elements, method=method, tolerance=TOLERANCE, **options)
         try:
             error, note = exact_error(scene, solution, **options)
         except NotSettled as unsettled:

@@ -39,7 +39,7 @@ LIMITS = (
         "state the gap's rounding floor, eps N h, beside it",
     ),
     Limit(
-        "contact set/flat on flat, periodic dense/*",
+        "contact set/flat on flat, periodic, dense/*",
         "periodic flats are STAGNATED by the dense solver although every digit is right",
         "the approach from first contact is nearly zero and scales the certificate's penetration",
         "scale by max(|approach|, compliance x peak x spacing)",

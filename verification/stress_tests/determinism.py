@@ -18,7 +18,7 @@ GRIDS: dict[Method, int] = {"fft": 384, "dense": 24}
 """384: transforms that get two threads, periodic or not; 24: matrices that BLAS factorises in parallel."""
 TRANSFORMS, BLAS = "OMP_NUM_THREADS", ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Where each reads its number of threads; BLAS from the first as well, unless its own says otherwise."""
-CHILD = "from verification.extremes.determinism import tell; tell({method!r}, {periodic!r})"
+CHILD = "from verification.stress_tests import determinism as d; d.write_solution({method!r}, {periodic!r})"
 NUMBERS = ("approach", "normal_force", "friction_force", "contact_area", "max_pressure")
 
 
@@ -30,7 +30,7 @@ def solved(method: Method, periodic: bool) -> rf.Solution:
     return rf.solve(scene, GRIDS[method], method=method)
 
 
-def tell(method: Method, periodic: bool) -> None:
+def write_solution(method: Method, periodic: bool) -> None:
     """Print the solution of this process, exactly (hexadecimal)."""
     solution = solved(method, periodic)
     numbers = {name: float(getattr(solution, name)).hex() for name in NUMBERS}

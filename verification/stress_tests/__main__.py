@@ -1,0 +1,38 @@
+"""``python -m verification.stress_tests --json FILE``: run the study (four minutes on one thread)."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the study; status 1 when a number was wrong."""
+    parser = argparse.ArgumentParser(prog="python -m verification.stress_tests", description=__doc__)
+    parser.add_argument("--json", type=Path, required=True, help="file to write")
+    parser.add_argument("--axis", action="append", default=[], help="only this axis; may be repeated")
+    options = parser.parse_args(arguments)
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+
+    from verification.framework.files import Progress, write_result
+    from verification.stress_tests import study
+    from verification.stress_tests.state import axes, states
+
+    unknown = [name for name in options.axis if name not in axes()]
+    if unknown:
+        parser.error(f"--axis {unknown[0]!r}: expected one of {', '.join(axes())}")
+    progress = Progress(sum(1 for name in options.axis or axes() for _ in states(name)))
+    found = study.document(study.run(options.axis, progress.tick))
+    progress.close()
+    write_result(found, options.json)
+    print(", ".join(f"{number} {verdict}" for verdict, number in found["counts"].items()), file=sys.stdout)
+    return 1 if found["counts"]["wrong"] else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

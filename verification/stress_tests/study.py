@@ -1,0 +1,109 @@
+"""The study: all states of all axes, one after another, with the tables that the report shows."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from typing import Any
+
+import verification.stress_tests.axes  # noqa: F401  # registers the axes
+from verification.framework.case import jsonable
+from verification.framework.provenance import provenance
+from verification.stress_tests import conditioning, precision, uniqueness
+from verification.stress_tests.limits import LIMITS
+from verification.stress_tests.state import Extreme, Verdict, axes, states
+
+FORMAT = "rough-friction extremes, version 1"
+Row = dict[str, Any]
+"""One state as JSON: what `Extreme` and `Judged` hold, its id, digits and seconds of processor time."""
+
+
+class OutOfTime(Exception):
+    """A state did not end within its processor time."""
+
+
+@contextmanager
+def processor_time(seconds: float) -> Iterator[None]:
+    """Raise OutOfTime inside the block when it has used that much (POSIX, main thread only)."""
+
+    def expired(*_: object) -> None:
+        raise OutOfTime(f"no end within {seconds:g} s of processor time")
+
+    before = signal.signal(signal.SIGPROF, expired)
+    signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)  # again, should a callback swallow the first
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def judged(unique: str, extreme: Extreme) -> Row:
+    """Run one state within its time."""
+    started = time.process_time()
+    with processor_time(extreme.seconds):
+        found = extreme.run()
+    head = {
+        "id": unique, "axis": unique.split("/")[0],
+        "series": extreme.series, "at": extreme.at, "x": extreme.x,
+    }  # fmt: skip
+    body = asdict(found) | {"verdict": found.verdict.value, "digits": found.digits}
+    return head | body | {"seconds": round(time.process_time() - started, 3)}
+
+
+def run(names: Iterable[str] = (), tick: Callable[[str], None] = lambda _: None) -> list[Row]:
+    """Rows of the named axes (all by default)."""
+    rows = []
+    for name in tuple(names) or axes():
+        for unique, extreme in states(name):
+            rows.append(judged(unique, extreme))
+            tick(f"{rows[-1]['verdict']:<14} {unique}")
+    return rows
+
+
+def counts(rows: Iterable[Row]) -> dict[str, int]:
+    """Number of states by verdict."""
+    found = Counter(row["verdict"] for row in rows)
+    return {verdict.value: found[verdict.value] for verdict in Verdict}
+
+
+def summary(rows: Iterable[Row]) -> list[Row]:
+    """The table axis x series: range, verdicts, fewest and median digits of the right ones."""
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        groups.setdefault((row["axis"], row["series"]), []).append(row)
+    found = []
+    for (axis, series), group in groups.items():
+        digits = sorted(row["digits"] for row in group if row["verdict"] == Verdict.RIGHT)
+        oracles = dict.fromkeys(row["oracle"] for row in group if row["oracle"] not in ("none", "refused"))
+        found.append(
+            {
+                "axis": axis, "series": series, "from": group[0]["at"], "to": group[-1]["at"],
+                "states": len(group), **counts(group), "oracle": ", ".join(oracles),
+                "fewest digits": digits[0] if digits else None,
+                "median digits": digits[len(digits) // 2] if digits else None,
+            }
+        )  # fmt: skip
+    return found
+
+
+def document(rows: list[Row]) -> dict[str, Any]:
+    """The result file: states, table, heat map of precision, condition numbers, lawful states, limits."""
+    plain = jsonable(
+        {
+            "format": FORMAT,
+            "counts": counts(rows),
+            "table": summary(rows),
+            "limits": [asdict(limit) for limit in LIMITS],
+            "states": rows,
+            "precision": precision.table(),
+            "conditioning": conditioning.table(),
+            "lawful states": [uniqueness.count(tau)._asdict() for tau in uniqueness.TAUS],
+        }
+    )
+    assert isinstance(plain, dict)
+    return {**plain, "provenance": provenance()}
