@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from refimpl.grid import Array
 from verification.contestants import own
 from verification.contestants.covering import covering
 from verification.contestants.design import further_rows, in_turn, posed, rows, shape_of
 from verification.contestants.dimensions import CHANGED, DESIGNS, FURTHER
-from verification.contestants.random_faults import SEEDS, random_fault
-from verification.contestants.suite import suite, thorough
+from verification.contestants.isolated import Limited
+from verification.contestants.protocol import ContactProblem
+from verification.contestants.suite import run, select, suite, thorough
 from verification.contestants.traits import levels
-from verification.contestants.trial import first_failure
 
 
 @pytest.mark.parametrize("name", DESIGNS)
@@ -62,6 +65,43 @@ def test_further_arrays_pose_other_problems_and_our_solver_solves_them() -> None
     assert not {*sizes} & {row["elements"] for row in rows()["memory"]}
 
 
-def test_a_random_fault_is_caught() -> None:
-    fault = next(f for f in map(random_fault, SEEDS) if f.effect.startswith("load times"))
-    assert first_failure(fault.fresh(), fault.when, "plain") is not None
+QUICK = ["contestant/design-tiny-*", "contestant/design-memory-0*", "contestant/design-capped-0*"]
+
+
+@pytest.mark.parametrize("claim", [1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("solver", [own.solve, own.dense], ids=["production", "dense"])
+def test_no_right_solver_fails_at_the_claim_that_it_states(solver: own.Own, claim: float) -> None:
+    statuses = [r.status for r in run(Limited(solver, replace(solver.abilities, precision=claim)), QUICK)]
+    assert {*statuses} <= {"pass", "unavailable"}
+    assert statuses.count("pass") >= 20  # type: ignore[arg-type]  # a status is a text
+
+
+def test_a_memory_is_judged_by_all_problems_in_turn() -> None:
+    """The second problem of the case is solved with the first one's modulus; first and third are right."""
+    number = 1 + next(n for n, row in enumerate(rows()["memory"]) if row["changed"] == "modulus")
+    moduli: list[float] = []
+
+    def remembering(problem: ContactProblem) -> Array:
+        moduli.append(problem.reduced_modulus)
+        return np.asarray(own.solve(replace(problem, reduced_modulus=moduli[0])).pressure)
+
+    (check,) = select([f"contestant/design-memory-{number:02}"])
+    assert check.case(own.solve).run().status == "pass"
+    assert check.case(Limited(remembering, own.solve.abilities)).run().status == "fail"
+    assert len(moduli) == 3
+
+
+def test_a_flat_periodic_gap_has_the_mean_pressure() -> None:
+    (row, number) = next(
+        (row, n)
+        for n, row in enumerate(rows()["tiny"], start=1)
+        if row["borders"] == "periodic" and not posed(row, n, 1e-8).gap.any()
+    )
+    (check,) = select([f"contestant/design-tiny-{number:02}"])
+    assert check.case(own.solve).run().status == "pass"
+
+    def uneven(problem: ContactProblem) -> Array:
+        f = np.asarray(own.solve(problem).pressure)
+        return f * (1.001 if f.size == 1 else np.linspace(0.99, 1.01, f.size).reshape(f.shape))
+
+    assert check.case(Limited(uneven, own.solve.abilities)).run().status == "fail", row

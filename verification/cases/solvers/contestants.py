@@ -15,7 +15,7 @@ SOURCE = "the suite of verification.contestants"
 
 
 NAMED = tuple(check.id for check in suite() if not check.slug.startswith("design-"))
-"""Cases that name faults; those of the covering design name none, and random faults judge them."""
+"""Cases that name faults; those of the covering designs name none."""
 
 
 @cache
