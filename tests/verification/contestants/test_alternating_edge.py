@@ -13,7 +13,6 @@ from refimpl.grid import Array, Mask
 from verification.contestants import own, referee
 from verification.contestants.design import posed
 from verification.contestants.protocol import ContactProblem
-from verification.contestants.wrong import sheared
 
 ROW = {
     "edge": 1e-6,
@@ -37,6 +36,15 @@ def strongly_sheared(elements: int, borders: str) -> ContactProblem:
     assert found.coupling is not None
     assert found.load is not None
     return replace(found, coupling=replace(found.coupling, tau=found.load / found.area))
+
+
+def sheared(problem: ContactProblem, where: Mask) -> ContactProblem:
+    """The problem without tau over a gap that tau on some elements has moved beforehand, under a load."""
+    assert problem.coupling is not None
+    one = where.astype(np.float64)
+    alone = replace(problem, coupling=replace(problem.coupling, beta=0.0))
+    gap = problem.gap + referee.displacement(alone, one) - referee.by_pressure(problem, one)
+    return replace(problem, gap=gap - gap.min(), coupling=replace(problem.coupling, tau=0.0))
 
 
 def solved(problem: ContactProblem) -> tuple[Array, Mask]:

@@ -11,14 +11,11 @@ import pytest
 from refimpl.grid import Array
 from verification.contestants import own, referee
 from verification.contestants.beds import FAR, Bed, integrals, standing, uneven
-from verification.contestants.broken import Wrong
 from verification.contestants.check import COMPLIANCE, MODULUS, Entrant
 from verification.contestants.checks.sliding_pins import FREE, PERIODIC
 from verification.contestants.gaps import rough_bump
 from verification.contestants.protocol import ContactProblem, Coupling
-from verification.contestants.remembering import Remembering
 from verification.contestants.suite import run
-from verification.contestants.wrong import padded
 from verification.exact.fourier import symbol_at
 from verification.properties.textbook import normal_offsets, shear_offsets
 
@@ -129,29 +126,6 @@ def test_a_bed_stands_in_all_corners_and_on_all_edges() -> None:
     assert all(edge[1:-1].any() for edge in (contact[0], contact[-1], contact[:, 0], contact[:, -1]))
     bed = Bed(uneven(contact, 1))
     assert 0 <= bed.gap[contact].min() < bed.gap[contact].max() < 1e-2 * FAR
-
-
-@pytest.mark.parametrize(
-    ("name", "cases"),
-    [
-        ("reduced_modulus", ["memory", "memory-periodic"]),
-        ("spacing", ["memory", "memory-periodic"]),
-        ("shear_compliance", ["sheared-pins", "periodic-sheared-pins"]),
-        ("sliding_direction", ["sheared-pins", "periodic-sheared-pins"]),
-        ("periodic", ["memory-borders"]),
-        ("beta", ["memory-coupling"]),
-        ("tau", ["memory-coupling"]),
-    ],
-)
-def test_a_solver_that_keeps_one_parameter_is_seen(name: str, cases: list[str]) -> None:
-    results = run(Wrong(Remembering(name)), [f"contestant/{case}" for case in cases])
-    assert [r.status for r in results] == ["fail"] * len(cases)
-
-
-@pytest.mark.parametrize(("cap", "seen"), [(256, "fail"), (384, "pass")])
-def test_a_capped_padding_is_seen_where_it_is_too_short(cap: int, seen: str) -> None:
-    (result,) = run(Wrong(padded(lambda M: min(2 * M, cap))), ["contestant/wide-pins"])
-    assert result.status == seen
 
 
 def test_the_note_tells_where_a_wrong_answer_is_off() -> None:

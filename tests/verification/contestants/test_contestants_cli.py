@@ -16,6 +16,7 @@ from verification.cli.contestant import _source, add_options
 from verification.cli.contestant_report import Judged, unseen_faults
 from verification.contestants import isolated, own
 from verification.contestants.check import Fault
+from verification.contestants.faulty_solvers.table import FAULTY
 from verification.contestants.isolated import Named
 from verification.contestants.protocol import Abilities, abilities_of
 from verification.contestants.suite import suite
@@ -257,7 +258,7 @@ def test_the_suite_and_the_self_test_can_be_listed(capfd: Capture) -> None:
     assert "contestant/trailing-shift" in capfd.readouterr().out
     assert main(["verify", "--self-test", "--list"]) == 0
     listed = capfd.readouterr().out.splitlines()
-    assert len([line for line in listed if "contestants/catches-" in line]) == len(Fault)
+    assert len([line for line in listed if "contestants/catches-" in line]) == len(FAULTY)
     assert own.solve.version.startswith("refimpl ")
 
 

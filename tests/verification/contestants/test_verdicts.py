@@ -9,8 +9,8 @@ import pytest
 
 from refimpl.grid import Array
 from verification.contestants import own
-from verification.contestants.broken import Wrong
 from verification.contestants.check import MODULUS
+from verification.contestants.faulty_solvers.table import Faulty
 from verification.contestants.protocol import ContactProblem
 from verification.contestants.suite import run
 
@@ -24,6 +24,6 @@ def test_a_load_that_is_missed_alone_is_seen(light: float) -> None:
         answer: Any = own.solve(problem)
         return np.asarray(answer.pressure) * (1.0001 if missed else 1.0)
 
-    (result,) = run(Wrong(solver), ["contestant/load-balance"])
+    (result,) = run(Faulty(solver), ["contestant/load-balance"])
     assert result.status == "fail"
     assert result.value == pytest.approx(1e4, rel=1e-3)

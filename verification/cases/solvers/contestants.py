@@ -1,12 +1,12 @@
-"""The suite for anyone's solver, tested: our own passes, and every broken one fails where it should."""
+"""The suite for anyone's solver, tested: our own passes, and every faulty one fails where it should."""
 
 from __future__ import annotations
 
 from functools import cache
 
 from verification.contestants import own
-from verification.contestants.broken import BROKEN
 from verification.contestants.check import Fault
+from verification.contestants.faulty_solvers.table import FAULTY
 from verification.contestants.suite import run, suite
 from verification.framework.case import Measured
 from verification.framework.registry import case
@@ -21,7 +21,7 @@ NAMED = tuple(check.id for check in suite() if not check.slug.startswith("design
 @cache
 def verdicts(fault: Fault) -> dict[str, str]:
     """Status of every case of the suite, by slug, for the solver with a fault."""
-    return {r.id.partition("/")[2]: r.status for r in run(BROKEN[fault](), NAMED)}
+    return {r.id.partition("/")[2]: r.status for r in run(FAULTY[fault](), NAMED)}
 
 
 @case(
@@ -68,7 +68,7 @@ def _declare(fault: Fault) -> None:
         return Measured(len(missed), 0.0, unit="cases", data={"named in": naming, "also": others}, note=note)
 
 
-for _fault in BROKEN:
+for _fault in FAULTY:
     _declare(_fault)
 
 
@@ -84,7 +84,7 @@ for _fault in BROKEN:
     tags=("contestant", "self-test"),
 )
 def each_case_earns_its_place() -> Measured:
-    found = {fault: verdicts(fault) for fault in BROKEN}
+    found = {fault: verdicts(fault) for fault in FAULTY}
     named = [c for c in suite() if c.id in NAMED]
     idle = [c.slug for c in named if not any(found[fault][c.slug] == "fail" for fault in found)]
     data = {
