@@ -1,0 +1,66 @@
+"""Cases of the covering designs: one problem each, held to the claim by its recomputed residual.
+
+A case of ``memory`` poses three in turn. A flat periodic gap stores no energy: its pressure is the mean one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from verification.framework.case import Measured, Metric
+from verification.solver_suite import reference_solution
+from verification.solver_suite.check import CLAIMS, Check, Entrant, Pressed, register
+from verification.solver_suite.checks.residuals import CLAIM, PERIODIC_SOURCE, SOURCE, judged
+from verification.solver_suite.design import further_rows, in_turn, posed, rows, seed_of
+
+
+def _judged(entrant: Entrant, pressed: Pressed) -> Measured:
+    problem, f = pressed.problem, pressed.pressure
+    if problem.load is None or not reference_solution.stores_no_energy(problem):
+        return judged(entrant, pressed)
+    mean = problem.load / problem.area
+    off = float(np.abs(f / mean - 1).max())
+    return Measured(off**2 / entrant.claim, unit=CLAIMS, note=f"off the mean pressure by {off:.1e}")
+
+
+def _check(design: str, number: int, row: dict[str, Any]) -> Check:
+    levels = ", ".join(f"{name} {level}" for name, level in row.items())
+    seed = seed_of(design, number)
+
+    def covered(entrant: Entrant) -> Measured:
+        answers = [entrant.pose(posed(each, seed, entrant.claim)) for each in in_turn(row)]
+        return max((_judged(entrant, each) for each in answers), key=lambda found: found.value)
+
+    return Check(
+        slug=f"design-{design}-{number:02}",
+        title=f"Covering design, {design}, problem {number}",
+        claim=f"The residuals meet the claim with {levels}",
+        source=PERIODIC_SOURCE if row["borders"] == "periodic" else SOURCE,
+        metric=Metric.AT_MOST,
+        tolerance=1.01,
+        tolerance_reason=CLAIM,
+        catches=(),
+        judge=covered,
+    )
+
+
+def _checks(designs: Mapping[str, Sequence[dict[str, Any]]]) -> tuple[Check, ...]:
+    return tuple(
+        _check(design, number, row)
+        for design, found in designs.items()
+        for number, row in enumerate(found, start=1)
+    )
+
+
+@cache
+def further() -> tuple[Check, ...]:
+    """Checks of the further designs, which ``--thorough`` adds to the suite."""
+    return _checks(further_rows())
+
+
+for _each in _checks(rows()):
+    register(_each)
