@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from verification.framework.case import Result
     from verification.solver_suite.check import Check
-    from verification.solver_suite.serving import Source
+    from verification.solver_suite.process import Source
 
 ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation", "thorough")
 
@@ -149,7 +149,7 @@ def _judged(
     """Judge the solver case by case; an end by a signal keeps the verdicts so far."""
     from verification.framework.files import Progress
     from verification.solver_suite import isolated
-    from verification.solver_suite.ending import Ended, unwinding
+    from verification.solver_suite.process import Ended, unwinding
 
     start, progress = time.perf_counter(), Progress(len(checks))
     results: list[Result] = []
@@ -191,7 +191,7 @@ def _write_table(path: Path, entry: Mapping[str, Any], results: Sequence[Result]
 
 def _end_as(ended: BaseException | None) -> None:
     """End as the signal or Ctrl-C would have, once what is judged is shown and written."""
-    from verification.solver_suite.ending import Ended
+    from verification.solver_suite.process import Ended
 
     if isinstance(ended, Ended):
         os.kill(os.getpid(), ended.number)

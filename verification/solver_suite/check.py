@@ -11,8 +11,7 @@ import numpy as np
 from refimpl.grid import Array
 from verification.framework.case import Case, Measured, Metric
 from verification.solver_suite import numbers, reference_solution
-from verification.solver_suite.asking import ask
-from verification.solver_suite.protocol import ContactProblem, Contestant, Coupling, abilities_of
+from verification.solver_suite.protocol import ContactProblem, Contestant, Coupling, abilities_of, ask
 
 MODULUS = 2e9
 """Reduced modulus E* (Pa) of the suite's problems."""

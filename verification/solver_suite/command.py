@@ -38,7 +38,7 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
-from verification.solver_suite.ending import told
+from verification.solver_suite.process import exit_text
 from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem
 
 LONGEST = 86400.0
@@ -121,7 +121,7 @@ class Command:
             finally:
                 _end(process)
             if status:
-                raise BadAnswer(f"{told(status)}: {_last_line(output)}")
+                raise BadAnswer(f"{exit_text(status)}: {_last_line(output)}")
 
 
 def _last_line(output: BinaryIO) -> str:

@@ -1,7 +1,7 @@
 """The suite with a solver in a process of its own: the judge, here, is out of the solver's reach.
 
 A solver may crash, hang, fork, or write into every descriptor that it finds: its case gets an `error`, and a
-new process starts. What it started is ended with it, whatever session that is in (`orphans`).
+new process starts. What it started is ended with it, whatever session that is in (`process.end_all`).
 """
 
 from __future__ import annotations
@@ -11,15 +11,13 @@ import multiprocessing
 import os
 import pickle
 import secrets
-import signal
 import socket
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from multiprocessing import resource_tracker
-from multiprocessing.connection import wait
 from typing import Any
 
 import numpy as np
@@ -28,10 +26,10 @@ from refimpl.errors import InputError
 from refimpl.grid import Array
 from verification.framework.case import Reported, Result, Unavailable
 from verification.framework.workers import interrupts_blocked
-from verification.solver_suite import orphans, wire
+from verification.solver_suite import process
 from verification.solver_suite.check import Check
 from verification.solver_suite.command import require_timeout
-from verification.solver_suite.ending import told
+from verification.solver_suite.process import Source
 from verification.solver_suite.protocol import (
     NUMBERS,
     Abilities,
@@ -40,7 +38,6 @@ from verification.solver_suite.protocol import (
     Contestant,
     abilities_of,
 )
-from verification.solver_suite.serving import PATIENCE, Source, serve
 from verification.solver_suite.suite import select
 
 GRACE = 5.0
@@ -103,7 +100,6 @@ class Remote:
         self._mark, self._number, self._lost = secrets.token_hex(8), 0, False
         self.left: list[str] = []
         resource_tracker.ensure_running()
-        self._others = orphans.children()
         self.abilities = self._open()
 
     def __call__(self, problem: ContactProblem) -> Answer:
@@ -127,50 +123,43 @@ class Remote:
     def _exchange(self, problem: ContactProblem, deadline: float) -> tuple[dict[str, Any], bytes]:
         try:
             question = {"number": self._number}
-            wire.send(self._socket, question, pickle.dumps(problem), seconds=self._limit)
+            process.send(self._socket, question, pickle.dumps(problem), seconds=self._limit)
             reply: dict[str, Any] = {}
             while reply.get("number") != self._number:  # an earlier answer's double is skipped
                 left = max(0.0, deadline - time.monotonic())
-                reply, body = wire.receive(self._socket, seconds=left)
+                reply, body = process.receive(self._socket, seconds=left)
                 if not (isinstance(reply.get("number"), int) and reply["number"] <= self._number):
-                    raise wire.Garbled("an answer to no problem")
+                    raise process.Garbled("an answer to no problem")
             if reply.get("kind") not in ("answer", "failed", "unavailable"):
-                raise wire.Garbled("an answer of no kind")
+                raise process.Garbled("an answer of no kind")
             if reply["kind"] == "answer" and len(body) != problem.gap.nbytes:
-                raise wire.Garbled("pressures of another size")
-        except wire.Late:
+                raise process.Garbled("pressures of another size")
+        except process.Late:
             raise Reported(f"no answer within {self._limit:g} s") from None
-        except wire.Garbled:
+        except process.Garbled:
             raise Reported("the solver's process sent something else than an answer") from None
         except (EOFError, OSError):
-            raise Reported(f"the solver's process died ({told(self._exit_status())})") from None
+            raise Reported(f"the solver's process died ({process.exit_text(self._exit_status())})") from None
         return reply, body
 
     def close(self) -> None:
-        """End the process and what it started: first in good order, then by force."""
-        self._process.terminate()
-        wait([self._process.sentinel], PATIENCE)
-        if self._process.pid is not None:
-            with suppress(ProcessLookupError):  # gone already, or not yet the head of a group
-                os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.kill()
-        self._process.join()
+        """End the process and what it started."""
+        self.left += process.end_all(self._process, self._mark)
         self._socket.close()
-        self.left += orphans.end(self._others, self._mark)
 
     def _open(self) -> Abilities:
-        context, before = multiprocessing.get_context("spawn"), os.environ.get(orphans.MARK)
+        context, before = multiprocessing.get_context("spawn"), os.environ.get(process.SOLVER_OF)
         self._socket, theirs = socket.socketpair()
         self._lost = False
-        os.environ[orphans.MARK] = self._mark
+        os.environ[process.SOLVER_OF] = self._mark
         try:
             with interrupts_blocked():
-                self._process = context.Process(target=serve, args=(theirs, self._source))
+                self._process = context.Process(target=process.serve, args=(theirs, self._source))
                 self._process.start()
         finally:
-            del os.environ[orphans.MARK]
+            del os.environ[process.SOLVER_OF]
             if before is not None:
-                os.environ[orphans.MARK] = before
+                os.environ[process.SOLVER_OF] = before
             theirs.close()
         try:
             return self._greeting()
@@ -181,15 +170,15 @@ class Remote:
     def _greeting(self) -> Abilities:
         """Abilities of the solver. Raises `InputError` for one that is refused, or whose process is lost."""
         try:
-            reply, _ = wire.receive(self._socket, seconds=START)
+            reply, _ = process.receive(self._socket, seconds=START)
             if reply.get("kind") == "refused":
                 raise InputError(str(reply["field"]), str(reply["value"]), str(reply["allowed"]))
             return Abilities(**reply["abilities"])
-        except wire.Late:
+        except process.Late:
             reason = f"no end within {START:g} s"
         except (EOFError, OSError):
-            reason = f"its process died, {told(self._exit_status())}"
-        except (wire.Garbled, KeyError, TypeError):
+            reason = f"its process died, {process.exit_text(self._exit_status())}"
+        except (process.Garbled, KeyError, TypeError):
             reason = "its process sent something else than its abilities"
         raise InputError("--solver", self._name, f"a solver whose import ends well ({reason})")
 
@@ -218,7 +207,6 @@ def run(
     """
     chosen, results = select(globs, among), []
     with ExitStack() as ending:
-        ending.enter_context(orphans.adopting())
         remote = Remote(source, timeout, name)
         ending.callback(lambda: any(map(left, remote.left)))
         ending.callback(remote.close)

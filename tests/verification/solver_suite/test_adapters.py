@@ -15,9 +15,8 @@ from verification.adapters import aspher, contactmechanics, negative_controls, s
 from verification.adapters.published_code import Peer, PeerAnswer, closure
 from verification.framework.case import Unavailable
 from verification.solver_suite import gaps, reference_solution, suite
-from verification.solver_suite.asking import ask
 from verification.solver_suite.own import solve as own
-from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported
+from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported, ask
 
 PEERS = (tamaas.solve, contactmechanics.solve, aspher.solve)
 TABLE_1 = {"side": 1.61e-3, "radius": 0.14, "load": 70.0, "modulus": 1 / (0.91 / 200e9 + 0.91 / 118e9)}

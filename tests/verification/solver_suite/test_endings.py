@@ -8,12 +8,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import psutil
 import pytest
 
 from tests.verification.cli.children import forked, started
-from verification.solver_suite.ending import Ended, unwinding
+from verification.solver_suite.process import Ended, unwinding
 
-needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks processes up in /proc")
 SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
 SOLVER = """
 import os, time
@@ -28,10 +28,7 @@ def solve(problem):
 
 def running(pid: int) -> bool:
     """Whether a process is there and no zombie, which only its parent could bury."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
+    return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
 
 
 def until(seconds: float, what: str, holds: Callable[[], object]) -> None:
@@ -41,7 +38,6 @@ def until(seconds: float, what: str, holds: Callable[[], object]) -> None:
         time.sleep(0.05)
 
 
-@needs_proc
 @pytest.mark.parametrize(
     ("solver", "how"),
     [

@@ -12,11 +12,18 @@ import pytest
 from refimpl.grid import Array
 from verification.framework.case import Disproved
 from verification.solver_suite import numbers, own, reference_solution
-from verification.solver_suite.asking import ask
 from verification.solver_suite.command import Command
 from verification.solver_suite.design import posed, rows
 from verification.solver_suite.isolated import Limited, run
-from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
+from verification.solver_suite.protocol import (
+    NUMBERS,
+    Abilities,
+    Answer,
+    BadAnswer,
+    ContactProblem,
+    Coupling,
+    ask,
+)
 from verification.solver_suite.suite import run as run_here
 
 HEIGHTS = np.random.default_rng(81).uniform(0, 1e-6, (9, 7))

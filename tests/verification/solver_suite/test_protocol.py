@@ -12,7 +12,6 @@ import pytest
 
 from refimpl.errors import InputError
 from verification.solver_suite import command
-from verification.solver_suite.asking import ask
 from verification.solver_suite.check import Entrant
 from verification.solver_suite.command import Command, read_answer, write_problem
 from verification.solver_suite.protocol import (
@@ -23,6 +22,7 @@ from verification.solver_suite.protocol import (
     Coupling,
     Unsupported,
     abilities_of,
+    ask,
 )
 from verification.solver_suite.suite import run
 
