@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,9 @@ MODULUS = 2e9
 """Reduced modulus E* (Pa) of the suite's problems."""
 COMPLIANCE = 0.3 / (np.pi * MODULUS)
 """c0 (1/Pa) where friction couples: Dundurs' constant 0.3, as of nu = 2/7 against a rigid body."""
+
+Side = float | tuple[float, float]
+"""Length (m) of a square, or lengths of a rectangle along x and y."""
 
 CLAIMS = "claims"
 """Unit of a residual, or of a squared relative error in the energy norm: what the solver claims to reach."""
@@ -103,7 +107,7 @@ class Entrant:
     def press(
         self,
         gap: Array,
-        side: float | tuple[float, float],
+        side: Side = 1.0,
         *,
         load: float | None = None,
         approach: float | None = None,
@@ -183,21 +187,32 @@ def difference(found: Array, exact: Array) -> str:
 
 
 Judge = Callable[[Entrant], Measured]
+Press = Callable[[Entrant], Pressed]
+
+
+def pressing(gap: Array, side: Side = 1.0, *, deep: float | None = None, **how: Any) -> Press:
+    """Return what poses a gap (m) to a solver, by further arguments of `Entrant.press`.
+
+    ``deep`` is an approach (m) from first contact, or of a periodic gap a share of its mean.
+    """
+    if deep is not None:
+        how["approach"] = deep * float(gap.mean()) if how.get("periodic") else float(gap.min()) + deep
+    return lambda entrant: entrant.press(gap, side, **how)
 
 
 @dataclass(frozen=True)
 class Check:
-    """A case of the suite; ``case`` fills in the solver under test."""
+    """A case of the suite, as a row of a table; ``case`` fills in the solver under test."""
 
     slug: str
     title: str
     claim: str
     source: str
-    metric: Metric
     tolerance: float
     tolerance_reason: str
     catches: tuple[Fault, ...]
     judge: Judge
+    metric: Metric = Metric.AT_MOST
 
     @property
     def id(self) -> str:
@@ -222,40 +237,3 @@ class Check:
             function=lambda: self.judge(Entrant(contestant)),
             tags=("contestant",),
         )
-
-
-_declared: dict[str, Check] = {}
-
-
-def check(
-    slug: str,
-    *,
-    title: str,
-    claim: str,
-    source: str,
-    metric: str,
-    tolerance: float,
-    tolerance_reason: str,
-    catches: tuple[Fault, ...],
-) -> Callable[[Judge], Judge]:
-    """Declare the decorated function as a case of the suite. Raises ValueError for a slug that is taken."""
-
-    def declare(judge: Judge) -> Judge:
-        register(
-            Check(slug, title, claim, source, Metric(metric), tolerance, tolerance_reason, catches, judge)
-        )
-        return judge
-
-    return declare
-
-
-def register(made: Check) -> None:
-    """Make a check a case of the suite. Raises ValueError for a slug that is taken."""
-    if made.slug in _declared:
-        raise ValueError(f"check {made.slug!r} is declared twice")
-    _declared[made.slug] = made
-
-
-def declared() -> tuple[Check, ...]:
-    """All checks of the modules imported so far, in their order."""
-    return tuple(_declared.values())

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from verification.solver_suite.protocol import ContactProblem, Coupling
 
 PEAK = 1e-3 * MODULUS
 """Maximum pressure (Pa) of an array."""
+HARDNESS = 0.6 * PEAK
+"""Hardness (Pa) of pins that yield: some half of them are at it."""
 FAR = 0.5
 """Gap (m) of the elements out of reach, on a square of 1 m: a thousand times what an array gives way."""
 PINS = ((0, 0), (0, -1), (-1, 0), (-1, -1), (0, 5), (4, 0), (-1, 7), (8, -1), (2, 3), (2, 4), (5, 5), (6, 5))
@@ -114,15 +117,35 @@ class PinArray:
         approach = self.touch - (float(self.gap.mean()) if self.periodic else 0.0)
         return self._pressed(entrant, approach=approach), self.pressure
 
-    def _pressed(
-        self, entrant: Entrant, *, load: float | None = None, approach: float | None = None
-    ) -> Pressed:
-        return entrant.press(
-            self.gap,
-            1.0,
-            load=load,
-            approach=approach,
-            periodic=self.periodic,
-            coupling=self.coupling,
-            modulus=self.modulus,
-        )
+    def _pressed(self, entrant: Entrant, **control: Any) -> Pressed:
+        how: dict[str, Any] = {"periodic": self.periodic, "coupling": self.coupling, "modulus": self.modulus}
+        return entrant.press(self.gap, **how, **control)
+
+
+@dataclass(frozen=True, eq=False)
+class YieldingPins:
+    """An array of pins, some of them at the hardness: there the bodies overlap by random depths."""
+
+    array: PinArray
+
+    @classmethod
+    def of(cls, pressure: Array, coupling: Coupling | None = None) -> YieldingPins:
+        """Return the free array of pressures that end at the hardness."""
+        return cls(PinArray(np.minimum(pressure, HARDNESS), coupling))
+
+    @property
+    def gap(self) -> Array:
+        """The gap (m) that the pressures close, less the depths where they are at the hardness."""
+        depths = np.random.default_rng(7).uniform(0.05, 0.5, self.array.pressure.shape) * self.array.touch
+        return self.array.gap - np.where(self.array.pressure >= HARDNESS, depths, 0.0)
+
+    def under_load(self, entrant: Entrant) -> tuple[Pressed, Array]:
+        """Return the solver's answer under the load of the pressures, and the pressures."""
+        return self._pressed(entrant, load=self.array.load), self.array.pressure
+
+    def at_approach(self, entrant: Entrant) -> tuple[Pressed, Array]:
+        """Return the solver's answer at the approach of the pressures, and the pressures."""
+        return self._pressed(entrant, approach=self.array.touch), self.array.pressure
+
+    def _pressed(self, entrant: Entrant, **control: Any) -> Pressed:
+        return entrant.press(self.gap, coupling=self.array.coupling, hardness=HARDNESS, **control)

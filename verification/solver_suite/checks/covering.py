@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from verification.framework.case import Measured, Metric
+from verification.framework.case import Measured
 from verification.solver_suite import reference_solution
-from verification.solver_suite.check import CLAIMS, Check, Entrant, Pressed, register
-from verification.solver_suite.checks.residuals import CLAIM, PERIODIC_SOURCE, SOURCE, judged
+from verification.solver_suite.check import CLAIMS, Check, Entrant, Judge, Pressed
+from verification.solver_suite.checks.residuals import PERIODIC_SOURCE, SOURCE, held, judged
 from verification.solver_suite.design import further_rows, in_turn, posed, rows, seed_of
 
 
@@ -27,30 +27,25 @@ def _judged(entrant: Entrant, pressed: Pressed) -> Measured:
     return Measured(off**2 / entrant.claim, unit=CLAIMS, note=f"off the mean pressure by {off:.1e}")
 
 
-def _check(design: str, number: int, row: dict[str, Any]) -> Check:
-    levels = ", ".join(f"{name} {level}" for name, level in row.items())
-    seed = seed_of(design, number)
-
-    def covered(entrant: Entrant) -> Measured:
+def _covered(row: Mapping[str, Any], seed: int) -> Judge:
+    def judge(entrant: Entrant) -> Measured:
         answers = [entrant.pose(posed(each, seed, entrant.claim)) for each in in_turn(row)]
         return max((_judged(entrant, each) for each in answers), key=lambda found: found.value)
 
-    return Check(
-        slug=f"design-{design}-{number:02}",
-        title=f"Covering design, {design}, problem {number}",
-        claim=f"The residuals meet the claim with {levels}",
-        source=PERIODIC_SOURCE if row["borders"] == "periodic" else SOURCE,
-        metric=Metric.AT_MOST,
-        tolerance=1.01,
-        tolerance_reason=CLAIM,
-        catches=(),
-        judge=covered,
-    )
+    return judge
 
 
 def _checks(designs: Mapping[str, Sequence[dict[str, Any]]]) -> tuple[Check, ...]:
     return tuple(
-        _check(design, number, row)
+        held(
+            f"design-{design}-{number:02}",
+            f"Covering design, {design}, problem {number}",
+            "The residuals meet the claim with "
+            + ", ".join(f"{name} {level}" for name, level in row.items()),
+            PERIODIC_SOURCE if row["borders"] == "periodic" else SOURCE,
+            (),
+            _covered(row, seed_of(design, number)),
+        )
         for design, found in designs.items()
         for number, row in enumerate(found, start=1)
     )
@@ -62,5 +57,4 @@ def further() -> tuple[Check, ...]:
     return _checks(further_rows())
 
 
-for _each in _checks(rows()):
-    register(_each)
+CHECKS = _checks(rows())

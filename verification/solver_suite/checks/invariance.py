@@ -5,172 +5,130 @@ Two answers of one claim differ by at most four claims: twice the error in the e
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from refimpl.grid import Array
 from verification.framework.case import Measured
 from verification.solver_suite import reference_solution
-from verification.solver_suite.check import MODULUS, Entrant, Fault, Pressed, check
+from verification.solver_suite.check import MODULUS, Check, Entrant, Judge
+from verification.solver_suite.check import Fault as F
 from verification.solver_suite.checks.residuals import wavy
 from verification.solver_suite.gaps import rough_bump
 
 TWICE = "in claims: two answers, each within one of squared energy-norm error (proven), differ by four"
-LOAD = 0.05 * MODULUS
+LOAD, LIGHT = 0.05 * MODULUS, 0.02 * MODULUS
+"""Load (N) of bumps, and of periodic planes."""
 M = 20
+SMALL, SOFT = 2.0**-20, 2.0**-30
+SHIFT = 7, -9
+Map = Callable[[Array], Array]
 
 
-def bump(seed: int) -> Array:
-    """The rough bump of these checks."""
-    return rough_bump(M, seed)
+class Image(NamedTuple):
+    """Another problem with the same answer, but for a map: of the gap, of the pressures, and what changes."""
+
+    of_gap: Map
+    of_pressure: Map
+    how: dict[str, Any] = {}  # noqa: RUF012  # never changed
 
 
-@check(
-    "mirrors",
-    title="Mirrored along x, and along y",
-    claim="The mirrored gap has the mirrored pressure",
-    source="isotropy of the half-space",
-    metric="at_most",
-    tolerance=4.1,
-    tolerance_reason=TWICE,
-    catches=(Fault.HALF_ELEMENT,),
+def same(of: Map, **how: Any) -> Image:
+    """Return the image whose gap and pressures are mapped alike."""
+    return Image(of, of, how)
+
+
+def images(gap: Array, *others: Image, **how: Any) -> Judge:
+    """Return the judge of a gap and its images: their pressures are images of those of the gap."""
+
+    def judge(entrant: Entrant) -> Measured:
+        first = entrant.press(gap, **{"side": 1.0} | how)
+        found = [entrant.press(each.of_gap(gap), **{"side": 1.0} | how | each.how) for each in others]
+        pairs = zip(found, others, strict=True)
+        return entrant.against(*((one, each.of_pressure(first.pressure)) for one, each in pairs))
+
+    return judge
+
+
+def there_and_back(gap: Array, load: float, **how: Any) -> Judge:
+    """Return the judge of a gap under a load, and at the approach that its pressures say the load takes.
+
+    It is the misfit of the second answer, or the square of its load's relative error if that is more.
+    """
+
+    def judge(entrant: Entrant) -> Measured:
+        first = entrant.press(gap, 1.0, load=load, **how)
+        touch = reference_solution.approach_of(first.problem, first.pressure)
+        approach = touch if first.problem.periodic else touch + float(gap.min())
+        second = entrant.press(gap, 1.0, approach=approach, **how)
+        found, off = entrant.against((second, first.pressure)), second.load / load - 1
+        return replace(found, value=max(found.value, off**2 / entrant.claim))
+
+    return judge
+
+
+def _within(around: float) -> Map:
+    def map_(field: Array) -> Array:
+        n = len(field)
+        wide = np.full((2 * n, 2 * n), around)
+        wide[3 : n + 3, 7 : n + 7] = field
+        return wide
+
+    return map_
+
+
+def _rolled(field: Array) -> Array:
+    return np.roll(field, SHIFT, (0, 1))
+
+
+def _tiled(field: Array) -> Array:
+    return np.tile(field, (2, 2))
+
+
+def _invariant(slug: str, title: str, claim: str, source: str, fault: F | None, judge: Judge) -> Check:
+    return Check(slug, title, claim, source, 4.1, TWICE, () if fault is None else (fault,), judge)
+
+
+# fmt: off
+CHECKS = (
+    _invariant("mirrors", "Mirrored along x, and along y", "The mirrored gap has the mirrored pressure",
+               "isotropy of the half-space", F.HALF_ELEMENT,
+               images(rough_bump(M, 41), same(np.flipud), same(np.fliplr), load=LOAD)),
+    _invariant("transposition", "Axes exchanged on purpose",
+               "The transposed gap has the transposed pressure: no axis is treated unlike the other",
+               "isotropy of the half-space", F.HALF_ELEMENT,
+               images(rough_bump(M, 43), same(np.transpose), load=LOAD)),
+    _invariant("units", "um and Pa, m and GPa",
+               "A square a million times smaller of a material 2^30 times softer has proportional pressures",
+               "dimensional analysis", F.ABSOLUTE_THRESHOLD,
+               images(rough_bump(M, 44), Image(lambda gap: SMALL * gap, lambda f: SOFT * f, {
+                   "side": SMALL, "load": SOFT * SMALL**2 * LOAD, "modulus": SOFT * MODULUS}), load=LOAD)),
+    _invariant("surroundings", "Free surroundings",
+               "The same bump in a square twice as wide, all else out of reach, has the same pressures: "
+               "nothing is repeated beyond the square",
+               "a half-space is free outside; a code that keeps its periodic operator silently fails here",
+               F.PERIODIC_FOR_APERIODIC,
+               images(rough_bump(16, 46), Image(_within(1.5), _within(0.0), {"side": 2.0}), load=LOAD)),
+    Check("there-and-back", "Load to approach and back",
+          "Pressed to the approach that its pressures say a load takes, the bump carries that load again",
+          "the contact problem has one solution", 10.0,
+          "in claims: two answers (four), and the approach recomputed from the first, which a gap "
+          "of one claim leaves uncertain by as much",
+          (F.MEAN_DISPLACEMENT_LOST, F.MEAN_PRESSURE_LOST), there_and_back(rough_bump(M, 47), LOAD)),
+    Check("periodic-there-and-back", "Load to approach and back, periodic",
+          "An approach counts from the mean planes, and takes a periodic plane back to its load",
+          "the contact problem has one solution", 10.0, "as there-and-back",
+          (F.MEAN_PLANES_LOST, F.MEAN_PRESSURE_LOST), there_and_back(wavy(24, 48), LIGHT, periodic=True)),
+    _invariant("periodic-shift", "A periodic plane shifted by whole elements",
+               "The shifted gap has the shifted pressure, across the square's border as well",
+               "translation of a periodic problem", F.APERIODIC_FOR_PERIODIC,
+               images(wavy(24, 49), same(_rolled), load=LIGHT, periodic=True)),
+    _invariant("periodic-tiling", "Four periods in one square",
+               "Two by two copies of a periodic gap have two by two copies of its pressure",
+               "a periodic problem has all multiples of its period", F.APERIODIC_FOR_PERIODIC,
+               images(wavy(16, 50), same(_tiled, side=2.0, load=4 * LIGHT), load=LIGHT, periodic=True)),
 )
-def mirrors(entrant: Entrant) -> Measured:
-    gap = bump(41)
-    first = entrant.press(gap, 1.0, load=LOAD)
-    flipped = [entrant.press(np.flip(gap, axis), 1.0, load=LOAD) for axis in (0, 1)]
-    return entrant.against(*((flipped[axis], np.flip(first.pressure, axis)) for axis in (0, 1)))
-
-
-@check(
-    "transposition",
-    title="Axes exchanged on purpose",
-    claim="The transposed gap has the transposed pressure: no axis is treated unlike the other",
-    source="isotropy of the half-space",
-    metric="at_most",
-    tolerance=4.1,
-    tolerance_reason=TWICE,
-    catches=(Fault.HALF_ELEMENT,),
-)
-def transposition(entrant: Entrant) -> Measured:
-    first, second = (entrant.press(gap, 1.0, load=LOAD) for gap in (bump(43), bump(43).T))
-    return entrant.against((second, first.pressure.T))
-
-
-@check(
-    "units",
-    title="um and Pa, m and GPa",
-    claim="A square a million times smaller of a material 2^30 times softer has proportional pressures",
-    source="dimensional analysis",
-    metric="at_most",
-    tolerance=4.1,
-    tolerance_reason=TWICE,
-    catches=(Fault.ABSOLUTE_THRESHOLD,),
-)
-def units(entrant: Entrant) -> Measured:
-    small, soft = 2.0**-20, 2.0**-30
-    first = entrant.press(bump(44), 1.0, load=LOAD)
-    second = entrant.press(small * bump(44), small, load=soft * small**2 * LOAD, modulus=soft * MODULUS)
-    return entrant.against((second, soft * first.pressure))
-
-
-@check(
-    "surroundings",
-    title="Free surroundings",
-    claim="The same bump in a square twice as wide, all else out of reach, has the same pressures: nothing "
-    "is repeated beyond the square",
-    source="a half-space is free outside; a code that keeps its periodic operator silently fails here",
-    metric="at_most",
-    tolerance=4.1,
-    tolerance_reason=TWICE,
-    catches=(Fault.PERIODIC_FOR_APERIODIC,),
-)
-def surroundings(entrant: Entrant) -> Measured:
-    n = 16
-    gap = rough_bump(n, 46)
-    wide = np.full((2 * n, 2 * n), 1.5)
-    wide[3 : n + 3, 7 : n + 7] = gap
-    small, large = entrant.press(gap, 1.0, load=LOAD), entrant.press(wide, 2.0, load=LOAD)
-    again = np.zeros_like(wide)
-    again[3 : n + 3, 7 : n + 7] = small.pressure
-    return entrant.against((large, again))
-
-
-def loaded_again(entrant: Entrant, first: Pressed, second: Pressed) -> Measured:
-    """Misfit of the second answer, or the square of its load's relative error if that is more."""
-    assert first.problem.load is not None
-    found, off = entrant.against((second, first.pressure)), second.load / first.problem.load - 1
-    return replace(found, value=max(found.value, off**2 / entrant.claim))
-
-
-@check(
-    "there-and-back",
-    title="Load to approach and back",
-    claim="Pressed to the approach that its pressures say a load takes, the bump carries that load again",
-    source="the contact problem has one solution",
-    metric="at_most",
-    tolerance=10.0,
-    tolerance_reason="in claims: two answers (four), and the approach recomputed from the first, which a gap "
-    "of one claim leaves uncertain by as much",
-    catches=(Fault.MEAN_DISPLACEMENT_LOST, Fault.MEAN_PRESSURE_LOST),
-)
-def there_and_back(entrant: Entrant) -> Measured:
-    gap = bump(47)
-    first = entrant.press(gap, 1.0, load=LOAD)
-    touch = reference_solution.approach_of(first.problem, first.pressure)
-    second = entrant.press(gap, 1.0, approach=touch + float(gap.min()))
-    return loaded_again(entrant, first, second)
-
-
-@check(
-    "periodic-there-and-back",
-    title="Load to approach and back, periodic",
-    claim="An approach counts from the mean planes, and takes a periodic plane back to its load",
-    source="the contact problem has one solution",
-    metric="at_most",
-    tolerance=10.0,
-    tolerance_reason="as there-and-back",
-    catches=(Fault.MEAN_PLANES_LOST, Fault.MEAN_PRESSURE_LOST),
-)
-def periodic_there_and_back(entrant: Entrant) -> Measured:
-    load = 0.02 * MODULUS
-    first = entrant.press(wavy(24, 48), 1.0, load=load, periodic=True)
-    approach = reference_solution.approach_of(first.problem, first.pressure)
-    second = entrant.press(wavy(24, 48), 1.0, approach=approach, periodic=True)
-    return loaded_again(entrant, first, second)
-
-
-@check(
-    "periodic-shift",
-    title="A periodic plane shifted by whole elements",
-    claim="The shifted gap has the shifted pressure, across the square's border as well",
-    source="translation of a periodic problem",
-    metric="at_most",
-    tolerance=4.1,
-    tolerance_reason=TWICE,
-    catches=(Fault.APERIODIC_FOR_PERIODIC,),
-)
-def periodic_shift(entrant: Entrant) -> Measured:
-    gap, shift = wavy(24, 49), (7, -9)
-    first, second = (
-        entrant.press(g, 1.0, load=0.02 * MODULUS, periodic=True) for g in (gap, np.roll(gap, shift, (0, 1)))
-    )
-    return entrant.against((second, np.roll(first.pressure, shift, (0, 1))))
-
-
-@check(
-    "periodic-tiling",
-    title="Four periods in one square",
-    claim="Two by two copies of a periodic gap have two by two copies of its pressure",
-    source="a periodic problem has all multiples of its period",
-    metric="at_most",
-    tolerance=4.1,
-    tolerance_reason=TWICE,
-    catches=(Fault.APERIODIC_FOR_PERIODIC,),
-)
-def periodic_tiling(entrant: Entrant) -> Measured:
-    gap = wavy(16, 50)
-    one = entrant.press(gap, 1.0, load=0.02 * MODULUS, periodic=True)
-    four = entrant.press(np.tile(gap, (2, 2)), 2.0, load=0.08 * MODULUS, periodic=True)
-    return entrant.against((four, np.tile(one.pressure, (2, 2))))
+# fmt: on

@@ -1,4 +1,4 @@
-"""Beds of pins that slide, free and periodic, under a load and at an approach: pressures chosen beforehand.
+"""Arrays of pins that slide, free and periodic, under a load and at an approach: pressures chosen beforehand.
 
 Their pressures span two and a half decades, so that tau moves most of what barely carries anything. That no
 other active set of tau gives a solution is tested for every array, over all 4096 supports.
@@ -6,9 +6,9 @@ other active set of tau gives a solution is tested for every array, over all 409
 
 from __future__ import annotations
 
-from verification.framework.case import Measured
-from verification.solver_suite.check import COMPLIANCE, Entrant, Fault, check
-from verification.solver_suite.checks.exact import BOUND, SOURCE, TWO_SIDED
+from verification.solver_suite.check import COMPLIANCE, Check
+from verification.solver_suite.check import Fault as F
+from verification.solver_suite.checks.exact import BOUND, SOURCE, TWO_SIDED, by_approach, by_load
 from verification.solver_suite.checks.residuals import AND_MEAN
 from verification.solver_suite.pin_arrays import PEAK, PinArray, graded, standing
 from verification.solver_suite.protocol import Coupling
@@ -25,90 +25,35 @@ PERIODIC = tuple(PinArray(graded(standing(13), 3), coupling, periodic=True) for 
 """An odd number of elements has no Nyquist frequency to disagree about."""
 SIGNS = "; c is lower minus upper, and odd in the offset (verification.solver_suite.protocol)"
 SYMBOLS = "the exact Fourier symbols (verification.exact.fourier)" + SIGNS
-BY_LOAD = BOUND + "it holds with c, which is skew"
+SKEW = BOUND + "it holds with c, which is skew"
 FRICTION = (
-    Fault.SIGN_OF_C,
-    Fault.TAU_MISSING,
-    Fault.TAU_EVERYWHERE,
-    Fault.TAU_NOT_ON_ALL,
-    Fault.TRANSPOSED,
-    Fault.HALF_ELEMENT,
-    Fault.MODULUS_OFF,
+    *(F.SIGN_OF_C, F.TAU_MISSING, F.TAU_EVERYWHERE, F.TAU_NOT_ON_ALL),
+    *(F.TRANSPOSED, F.HALF_ELEMENT, F.MODULUS_OFF),
 )
-IN_PERIODS = (
-    Fault.APERIODIC_FOR_PERIODIC,
-    Fault.TAU_BESIDE,
-    Fault.TAU_ALONG_X,
-    Fault.SIGN_OF_C_LOST,
+IN_PERIODS = (F.APERIODIC_FOR_PERIODIC, F.TAU_BESIDE, F.TAU_ALONG_X, F.SIGN_OF_C_LOST)
+
+# fmt: off
+CHECKS = (
+    Check("sheared-pins", "A bed of pins that slides",
+          "With tau and beta, at two c0 of unlike sign and in two oblique directions, each changed alone, "
+          "the pins carry the pressures that were chosen, down to 0.3 % of the largest",
+          SOURCE + SIGNS, 1.1, SKEW,
+          (*FRICTION, F.C0_KEPT, F.DIRECTION_KEPT, F.CORNER_LEFT_OUT, F.PADDING_SHORT), by_load(*FREE)),
+    Check("sheared-pins-approach", "A bed of pins that slides at a prescribed approach",
+          "The sliding pins carry the same pressures at the approach that their load takes",
+          SOURCE + SIGNS, 2.0, TWO_SIDED,
+          (*FRICTION, F.MEAN_DISPLACEMENT_LOST, F.CORNER_LEFT_OUT, F.PADDING_SHORT, F.UNCOUPLED_AT_APPROACH),
+          by_approach(FREE[-1])),
+    Check("periodic-sheared-pins", "A periodic bed of pins that slides",
+          "With tau and beta, at two c0 of unlike sign and in two oblique directions, each changed alone, "
+          "the pins carry the pressures that were chosen, across the border as well",
+          SYMBOLS, 1.1, SKEW, (*FRICTION, *IN_PERIODS, F.C0_KEPT, F.DIRECTION_KEPT, F.ODD_GRIDS),
+          by_load(*PERIODIC)),
+    Check("periodic-sheared-pins-approach", "A periodic bed of pins that slides at a prescribed approach",
+          "The sliding pins carry the same pressures at the approach of mean planes that their load takes",
+          SYMBOLS, 2.0, AND_MEAN + "3.0 here",
+          (*FRICTION, *IN_PERIODS, F.MEAN_PLANES_LOST, F.MEAN_PRESSURE_ADDED, F.UNCOUPLED_AT_APPROACH,
+           F.ODD_GRIDS),
+          by_approach(PERIODIC[-1])),
 )
-
-
-@check(
-    "sheared-pins",
-    title="A bed of pins that slides",
-    claim="With tau and beta, at two c0 of unlike sign and in two oblique directions, each changed alone, "
-    "the pins carry the pressures that were chosen, down to 0.3 % of the largest",
-    source=SOURCE + SIGNS,
-    metric="at_most",
-    tolerance=1.1,
-    tolerance_reason=BY_LOAD,
-    catches=(*FRICTION, Fault.C0_KEPT, Fault.DIRECTION_KEPT, Fault.CORNER_LEFT_OUT, Fault.PADDING_SHORT),
-)
-def sheared_pins(entrant: Entrant) -> Measured:
-    return entrant.against(*(array.under_load(entrant) for array in FREE))
-
-
-@check(
-    "sheared-pins-approach",
-    title="A bed of pins that slides at a prescribed approach",
-    claim="The sliding pins carry the same pressures at the approach that their load takes",
-    source=SOURCE + SIGNS,
-    metric="at_most",
-    tolerance=2.0,
-    tolerance_reason=TWO_SIDED,
-    catches=(
-        *FRICTION,
-        Fault.MEAN_DISPLACEMENT_LOST,
-        Fault.CORNER_LEFT_OUT,
-        Fault.PADDING_SHORT,
-        Fault.UNCOUPLED_AT_APPROACH,
-    ),
-)
-def sheared_pins_approach(entrant: Entrant) -> Measured:
-    return entrant.against(FREE[-1].at_approach(entrant))
-
-
-@check(
-    "periodic-sheared-pins",
-    title="A periodic bed of pins that slides",
-    claim="With tau and beta, at two c0 of unlike sign and in two oblique directions, each changed alone, "
-    "the pins carry the pressures that were chosen, across the border as well",
-    source=SYMBOLS,
-    metric="at_most",
-    tolerance=1.1,
-    tolerance_reason=BY_LOAD,
-    catches=(*FRICTION, *IN_PERIODS, Fault.C0_KEPT, Fault.DIRECTION_KEPT, Fault.ODD_GRIDS),
-)
-def periodic_sheared_pins(entrant: Entrant) -> Measured:
-    return entrant.against(*(array.under_load(entrant) for array in PERIODIC))
-
-
-@check(
-    "periodic-sheared-pins-approach",
-    title="A periodic bed of pins that slides at a prescribed approach",
-    claim="The sliding pins carry the same pressures at the approach of mean planes that their load takes",
-    source=SYMBOLS,
-    metric="at_most",
-    tolerance=2.0,
-    tolerance_reason=AND_MEAN + "3.0 here",
-    catches=(
-        *FRICTION,
-        *IN_PERIODS,
-        Fault.MEAN_PLANES_LOST,
-        Fault.MEAN_PRESSURE_ADDED,
-        Fault.UNCOUPLED_AT_APPROACH,
-        Fault.ODD_GRIDS,
-    ),
-)
-def periodic_sheared_pins_approach(entrant: Entrant) -> Measured:
-    return entrant.against(PERIODIC[-1].at_approach(entrant))
+# fmt: on

@@ -8,8 +8,9 @@ from refimpl.grid import Array, Mask
 from verification.exact.hertz import UNCERTAINTY, Ellipse, Sphere
 from verification.exact.power_law import Cone, PowerLaw
 from verification.exact.punch import UNCERTAINTY_SQUARE, CircularPunch, square_stiffness
-from verification.framework.case import Measured
-from verification.solver_suite.check import MODULUS, Entrant, Fault, Pressed, check, difference
+from verification.framework.case import Measured, Metric
+from verification.solver_suite.check import MODULUS, Check, Entrant, Pressed, difference
+from verification.solver_suite.check import Fault as F
 from verification.solver_suite.gaps import centres
 
 M = 32
@@ -18,7 +19,11 @@ ELLIPSE = Ellipse(load=1.0, curvature_x=2.0, curvature_y=6.0, modulus=MODULUS)
 CONE = Cone(load=1.0, slope=0.05, modulus=MODULUS)
 WIDE = 2.4
 """Side of the square over the contact's largest radius."""
-BOTH_MODULI = (Fault.MODULUS_OFF, Fault.MODULUS_DOUBLED)
+SIDE = WIDE * SPHERE.contact_radius
+"""Side (m) of the square under `SPHERE`."""
+BOTH_MODULI = (F.MODULUS_OFF, F.MODULUS_DOUBLED)
+Fields = tuple[Array, Array]
+"""Pressures (Pa) that were found, and the exact ones."""
 
 
 def relative_l2(found: Array, exact: Array) -> float:
@@ -37,108 +42,41 @@ def sphere(side: float, n: int) -> Array:
     return np.asarray((x**2 + y**2) / (2 * SPHERE.radius))
 
 
-@check(
-    "hertz-peak",
-    title="Hertz: peak pressure under a load",
-    claim="A paraboloid under a load has Hertz' peak pressure",
-    source="Hertz 1882; Johnson 1985, Eq. (4.24)",
-    metric="relative",
-    tolerance=0.002,
-    tolerance_reason="order 2 in h/a: 1.0e-3 measured at 13 elements across the radius. 1 % of modulus is "
-    "worth 6.7e-3",
-    catches=BOTH_MODULI,
-)
-def hertz_peak(entrant: Entrant) -> Measured:
-    pressed = entrant.press(sphere(WIDE * SPHERE.contact_radius, M), WIDE * SPHERE.contact_radius, load=1.0)
-    exact = SPHERE.peak_pressure
+def off_centre(entrant: Entrant, n: int, x0: float, y0: float) -> Fields:
+    """Pressures of `SPHERE` with its tip off the middle, by shares of the side."""
+    side = 3.2 * SPHERE.contact_radius
+    x, y = centres(side, n)
+    x, y = x - x0 * side, y - y0 * side
+    pressed = entrant.press((x**2 + y**2) / (2 * SPHERE.radius), side, load=1.0)
+    return pressed.pressure, SPHERE.pressure(np.hypot(x, y))
+
+
+def ellipse(entrant: Entrant, n: int) -> Fields:
+    """Pressures of `ELLIPSE`."""
+    side = WIDE * ELLIPSE.semi_axes[0]
+    x, y = centres(side, n)
+    pressed = entrant.press(ELLIPSE.curvature_x / 2 * x**2 + ELLIPSE.curvature_y / 2 * y**2, side, load=1.0)
+    return pressed.pressure, ELLIPSE.pressure(x, y)
+
+
+def cone(entrant: Entrant, n: int) -> Fields:
+    """Pressures of `CONE`."""
+    side = WIDE * CONE.contact_radius
+    r = np.hypot(*centres(side, n))
+    return entrant.press(CONE.slope * r, side, load=1.0).pressure, CONE.pressure(r)
+
+
+def _peak(entrant: Entrant) -> Measured:
+    pressed, exact = entrant.press(sphere(SIDE, M), SIDE, load=1.0), SPHERE.peak_pressure
     return Measured(float(pressed.pressure.max()), exact, exact * UNCERTAINTY, "Pa")
 
 
-@check(
-    "hertz-load",
-    title="Hertz: load at a prescribed approach",
-    claim="P = 4/3 E* sqrt(R) delta^(3/2), the approach counted from the tip between four centres",
-    source="Hertz 1882; Johnson 1985, Eq. (4.23)",
-    metric="relative",
-    tolerance=0.001,
-    tolerance_reason="order 2 in h/a with scatter: 1.5e-4 measured, 7e-4 at most with 26 to 48 elements. 1 % "
-    "of modulus is 1 % of load",
-    catches=(*BOTH_MODULI, Fault.MEAN_DISPLACEMENT_LOST),
-)
-def hertz_load(entrant: Entrant) -> Measured:
-    side = WIDE * SPHERE.contact_radius
-    pressed = entrant.press(sphere(side, M), side, approach=SPHERE.approach)
+def _load(entrant: Entrant) -> Measured:
+    pressed = entrant.press(sphere(SIDE, M), SIDE, approach=SPHERE.approach)
     return Measured(pressed.load, 1.0, UNCERTAINTY, "N")
 
 
-@check(
-    "hertz-off-centre",
-    title="Hertz: near a corner of the square",
-    claim="A half-space is free outside the square, so a contact beside its corner is Hertz' all the same",
-    source="Johnson 1985, Eq. (3.39); what a periodic image would add",
-    metric="at_most",
-    tolerance=0.03,
-    tolerance_reason="relative L2; square-root edges: order 1, 2.4e-2 measured at 10 elements across the "
-    "radius",
-    catches=(Fault.PERIODIC_FOR_APERIODIC, Fault.TRANSPOSED),
-)
-def hertz_off_centre(entrant: Entrant) -> Measured:
-    side = 3.2 * SPHERE.contact_radius
-    x, y = centres(side, M)
-    x, y = x - 5.5 * side / M, y + 3.5 * side / M
-    pressed = entrant.press((x**2 + y**2) / (2 * SPHERE.radius), side, load=1.0)
-    return apart(pressed.pressure, SPHERE.pressure(np.hypot(x, y)))
-
-
-@check(
-    "hertz-ellipse",
-    title="Elliptical Hertz contact: pressure element by element",
-    claim="The long semi-axis of a paraboloid of curvatures 2 and 6 lies along x, where it is flatter",
-    source="Johnson 1985, section 4.2; Carlson's integrals",
-    metric="at_most",
-    tolerance=0.02,
-    tolerance_reason="relative L2; square-root edges: order 1, 1.7e-2 measured at 13 elements across "
-    "the long semi-axis. Exchanged axes miss by 60 %, half an element by 10 %",
-    catches=(Fault.TRANSPOSED, Fault.HALF_ELEMENT, Fault.MODULUS_DOUBLED),
-)
-def hertz_ellipse(entrant: Entrant) -> Measured:
-    side = WIDE * ELLIPSE.semi_axes[0]
-    x, y = centres(side, M)
-    pressed = entrant.press(ELLIPSE.curvature_x / 2 * x**2 + ELLIPSE.curvature_y / 2 * y**2, side, load=1.0)
-    return apart(pressed.pressure, ELLIPSE.pressure(x, y))
-
-
-@check(
-    "cone",
-    title="Cone: pressure element by element",
-    claim="The pressure is E* slope/2 arccosh(a/r), logarithmic at the tip",
-    source="Sneddon 1965; Johnson 1985, section 5.2",
-    metric="at_most",
-    tolerance=0.013,
-    tolerance_reason="relative L2: order 1 by tip and edge alike, 1.04e-2 measured at 13 elements across the "
-    "radius",
-    catches=(Fault.MODULUS_DOUBLED, Fault.HALF_ELEMENT),
-)
-def cone(entrant: Entrant) -> Measured:
-    side = WIDE * CONE.contact_radius
-    r = np.hypot(*centres(side, M))
-    pressed = entrant.press(CONE.slope * r, side, load=1.0)
-    return apart(pressed.pressure, CONE.pressure(r))
-
-
-@check(
-    "load-doubling",
-    title="Load doubling of power-law indenters",
-    claim="On r, r^2, r^4 the load within half the first contact's radius is Galin's, before and after the "
-    "load is doubled",
-    source="Galin 1961; Sneddon 1965; Archard 1957 for the meaning",
-    metric="at_most",
-    tolerance=0.007,
-    tolerance_reason="relative; the cone's tip, logarithmic, is worth h^2 of load: 4.7e-3 measured at ten "
-    "elements across the first contact's radius",
-    catches=(Fault.MODULUS_DOUBLED,),
-)
-def load_doubling(entrant: Entrant) -> Measured:
+def _load_doubling(entrant: Entrant) -> Measured:
     worst, ratios = 0.0, []
     for n in (1.0, 2.0, 4.0):
         light, heavy = (PowerLaw(P, 0.05, n, MODULUS) for P in (1.0, 2.0))
@@ -154,48 +92,77 @@ def load_doubling(entrant: Entrant) -> Measured:
     return Measured(worst, unit="relative", data={"exponent": [1.0, 2.0, 4.0], "core load ratio": ratios})
 
 
-def punch(entrant: Entrant, inside: Mask, side: float) -> Pressed:
+def _punch(entrant: Entrant, inside: Mask, side: float) -> Pressed:
     """A flat punch at an approach of 1 mm; the elements outside it stand off by 1 m."""
     return entrant.press(np.where(inside, 0.0, 1.0), side, approach=1e-3)
 
 
-@check(
-    "square-punch",
-    title="Square flat punch: stiffness",
-    claim="Freed of its edges' and corners' known orders, the stiffness of four grids is the electrified "
-    "plate's, 1.1523 E* (2a)",
-    source="Read 1997 and Hwang and Mascagni 2004 (0.3667874); own graded collocation (0.3667880)",
-    metric="relative",
-    tolerance=4e-4,
-    tolerance_reason="least squares in 1, h (edges, d^-1/2) and h^1.593 (corners): the next term, h^2, moves "
-    "the limit by 1e-4 on grids of 6 to 15 elements",
-    catches=(*BOTH_MODULI, Fault.NEAR_FIELD, Fault.MEAN_DISPLACEMENT_LOST),
-)
-def square_punch(entrant: Entrant) -> Measured:
+def _square_punch(entrant: Entrant) -> Measured:
     grids, loads = np.array([12, 18, 24, 30]), []
     for n in grids:
         x, y = centres(3.0, int(n))
-        loads.append(punch(entrant, np.maximum(abs(x), abs(y)) <= 1, 3.0).load / 1e-3)
+        loads.append(_punch(entrant, np.maximum(abs(x), abs(y)) <= 1, 3.0).load / 1e-3)
     h = 1 / grids
     limit = np.linalg.lstsq(np.column_stack([h**0, h, h**1.593]), np.asarray(loads))[0][0]
     exact = square_stiffness(2.0, MODULUS)
     return Measured(float(limit), exact, UNCERTAINTY_SQUARE * exact, "N/m", {"M": grids, "P/delta": loads})
 
 
-@check(
-    "circular-punch",
-    title="Circular flat punch: pressure away from the edge",
-    claim="Within 0.7 a the mean pressure is that of P/(2 pi a^2) (1 - r^2/a^2)^(-1/2) at P = 2 a E* delta",
-    source="Boussinesq 1885; Johnson 1985, Eq. (3.34)",
-    metric="relative",
-    tolerance=0.02,
-    tolerance_reason="the staircase outline moves the edge by a share of h: 0.35 h/a at most, 2.6e-2, on the "
-    "stiffness, and half of it was measured here",
-    catches=(Fault.MODULUS_DOUBLED, Fault.MEAN_DISPLACEMENT_LOST),
-)
-def circular_punch(entrant: Entrant) -> Measured:
+def _circular_punch(entrant: Entrant) -> Measured:
     side = 2.4
     r = np.hypot(*centres(side, M))
-    found = punch(entrant, r <= 1, side).pressure[r < 0.7].mean()
+    found = _punch(entrant, r <= 1, side).pressure[r < 0.7].mean()
     exact = float(CircularPunch(2 * MODULUS * 1e-3, 1.0, MODULUS).pressure(r[r < 0.7]).mean())
     return Measured(float(found), exact, 0.0, "Pa")
+
+
+# fmt: off
+CHECKS = (
+    Check("hertz-peak", "Hertz: peak pressure under a load",
+          "A paraboloid under a load has Hertz' peak pressure",
+          "Hertz 1882; Johnson 1985, Eq. (4.24)", 0.002,
+          "order 2 in h/a: 1.0e-3 measured at 13 elements across the radius. 1 % of modulus is "
+          "worth 6.7e-3", BOTH_MODULI, _peak, Metric.RELATIVE),
+    Check("hertz-load", "Hertz: load at a prescribed approach",
+          "P = 4/3 E* sqrt(R) delta^(3/2), the approach counted from the tip between four centres",
+          "Hertz 1882; Johnson 1985, Eq. (4.23)", 0.001,
+          "order 2 in h/a with scatter: 1.5e-4 measured, 7e-4 at most with 26 to 48 elements. 1 % "
+          "of modulus is 1 % of load", (*BOTH_MODULI, F.MEAN_DISPLACEMENT_LOST), _load, Metric.RELATIVE),
+    Check("hertz-off-centre", "Hertz: near a corner of the square",
+          "A half-space is free outside the square, so a contact beside its corner is Hertz' all the same",
+          "Johnson 1985, Eq. (3.39); what a periodic image would add", 0.03,
+          "relative L2; square-root edges: order 1, 2.4e-2 measured at 10 elements across the "
+          "radius", (F.PERIODIC_FOR_APERIODIC, F.TRANSPOSED),
+          lambda entrant: apart(*off_centre(entrant, M, 5.5 / M, -3.5 / M))),
+    Check("hertz-ellipse", "Elliptical Hertz contact: pressure element by element",
+          "The long semi-axis of a paraboloid of curvatures 2 and 6 lies along x, where it is flatter",
+          "Johnson 1985, section 4.2; Carlson's integrals", 0.02,
+          "relative L2; square-root edges: order 1, 1.7e-2 measured at 13 elements across "
+          "the long semi-axis. Exchanged axes miss by 60 %, half an element by 10 %",
+          (F.TRANSPOSED, F.HALF_ELEMENT, F.MODULUS_DOUBLED), lambda entrant: apart(*ellipse(entrant, M))),
+    Check("cone", "Cone: pressure element by element",
+          "The pressure is E* slope/2 arccosh(a/r), logarithmic at the tip",
+          "Sneddon 1965; Johnson 1985, section 5.2", 0.013,
+          "relative L2: order 1 by tip and edge alike, 1.04e-2 measured at 13 elements across the "
+          "radius", (F.MODULUS_DOUBLED, F.HALF_ELEMENT), lambda entrant: apart(*cone(entrant, M))),
+    Check("load-doubling", "Load doubling of power-law indenters",
+          "On r, r^2, r^4 the load within half the first contact's radius is Galin's, before and after the "
+          "load is doubled",
+          "Galin 1961; Sneddon 1965; Archard 1957 for the meaning", 0.007,
+          "relative; the cone's tip, logarithmic, is worth h^2 of load: 4.7e-3 measured at ten "
+          "elements across the first contact's radius", (F.MODULUS_DOUBLED,), _load_doubling),
+    Check("square-punch", "Square flat punch: stiffness",
+          "Freed of its edges' and corners' known orders, the stiffness of four grids is the electrified "
+          "plate's, 1.1523 E* (2a)",
+          "Read 1997 and Hwang and Mascagni 2004 (0.3667874); own graded collocation (0.3667880)", 4e-4,
+          "least squares in 1, h (edges, d^-1/2) and h^1.593 (corners): the next term, h^2, moves "
+          "the limit by 1e-4 on grids of 6 to 15 elements",
+          (*BOTH_MODULI, F.NEAR_FIELD, F.MEAN_DISPLACEMENT_LOST), _square_punch, Metric.RELATIVE),
+    Check("circular-punch", "Circular flat punch: pressure away from the edge",
+          "Within 0.7 a the mean pressure is that of P/(2 pi a^2) (1 - r^2/a^2)^(-1/2) at P = 2 a E* delta",
+          "Boussinesq 1885; Johnson 1985, Eq. (3.34)", 0.02,
+          "the staircase outline moves the edge by a share of h: 0.35 h/a at most, 2.6e-2, on the "
+          "stiffness, and half of it was measured here",
+          (F.MODULUS_DOUBLED, F.MEAN_DISPLACEMENT_LOST), _circular_punch, Metric.RELATIVE),
+)
+# fmt: on
