@@ -21,8 +21,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Array
 from verification.solver_suite.protocol import ContactProblem, Coupling
 from verification.solver_suite.reference.certified import CONTACT, NotCertified, certified
-from verification.solver_suite.reference.files import INDEX, SUMS, checksums
-from verification.solver_suite.reference.schema import FORMAT
+from verification.solver_suite.reference.files import FORMAT, INDEX, SUMS, checksums
 
 
 def index_of(folder: Path) -> dict[str, Any]:

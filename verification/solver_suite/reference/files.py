@@ -23,9 +23,11 @@ from refimpl.errors import InputError
 from verification.framework.provenance import DISTRIBUTION, ROOT, versions
 from verification.solver_suite import suite
 from verification.solver_suite.command import header_of
-from verification.solver_suite.reference import certified, schema
+from verification.solver_suite.reference import certified
 from verification.solver_suite.reference.certified import Certified
 
+FORMAT = "rough-friction reference data, version 1"
+HERE = Path(__file__).parent
 SOFTWARE = ("python", DISTRIBUTION, "numpy", "scipy", "ducc0")
 """What the bytes depend on."""
 CODES = (
@@ -90,7 +92,7 @@ class Export:
     def close(self) -> str:
         """Write what describes the data, put the folder in its place, and return the data's version."""
         index = {
-            "format": schema.FORMAT,
+            "format": FORMAT,
             "license": "MIT",
             "suite": suite.identity(),
             "software": {name: versions()[name] for name in SOFTWARE},
@@ -101,9 +103,9 @@ class Export:
         }
         self._write(INDEX, json.dumps(index, indent=1, allow_nan=False) + "\n")
         self._write("index.csv", _table(self._entries))
-        self._write("schema.json", json.dumps(schema.SCHEMA, indent=1) + "\n")
+        self._write("schema.json", (HERE / "schema.json").read_text(encoding="utf-8"))
         self._write("LICENSE", licence())
-        self._write("README.md", README.format(problems=len(self._entries)))
+        self._write("README.md", _text("readme.md").format(problems=len(self._entries)))
         sums = checksums(self._draft)
         self._write(SUMS, "".join(f"{digest}  {name}\n" for name, digest in sums.items()))
         version = version_of(self._draft)
@@ -181,42 +183,9 @@ def licence() -> str:
 
 def _citation(version: str) -> str:
     software = versions()[DISTRIBUTION]
-    return CITATION_TEXT.format(version=version, software=software, suite=suite.identity()["version"])
+    return _text("citation.cff").format(version=version, software=software, suite=suite.identity()["version"])
 
 
-CITATION_TEXT = """cff-version: 1.2.0
-message: "If you use these data, cite them with this version, which is the SHA-256 of SHA256SUMS."
-title: "Reference data of rough-friction: contact problems with certified pressures and proven bounds"
-type: dataset
-version: "{version}"
-license: MIT
-authors:
-  - name: "The rough-friction authors"
-references:
-  - type: software
-    title: "rough-friction"
-    version: "{software}"
-    notes: "suite for contact solvers, version {suite}"
-    authors:
-      - name: "The rough-friction authors"
-"""
-
-README = """# Reference data: contact problems with certified pressures
-
-{problems} problems of normal contact, with and without friction, free and periodic. `index.json` has for each
-its numbers, its answer and proven bounds on the answer's errors; `index.csv` has most of it in lines, and
-`schema.json` describes the index. Lengths are in m, pressures in Pa, loads in N, angles in rad.
-
-- `data/NAME.gap.f64`, `data/NAME.pressure.f64`: float64, little endian, without a header; nx * ny numbers,
-  number `i * ny + j` at element i along x and j along y.
-- `data/NAME.contact.u8`: one byte an element; 0 separated and 1 in contact are proven, 2 and 3 are what the
-  pressures show within the bounds.
-
-`bounds` hold for the difference between the exported numbers and the exact solution of the discrete problem:
-elements of uniform pressure, displacements at their centres. The terms are defined in
-`docs/check-your-solver.md` of rough-friction, readers in C, Octave, Julia and Python are in
-`docs/reference-data.md`.
-
-`sha256sum -c SHA256SUMS` checks the files, and `sha256sum SHA256SUMS` is the version to cite, as in
-`CITATION.cff`. The licence is in `LICENSE`.
-"""
+def _text(name: str) -> str:
+    """Text of the folder that is filled in."""
+    return (HERE / "texts" / name).read_text(encoding="utf-8")
