@@ -305,3 +305,17 @@ def test_what_the_suite_counts_at_an_approach_is_at_most_three_times_our_certifi
         ratios.append(reference_solution.residual(posed, pressure).gap / ours)
     assert max(ratios) <= own.WORK * (1 + 1e-6)
     assert max(ratios) >= 0.8 * own.WORK
+
+
+@pytest.mark.parametrize("light", [0.001, 0.01, 0.05])
+def test_a_load_that_is_missed_alone_is_seen(light: float) -> None:
+    """One of three loads is borne to 1e-4 too much: 1e4 times the claim of 1e-8."""
+
+    def solver(problem: ContactProblem) -> Array:
+        missed = problem.load is not None and np.isclose(problem.load, light * MODULUS)
+        answer = own.solve(problem)
+        return np.asarray(answer.pressure) * (1.0001 if missed else 1.0)
+
+    (result,) = run(Faulty(solver), ["contestant/load-balance"])
+    assert result.status == "fail"
+    assert result.value == pytest.approx(1e4, rel=1e-3)

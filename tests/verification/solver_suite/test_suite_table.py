@@ -14,7 +14,7 @@ from tests.documents import ROOT
 from verification.cli import main, suite_table
 from verification.framework.provenance import versions
 from verification.solver_suite import identity
-from verification.solver_suite.suite import VERSION
+from verification.solver_suite.suite import VERSION, suite
 from verification.solver_suite.suite import identity as of_suite
 
 OWN = "verification.solver_suite.own:solve"
@@ -103,3 +103,11 @@ def test_the_suite_is_cited_by_the_version_and_digest_that_it_has() -> None:
     cited, found = (ROOT / "CITATION.cff").read_text(), of_suite()
     assert f'version: "{VERSION}"' in cited
     assert f"{found['cases']} cases, digest {found['digest']}" in cited
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/check-your-solver.md"])
+def test_the_cases_are_as_many_as_the_page_says(page: str) -> None:
+    drawn = sum("/design-" in case.id for case in suite())
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert f" {len(suite()) - drawn} cases" in text
+    assert f"{drawn} " in text
