@@ -39,10 +39,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "tamaas, contactmechanics, aspher, slippy",
     )
     who.add_argument(
-        "--exec", metavar="COMMAND", help="a program, run as COMMAND DIRECTORY; files: contestants/command.py"
+        "--exec",
+        metavar="COMMAND",
+        help="a program, run as COMMAND DIRECTORY; files: solver_suite/command.py",
     )
     who.add_argument(
-        "--self-test", action="store_true", help="run the suite on solvers that are broken on purpose"
+        "--self-test", action="store_true", help="run the suite on solvers that are wrong on purpose"
     )
     group.add_argument(
         "--able",
