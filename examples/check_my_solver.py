@@ -7,8 +7,8 @@ import numpy as np
 from scipy.optimize import nnls
 
 from refimpl.kernels import normal_integral
-from verification.contestants import suite
-from verification.contestants.protocol import Abilities, Answer, ContactProblem
+from verification.solver_suite import suite
+from verification.solver_suite.protocol import Abilities, Answer, ContactProblem
 
 ONLY = sys.argv[1] if len(sys.argv) > 1 else "contestant/*"
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "check_my_solver.png"

@@ -36,7 +36,7 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
     ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
     ("verification/cli/tradeoff.py", "left out"): KEY,
-    ("verification/contestants/check.py", "left out"): FAULT,
+    ("verification/solver_suite/check.py", "left out"): FAULT,
     ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
     ("verification/stress_tests/state.py", "honest failure"): VERDICT,

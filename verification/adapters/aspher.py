@@ -15,8 +15,8 @@ from functools import partial
 
 import numpy as np
 
-from verification.adapters.peer import Peer, PeerAnswer, closure, imported
-from verification.contestants.protocol import Abilities, ContactProblem
+from verification.adapters.published_code import Peer, PeerAnswer, closure, imported
+from verification.solver_suite.protocol import Abilities, ContactProblem
 
 _COARSEST = 64  # its own default
 _ITERATIONS = 5000

@@ -3,7 +3,7 @@
 Under a load: ``minimize_proxy`` (Polonsky and Keer). At an approach: ``dual_minimize_proxy`` (conjugate
 gradients without restarts), since the former, at an offset in free space, is apt to come to rest at a wrong
 state (and says so). A periodic half-space keeps its default ``stiffness_q0`` under a load: with zero there,
-version 1.8.3 calls the uniform pressure of its first iteration converged (`verification.adapters.traps`).
+version 1.8.3 calls the uniform pressure of its first iteration converged (`negative_controls`).
 
 A hardness is an argument of ``minimize_proxy``, as a force of an element. Where most of the contact is at it
 the solver turns to relaxation, and may not end.
@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from verification.adapters.peer import Peer, PeerAnswer, closure, imported
-from verification.contestants.protocol import Abilities, ContactProblem, Unsupported
+from verification.adapters.published_code import Peer, PeerAnswer, closure, imported
+from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported
 
 _ITERATIONS = 5000
 

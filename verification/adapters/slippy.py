@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
-from verification.adapters.peer import Peer, PeerAnswer
-from verification.contestants.command import Command
-from verification.contestants.protocol import Abilities, ContactProblem
+from verification.adapters.published_code import Peer, PeerAnswer
+from verification.solver_suite.command import Command
+from verification.solver_suite.protocol import Abilities, ContactProblem
 
 INTERPRETER = "SLIPPY_PYTHON"
 SECONDS = 300.0

@@ -1,6 +1,6 @@
 """The cross-code table: ``python -m verification.adapters.table --json FILE``.
 
-Every installed peer and our own solvers go through the suite of `verification.contestants`. For each case:
+Every installed peer and our own solvers go through the suite of `verification.solver_suite`. For each case:
 the verdict, the error, the seconds in the solver alone, and the worst residual recomputed from the pressures
 of all problems that the case posed.
 """
@@ -17,14 +17,14 @@ from typing import Any
 import numpy as np
 
 from refimpl.grid import Array
-from verification.adapters import aspher, contactmechanics, slippy, tamaas, traps
-from verification.adapters.peer import Peer
-from verification.contestants import own, referee
-from verification.contestants.protocol import Abilities, Answer, ContactProblem, abilities_of
-from verification.contestants.suite import identity, suite
+from verification.adapters import aspher, contactmechanics, negative_controls, slippy, tamaas
+from verification.adapters.published_code import Peer
 from verification.framework.case import Metric, Result, Status, jsonable
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
+from verification.solver_suite import own, reference_solution
+from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, abilities_of
+from verification.solver_suite.suite import identity, suite
 
 Solver = Peer | own.Own
 ENTRANTS: dict[str, Solver] = {
@@ -34,12 +34,12 @@ ENTRANTS: dict[str, Solver] = {
     "ContactMechanics": contactmechanics.solve,
     "ASPHER": aspher.solve,
     "SlipPY": slippy.solve,
-    "Tamaas, registered only": traps.registered_only,
-    "ContactMechanics, no mean stiffness": traps.no_mean_stiffness,
+    "Tamaas, registered only": negative_controls.registered_only,
+    "ContactMechanics, no mean stiffness": negative_controls.no_mean_stiffness,
     "SlipPY, its default in free space": slippy.by_default,
 }
 OURS = {"refimpl": "nested FFT solver, its defaults", "refimpl, dense": "dense matrices, active sets"}
-TRAPS = (
+NEGATIVE_CONTROLS = (
     "Tamaas, registered only",
     "ContactMechanics, no mean stiffness",
     "SlipPY, its default in free space",
@@ -72,11 +72,11 @@ class Watched:
 
 def recomputed(problem: ContactProblem, pressure: Array) -> float:
     """Worst residual recomputed by the suite; NaN without one (too large, or no elastic energy)."""
-    too_large = referee.is_large(problem) and not problem.periodic
-    if pressure.shape != problem.gap.shape or too_large or referee.stores_no_energy(problem):
+    too_large = reference_solution.is_large(problem) and not problem.periodic
+    if pressure.shape != problem.gap.shape or too_large or reference_solution.stores_no_energy(problem):
         return float("nan")
     try:
-        return referee.residual(problem, pressure).worst
+        return reference_solution.residual(problem, pressure).worst
     except ValueError:
         return float("nan")
 
@@ -108,9 +108,9 @@ def _entrant(name: str, solver: Solver) -> dict[str, object]:
         "name": name,
         "version": solver.version,
         "setup": OURS[name] if isinstance(solver, own.Own) else solver.setup,
-        "role": "ours" if ours else "trap" if name in TRAPS else "peer",
+        "role": "ours" if ours else "trap" if name in NEGATIVE_CONTROLS else "peer",
         "checksum": None if isinstance(solver, own.Own) else solver.checksum,
-        "wrong": "" if isinstance(solver, own.Own) or name in TRAPS else solver.wrong,
+        "wrong": "" if isinstance(solver, own.Own) or name in NEGATIVE_CONTROLS else solver.wrong,
         "abilities": asdict(solver.abilities),
         "installed": isinstance(solver, own.Own) or solver.installed is not None,
     }

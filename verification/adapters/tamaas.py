@@ -4,11 +4,11 @@ Pressures that end at a hardness are solved by ``KatoSaturated``, a projected gr
 length. It is posed in units of E*: with moduli in Pa Tamaas 2.9.0 stays at the uniform pressure that it
 starts from, and returns an error of 0. The error was 0 wherever we looked, so all steps are taken, and the
 solver cannot say whether they were enough: on a bed of pins whose other elements are a thousand times farther
-than the pins move (`verification.contestants.checks.hardness`), it comes to rest 0.2 H off.
+than the pins move (`verification.solver_suite.checks.hardness`), it comes to rest 0.2 H off.
 
 Free space takes two steps: ``registerNonPeriodic`` adds the zero-padded operator to the model, and
 ``setIntegralOperator`` tells the solver to use it. Without the second, Tamaas 2.9.0 solves the periodic
-problem and says nothing; `verification.adapters.traps` keeps that in view.
+problem and says nothing; `verification.adapters.negative_controls` keeps that in view.
 
 ``rough-friction verify --solver tamaas``
 """
@@ -17,8 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.adapters.peer import Peer, PeerAnswer, closure, imported
-from verification.contestants.protocol import Abilities, ContactProblem, Unsupported
+from verification.adapters.published_code import Peer, PeerAnswer, closure, imported
+from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported
 
 _FREE_SPACE = "dcfft"
 _ITERATIONS = 5000

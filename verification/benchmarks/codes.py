@@ -21,7 +21,7 @@ from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
-from verification.adapters.peer import Peer
+from verification.adapters.published_code import Peer
 from verification.benchmarks.problems import FRICTION, problem, scene
 from verification.framework.provenance import DISTRIBUTION, versions
 

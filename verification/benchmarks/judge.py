@@ -10,7 +10,7 @@ import scipy.fft as sfft
 
 from refimpl.grid import Array, Grid, Window
 from refimpl.operators.fft import FFTInfluence
-from verification.contestants.protocol import ContactProblem
+from verification.solver_suite.protocol import ContactProblem
 
 
 @dataclass(frozen=True)

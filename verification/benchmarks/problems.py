@@ -7,7 +7,7 @@ from functools import cache
 import refimpl as rf
 from refimpl.grid import Array, Grid
 from refimpl.model.materials import Pair
-from verification.contestants.protocol import ContactProblem
+from verification.solver_suite.protocol import ContactProblem
 
 SIDE = 1.61e-3  # m
 LOAD = 70.0  # N

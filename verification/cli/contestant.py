@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from verification.contestants.check import Check
-    from verification.contestants.serving import Source
     from verification.framework.case import Result
+    from verification.solver_suite.check import Check
+    from verification.solver_suite.process import Source
 
 ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation", "thorough")
 
@@ -27,7 +27,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """The options that name a solver and say what it can do."""
     group = parser.add_argument_group(
         "bring your own solver",
-        "Run the suite of verification.contestants with it, one case after the other whatever --tier\n"
+        "Run the suite of verification.solver_suite with it, one case after the other whatever --tier\n"
         "and --jobs say: the cases that are within its abilities; the others are named. Of the abilities\n"
         "that a Python function carries, --able, --largest and --precision replace only what they state.",
     )
@@ -39,10 +39,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "tamaas, contactmechanics, aspher, slippy",
     )
     who.add_argument(
-        "--exec", metavar="COMMAND", help="a program, run as COMMAND DIRECTORY; files: contestants/command.py"
+        "--exec",
+        metavar="COMMAND",
+        help="a program, run as COMMAND DIRECTORY; files: solver_suite/command.py",
     )
     who.add_argument(
-        "--self-test", action="store_true", help="run the suite on solvers that are broken on purpose"
+        "--self-test", action="store_true", help="run the suite on solvers that are wrong on purpose"
     )
     group.add_argument(
         "--able",
@@ -95,8 +97,8 @@ def chosen(options: argparse.Namespace) -> bool:
 
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
-    from verification.contestants import convergence
     from verification.framework.case import readable
+    from verification.solver_suite import convergence
 
     among = _among(options)
     checks = _selected(options, among)
@@ -119,7 +121,7 @@ def run(options: argparse.Namespace) -> int:
 def _among(options: argparse.Namespace) -> tuple[Check, ...]:
     """The suite, with further problems, or the limits and orders in its place."""
     from refimpl.errors import InputError
-    from verification.contestants import convergence, suite
+    from verification.solver_suite import convergence, suite
 
     if options.discretisation == "other":
         if options.thorough:
@@ -131,7 +133,7 @@ def _among(options: argparse.Namespace) -> tuple[Check, ...]:
 def _selected(options: argparse.Namespace, among: tuple[Check, ...]) -> tuple[Check, ...]:
     """Checks that ``--only`` names. Raises `InputError` where it names none."""
     from refimpl.errors import InputError
-    from verification.contestants import suite
+    from verification.solver_suite import suite
 
     try:
         return suite.select(options.only, among)
@@ -147,9 +149,9 @@ def _judged(
     source: Source,
 ) -> Judged:
     """Judge the solver case by case; an end by a signal keeps the verdicts so far."""
-    from verification.contestants import isolated
-    from verification.contestants.ending import Ended, unwinding
     from verification.framework.files import Progress
+    from verification.solver_suite import isolated
+    from verification.solver_suite.process import Ended, unwinding
 
     start, progress = time.perf_counter(), Progress(len(checks))
     results: list[Result] = []
@@ -182,8 +184,8 @@ def _judged(
 
 def _write_table(path: Path, entry: Mapping[str, Any], results: Sequence[Result]) -> None:
     """Write the run beside the published codes."""
-    from verification.contestants import suite
     from verification.framework.files import write_text
+    from verification.solver_suite import suite
 
     ours = suite_table.run_entry(entry, suite.VERSION, results)
     write_text(suite_table.text_of(path.suffix, [ours, *suite_table.published()]), path)
@@ -191,7 +193,7 @@ def _write_table(path: Path, entry: Mapping[str, Any], results: Sequence[Result]
 
 def _end_as(ended: BaseException | None) -> None:
     """End as the signal or Ctrl-C would have, once what is judged is shown and written."""
-    from verification.contestants.ending import Ended
+    from verification.solver_suite.process import Ended
 
     if isinstance(ended, Ended):
         os.kill(os.getpid(), ended.number)
@@ -202,8 +204,8 @@ def _end_as(ended: BaseException | None) -> None:
 def identity_of(options: argparse.Namespace) -> dict[str, str | None]:
     """Name, version and checksum of the solver."""
     from verification.adapters import PEERS
-    from verification.contestants import identity
     from verification.framework.case import readable
+    from verification.solver_suite import identity
 
     if options.exec is not None:
         found = identity.of_command(options.exec)
@@ -223,9 +225,9 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
     from dataclasses import asdict, replace
 
     from verification.adapters import PEERS
-    from verification.contestants.command import Command
-    from verification.contestants.isolated import Named
-    from verification.contestants.protocol import Abilities
+    from verification.solver_suite.command import Command
+    from verification.solver_suite.isolated import Named
+    from verification.solver_suite.protocol import Abilities
 
     limits = {name: getattr(options, name) for name in ("largest", "precision")}
     stated = {name: value for name, value in limits.items() if value is not None}

@@ -10,9 +10,9 @@ from verification.cli.output import columns, judgement, wrapped
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from verification.contestants.check import Check
     from verification.framework.case import Result
     from verification.framework.runner import Run
+    from verification.solver_suite.check import Check
 
 
 @dataclass(frozen=True)
@@ -58,15 +58,15 @@ class Judged:
     @property
     def low_order(self) -> list[str]:
         """Ids of convergence cases whose limit is right and whose order is low."""
-        from verification.contestants import convergence
+        from verification.solver_suite import convergence
 
         return convergence.slow(list(self.results)) if self.of_convergence else []
 
 
 def unseen_faults(results: Iterable[Result]) -> list[str]:
     """Faults that no case that ran is meant to catch: a solver of few abilities is judged by few cases."""
-    from verification.contestants.check import Fault
-    from verification.contestants.suite import suite
+    from verification.solver_suite.check import Fault
+    from verification.solver_suite.suite import suite
 
     ran = {r.id for r in results if r.status != "unavailable"}
     seen = {fault for check in suite() if check.id in ran for fault in check.catches}
@@ -75,7 +75,7 @@ def unseen_faults(results: Iterable[Result]) -> list[str]:
 
 def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[str, Any]) -> dict[str, Any]:
     """Return the JSON document; ``solver`` has its name, version and checksum, ``stated`` its abilities."""
-    from verification.contestants import short_list, suite
+    from verification.solver_suite import diagnosis, suite
 
     return judged.run.document() | {
         "suite": suite.identity(),
@@ -91,7 +91,7 @@ def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[s
             "left_running": list(judged.left),
             "low_order": judged.low_order,
             "unseen_faults": judged.unseen,
-            "short_list": short_list.of_results(judged.results),
+            "short_list": diagnosis.of_results(judged.results),
         },
     }
 
@@ -109,7 +109,7 @@ def text(name: str, judged: Judged) -> str:
 
 def table(name: str, judged: Judged) -> str:
     """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts."""
-    from verification.contestants.short_list import of_results
+    from verification.solver_suite.diagnosis import of_results
 
     done = judged.run
     ran = [r for r in done.results if r.status != "unavailable"]

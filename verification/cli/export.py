@@ -25,12 +25,12 @@ def run(options: argparse.Namespace) -> int:
     Those of a kind that no proof covers are named too, and are no failure.
     """
     from refimpl.errors import InputError
-    from verification.contestants import suite
-    from verification.contestants.reference.certified import NoBound, NotCertified, certified
-    from verification.contestants.reference.files import Export
-    from verification.contestants.reference.posed import problems
     from verification.framework.files import Progress
     from verification.framework.threads import limited_to_one_thread
+    from verification.solver_suite import suite
+    from verification.solver_suite.reference.certified import NoBound, NotCertified, certified
+    from verification.solver_suite.reference.files import Export
+    from verification.solver_suite.reference.posed import problems
 
     try:
         progress = Progress(len(suite.select(options.only)))

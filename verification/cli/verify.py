@@ -15,7 +15,7 @@ EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
   rough-friction verify --tier full --only 'hertz/*' --only 'kernels/love-*'
   rough-friction verify --list
-  rough-friction verify --solver verification.contestants.own:solve
+  rough-friction verify --solver verification.solver_suite.own:solve
   rough-friction verify --exec './my-solver --quiet' --able aperiodic,load --largest 32
   rough-friction verify --self-test
   rough-friction verify --export reference-data

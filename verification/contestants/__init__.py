@@ -1,6 +1,10 @@
-"""Contact solvers of any origin, run through one suite: bring your own.
+"""Former name of `verification.solver_suite`: its public modules, for one release."""
 
-`protocol` defines the input and output of a solver under test; `asking` accepts no other output. `checks`
-holds the suite's cases, `beds` problems whose pressures are chosen beforehand, `referee` the judge. A program
-in any language takes part by `command`; `broken` holds solvers that must not pass, `wrong` their parts.
-"""
+import sys
+import warnings
+from importlib import import_module
+
+warnings.warn("verification.contestants is now verification.solver_suite", DeprecationWarning, stacklevel=2)
+for _name in ("command", "own", "protocol", "reference", "suite"):
+    _module = globals()[_name] = import_module(f"verification.solver_suite.{_name}")
+    sys.modules[f"{__name__}.{_name}"] = _module

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from verification.adapters import contactmechanics, tamaas
-from verification.adapters.peer import Peer
+from verification.adapters.published_code import Peer
 from verification.cases.contact import lay, self_affine
 from verification.multilevel.ensemble import ensemble
 from verification.sweep.study_file import study_from_dict

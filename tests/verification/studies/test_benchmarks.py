@@ -1,4 +1,4 @@
-"""Benchmarks: the judge agrees with the referee, tolerances are found, turns are taken, records only grow."""
+"""Benchmarks: the judge agrees with the reference, tolerances are found, turns taken, records only grow."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from verification.benchmarks.rounds import Failed, Turns, error, in_turns, solve
 from verification.benchmarks.run import append
 from verification.benchmarks.summary import lines, ratios, row
 from verification.cli.output import columns
-from verification.contestants import own, referee
+from verification.solver_suite import own, reference_solution
 
 
 def found(seconds: float, **more: Any) -> dict[str, Any]:
@@ -51,11 +51,11 @@ def turns(code: str, *seconds: float) -> Turns:
 
 @pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 @pytest.mark.parametrize("kind", ["smooth", "rough"])
-def test_judge_agrees_with_the_dense_referee(kind: str) -> None:
+def test_judge_agrees_with_the_dense_reference(kind: str) -> None:
     posed = problem(kind, 24, 1e-4)
     pressure = np.array(own.solve(posed).pressure)
     pressure[pressure > 0] *= 1 + 0.01 * np.sin(np.arange((pressure > 0).sum()))  # far from converged
-    ours, theirs = judged(posed, pressure), referee.residual(posed, pressure)
+    ours, theirs = judged(posed, pressure), reference_solution.residual(posed, pressure)
     assert ours.gap == pytest.approx(theirs.gap, rel=1e-9)
     assert ours.balance == pytest.approx(theirs.balance, rel=1e-9)
     assert ours.gap > 1e-5
@@ -72,7 +72,7 @@ def test_judge_finds_penetration_and_tension_where_they_are() -> None:
     rim = np.unravel_index(np.argmin(np.where(pressure > 0, pressure, np.inf)), pressure.shape)
     pressure[rim] = -0.01 * peak
     found = judged(posed, pressure)
-    v = referee.displacement(posed, pressure) + posed.gap
+    v = reference_solution.displacement(posed, pressure) + posed.gap
     approach = np.average(v, weights=pressure)
     assert found.tension == pytest.approx(0.01, rel=1e-12)
     assert found.peak == peak

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from verification.adapters import contactmechanics, tamaas
-from verification.adapters.peer import Peer
-from verification.contestants import own, referee
-from verification.contestants.check import MODULUS
-from verification.contestants.gaps import rough_bump, waves
-from verification.contestants.protocol import ContactProblem
+from verification.adapters.published_code import Peer
 from verification.framework.case import Measured
 from verification.framework.registry import family
+from verification.solver_suite import own, reference_solution
+from verification.solver_suite.check import MODULUS
+from verification.solver_suite.gaps import rough_bump, waves
+from verification.solver_suite.protocol import ContactProblem
 
 M, SEEDS = 48, (11, 12)
 SHARES = (0.8, 0.5, 0.25)
@@ -65,7 +65,7 @@ def agreement(peer: Peer) -> Measured:
             raise RuntimeError(f"{name}: not converged: {peer.distribution if ours.converged else 'refimpl'}")
         theirs, found = np.asarray(answer.pressure), np.asarray(ours.pressure)
         differences[name] = float(np.abs(theirs - found).max() / problem.hardness)
-        residuals[name] = referee.residual(problem, theirs).worst
+        residuals[name] = reference_solution.residual(problem, theirs).worst
         shares[name] = float(np.mean(found[found > 0] >= problem.hardness))
     data = {"differences": differences, "residuals of the peer": residuals, "plastic share": shares}
     return Measured(max(differences.values()), data=data, note=peer.version)

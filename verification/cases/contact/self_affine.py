@@ -23,11 +23,11 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array, Grid
 from verification.adapters import contactmechanics, tamaas
-from verification.adapters.peer import Peer
-from verification.contestants.protocol import ContactProblem
+from verification.adapters.published_code import Peer
 from verification.exact import rough_plane
 from verification.framework.case import Measured
 from verification.framework.registry import case, family
+from verification.solver_suite.protocol import ContactProblem
 
 MODULUS, SIDE = 1e9, 1e-3  # E* (Pa), m
 SPLIT = rf.Material(E=2 * MODULUS, nu=0.0)  # two of these have E*

@@ -1,0 +1,246 @@
+"""Adapters: each peer that is installed solves the problem it is given; one that is not says so.
+
+What a peer does when it is set up wrongly is shown here too, and that the suite fails it then.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from verification.adapters import aspher, contactmechanics, negative_controls, slippy, table, tamaas
+from verification.adapters.published_code import Peer, PeerAnswer, closure
+from verification.framework.case import Unavailable
+from verification.solver_suite import gaps, reference_solution, suite
+from verification.solver_suite.own import solve as own
+from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported, ask
+
+PEERS = (tamaas.solve, contactmechanics.solve, aspher.solve)
+TABLE_1 = {"side": 1.61e-3, "radius": 0.14, "load": 70.0, "modulus": 1 / (0.91 / 200e9 + 0.91 / 118e9)}
+
+
+def needs(peer: Peer) -> pytest.MarkDecorator:
+    return pytest.mark.skipif(peer.installed is None, reason=f"{peer.distribution} is not installed")
+
+
+def sphere(M: int = 128, *, periodic: bool = False) -> ContactProblem:
+    """Table 1's paraboloid on a flat."""
+    x, y = gaps.centres(TABLE_1["side"], M)
+    gap = (x**2 + y**2) / (2 * TABLE_1["radius"])
+    return ContactProblem(
+        gap - gap.min(),
+        TABLE_1["side"] / M,
+        TABLE_1["modulus"],
+        load=TABLE_1["load"],
+        periodic=periodic,
+    )
+
+
+def small(name: str) -> ContactProblem:
+    """Small problems in SI units, two of them lopsided."""
+    bump, wave = gaps.rough_bump(24, 1) * 1e-3, gaps.waves(24, 3, shortest=8) * 1e-6
+    kinds: dict[str, tuple[Any, dict[str, Any]]] = {
+        "free": (bump, {"load": 20.0}),
+        "free, light": (bump, {"load": 0.5}),
+        "free, approach": (bump, {"approach": 1e-4}),
+        "free, punch": (0 * bump, {"load": 1.0}),
+        "periodic": (wave, {"load": 1.0, "periodic": True}),
+        "periodic, light": (wave, {"load": 1e-3, "periodic": True}),
+        "periodic, approach": (wave, {"approach": -1e-6, "periodic": True}),
+        "periodic, nearly full": (wave, {"approach": -1e-7, "periodic": True}),
+        "periodic, pressed flat": (wave, {"load": 200.0, "periodic": True}),
+    }
+    gap, control = kinds[name]
+    return ContactProblem(gap - gap.min(), 1e-3 / len(gap), 2e9, **control)
+
+
+NAMES = (
+    "free",
+    "free, light",
+    "free, approach",
+    "free, punch",
+    "periodic",
+    "periodic, light",
+    "periodic, approach",
+    "periodic, nearly full",
+    "periodic, pressed flat",
+)
+CANNOT = {
+    ("tamaas", "free, approach"): "an approach in free space",
+    ("tamaas", "free, punch"): "did not converge",  # its error is relative to the heights: there are none
+    ("aspher", "free, approach"): "approach",
+    ("aspher", "periodic, approach"): "approach",
+    ("aspher", "periodic, nearly full"): "approach",
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS])
+def test_peer_meets_the_tolerance_or_refuses(peer: Peer, name: str) -> None:
+    problem = small(name)
+    if (peer.extra, name) in CANNOT:
+        with pytest.raises(Exception, match=CANNOT[peer.extra, name]):
+            ask(peer, problem)
+        return
+    pressure = np.asarray(ask(peer, problem).pressure)
+    # adapters derive their tolerances from bounds of mechanics, so the recomputed residual must comply
+    assert reference_solution.residual(problem, pressure).worst <= problem.tolerance
+    np.testing.assert_allclose(
+        pressure, np.asarray(own(problem).pressure), atol=1e-4 * pressure.max(), rtol=0
+    )
+
+
+@pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS])
+def test_peer_gives_table_1_in_free_space(peer: Peer) -> None:
+    answer = peer(sphere())
+    # 166.2417 MPa: all four codes at 128 x 128; the periodic problem has 171.0454 MPa
+    assert float(np.max(np.asarray(answer.pressure))) == pytest.approx(166.2417e6, rel=1e-6)
+    assert answer.converged is True
+    assert f"{peer.installed}" in peer.version
+
+
+def test_pressures_that_deform_nothing_have_no_residual() -> None:
+    flat = ContactProblem(np.zeros((2, 3)), 1e-6, 1e9, load=6e-3, periodic=True)
+    uneven = np.full((2, 3), 1e9) * [1, 1 + 4e-16, 1]  # by rounding, and its residual is 1e16
+    assert np.isnan(table.recomputed(flat, uneven))
+    lone = ContactProblem(np.array([[0.0, 1e-6, 2e-6]]), 1e-6, 1e9, load=6e-3, periodic=True)
+    assert table.recomputed(lone, np.array([[6e9, 0.0, 0.0]])) > 1  # a load that one element cannot carry
+
+
+def test_absent_peer_is_unavailable() -> None:
+    absent = Peer("no-such-solver", "none", "", Abilities(), lambda problem: PeerAnswer([], True))
+    assert absent.version == "no-such-solver (not installed)"
+    with pytest.raises(Unavailable, match=r"pip install -c constraints.txt -e '\.\[none\]' in a checkout"):
+        absent(sphere(4))
+
+
+@needs(tamaas.solve)
+@pytest.mark.parametrize(("M", "off"), [(9, 0.19), (15, 0.12), (33, 0.06), (16, 0.0)])
+def test_tamaas_takes_the_highest_waves_of_odd_periodic_grids_for_shorter_ones(M: int, off: float) -> None:
+    """Wave ((M - 1)/2, 1), whose displacement is that of ((M + 1)/2, 1); see `tamaas.solve.wrong`."""
+    tm: Any = importlib.import_module("tamaas")
+    model = tm.ModelFactory.createModel(tm.model_type.basic_2d, [1.0, 1.0], [M, M])
+    model.E, model.nu = 1.0, 0.0
+    k, i = (M - 1) // 2, np.arange(M)
+    model.traction[:] = pressure = np.cos(2 * np.pi * (k * i[:, None] + i) / M)
+    model.solveNeumann()
+    exact = pressure / (np.pi * np.hypot(k, 1))  # 2/q
+    found = np.linalg.norm(np.asarray(model.displacement) - exact) / np.linalg.norm(exact)
+    assert found == pytest.approx(off, abs=0.005)
+
+
+def test_slippy_is_unavailable_without_its_interpreter(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(slippy.INTERPRETER, raising=False)
+    assert slippy.solve.installed is None
+    with pytest.raises(Unavailable, match="slippy is not installed: an interpreter"):
+        slippy.solve(sphere(4))
+    monkeypatch.setenv(slippy.INTERPRETER, "/no/such/python")
+    assert slippy.solve.installed is None
+
+
+@pytest.mark.skipif(
+    slippy.solve.installed is None, reason=f"{slippy.INTERPRETER} names no interpreter with it"
+)
+@pytest.mark.parametrize("periodic", [False, True])
+def test_slippy_gives_what_our_solver_gives(periodic: bool) -> None:
+    problem = small("periodic" if periodic else "free")
+    pressure = np.asarray(ask(slippy.solve, problem).pressure)
+    np.testing.assert_allclose(
+        pressure, np.asarray(own(problem).pressure), rtol=0, atol=1e-5 * pressure.max()
+    )
+
+
+def test_designs_are_one_row_each_with_their_failures() -> None:
+    def row(number: str, status: str, error: float | None) -> dict[str, Any]:
+        name = f"contestant/design-plain-{number}"
+        same = {"tolerance": 1.01, "seconds": 0.5, "residual": error, "note": "why"}
+        return {"id": name, "status": status, "error": error, **same}
+
+    single = {"id": "contestant/pins", "status": "pass"}
+    found = table.summarised(
+        [single, row("01", "pass", 0.5), row("02", "fail", 7.0), row("03", "unavailable", None)]
+    )
+    assert found[0] == single
+    assert found[1]["id"] == "contestant/design-plain"
+    assert (found[1]["status"], found[1]["error"], found[1]["seconds"]) == ("fail", 7.0, 1.5)
+    assert found[1]["note"] == "fail: 02"
+    assert table.summarised([row("01", "pass", 0.5), row("02", "unavailable", None)])[0]["status"] == "pass"
+
+
+def test_present_peer_keeps_to_its_abilities() -> None:
+    """NumPy is always there: a distribution that is installed."""
+    peer = Peer("numpy", "none", "", Abilities(periodic=False), lambda p: PeerAnswer(p.gap, True))
+    with pytest.raises(Unsupported, match="numpy does not offer: periodic"):
+        peer(sphere(4, periodic=True))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_closure_is_a_bound(name: str) -> None:
+    """Where the mean gap under the pressure is `closure`, the relative gap is at most the tolerance."""
+    problem = small(name)
+    pressure = np.asarray(own(problem).pressure)
+    mean_displacement = (
+        2 * reference_solution.energy(problem, pressure) / (pressure.sum() * problem.element_area)
+    )
+    if mean_displacement > 0:  # one periodic element under load stores no energy in the reference's symbols
+        rounding = 1e-12  # an exact equality where contact is full
+        assert closure(problem) / (0.5 * mean_displacement) <= problem.tolerance * (1 + rounding)
+
+
+@needs(tamaas.solve)
+def test_negative_control_tamaas_without_its_second_step_is_periodic() -> None:
+    """`registerNonPeriodic` alone changes nothing, and nothing says so: 171.05 instead of 166.24 MPa."""
+    fallen_in = negative_controls.registered_only(sphere())
+    periodic = tamaas.solve(sphere(periodic=True))
+    assert fallen_in.converged is True
+    assert float(np.max(np.asarray(fallen_in.pressure))) == pytest.approx(171.0454e6, rel=1e-6)
+    np.testing.assert_allclose(
+        np.asarray(fallen_in.pressure), np.asarray(periodic.pressure), rtol=0, atol=171e6 * 1e-6
+    )
+    assert fails(negative_controls.registered_only, "contestant/hertz-peak", "contestant/surroundings")
+
+
+@needs(contactmechanics.solve)
+def test_negative_control_contactmechanics_without_mean_stiffness_stops_at_once() -> None:
+    """A periodic half-space with ``stiffness_q0 = 0`` under a load: uniform pressure, and success."""
+    fallen_in = negative_controls.no_mean_stiffness(small("periodic"))
+    pressure = np.asarray(fallen_in.pressure)
+    assert fallen_in.converged is True
+    assert np.ptp(pressure) < 1e-12 * pressure.max()
+    assert fails(
+        negative_controls.no_mean_stiffness, "contestant/westergaard-pressure", "contestant/rough-plane"
+    )
+
+
+def fails(peer: Peer, *cases: str) -> bool:
+    """Whether the suite fails it in each of these cases."""
+    return [result.status for result in suite.run(peer, cases)] == ["fail"] * len(cases)
+
+
+def test_table_has_every_entrant_and_recomputes_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also those that are not installed, by name; residuals and seconds are of the cases that ran."""
+    few = suite.select(["contestant/hertz-peak", "contestant/sliding-residual"])
+    monkeypatch.setattr(table, "suite", lambda: few)
+    entrants = cast(list[dict[str, Any]], table.measured()["entrants"])
+    assert [entrant["name"] for entrant in entrants] == list(table.ENTRANTS)
+    for entrant in entrants:
+        if not entrant["installed"]:
+            assert "(not installed)" in entrant["version"]
+            continue
+        if entrant["name"] == "refimpl, dense":
+            assert entrant["counts"]["fail"] == entrant["counts"]["error"] == 0  # too large for it, or passed
+            continue
+        by_id = {row["id"]: row for row in entrant["results"]}
+        peak, sliding = by_id["contestant/hertz-peak"], by_id["contestant/sliding-residual"]
+        assert peak["status"] != "error", peak["note"]
+        assert peak["seconds"] > 0
+        if entrant["name"] in ("Tamaas, registered only", "SlipPY, its default in free space"):
+            assert peak["status"] == "fail"
+            assert peak["residual"] > 1e-3
+        else:
+            assert peak["status"] == "pass"
+            assert 0 < peak["residual"] <= 1e-8
+        assert sliding["status"] == ("pass" if entrant["role"] == "ours" else "unavailable")

@@ -1,0 +1,286 @@
+"""A contestant on the command line: solvers that misbehave, options, what is printed and what is refused."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from verification.cli import main
+from verification.cli.contestant import _source, add_options
+from verification.cli.contestant_report import Judged, unseen_faults
+from verification.framework.case import Status
+from verification.solver_suite import isolated, own
+from verification.solver_suite.check import Fault
+from verification.solver_suite.faulty_solvers.table import FAULTY
+from verification.solver_suite.isolated import Named
+from verification.solver_suite.protocol import Abilities, abilities_of
+from verification.solver_suite.suite import suite
+
+Capture = pytest.CaptureFixture[str]
+RIVAL = """
+import gc, os, socket, time
+from verification.solver_suite import own
+
+def solve(problem):
+    print("noise on standard output")
+    if problem.periodic:
+        os._exit(0)
+    if problem.M == 24:
+        time.sleep(60)
+    return own.solve(problem)
+
+def twice(problem):
+    return 2 * own.solve(problem).pressure
+
+forked = []
+
+def forks(problem):
+    if not forked:
+        forked.append(os.fork())
+        time.sleep(0.5 if forked[0] else 0)  # so the child is the first to answer, and then takes its time
+    elif not forked[0]:
+        time.sleep(3)
+    return own.solve(problem)
+
+def forges(problem):
+    for found in gc.get_objects():
+        if isinstance(found, socket.socket):
+            found.send(b"it is a pass, believe me" * problem.M)
+    return own.solve(problem)
+
+number = 3
+"""
+
+ABLE = """
+from verification.solver_suite import own
+from verification.solver_suite.protocol import Abilities
+
+def solve(problem):
+    return own.solve(problem)
+
+solve.abilities = Abilities(periodic=False, load=False, largest=12, precision=1e-7)
+"""
+
+IMPORTS = {
+    "rival_unwritten": "def solve(problem:",
+    "rival_raising": "raise RuntimeError('no licence\\nfound')",
+    "rival_leaving": "import sys; sys.exit('bye')",
+    "rival_dying": "import os; os._exit(7)",
+    "rival_crashing": "import os; os.abort()",
+}
+
+
+@pytest.fixture
+def rival(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A directory to run in, with a module of solvers that misbehave."""
+    (tmp_path / "rival_solver.py").write_text(RIVAL)
+    for name, source in IMPORTS.items():
+        (tmp_path / f"{name}.py").write_text(source)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_the_command_line_states_units_and_where_an_answer_is_off(rival: Path, capfd: Capture) -> None:
+    able = ["--able", "approach,aperiodic", "--only", "contestant/pins", "--only", "contestant/hertz-load"]
+    assert main(["verify", "--solver", "rival_solver:twice", *able]) == 1
+    printed = " ".join(capfd.readouterr().out.split())
+    assert "1e+08 > 2 claims" in printed
+    assert "1 > 0.001 relative" in printed
+    assert "Found: carries 2 of the right load; farthest off is element [" in printed
+
+
+def test_a_solver_that_exits_or_hangs_is_an_error_and_the_rest_still_runs(
+    rival: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(isolated, "GRACE", 4.0)
+    cases = ["square-patch", "westergaard-load", "one-element"]
+    source = Named("rival_solver:solve").contestant
+    results = isolated.run(source, [f"contestant/{name}" for name in cases], timeout=0.05)
+    found = {r.id.partition("/")[2]: (r.status, r.note) for r in results}
+    assert found["one-element"][0] == "pass"
+    assert found["square-patch"] == ("error", "no answer within 4.05 s")
+    assert found["westergaard-load"] == ("error", "the solver's process died (exit status 0)")
+
+
+def test_a_solver_that_forks_is_judged_once_a_case_and_each_verdict_is_that_of_its_case(rival: Path) -> None:
+    cases = [f"contestant/{name}" for name in ("one-element", "pins", "hertz-load")]
+    results = isolated.run(Named("rival_solver:forks").contestant, cases, timeout=60.0)
+    assert sorted(r.id for r in results) == sorted(cases)
+    assert {r.status for r in results} == {"pass"}
+
+
+def test_what_is_no_answer_to_the_problem_is_an_error(rival: Path) -> None:
+    cases = ["contestant/one-element", "contestant/pins"]
+    results = isolated.run(Named("rival_solver:forges").contestant, cases, timeout=60.0)
+    assert sorted(r.id for r in results) == sorted(cases)
+    assert {r.note for r in results} == {"the solver's process sent something else than an answer"}
+
+
+def test_the_command_line_runs_a_solver(rival: Path, capfd: Capture) -> None:
+    able = ["--able", "load,approach,aperiodic", "--timeout", "86400", "--only", "contestant/one-element"]
+    assert main(["verify", "--solver", "rival_solver:solve", *able, "--json", "-"]) == 0
+    document = json.loads(capfd.readouterr().out)
+    assert document["contestant"]["name"] == "rival_solver:solve"
+    assert document["contestant"]["abilities"]["periodic"] is False
+    assert document["contestant"]["not_applicable"] == {}
+    assert document["contestant"]["unseen_faults"] is None  # some cases were chosen: so much was left out
+    assert [c["status"] for c in document["cases"]] == ["pass"]
+    assert {"value", "tolerance_reason", "claim", "seconds"} <= set(document["cases"][0])
+
+
+STATED = Abilities(periodic=False, load=False, largest=12, precision=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ([], STATED),
+        (["--largest", "8"], replace(STATED, largest=8)),
+        (["--precision", "1e-6"], replace(STATED, precision=1e-6)),
+        (["--able", "aperiodic,load"], replace(STATED, load=True, approach=False)),
+        (
+            ["--able", "aperiodic,load", "--largest", "9"],
+            replace(STATED, load=True, approach=False, largest=9),
+        ),
+    ],
+)
+def test_an_option_replaces_only_its_own_part_of_a_solvers_abilities(
+    rival: Path, options: list[str], expected: Abilities
+) -> None:
+    (rival / "able_solver.py").write_text(ABLE)
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    _, source, _ = _source(parser.parse_args(["--solver", "able_solver:solve", *options]))
+    assert abilities_of(source()) == expected
+
+
+def test_abilities_of_a_function_outlast_an_option(rival: Path, capfd: Capture) -> None:
+    (rival / "able_solver.py").write_text(ABLE)
+    only = ["--only", "contestant/one-element", "--only", "contestant/westergaard-load"]
+    assert main(["verify", "--solver", "able_solver:solve", "--largest", "64", *only, "--json", "-"]) == 0
+    document = json.loads(capfd.readouterr().out)
+    assert document["contestant"]["not_applicable"] == {
+        "contestant/westergaard-load": "the solver does not offer: periodic"
+    }
+    assert document["contestant"]["abilities"] == {"largest": 64}
+
+
+def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
+    only = ["--only", "contestant/one-element", "--only", "contestant/westergaard-load"]
+    status = main(["verify", "--exec", "false", "--able", "aperiodic,approach", *only])
+    printed = capfd.readouterr().out
+    assert status == 1
+    assert "error" in printed
+    assert "not offer: periodic: westergaard-load" in printed
+    assert "0 pass, 0 fail, 1 error, 1 unavailable" in printed
+    assert "exit status 1: nothing said" in printed
+    assert (
+        main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "contestant/one-element"]) == 1
+    )
+
+
+def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) -> None:
+    command, written = "false " + os.fsdecode(b"caf\xe9"), tmp_path / "mine.json"
+    assert main(["verify", "--exec", command, "--only", "contestant/pins", "--json", str(written)]) == 1
+    assert json.loads(written.read_text())["contestant"]["name"] == "false caf?"
+    assert "false caf?: 0 pass" in capfd.readouterr().out
+
+
+def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(capfd: Capture) -> None:
+    own_name = "verification.solver_suite.own:solve"
+    able = ["--able", "aperiodic,load", "--largest", "16"]
+    assert main(["verify", "--solver", own_name, *able, "--json", "-"]) == 0
+    unseen = json.loads(capfd.readouterr().out)["contestant"]["unseen_faults"]
+    assert {Fault.SIGN_OF_C, Fault.APPROACH_FORGOTTEN, Fault.PADDING_CAPPED} <= {*unseen}
+    assert not {Fault.MODULUS_OFF, Fault.SPACING_KEPT, Fault.FAINT_PRESSURE} & {*unseen}
+    assert main(["verify", "--solver", own_name, *able]) == 0
+    printed = " ".join(capfd.readouterr().out.split())
+    assert f"looked for by none of these cases: {unseen[0]}, " in printed
+    assert f", {unseen[-1]} {own_name}: " in printed
+    assert unseen_faults(check.case(own.solve).result(Status.PASS, "", 0.0) for check in suite()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--solver", "no_such_module:solve"], "no_such_module"),
+        (["--solver", "rival_solver"], "package.module:function"),
+        (["--solver", "rival_solver:number"], "package.module:function"),
+        (["--solver", "rival_solver:absent"], "absent"),
+        (["--solver", "rival_unwritten:solve"], "'rival_unwritten:solve': expected package.module:function"),
+        (["--solver", "rival_unwritten:solve"], "SyntaxError: '(' was never closed"),
+        (["--solver", "rival_raising:solve"], "RuntimeError: no licence found"),
+        (["--solver", "rival_leaving:solve"], "SystemExit: bye"),
+        (["--solver", "rival_dying:solve"], "'rival_dying:solve': expected a solver whose import ends well"),
+        (["--solver", "rival_dying:solve"], "its process died, exit status 7"),
+        (["--solver", "rival_crashing:solve"], "its process died, killed by SIGABRT"),
+        (["--solver", "rival_solver:solve", "--able", "magic"], "magic"),
+        (["--solver", "rival_solver:solve", "--largest", "0"], "largest"),
+        (["--solver", "rival_solver:solve", "--precision", "0.1"], "precision"),
+        (["--solver", "rival_solver:solve", "--only", "hertz/*"], "no case of the suite matches"),
+        (["--exec", "'"], "--exec"),
+        (["--exec", ""], "--exec = '': expected a command\n"),
+        (["--exec", "./missing --fast"], "--exec = './missing --fast': expected a command whose first word"),
+        (["--exec", "no-such-program"], "'no-such-program': expected a command whose first word"),
+        (["--exec", "./rival_solver.py"], "is a program that can be run"),
+        (["--exec", "."], "is a program that can be run"),
+        (["--exec", "true", "--timeout", "0"], "--timeout = 0.0: expected seconds for one problem, above 0"),
+        (["--exec", "true", "--timeout", "-1"], ": --timeout = -1.0"),
+        *(
+            ([*solver, "--timeout", late], "at most 86400")
+            for solver in (["--exec", "true"], ["--solver", "rival_solver:solve"])
+            for late in ("inf", "nan", "1e9", "400000")
+        ),
+        (["--exec", "true", "--solver", "rival_solver:solve"], "not allowed with"),
+        (["--able", "load"], "nothing without --solver or --exec"),
+    ],
+)
+def test_bad_usage_is_refused_in_one_line(
+    rival: Path, capfd: Capture, arguments: list[str], said: str
+) -> None:
+    try:
+        status = main(["verify", *arguments])
+    except SystemExit as usage:
+        status = int(usage.code or 0)
+    printed = capfd.readouterr()
+    assert (status, printed.out, printed.err.count("\n")) == (2, "", 1), printed.err
+    assert said in printed.err
+
+
+def test_the_suite_and_the_self_test_can_be_listed(capfd: Capture) -> None:
+    assert main(["verify", "--solver", "not.imported:here", "--list"]) == 0
+    assert "contestant/trailing-shift" in capfd.readouterr().out
+    assert main(["verify", "--self-test", "--list"]) == 0
+    listed = capfd.readouterr().out.splitlines()
+    assert len([line for line in listed if "contestants/catches-" in line]) == len(FAULTY)
+    assert own.solve.version.startswith("refimpl ")
+
+
+def test_thorough_adds_problems_of_other_seeds_after_the_suite(tmp_path: Path, capfd: Capture) -> None:
+    words = ["verify", "--solver", "verification.solver_suite.own:solve"]
+    words += ["--only", "contestant/design-plain-2-0[12]", "--only", "contestant/pins"]
+    assert main([*words, "--thorough", "--json", str(tmp_path / "found.json")]) == 0
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert [case["id"].partition("/")[2] for case in found["cases"]] == [
+        "pins",
+        "design-plain-2-01",
+        "design-plain-2-02",
+    ]
+    assert found["thorough"] == 2
+    assert main(words) == 2
+    assert main([*words[:3], "--thorough", "--discretisation", "other"]) == 2
+    assert "nothing beside --discretisation other" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("judged", [0, 1, 3])
+def test_what_an_interrupted_run_did_not_reach_begins_after_its_last_verdict(judged: int) -> None:
+    checks = suite()[:3]
+    verdicts: Any = ("verdict",) * judged
+    run = Judged(checks, verdicts, (), False, (), KeyboardInterrupt(), 1.0)
+    assert run.missing == [check.id for check in checks][judged:]

@@ -1,0 +1,107 @@
+"""The covering design covers, and a right solver passes it."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from refimpl.grid import Array
+from verification.solver_suite import own
+from verification.solver_suite.covering import covering
+from verification.solver_suite.design import further_rows, in_turn, posed, rows, shape_of
+from verification.solver_suite.diagnosis import levels
+from verification.solver_suite.dimensions import CHANGED, DESIGNS, FURTHER
+from verification.solver_suite.isolated import Limited
+from verification.solver_suite.protocol import ContactProblem
+from verification.solver_suite.suite import run, select, suite, thorough
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_every_combination_of_levels_occurs(name: str) -> None:
+    """All pairs, of ``triples`` all triples; but no flat periodic gap at an approach."""
+    dimensions, strength = DESIGNS[name].dimensions, 3 if name == "triples" else 2
+    made = covering(dimensions, DESIGNS[name].seed, strength=strength, tries=DESIGNS[name].tries)
+    assert len(made) == len(rows()[name])
+    for chosen in itertools.combinations(dimensions, strength):
+        found = {tuple(row[each] for each in chosen) for row in made}
+        assert found == set(itertools.product(*(dimensions[each] for each in chosen)))
+
+
+def test_problems_in_turn_differ_in_one_dimension() -> None:
+    sizes = [row["elements"] for row in rows()["memory"]]
+    assert len({*sizes}) == len(sizes)
+    for row in rows()["memory"]:
+        first, second, third = in_turn(row)
+        assert first == third
+        changed = {name for name in {*first, *second} if second.get(name) != first.get(name)}
+        assert len(changed) == 1 or changed == {"modulus", "coupling"}  # which leaves c0 as it is
+    assert {row["changed"] for row in rows()["memory"]} == {*CHANGED}
+
+
+def test_designs_reach_from_one_element_to_512() -> None:
+    sizes = [row["elements"] for design in rows().values() for row in design]
+    assert (min(sizes), max(sizes)) == (1, 512)
+    assert shape_of(rows()["tiny"][0]) == (1, 1)
+    assert all(posed(row, 1, 1e-8).hardness for row in rows()["capped"][:3])
+
+
+def test_further_arrays_pose_other_problems_and_our_solver_solves_them() -> None:
+    """Of each further design the two smallest problems."""
+    checks = thorough()[len(suite()) :]
+    assert len(checks) > 500
+    assert len({c.id for c in (*suite(), *checks)}) == len(suite()) + len(checks)
+    for name in FURTHER:
+        first = name.rpartition("-")[0]
+        found, known = further_rows()[name], rows()[first]
+        assert len([row for row in found if row not in known]) > 0.8 * len(found)
+        for check in [c for c in checks if c.slug.startswith(f"design-{name}-")][:2]:
+            assert check.case(own.solve).run().status == "pass"
+            assert levels(check.slug) is not None
+    sizes = [row["elements"] for name in ("memory-2", "memory-3") for row in further_rows()[name]]
+    assert len({*sizes}) == len(sizes)
+    assert not {*sizes} & {row["elements"] for row in rows()["memory"]}
+
+
+QUICK = ["contestant/design-tiny-*", "contestant/design-memory-0*", "contestant/design-capped-0*"]
+
+
+@pytest.mark.parametrize("claim", [1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("solver", [own.solve, own.dense], ids=["production", "dense"])
+def test_no_right_solver_fails_at_the_claim_that_it_states(solver: own.Own, claim: float) -> None:
+    statuses = [r.status for r in run(Limited(solver, replace(solver.abilities, precision=claim)), QUICK)]
+    assert {*statuses} <= {"pass", "unavailable"}
+    assert statuses.count("pass") >= 20  # type: ignore[arg-type]  # a status is a text
+
+
+def test_a_memory_is_judged_by_all_problems_in_turn() -> None:
+    """The second problem of the case is solved with the first one's modulus; first and third are right."""
+    number = 1 + next(n for n, row in enumerate(rows()["memory"]) if row["changed"] == "modulus")
+    moduli: list[float] = []
+
+    def remembering(problem: ContactProblem) -> Array:
+        moduli.append(problem.reduced_modulus)
+        return np.asarray(own.solve(replace(problem, reduced_modulus=moduli[0])).pressure)
+
+    (check,) = select([f"contestant/design-memory-{number:02}"])
+    assert check.case(own.solve).run().status == "pass"
+    assert check.case(Limited(remembering, own.solve.abilities)).run().status == "fail"
+    assert len(moduli) == 3
+
+
+def test_a_flat_periodic_gap_has_the_mean_pressure() -> None:
+    (row, number) = next(
+        (row, n)
+        for n, row in enumerate(rows()["tiny"], start=1)
+        if row["borders"] == "periodic" and not posed(row, n, 1e-8).gap.any()
+    )
+    (check,) = select([f"contestant/design-tiny-{number:02}"])
+    assert check.case(own.solve).run().status == "pass"
+
+    def uneven(problem: ContactProblem) -> Array:
+        f = np.asarray(own.solve(problem).pressure)
+        return f * (1.001 if f.size == 1 else np.linspace(0.99, 1.01, f.size).reshape(f.shape))
+
+    assert check.case(Limited(uneven, own.solve.abilities)).run().status == "fail", row

@@ -1,0 +1,191 @@
+"""Numbers beside the pressures: right ones pass, in every kind of problem; wrong ones fail the case."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.grid import Array
+from verification.framework.case import Disproved
+from verification.solver_suite import numbers, own, reference_solution
+from verification.solver_suite.command import Command
+from verification.solver_suite.design import posed, rows
+from verification.solver_suite.isolated import Limited, run
+from verification.solver_suite.protocol import (
+    NUMBERS,
+    Abilities,
+    Answer,
+    BadAnswer,
+    ContactProblem,
+    Coupling,
+    ask,
+)
+from verification.solver_suite.reference.posed import _key
+from verification.solver_suite.suite import run as run_here
+
+HEIGHTS = np.random.default_rng(81).uniform(0, 1e-6, (9, 7))
+FREE = ContactProblem(HEIGHTS - HEIGHTS.min(), 1e-6, 1e9, load=1e-4)
+SQUARE = replace(FREE, gap=np.zeros((3, 3)))
+SLIDING = Coupling(tau=0.0, beta=0.7, shear_compliance=0.3 / (np.pi * 1e9), sliding_direction=1.1)
+KINDS = {
+    "free": FREE,
+    "at an approach": replace(FREE, load=None, approach=3e-7),
+    "periodic": replace(FREE, periodic=True),
+    "periodic, at an approach": replace(FREE, load=None, approach=-3e-7, periodic=True),
+    "sliding": replace(FREE, coupling=SLIDING),
+    "oblong": replace(FREE, spacing_y=1.7e-6),
+}
+
+
+def numbers_of(problem: ContactProblem, f: Array) -> dict[str, float]:
+    """By definition, from dense matrices or exact symbols."""
+    return {
+        "approach": reference_solution.approach_of(problem, f),
+        "contact_area": float((f > 0).sum()) * problem.element_area,
+        "mean_displacement": float(reference_solution.displacement(problem, f).mean()),
+    }
+
+
+@pytest.mark.parametrize("problem", KINDS.values(), ids=KINDS)
+def test_numbers_of_the_solution_agree_with_pressures_that_just_meet_the_claim(
+    problem: ContactProblem,
+) -> None:
+    """The numbers of the exact pressures beside others, as far off as the claim allows."""
+    exact, random = reference_solution.eliminated(problem), np.random.default_rng(82)
+    right = numbers_of(problem, exact)
+    del right["contact_area"]
+    for _ in range(20):
+        off = np.where(exact > 0, random.standard_normal(exact.shape), 0.0) * exact.max()
+        if problem.load is not None:
+            off -= np.where(exact > 0, off[exact > 0].mean(), 0.0)
+        size = (
+            problem.tolerance
+            * reference_solution.energy(problem, exact)
+            / 2
+            / reference_solution.energy(problem, off)
+        ) ** 0.5
+        found = np.maximum(exact + size * off, 0.0)
+        numbers.require(problem, Answer(found, True, **right))
+        numbers.require(problem, Answer(found, True, **numbers_of(problem, found)))
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("problem", KINDS.values(), ids=KINDS)
+def test_a_number_a_thousandth_off_is_disproved(problem: ContactProblem, name: str) -> None:
+    f = reference_solution.eliminated(problem)
+    right = numbers_of(problem, f)[name]
+    off = problem.element_area if name == "contact_area" else 1e-3 * float(np.ptp(problem.gap))
+    for wrong in (right + off, right - off):
+        with pytest.raises(Disproved, match=name.replace("_", " ")):
+            numbers.require(problem, Answer(f, True, **{name: wrong}))
+
+
+def test_where_nothing_touches_area_and_displacement_are_zero() -> None:
+    apart = replace(FREE, load=None, approach=-1e-7)
+    nothing = np.zeros(apart.shape)
+    numbers.require(apart, Answer(nothing, True, approach=-1e-7, contact_area=0.0, mean_displacement=0.0))
+    for wrong in ({"approach": 1e-7}, {"contact_area": apart.element_area}, {"mean_displacement": 1e-9}):
+        with pytest.raises(Disproved):
+            numbers.require(apart, Answer(nothing, True, **wrong))
+
+
+def test_the_approach_at_a_hardness_is_that_of_the_elements_below_it() -> None:
+    row = next(row for row in rows()["capped"] if row["borders"] == "free" and row["control"] == "load")
+    problem = posed(row, 1, 1e-8)
+    answer = own.solve(problem)
+    f, v = np.asarray(answer.pressure), None
+    assert problem.hardness is not None
+    numbers.require(problem, answer)
+    v = reference_solution.displacement(problem, f) + problem.gap
+    below = (f > 0) & (f < 0.999 * problem.hardness)
+    assert answer.approach == pytest.approx(float(v[below].mean()), rel=1e-4)
+    with pytest.raises(Disproved, match="approach"):
+        numbers.require(problem, replace(answer, approach=1.01 * float(answer.approach or 0.0)))
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, "1e-6", True, np.array([1e-6])])
+def test_what_is_no_number_is_a_bad_answer(wrong: object) -> None:
+    with pytest.raises(BadAnswer, match="expected a finite number, or None"):
+        ask(lambda p: Answer(p.gap, True, approach=wrong), SQUARE)  # type: ignore[arg-type]
+
+
+def halved(problem: ContactProblem) -> Answer:
+    """Right pressures; half the approach."""
+    answer = own.solve(problem)
+    return replace(answer, approach=0.5 * float(answer.approach or 0.0))
+
+
+class Halving:
+    """Source of the solver for another process."""
+
+    def contestant(self) -> Limited:
+        """Return it."""
+        return Limited(halved, own.solve.abilities)
+
+
+def test_numbers_come_back_from_another_process() -> None:
+    (found,) = run(Halving().contestant, ["contestant/hertz-load"], timeout=60.0)
+    assert found.status == "fail"
+    assert "approach" in found.note
+    assert run_here(own.solve, ["contestant/hertz-load"])[0].status == "pass"
+
+
+PROGRAM = """
+import json, pathlib, sys
+import numpy as np
+folder = pathlib.Path(sys.argv[1])
+gap = np.loadtxt(folder / "gap.csv", delimiter=",", ndmin=2)
+np.savetxt(folder / "pressure.csv", np.ones(gap.shape), delimiter=",")
+said = {"converged": True, "approach": 1.5e-6, "contact_area": 9e-12}
+(folder / "answer.json").write_text(json.dumps(said))
+"""
+
+
+def test_a_program_says_its_numbers_beside_its_convergence(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(PROGRAM)
+    able = Abilities()
+    found = Command((sys.executable, str(tmp_path / "program.py")), able, 60.0)(FREE)
+    assert (found.approach, found.contact_area, found.mean_displacement) == (1.5e-6, 9e-12, None)
+    (tmp_path / "program.py").write_text(PROGRAM.replace("json.dumps(said)", "json.dumps([1])"))
+    with pytest.raises(BadAnswer, match="unreadable answer"):
+        Command((sys.executable, str(tmp_path / "program.py")), able, 60.0)(FREE)
+
+
+GAP = np.array([[0.0, 1.0, 5.0], [3.0, 2.0, 4.0]]) * 1e-7
+SLIDES = Coupling(tau=2e6, beta=0.7, shear_compliance=-3e-11, sliding_direction=2.5)
+WHOLE = ContactProblem(
+    GAP, 1e-6, 5e9, approach=-4e-8, periodic=True, coupling=SLIDES, spacing_y=3e-6, hardness=8e8
+)
+LOADED = replace(WHOLE, approach=None, load=6e-3, periodic=False, coupling=None, hardness=None)
+
+
+def test_a_problem_that_differs_in_one_number_is_another_one() -> None:
+    others: list[dict[str, Any]] = [
+        {"spacing": 2e-6}, {"spacing_y": 2e-6}, {"reduced_modulus": 1e9}, {"approach": -1e-8},
+        {"hardness": 1e9}, {"approach": None, "load": 1.0}, {"periodic": False}, {"gap": GAP[::-1]},
+        {"gap": GAP.reshape(3, 2)}, *({"coupling": replace(SLIDES, **{key: 0.5})} for key in vars(SLIDES)),
+    ]  # fmt: skip
+    posed = [WHOLE, *(replace(WHOLE, **other) for other in others)]
+    assert len({_key(problem) for problem in posed}) == len(posed)
+
+
+def test_a_disproved_number_is_reported_with_its_unit() -> None:
+    """Three elements of 3e-12 m^2, and half of one."""
+    answer = Answer(np.where(GAP < 2.5e-7, 1.0, 0.0), True, contact_area=1e-12)
+    said = r"contact area 1e-12 m\^2: its pressures give 9e-12 \+- [12]e-12 m\^2"
+    with pytest.raises(Disproved, match=said):
+        numbers.require(LOADED, answer)
+
+
+def test_that_nothing_touches_is_success_at_an_approach_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended = SimpleNamespace(pressure=GAP, approach=2.0, contact_area=3.0, status=rf.Status.NO_CONTACT)
+    monkeypatch.setattr(own, "solved", lambda *_: ended)
+    assert [own.solve(problem).converged for problem in (WHOLE, LOADED)] == [True, False]
+    assert (own.solve(WHOLE).approach, own.solve(WHOLE).contact_area) == (2.0, 3.0)

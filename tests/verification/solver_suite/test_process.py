@@ -1,0 +1,295 @@
+"""Processes of solvers: the judge is out of their reach, and nothing that a run started goes on after it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.verification.cli.children import forked, started
+from verification.cli import main
+from verification.framework.case import Result
+from verification.solver_suite import isolated, process
+from verification.solver_suite.isolated import Named
+from verification.solver_suite.process import Ended, unwinding
+
+SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
+SLEEPS = """
+import os, time
+from pathlib import Path
+
+def solve(problem):
+    Path("pid.new").write_text(str(os.getpid()))
+    os.rename("pid.new", "pid")
+    time.sleep(600)
+"""
+SOLVERS = '''
+import gc, os, socket, subprocess, sys, time
+import numpy as np
+from verification.solver_suite import own, process
+
+def twice(problem):
+    return 2 * np.asarray(own.solve(problem).pressure)
+
+def writes(problem):
+    """Into every descriptor it has, but for the three that people read."""
+    for number in range(3, 64):
+        try:
+            os.set_blocking(number, False)
+            os.write(number, b"\\xff" * 40)
+        except OSError:
+            pass
+    time.sleep(600)
+
+def shuts(problem):
+    os.closerange(3, 256)
+    return own.solve(problem)
+
+def promises(problem):
+    """The head of a long frame, and nothing after it."""
+    for found in gc.get_objects():
+        if isinstance(found, socket.socket):
+            found.sendall(process.HEAD.pack(process.FRAME, 20, 1 << 30))
+    time.sleep(600)
+
+def answers_another(problem):
+    for found in gc.get_objects():
+        if isinstance(found, socket.socket):
+            process.send(found, {"number": 10**6, "kind": "answer"}, np.ones(problem.shape).tobytes())
+    return own.solve(problem)
+
+def patches(problem):
+    """Whatever it finds of the judge in its process, so that any answer passes."""
+    from verification.solver_suite import check, reference_solution
+    from verification.framework import case
+    case.error_of = lambda *a: 0.0
+    reference_solution.misfit = lambda *a: 0.0
+    check.Entrant.misfit = lambda *a: 0.0
+    case.Case.run = lambda self: self.result(case.Status.PASS, "", 0.0)
+    return twice(problem)
+
+def leaves(problem):
+    """A process in a session of its own, whose parent is gone."""
+    code = "import os, time; os.setsid(); os.fork() and os._exit(0); " \\
+        "open('pid.new', 'w').write(str(os.getpid())); os.rename('pid.new', 'pid'); time.sleep(600)"
+    subprocess.run([sys.executable, "-c", code])
+    while not os.path.exists("pid"):
+        time.sleep(0.01)
+    return own.solve(problem)
+
+def hides(problem):
+    """A process in a session of its own without the environment that it was given."""
+    code = "import os, time; open('pid', 'w').write(str(os.getpid())); time.sleep(600)"
+    subprocess.Popen([sys.executable, "-c", code], env={}, start_new_session=True)
+    while not (os.path.exists("pid") and open("pid").read()):
+        time.sleep(0.01)
+    return own.solve(problem)
+
+def slow_second(problem):
+    if os.path.exists("first"):
+        open("second", "w").close()
+        time.sleep(600)
+    open("first", "w").close()
+    return own.solve(problem)
+'''
+CASES = ["contestant/one-element", "contestant/pins"]
+
+
+def running(pid: int) -> bool:
+    """Whether a process is there and no zombie, which only its parent could bury."""
+    return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+
+
+def until(seconds: float, what: str, holds: Callable[[], object]) -> None:
+    deadline = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < deadline, what
+        time.sleep(0.05)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A directory to run in, with the solvers."""
+    (tmp_path / "hostile.py").write_text(SOLVERS)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def judged(name: str, timeout: float = 60.0) -> dict[str, Result]:
+    results = isolated.run(Named(f"hostile:{name}").contestant, CASES, timeout=timeout)
+    return {r.id.partition("/")[2]: r for r in results}
+
+
+@pytest.mark.parametrize("name", ["writes", "promises"])
+def test_a_solver_that_writes_into_its_descriptors_does_not_hang_the_judge(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setattr(isolated, "GRACE", 3.0)
+    before = time.monotonic()
+    found = judged(name, timeout=0.5)
+    assert time.monotonic() - before < 100
+    assert {r.status for r in found.values()} == {"error"}
+    said = {r.note for r in found.values()}
+    assert said <= {"the solver's process sent something else than an answer", "no answer within 3.5 s"}
+
+
+@pytest.mark.parametrize("name", ["shuts", "answers_another"])
+def test_lost_or_forged_frames_are_errors_of_their_case(folder: Path, name: str) -> None:
+    assert {r.status for r in judged(name).values()} == {"error"}
+
+
+def test_a_solver_that_patches_the_judge_fails_all_the_same(folder: Path) -> None:
+    assert {r.status for r in judged("patches").values()} == {"fail"}
+    assert {r.status for r in judged("twice").values()} == {"fail"}
+
+
+@pytest.mark.parametrize("solver", ["leaves", "hides"])
+def test_a_process_in_a_session_of_its_own_is_ended_and_named(
+    folder: Path, capfd: pytest.CaptureFixture[str], solver: str
+) -> None:
+    only = ["--only", "contestant/one-element", "--json", "out.json"]
+    assert main(["verify", "--solver", f"hostile:{solver}", *only]) == 0
+    pid = int((folder / "pid").read_text())
+    assert not running(pid)
+    (left,) = json.loads((folder / "out.json").read_text())["contestant"]["left_running"]
+    assert f"(process {pid}): ended" in left
+    assert "processes that the solver left behind:" in capfd.readouterr().out
+
+
+def test_somebody_elses_child_is_left_alone(folder: Path) -> None:
+    other = os.fork()
+    if not other:
+        time.sleep(600)
+        os._exit(0)
+    try:
+        assert {r.status for r in judged("twice").values()} == {"fail"}
+        assert running(other)
+    finally:
+        os.kill(other, signal.SIGKILL)
+        os.waitpid(other, 0)
+
+
+@pytest.mark.parametrize(("how", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, -signal.SIGTERM)])
+def test_an_interrupted_run_shows_and_writes_what_is_judged_so_far(
+    folder: Path, how: signal.Signals, status: int
+) -> None:
+    only = [word for case in CASES for word in ("--only", case)]
+    child = started(["verify", "--solver", "hostile:slow_second", *only, "--json", "out.json"], folder)
+    try:
+        until(180, "the second problem is posed", lambda: (folder / "second").exists())
+        child.send_signal(how)
+        out, err = child.communicate(timeout=20)
+    finally:
+        child.kill()
+    assert child.returncode == status
+    assert "pass  contestant/one-element" in out
+    assert "interrupted: 1 cases were not judged" in out
+    assert err == ""
+    document = json.loads((folder / "out.json").read_text())
+    assert document["interrupted"] is True
+    assert [case["status"] for case in document["cases"]] == ["pass"]
+    assert document["contestant"]["not_judged"] == ["contestant/pins"]
+
+
+def test_a_frame_comes_back_and_half_of_one_is_late() -> None:
+    here, there = socket.socketpair()
+    with here, there:
+        process.send(here, {"number": 1}, b"xyz")
+        assert process.receive(there, seconds=5) == ({"number": 1}, b"xyz")
+        here.sendall(process.HEAD.pack(process.FRAME, 10, 0))
+        with pytest.raises(process.Late):
+            process.receive(there, seconds=0.05)
+        here.sendall(b"0123456789")
+        here.sendall(b"something of some length")
+        with pytest.raises(process.Garbled):
+            process.receive(there, seconds=5)
+    with pytest.raises(OSError):
+        process.receive(there, seconds=5)
+
+
+@pytest.mark.parametrize("lengths", [(process.LONGEST_HEADER + 1, 0), (2, process.LONGEST_BODY + 1)])
+def test_lengths_beyond_the_longest_are_no_frame(lengths: tuple[int, int]) -> None:
+    here, there = socket.socketpair()
+    with here, there:
+        here.sendall(process.HEAD.pack(process.FRAME, *lengths) + b"{}")
+        with pytest.raises(process.Garbled):
+            process.receive(there, seconds=0.2)
+
+
+def test_nobody_who_reads_is_late_too() -> None:
+    here, there = socket.socketpair()
+    with here, there, pytest.raises(process.Late):
+        process.send(here, {}, bytes(10**8), seconds=0.05)
+
+
+@pytest.mark.parametrize(
+    ("solver", "how"),
+    [
+        (["--exec", SLEEPER], signal.SIGINT),
+        (["--exec", SLEEPER], signal.SIGTERM),
+        (["--exec", SLEEPER], signal.SIGKILL),
+        (["--solver", "sleeper:solve"], signal.SIGHUP),
+    ],
+)
+def test_a_run_that_is_ended_takes_the_solver_with_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solver: list[str], how: signal.Signals
+) -> None:
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "sleeper.py").write_text(SLEEPS)
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
+    child = started(["verify", *solver, "--only", "contestant/one-element"], tmp_path)
+    until(180, "the solver started", lambda: (tmp_path / "pid").exists() and (tmp_path / "pid").read_text())
+    pid = int((tmp_path / "pid").read_text())
+    try:
+        child.send_signal(how)
+        assert child.wait(timeout=10) == (130 if how is signal.SIGINT else -how)
+        until(5, "the solver ended", lambda: not running(pid))
+        until(5, "no directory is left", lambda: not list((tmp_path / "tmp").iterdir()))
+        _, err = child.communicate(timeout=10)  # whoever is left holds the pipes too
+        assert err == ""
+    finally:
+        if running(pid):
+            os.kill(pid, signal.SIGKILL)
+        child.kill()
+        child.communicate()
+
+
+def test_a_signal_unwinds_once_and_is_then_as_before() -> None:
+    cleaned = []
+
+    def tidying() -> None:
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+        finally:
+            os.kill(os.getpid(), signal.SIGHUP)  # while it is tidied up
+            cleaned.append(True)
+
+    def act() -> int:
+        with pytest.raises(Ended, match="15"), unwinding(signal.SIGTERM, signal.SIGHUP):
+            tidying()
+        if cleaned:
+            os.kill(os.getpid(), signal.SIGTERM)
+        return 0
+
+    assert forked(act).status == -signal.SIGTERM
+
+
+def test_an_ignored_signal_stays_so_and_a_fork_gets_it_as_ever() -> None:
+    def act() -> int:
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as under nohup
+        with unwinding(signal.SIGTERM, signal.SIGHUP):
+            os.kill(os.getpid(), signal.SIGHUP)
+            child = os.fork()
+            if child == 0:
+                os.kill(os.getpid(), signal.SIGTERM)
+                os._exit(3)
+        return abs(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+
+    assert forked(act).status == signal.SIGTERM

@@ -1,0 +1,325 @@
+"""Reference data: bounds are true, files are whole and reproducible, changes in them are found."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import MagicMock
+
+import numpy as np
+import pytest
+
+from refimpl.grid import Array
+from verification.cli import export as cli_export
+from verification.cli import main
+from verification.solver_suite import own, reference_solution
+from verification.solver_suite.checks.sliding_pins import FREE, PERIODIC
+from verification.solver_suite.gaps import rough_bump, waves
+from verification.solver_suite.pin_arrays import PinArray
+from verification.solver_suite.protocol import ContactProblem
+from verification.solver_suite.reference import agreement, files
+from verification.solver_suite.reference.certified import (
+    APPARENTLY_CONTACT,
+    APPARENTLY_SEPARATED,
+    CONTACT,
+    SEPARATED,
+    Certified,
+    NoBound,
+    NotCertified,
+    _codes,
+    certified,
+)
+from verification.solver_suite.reference.files import SUMS, checksums
+from verification.solver_suite.reference.periodic_bound import periodic_bound
+from verification.solver_suite.reference.posed import problems
+
+E = 2e9
+SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*", "periodic-elimination")
+ONLY = [word for name in SMALL for word in ("--only", f"contestant/{name}")]
+
+
+def within(found: Certified, exact: Array) -> None:
+    """The exported pressures and all bounds hold against the exact ones."""
+    off = found.pressure - exact
+    dA = found.problem.element_area
+    rounding = 1e-15 * float(exact.max())
+    assert float(np.abs(off).max()) <= found.bounds.pressure + rounding
+    assert float(np.sqrt((off**2).sum() * dA)) <= found.bounds.pressure_l2 + rounding
+    assert abs(float(off.sum())) * dA <= found.bounds.load + rounding * exact.size * dA
+    assert ((found.contact == CONTACT) <= (exact > 0)).all()
+    assert ((found.contact == SEPARATED) <= (exact == 0)).all()
+
+
+def array_problem(array: PinArray, *, by_load: bool) -> ContactProblem:
+    M, gap = len(array.pressure), array.gap
+    control = (
+        {"load": array.load}
+        if by_load
+        else {"approach": array.touch - (gap.mean() if array.periodic else 0.0)}
+    )
+    least = float(gap.min())  # rounding may leave the lowest pin some 1e-19 m from zero
+    return ContactProblem(
+        gap - least, 1 / M, array.modulus, periodic=array.periodic, coupling=array.coupling, **control
+    )
+
+
+@pytest.mark.parametrize("by_load", [True, False])
+@pytest.mark.parametrize("array", [FREE[0], FREE[2], PERIODIC[0], PERIODIC[2]])
+def test_pressures_that_were_chosen_lie_within_the_bounds(array: PinArray, by_load: bool) -> None:
+    found = certified(array_problem(array, by_load=by_load))
+    # the pins' gaps are rounded (1e-16 of 0.5 m), which moves pressures by 1e-12 of the peak
+    slack = replace(found.bounds, pressure=found.bounds.pressure + 1e-11 * array.pressure.max())
+    assert float(np.abs(found.pressure - array.pressure).max()) <= slack.pressure
+    assert found.bounds.pressure < 1e-7 * array.pressure.max()
+    assert np.array_equal(found.contact == CONTACT, array.pressure > 0)
+    assert np.array_equal(found.contact == SEPARATED, array.pressure == 0)
+
+
+@pytest.mark.parametrize("depth", [-0.016, -0.006, -0.0005])
+def test_at_a_periodic_approach_elimination_lies_within_the_bounds(depth: float) -> None:
+    problem = ContactProblem(
+        _lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, approach=depth, periodic=True
+    )
+    found = certified(problem)
+    within(found, reference_solution.eliminated(problem))
+    assert 0 < found.bounds.pressure < 1e-8 * found.pressure.max()
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+def test_a_loose_solution_lies_within_its_periodic_bounds(tolerance: float) -> None:
+    """Its error is large, so that a bound without a margin would show."""
+    problem = ContactProblem(
+        _lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, approach=-0.006, periodic=True
+    )
+    loose, exact = own.solved(problem, tolerance), reference_solution.eliminated(problem)
+    bound = periodic_bound(problem, loose)
+    assert bound is not None
+    error = np.asarray(loose.pressure) - exact
+    assert float(np.abs(error).max()) <= bound.pressure
+    assert abs(float(error.sum())) * problem.element_area <= bound.load
+    moved = reference_solution.by_pressure(problem, error)
+    assert float(np.vdot(error, moved)) * problem.element_area <= bound.energy
+    assert (bound.in_contact <= (exact > 0)).all()
+    assert (bound.out_of_contact <= (exact == 0)).all()
+
+
+def test_where_planes_overlap_no_periodic_bound_is_claimed() -> None:
+    """Full contact: any mean pressure is a solution at approach 0, none beyond."""
+    problem = ContactProblem(_lowest(0.001 * waves(8, 5, shortest=2)), 1 / 8, E, load=2e8, periodic=True)
+    solution = own.solved(problem, 1e-10)
+    at_planes = replace(problem, load=None, approach=0.0)
+    assert solution.pressure.min() > 0
+    assert periodic_bound(at_planes, solution) is None
+
+
+def test_a_free_problem_has_no_periodic_bound() -> None:
+    problem = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, approach=0.01)
+    assert periodic_bound(problem, own.solved(problem, 1e-10)) is None
+
+
+def test_what_cannot_be_certified_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("verification.solver_suite.reference.certified.USABLE", 1e-20)
+    problem = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, load=1e5)
+    with pytest.raises(NotCertified, match="pressures are known to"):
+        certified(problem)
+
+
+def test_without_contact_pressures_are_exactly_zero() -> None:
+    apart = ContactProblem(np.array([[0.0, 0.1], [0.2, 0.3]]), 1.0, E, approach=-0.05)
+    found = certified(apart)
+    assert not found.pressure.any()
+    assert found.bounds.pressure == 0
+    assert (found.contact == SEPARATED).all()
+
+
+def test_uniform_periodic_pressures_have_no_residual_and_their_bounds() -> None:
+    found = certified(ContactProblem(np.zeros((6, 6)), 0.5, E, load=9e3, periodic=True))
+    assert found.residual is None
+    assert float(np.abs(found.pressure - 1e3).max()) <= found.bounds.pressure + 1e-12
+    assert (found.contact == CONTACT).all()
+
+
+def test_codes_of_elements() -> None:
+    touching = np.array([True, True, False, False])
+    inside, outside = np.array([True, False, False, False]), np.array([False, False, True, False])
+    assert list(_codes(touching, inside, outside)) == [
+        CONTACT, APPARENTLY_CONTACT, SEPARATED, APPARENTLY_SEPARATED,
+    ]  # fmt: skip
+
+
+def test_a_problem_is_posed_once_and_grids_are_small() -> None:
+    found = list(problems(["contestant/wide-pins", "contestant/hertz-*"]))
+    names = [named.name for named in found]
+    assert len(names) == len(set(names))
+    assert "hertz-load" in names
+    assert not any(name.startswith("wide-pins") for name in names)  # 160 elements a side
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small export."""
+    path = tmp_path_factory.mktemp("export") / "data"
+    assert main(["verify", "--export", str(path), *ONLY]) == 0
+    return path
+
+
+def test_equal_versions_write_equal_bytes(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = tmp_path / "again"
+    assert main(["verify", "--export", str(again), *ONLY, "--json", "-"]) == 0
+    assert json.loads(capsys.readouterr().out)["version"] == files.version_of(folder)
+    for path in folder.rglob("*"):
+        if path.is_file():
+            assert path.read_bytes() == (again / path.relative_to(folder)).read_bytes(), path.name
+
+
+def test_the_index_has_its_schema(folder: Path) -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json.loads((folder / "schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    index = json.loads((folder / "index.json").read_text())
+    jsonschema.validate(index, schema)
+    del index["problems"][0]["answer"]["bounds"]["load"]
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(index, schema)
+
+
+def test_arrays_have_the_shapes_of_the_index_and_solve_the_problems(folder: Path) -> None:
+    for entry in agreement.index_of(folder)["problems"]:
+        problem = agreement.problem_of(folder, entry)
+        pressure = agreement.array_of(folder, entry, "pressure")
+        answer = entry["answer"]
+        assert pressure.sum() * problem.element_area == pytest.approx(answer["load"], rel=1e-12)
+        assert np.count_nonzero(pressure) == answer["elements_in_contact"]
+        if pressure.any():
+            assert reference_solution.residual(problem, pressure).worst < 1e-11
+        if pressure.any() and problem.hardness is None:
+            assert reference_solution.approach_of(problem, pressure) == pytest.approx(
+                answer["approach"], rel=1e-9
+            )
+
+
+def test_the_table_repeats_the_index(folder: Path) -> None:
+    head, *rows = (folder / "index.csv").read_text().splitlines()
+    assert tuple(head.split(",")) == files.COLUMNS
+    for row, entry in zip(rows, agreement.index_of(folder)["problems"], strict=True):
+        cells = dict(zip(files.COLUMNS, row.split(","), strict=True))
+        assert cells["name"] == entry["name"]
+        assert float(cells["lx"]) == entry["problem"]["lengths"][0]
+        assert float(cells["value"]) == entry["problem"]["value"]
+        assert float(cells["bound_load"]) == entry["answer"]["bounds"]["load"]
+
+
+def test_an_export_agrees_with_itself(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert agreement.main([str(folder)]) == 0
+    assert "every problem agrees" in capsys.readouterr().out
+
+
+def _changed(folder: Path, tmp_path: Path, name: str, factor: float) -> Path:
+    """A copy whose array is multiplied by a factor."""
+    copy = tmp_path / "copy"
+    copy.mkdir()
+    for path in sorted(folder.rglob("*")):
+        target = copy / path.relative_to(folder)
+        target.mkdir() if path.is_dir() else target.write_bytes(path.read_bytes())
+    array = np.fromfile(copy / name, "<f8")
+    (factor * array).astype("<f8").tofile(copy / name)
+    return copy
+
+
+def test_a_changed_file_is_found(folder: Path, tmp_path: Path) -> None:
+    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1 + 1e-15)
+    found = list(agreement.disagreements(copy, ["pins"]))
+    assert found == [f"data/pins.pressure.f64: its checksum is not the one in {SUMS}"]
+
+
+def test_a_file_that_has_no_checksum_is_found_and_one_that_is_missing(folder: Path, tmp_path: Path) -> None:
+    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1.0)
+    first, second, *rest = (copy / SUMS).read_text().splitlines(keepends=True)
+    (copy / SUMS).write_text(f"{'0' * 64}  data/lost.f64\n" + second + "".join(rest))
+    found = {line.partition(":")[0] for line in agreement.disagreements(copy, ["pins"])}
+    assert found == {"data/lost.f64", first.split()[1]}
+
+
+def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(folder: Path, tmp_path: Path) -> None:
+    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1 + 1e-7)
+    (copy / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in checksums(copy).items()))
+    (found,) = agreement.disagreements(copy, ["pins"])
+    assert found.startswith("pins: pressure differs by")
+
+
+def test_the_citation_names_the_content(folder: Path) -> None:
+    assert f'version: "{files.version_of(folder)}"' in (folder / "CITATION.cff").read_text()
+    assert files.version_of(folder).startswith("sha256:")
+
+
+def test_a_folder_that_holds_something_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine.txt").write_text("keep")
+    only = ["--only", "contestant/pins"]
+    assert main(["verify", "--export", str(tmp_path), *only]) == 2
+    assert main(["verify", "--export", str(tmp_path / "no" / "such"), *only]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--self-test"]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/no-such"]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/wide-pins"]) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    assert "a new or an empty directory" in capsys.readouterr().err
+
+
+def test_an_interrupted_export_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files.Export, "close", lambda self: (_ for _ in ()).throw(KeyboardInterrupt))
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/pins"]) == 130
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_no_export_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert agreement.main([]) == 2
+    assert agreement.main([str(tmp_path)]) == 2
+    (tmp_path / "index.json").write_text('{"format": "another"}')
+    assert agreement.main([str(tmp_path)]) == 2
+    assert "an index whose format is" in capsys.readouterr().err
+
+
+def _lowest(heights: Array) -> Array:
+    return np.asarray(heights - heights.min())
+
+
+@pytest.mark.parametrize(("second", "status"), [(NoBound, 0), (NotCertified, 1)])
+def test_only_a_problem_that_could_have_a_proof_fails_an_export(
+    second: type[NotCertified],
+    status: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Of three problems the first has a bound of 2 Pa below a peak of 8 Pa, the last one of 1 Pa."""
+
+    def certified(problem: str) -> Any:
+        if problem == "b":
+            raise second("why not")
+        bound = {"a": 2.0, "c": 1.0}[problem]
+        return SimpleNamespace(bounds=SimpleNamespace(pressure=bound), pressure=np.array([3.0, 8.0]))
+
+    export = MagicMock()
+    export.return_value.__exit__.return_value = False
+    export.return_value.__enter__.return_value.close.return_value = "v1"
+    named = [SimpleNamespace(case="x", name=letter, problem=letter) for letter in "abc"]
+    monkeypatch.setattr("verification.solver_suite.reference.certified.certified", certified)
+    monkeypatch.setattr("verification.solver_suite.reference.posed.problems", lambda only: named)
+    monkeypatch.setattr("verification.solver_suite.reference.files.Export", export)
+    options = argparse.Namespace(export=Path("x"), only=["contestant/pins"], json=Path("-"))
+    assert cli_export.run(options) == status
+    found = json.loads(capsys.readouterr().out)
+    assert (found["problems"], found["largest_relative_bound"]) == (2, 0.25)
+    assert (found["not_certified"], found["version"]) == ({"b": "why not"}, "v1")
+
+
+def test_codes_mean_what_the_index_says() -> None:
+    """Each text stands at its code."""
+    words = {CONTACT: "in contact, proven", SEPARATED: "separated, proven"}
+    words[APPARENTLY_CONTACT] = "in contact as exported, within the bounds of separation"
+    words[APPARENTLY_SEPARATED] = "separated as exported, within the bounds of contact"
+    assert [words[code] for code in range(4)] == list(files.CODES)

@@ -1,0 +1,86 @@
+"""The suite for anyone's solver, tested: our own passes, and every faulty one fails where it should."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from verification.framework.case import Measured
+from verification.framework.registry import case
+from verification.solver_suite import own
+from verification.solver_suite.check import Fault
+from verification.solver_suite.faulty_solvers.table import FAULTY
+from verification.solver_suite.suite import run, suite
+
+SOURCE = "the suite of verification.solver_suite"
+
+
+NAMED = tuple(check.id for check in suite() if not check.slug.startswith("design-"))
+"""Cases that name faults; those of the covering designs name none."""
+
+
+@cache
+def verdicts(fault: Fault) -> dict[str, str]:
+    """Status of every case of the suite, by slug, for the solver with a fault."""
+    return {r.id.partition("/")[2]: r.status for r in run(FAULTY[fault](), NAMED)}
+
+
+@case("contestants/own-solver", metric="equal", tolerance=0.0, source=SOURCE)
+def own_solver() -> Measured:
+    """The project's own solver through the suite for other solvers.
+
+    Claim: refimpl's production solver passes every case that other solvers are put to
+    Tolerance: a number of cases
+    """
+    results = run(own.solve)
+    left = [f"{r.id}: {r.status} {r.note}" for r in results if r.status != "pass"]
+    data = {"error over tolerance": {r.id: (r.error or 0.0) / (r.tolerance or 1.0) for r in results}}
+    return Measured(len(left), 0.0, unit="cases", data=data, note="; ".join(left) or f"{len(results)} cases")
+
+
+def _declare(fault: Fault) -> None:
+    """The case that a fault is caught in every case of the suite that names it."""
+
+    @case(
+        "contestants/catches-" + "-".join(fault.replace("%", "percent").split()),
+        metric="equal",
+        tolerance=0.0,
+        tier="full",
+        title=f"A solver with a fault: {fault}",
+        claim="It claims success, and fails in each case of the suite whose description names the fault",
+        source=SOURCE,
+        tolerance_reason="a number of cases that name the fault and do not fail",
+    )
+    def caught() -> Measured:
+        naming = [check.slug for check in suite() if fault in check.catches]
+        if not naming:
+            raise ValueError(f"no case of the suite names {fault!r}")
+        found = verdicts(fault)
+        missed = [slug for slug in naming if found[slug] != "fail"]
+        others = [slug for slug in found if slug not in naming and found[slug] in ("fail", "error")]
+        note = (
+            f"caught in {len(naming)} that name it and in {len(others)} others; missed in {missed or 'none'}"
+        )
+        return Measured(len(missed), 0.0, unit="cases", data={"named in": naming, "also": others}, note=note)
+
+
+for _fault in FAULTY:
+    _declare(_fault)
+
+
+@case("contestants/each-case-earns-its-place", metric="equal", tolerance=0.0, tier="full", source=SOURCE)
+def each_case_earns_its_place() -> Measured:
+    """Cases of the suite against faulty solvers.
+
+    Claim: Every case of the suite fails at least one of the faulty solvers
+    Tolerance: a number of cases that fail none
+    """
+    found = {fault: verdicts(fault) for fault in FAULTY}
+    named = [c for c in suite() if c.id in NAMED]
+    idle = [c.slug for c in named if not any(found[fault][c.slug] == "fail" for fault in found)]
+    data = {
+        "case": [c.slug for c in named],
+        "fault": [fault.value for fault in found],
+        "verdict": [[found[fault][c.slug] for fault in found] for c in named],
+        "named": [[fault in c.catches for fault in found] for c in named],
+    }
+    return Measured(len(idle), 0.0, unit="cases", data=data, note=f"idle: {', '.join(idle) or 'none'}")

@@ -1,0 +1,161 @@
+"""Other discretisations (nodes, bilinear or Galerkin elements): judged by limit and order, not by equality.
+
+Problems with a closed form p are posed on seven grids; a solver returns pressures f at the element centres
+as ever. Edges, where any uniform grid errs with the root of its spacing, are weighted down: with ``w =
+min(1, p / 0.6 max p)^4``, the load within is ``v = sum w f / sum w p`` and the field's error ``e = |w^1/2
+(f - p)| / |w^1/2 p|``. The limit v0 of ``v0 + C h^q``, by least squares with the expected order q, is in
+error by what no grid removes: ``|v0 - 1|`` makes the verdict. The order is the slope of ln e over ln h.
+Expected is 2, and 1 for a cone with its logarithmic tip; below `NONE` of it there is no convergence, and
+the finest grid's e is judged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from refimpl.grid import Array
+from verification.framework.case import Measured, Result
+from verification.solver_suite.check import Check, Entrant
+from verification.solver_suite.checks.periodic import AMPLITUDE, STAR, ridge, wave
+from verification.solver_suite.checks.sliding import coupled_hertz
+from verification.solver_suite.checks.smooth import SIDE, SPHERE, cone, ellipse, off_centre, sphere
+from verification.solver_suite.gaps import centres
+
+GRIDS = (12, 16, 20, 26, 32, 40, 48)
+"""Elements a side; even numbers, so that no centre lies on a cone's tip."""
+LIMIT = 0.003
+"""Largest error in the limit: element-wise pressures leave up to 0.0024, a modulus off by 1 % 0.0036."""
+SHARE, NONE = 0.6, 0.3
+"""Least order over the expected one, and none at all: element-wise pressures have 0.80 to 1.08."""
+WRONG, SLOW = 1, 3
+"""Exit statuses: a limit that is wrong or cannot be judged; right limits, one of them reached too slowly."""
+
+
+def fitted_limit(h: Array, values: Array, order: int) -> float:
+    """Return the constant of ``v0 + C h^order`` by least squares.
+
+    >>> round(fitted_limit(np.array([1.0, 0.5, 0.25]), np.array([1.4, 1.1, 1.025]), 2), 9)
+    1.0
+    """
+    v0, _ = np.linalg.lstsq(np.column_stack([h**0.0, h**order]), values)[0]
+    return float(v0)
+
+
+def slope(h: Array, errors: Array) -> float:
+    """Return the least-squares order of errors.
+
+    >>> round(slope(np.array([1.0, 0.5, 0.25]), np.array([0.16, 0.04, 0.01])), 9)
+    2.0
+    """
+    return float(np.polyfit(np.log(h), np.log(np.maximum(errors, 1e-300)), 1)[0])
+
+
+Field = Callable[[Entrant, int], tuple[Array, Array]]
+Value = Callable[[Entrant, int], float]
+
+
+SPACINGS = 1 / np.array(GRIDS, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class _OfField:
+    pose: Field
+    order: int = 2
+
+    def __call__(self, entrant: Entrant) -> Measured:
+        pairs = [weighted(*self.pose(entrant, n)) for n in GRIDS]
+        loads, errors = (np.array(numbers) for numbers in zip(*pairs, strict=True))
+        limit, order = abs(fitted_limit(SPACINGS, loads, self.order) - 1), slope(SPACINGS, errors)
+        if not order >= NONE * self.order:
+            limit = max(limit, float(errors[-1]))
+        note = f"order {order:.2f} of {self.order}; errors " + ", ".join(f"{e:.2g}" for e in errors)
+        data = {"order": order, "expected": self.order, "errors": errors}
+        return Measured(limit, unit="relative", data=data, note=note)
+
+
+@dataclass(frozen=True)
+class _OfValue:
+    pose: Value
+    exact: float
+
+    def __call__(self, entrant: Entrant) -> Measured:
+        values = np.array([self.pose(entrant, n) for n in GRIDS]) / self.exact
+        note = "over the exact load: " + ", ".join(f"{v:.4f}" for v in values)
+        limit = abs(fitted_limit(SPACINGS, values, 2) - 1)
+        return Measured(limit, unit="relative", data={"values": values}, note=note)
+
+
+def weighted(found: Array, exact: Array) -> tuple[float, float]:
+    """Return v and e of a field against the exact one."""
+    w = np.minimum(1.0, exact / (0.6 * exact.max())) ** 4
+    load = float((w * found).sum() / (w * exact).sum())
+    return load, float(np.sqrt((w * (found - exact) ** 2).sum() / (w * exact**2).sum()))
+
+
+def _hertz(entrant: Entrant, n: int) -> tuple[Array, Array]:
+    pressed = entrant.press(sphere(SIDE, n), SIDE, load=1.0)
+    return pressed.pressure, SPHERE.pressure(np.hypot(*centres(SIDE, n)))
+
+
+def _near_a_corner(entrant: Entrant, n: int) -> tuple[Array, Array]:
+    return off_centre(entrant, n, 0.17, -0.11)
+
+
+def _wave(entrant: Entrant, n: int) -> tuple[Array, Array]:
+    pressed = entrant.press(ridge(n), 1.0, load=0.5 * STAR, periodic=True)
+    return pressed.pressure, wave().pressure(centres(1.0, n)[0]) * np.ones((n, n))
+
+
+def _sliding(entrant: Entrant, n: int) -> tuple[Array, Array]:
+    """Tau is small: at 0.1 and 0.3 of the peak, elements at the edge alternate on some of the grids."""
+    return coupled_hertz(entrant, n, 0.05)
+
+
+def _load(entrant: Entrant, n: int) -> float:
+    return entrant.press(sphere(SIDE, n), SIDE, approach=SPHERE.approach).load
+
+
+def _wave_load(entrant: Entrant, n: int) -> float:
+    return entrant.press(ridge(n), 1.0, approach=wave().approach - AMPLITUDE, periodic=True).load
+
+
+def _check(slug: str, title: str, source: str, judge: Callable[[Entrant], Measured]) -> Check:
+    claim = f"{title}: on {GRIDS[0]} to {GRIDS[-1]} elements a side the answers tend to the closed form"
+    reason = "element-wise pressures leave up to 0.0024, a modulus off by 1 % 0.0036 or more (measured)"
+    return Check(f"other-{slug}", title, claim, source, LIMIT, reason, (), judge)
+
+
+CASES = (
+    _check("hertz", "Hertz under a load", "Hertz 1882; Johnson 1985, section 4.2", _OfField(_hertz)),
+    _check("corner", "Hertz near a corner", "Johnson 1985, Eq. (3.39)", _OfField(_near_a_corner)),
+    _check("ellipse", "Elliptical Hertz contact", "Johnson 1985, section 4.2", _OfField(ellipse)),
+    _check("cone", "Cone under a load", "Sneddon 1965; Johnson 1985, section 5.2", _OfField(cone, 1)),
+    _check("wave", "Westergaard's wave under a load", "Johnson 1985, Eq. (13.7)", _OfField(_wave)),
+    _check("sliding", "Sliding where the state is Hertz'", "Gauss' law for s/rho^2", _OfField(_sliding)),
+    _check("load", "Hertz at an approach: load", "Johnson 1985, Eq. (4.23)", _OfValue(_load, 1.0)),
+    _check("wave-load", "Westergaard's wave at an approach", "Johnson 1985, Eq. (13.7)",
+           _OfValue(_wave_load, 0.5 * STAR)),
+)  # fmt: skip
+"""Run by ``verify --solver ... --discretisation other`` in the place of the suite."""
+
+
+def exit_status(results: Sequence[Result]) -> int:
+    """0: some limit was judged, all that were are right, and all orders hold; else `WRONG` or `SLOW`."""
+    statuses = [result.status for result in results]
+    if "pass" not in statuses or "fail" in statuses or "error" in statuses:
+        return WRONG
+    return SLOW if slow(results) else 0
+
+
+def slow(results: Sequence[Result]) -> list[str]:
+    """Ids of the cases with a right limit whose order is below its least."""
+    passed = [r for r in results if r.status == "pass" and "order" in r.data]
+    return [r.id for r in passed if not _number(r, "order") >= SHARE * _number(r, "expected")]
+
+
+def _number(result: Result, name: str) -> float:
+    value = result.data[name]
+    return float(value) if isinstance(value, int | float) else float("nan")

@@ -1,0 +1,1 @@
+"""Solvers that are wrong on purpose, each in one way: the suite's own test."""

@@ -1,0 +1,63 @@
+"""Problems that the suite poses, each once, with a name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+
+from verification.solver_suite import own
+from verification.solver_suite.protocol import Abilities, Answer, ContactProblem
+from verification.solver_suite.suite import select
+
+LARGEST = 64
+"""Most elements along one axis of an exported problem."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """A problem with its name: the slug of its case, and a number where the case poses several."""
+
+    name: str
+    case: str
+    problem: ContactProblem
+
+
+@dataclass
+class _Recorder:
+    """The production solver as solver under test; keeps the problems that it was given."""
+
+    abilities: Abilities
+    problems: list[ContactProblem] = field(default_factory=list)
+
+    def __call__(self, problem: ContactProblem) -> Answer:
+        self.problems.append(problem)
+        return own.solve(problem)
+
+
+def problems(globs: Iterable[str] = (), largest: int = LARGEST) -> Iterator[Named]:
+    """Yield the problems of the cases that match ``globs`` (all without any), in the order of the suite.
+
+    A problem that an earlier case has posed is left to that case. Raises LookupError for a glob that matches
+    no case.
+    """
+    seen: set[tuple[object, ...]] = set()
+    for case in select(globs):
+        recorder = _Recorder(replace(own.solve.abilities, largest=largest))
+        case.case(recorder).run()
+        new = [problem for problem in recorder.problems if _key(problem) not in seen]
+        new = list({_key(problem): problem for problem in new}.values())
+        seen.update(map(_key, new))
+        for number, problem in enumerate(new, start=1):
+            yield Named(f"{case.slug}-{number}" if len(new) > 1 else case.slug, case.id, problem)
+
+
+def _key(problem: ContactProblem) -> tuple[object, ...]:
+    numbers = problem.load, problem.approach, problem.periodic, problem.hardness
+    return (
+        problem.shape,
+        problem.spacings,
+        problem.reduced_modulus,
+        *numbers,
+        problem.coupling,
+        (problem.gap.tobytes()),
+    )

@@ -1,0 +1,277 @@
+"""Computations by which the suite judges: displacements, residuals, and solutions by elimination.
+
+None of it is shared with the solvers of `refimpl`. A half-space uses dense matrices of the textbook's corner
+differences up to `LARGEST` elements a side; beyond, the same numbers by scipy's convolution.
+A periodic problem uses the exact symbols of `verification.exact.fourier`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import fftconvolve
+
+from refimpl.grid import Array, Grid, Mask
+from verification.exact.fourier import symbol_at
+from verification.properties.textbook import normal_matrix, normal_offsets, shear_matrix, shear_offsets
+from verification.solver_suite.protocol import ContactProblem
+
+LARGEST = 32
+
+
+_AT_HARDNESS = 1 - 1e-12
+"""Share of the hardness from which a pressure counts as at it: units that were changed and back round."""
+
+
+def at_hardness(problem: ContactProblem) -> float:
+    """Pressure (Pa) from which an element counts as at the hardness; infinite without one."""
+    return np.inf if problem.hardness is None else problem.hardness * _AT_HARDNESS
+
+
+class Residual(NamedTuple):
+    """The three ways in which pressures can miss a problem, relative; see `residual`."""
+
+    gap: float
+    balance: float
+    tension: float
+
+    @property
+    def worst(self) -> float:
+        """The largest of them."""
+        return max(self)
+
+
+def is_large(problem: ContactProblem) -> bool:
+    """True if a problem has too many elements for dense matrices."""
+    return problem.gap.size > LARGEST**2
+
+
+def _matrix(problem: ContactProblem, direction: float | None) -> Array:
+    """``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between all elements (m)."""
+    if is_large(problem):
+        raise ValueError(f"{problem.gap.size} elements are too many for dense matrices")
+    return problem.spacing * _unit_matrix(problem.shape, _edges(problem)[1], direction)
+
+
+@lru_cache(maxsize=4)
+def _unit_matrix(shape: tuple[int, int], aspect: float, direction: float | None) -> Array:
+    """The same for elements of edge 1 along x and ``aspect`` along y."""
+    grid = Grid(shape, (float(shape[0]), shape[1] * aspect))
+    return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
+
+
+def _edges(problem: ContactProblem) -> tuple[float, float]:
+    """Edges of an element in units of that along x."""
+    return 1.0, problem.spacings[1] / problem.spacings[0]
+
+
+def by_pressure(problem: ContactProblem, pressure: Array) -> Array:
+    """Normal displacement ``a f`` (m) of both bodies by pressure alone."""
+    if problem.periodic:
+        return _filtered(pressure, symbol_at(*_waves(problem), problem.reduced_modulus))
+    compliance = 1 / (np.pi * problem.reduced_modulus)
+    if is_large(problem):
+        offsets = normal_offsets(problem.shape, _edges(problem))
+        return np.asarray(compliance * problem.spacing * fftconvolve(offsets, pressure, mode="valid"))
+    return compliance * np.asarray(_matrix(problem, None) @ pressure.ravel()).reshape(pressure.shape)
+
+
+def displacement(problem: ContactProblem, pressure: Array) -> Array:
+    """Normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``."""
+    normal, coupling = by_pressure(problem, pressure), problem.coupling
+    if coupling is None:
+        return normal
+    shear = coupling.tau * (pressure > 0) + coupling.beta * pressure
+    c0, direction = coupling.shear_compliance, coupling.sliding_direction
+    if problem.periodic:
+        E, slip = problem.reduced_modulus, np.pi * c0 * problem.reduced_modulus
+        both = symbol_at(*_waves(problem), E, slip, direction)
+        return normal + _filtered(shear, both - symbol_at(*_waves(problem), E))
+    if is_large(problem):
+        offsets = shear_offsets(problem.shape, direction, _edges(problem))
+        moved = np.asarray(problem.spacing * fftconvolve(offsets, shear, mode="valid"))
+    else:
+        moved = np.asarray(_matrix(problem, direction) @ shear.ravel()).reshape(shear.shape)
+    return normal + c0 * moved
+
+
+def symbols(problem: ContactProblem) -> tuple[Array, NDArray[np.complex128]]:
+    """Symbols of ``a`` and of ``a + beta c`` of a periodic problem (m/Pa)."""
+    waves, E, coupling = _waves(problem), problem.reduced_modulus, problem.coupling
+    normal = symbol_at(*waves, E)
+    if coupling is None:
+        return normal.real, normal
+    slip = np.pi * coupling.shear_compliance * E * coupling.beta
+    return normal.real, symbol_at(*waves, E, slip, coupling.sliding_direction)
+
+
+def _waves(problem: ContactProblem) -> tuple[Array, Array]:
+    x, y = (
+        np.asarray(2 * np.pi * np.fft.fftfreq(n, d), dtype=np.float64)
+        for n, d in zip(problem.shape, problem.spacings, strict=True)
+    )
+    return x[:, None], y[None, :]
+
+
+def _filtered(field: Array, symbol: NDArray[np.complex128]) -> Array:
+    return np.asarray(np.fft.ifft2(np.fft.fft2(field) * symbol).real)
+
+
+def energy(problem: ContactProblem, pressure: Array) -> float:
+    """Elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError for more than a double holds."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        stored = 0.5 * float(np.vdot(pressure, by_pressure(problem, pressure))) * problem.element_area
+    if not np.isfinite(stored):
+        raise ValueError("the pressures hold more elastic energy than a number can")
+    return stored
+
+
+def stores_no_energy(problem: ContactProblem) -> bool:
+    """Return whether a load presses a flat periodic gap: the mean pressure, which deforms nothing."""
+    return problem.periodic and problem.load is not None and not problem.gap.any()
+
+
+def residual(problem: ContactProblem, pressure: Array) -> Residual:
+    """Residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
+
+    gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
+        approach where that is prescribed, with penetration counted on the whole load
+    balance : ``|N - P| / P``, or zero
+    tension : largest negative pressure, or excess over the hardness, over the largest positive one
+
+    With a hardness the gap is that of both bounds (`verification.solver_suite.protocol`).
+
+    Raises ValueError for pressures without any elastic energy, or without a finite one: there is no scale
+    to judge by.
+    """
+    stored = energy(problem, pressure)
+    v = displacement(problem, pressure) + problem.gap
+    if not stored > 0 or not pressure.max() > 0:
+        raise ValueError("the pressures hold no elastic energy")
+    level, dA = float(v.min()), problem.element_area
+    balance = 0.0
+    if problem.load is not None:
+        balance = abs(float(pressure.sum()) * dA / problem.load - 1)
+    approach = problem.approach_from_touch
+    if problem.hardness is not None:
+        duality = _two_sided_gap(pressure, v, problem.hardness, approach)
+    elif approach is None:
+        duality = float(np.vdot(pressure, v - level))
+    else:
+        penetration = max(0.0, approach - level)
+        duality = abs(float(np.vdot(pressure, v - approach))) + penetration * float(np.abs(pressure).sum())
+    beyond = -float(pressure.min())
+    if problem.hardness is not None:
+        beyond = max(beyond, float(pressure.max()) - problem.hardness)
+    return Residual(duality * dA / stored, balance, max(0.0, beyond) / float(pressure.max()))
+
+
+def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) -> float:
+    """``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d being the approach or the mean of v that f weights.
+
+    It is the most that ``sum (f - g)(v - d)`` reaches for pressures g between the bounds, so at the load of
+    the solution it bounds the squared error in the energy norm, whatever d is (see `misfit`).
+    """
+    at_hardness = f >= hardness * _AT_HARDNESS
+    if approach is None:
+        between = (f > 0) & ~at_hardness
+        if between.any():
+            approach = float(np.vdot(f[between], v[between]) / f[between].sum())
+        else:
+            ends = [v[at_hardness].max(initial=-np.inf), v[~at_hardness].min(initial=np.inf)]
+            approach = float(np.mean([end for end in ends if np.isfinite(end)]))
+    room = np.where(at_hardness, 0.0, hardness - f)
+    return float(np.sum(f * np.maximum(v - approach, 0) + room * np.maximum(approach - v, 0)))
+
+
+def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
+    """``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: the square of the relative error in the energy norm.
+
+    It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
+    tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
+    it is the load balance's affair.) Raises ValueError where ``f*`` holds no energy, or no finite one.
+    """
+    stored = energy(problem, exact)
+    if not stored > 0:
+        raise ValueError("the pressures to compare with hold no elastic energy")
+    return energy(problem, found - exact) / stored
+
+
+def approach_of(problem: ContactProblem, pressure: Array) -> float:
+    """The approach (m) at which pressures solve the problem, as the problem counts it: mean of v over f.
+
+    Raises ValueError where there is no load to carry it.
+    """
+    if not pressure.sum() > 0:
+        raise ValueError("the pressures carry no load: no approach")
+    v = displacement(problem, pressure) + problem.gap
+    touch = float(np.vdot(pressure, v) / pressure.sum())
+    return touch - (float(problem.gap.mean()) if problem.periodic else 0.0)
+
+
+@dataclass
+class _Elimination:
+    """Pressures and approach on a given contact set, by Gauss' elimination; frictionless or with beta."""
+
+    problem: ContactProblem
+
+    def __post_init__(self) -> None:
+        problem, (n, m) = self.problem, self.problem.shape
+        if problem.coupling is not None and problem.coupling.tau != 0:
+            raise ValueError("elimination is for problems without tau")
+        origin = np.zeros((n, m))
+        origin[0, 0] = 1.0
+        if problem.periodic:
+            i, j = (axis.ravel() for axis in np.indices((n, m)))
+            response = displacement(problem, origin)
+            self.matrix = response[(i[:, None] - i) % n, (j[:, None] - j) % m]
+        else:
+            c = problem.coupling
+            self.matrix = _matrix(problem, None) / (np.pi * problem.reduced_modulus)
+            if c is not None:
+                shear = _matrix(problem, c.sliding_direction)
+                self.matrix = self.matrix + c.beta * c.shear_compliance * shear
+        self.gap = problem.gap.ravel()
+
+    def on(self, contact: Mask) -> tuple[Array, float]:
+        """Pressures (all elements) and approach from first contact."""
+        k = np.flatnonzero(contact)
+        block, approach = self.matrix[np.ix_(k, k)], self.problem.approach_from_touch
+        f = np.zeros(len(self.gap))
+        if approach is not None:
+            f[k] = np.linalg.solve(block, approach - self.gap[k])
+            return f, approach
+        # unknowns are scaled to one: pressures by the mean one, the approach by what that displaces
+        assert self.problem.load is not None
+        mean = self.problem.load / self.problem.element_area / len(k)
+        length = float(np.abs(block).max()) * mean
+        one = np.ones((len(k), 1))
+        bordered = np.block([[block * (mean / length), -one], [one.T, np.zeros((1, 1))]])
+        solved = np.linalg.solve(bordered, np.append(-self.gap[k] / length, len(k)))
+        f[k] = solved[:-1] * mean
+        return f, float(solved[-1]) * length
+
+
+def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
+    """The solution (Pa) by block principal pivoting, for small problems without tau.
+
+    Starts from all elements in contact, or all that overlap at a prescribed approach; drops those in tension
+    and adds those that penetrate until there are none. Raises RuntimeError where that does not end within
+    ``limit`` rounds.
+    """
+    system, prescribed = _Elimination(problem), problem.approach_from_touch
+    contact = problem.gap.ravel() < (np.inf if prescribed is None else prescribed)
+    for _ in range(limit):
+        f, approach = system.on(contact)
+        v = system.matrix @ f + system.gap
+        slack = 1e-13 * max(float(np.abs(v).max()), abs(approach))
+        wrong_in, wrong_out = contact & (f < 0), ~contact & (v < approach - slack)
+        if not wrong_in.any() and not wrong_out.any():
+            return f.reshape(problem.gap.shape)
+        # tension first: a set that is too large only loses elements, one by its worst penetration gains
+        contact = contact & ~wrong_in if wrong_in.any() else contact | wrong_out
+    raise RuntimeError(f"no contact set found in {limit} rounds")

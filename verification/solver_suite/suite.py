@@ -1,0 +1,62 @@
+"""The whole suite, and its run with one solver under test."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import pkgutil
+from collections.abc import Iterable
+from fnmatch import fnmatchcase
+from functools import cache
+
+from verification.framework.case import Result
+from verification.solver_suite import checks
+from verification.solver_suite.check import Check
+from verification.solver_suite.protocol import Contestant
+
+VERSION = "1.2"
+"""Version of the suite, in every result and in CITATION.cff: raised when a case is added, removed or judged
+otherwise. `identity` has a digest that shows when it should be."""
+
+
+@cache
+def suite() -> tuple[Check, ...]:
+    """Every check of every module in `verification.solver_suite.checks`, in the modules' order."""
+    names = [m.name for m in pkgutil.iter_modules(checks.__path__, prefix=f"{checks.__name__}.")]
+    return tuple(check for name in names for check in importlib.import_module(name).CHECKS)
+
+
+def thorough() -> tuple[Check, ...]:
+    """The suite, with the problems of further covering arrays."""
+    from verification.solver_suite.checks.covering import further
+
+    return (*suite(), *further())
+
+
+def identity() -> dict[str, str | int]:
+    """Return the suite's version, number of cases, and a digest of their claims, tolerances and metrics."""
+    cases = sorted((c.id, c.claim, c.metric.value, repr(float(c.tolerance))) for c in suite())
+    digest = hashlib.sha256(repr(cases).encode()).hexdigest()[:12]
+    return {"version": VERSION, "cases": len(cases), "digest": digest}
+
+
+def select(globs: Iterable[str] = (), among: tuple[Check, ...] | None = None) -> tuple[Check, ...]:
+    """The checks whose id (``contestant/...``) matches any of ``globs``; all without any.
+
+    ``among`` takes the place of the suite. Raises LookupError for a glob that matches none: an empty
+    selection must not look like success.
+    """
+    patterns, checks_ = tuple(globs), suite() if among is None else among
+    idle = [p for p in patterns if not any(fnmatchcase(c.id, p) for c in checks_)]
+    if idle:
+        raise LookupError(f"no case of the suite matches {', '.join(idle)}")
+    return tuple(c for c in checks_ if not patterns or any(fnmatchcase(c.id, p) for p in patterns))
+
+
+def run(contestant: Contestant, globs: Iterable[str] = ()) -> list[Result]:
+    """Return a solver's results, from this process; a case beyond its abilities is `unavailable`."""
+    return [check.case(contestant).run() for check in select(globs)]
+
+
+if __name__ == "__main__":
+    print("\n".join(f"{name}: {value}" for name, value in identity().items()))
