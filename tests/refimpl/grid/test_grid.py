@@ -33,12 +33,6 @@ def test_a_square_and_a_refined_grid_keep_the_domain() -> None:
     assert (finer.lengths, finer.periodic, finer.shape) == (PERIODIC.lengths, True, (21, 8))
 
 
-def test_numbers_are_stored_as_python_has_them() -> None:
-    grid = Grid((np.int64(3), np.int32(2)), (np.float32(0.5), 1))
-    assert grid == Grid((3, 2), (0.5, 1.0))
-    assert [type(n) for n in (*grid.shape, *grid.lengths)] == [int, int, float, float]
-
-
 @pytest.mark.parametrize("shape", [(0, 3), (3, -1), (3, 2.0), (True, 3), ("3", 3)])
 def test_counts_must_be_whole_and_positive(shape: tuple[int, int]) -> None:
     with pytest.raises(InputError, match=r"^grid = "):
