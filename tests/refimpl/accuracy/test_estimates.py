@@ -247,8 +247,8 @@ def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
         load=0.05,
         side=50e-6,
     )
-    fine = rf.solve(scene, 768, tolerance=1e-5)
-    for M in (128, 192, 256, 512):
+    fine = rf.solve(scene, 512, tolerance=1e-5)
+    for M in (128, 192, 256):
         found = rf.solve(scene, M, tolerance=1e-5)
         bars = {name: sum(found.uncertainty[name].values()) for name in REPORTED}
         for name, bar in bars.items():
