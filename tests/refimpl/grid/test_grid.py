@@ -27,6 +27,7 @@ def test_sizes_of_a_rectangle() -> None:
 
 
 def test_a_square_and_a_refined_grid_keep_the_domain() -> None:
+    assert not Grid.square(1.0, 4).periodic
     square = Grid.square(0.3, 6, periodic=True)
     assert square == Grid((6, 6), (0.3, 0.3), periodic=True)
     finer = PERIODIC.refined((21, 8))
