@@ -64,17 +64,6 @@ def test_discs_have_few_and_flanks_of_long_patches_many() -> None:
     assert oblique.squares < 10
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_turns_and_reflections_do_not_matter(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    contact = rng.random((12, 12)) < rng.uniform(0.2, 0.8)
-    contact = np.repeat(contact, 3, axis=1)[:, :12]
-    grid = Grid.square(1.0, 12)
-    first = straight_edges(contact, grid)
-    for image in (contact[::-1], contact[:, ::-1], contact.T, np.rot90(contact)):
-        assert straight_edges(image, grid) == first
-
-
 @pytest.mark.parametrize("shift", [(0, 0), (5, 0), (0, 9), (15, 14)])
 def test_a_patch_across_a_period_has_the_edges_of_one_inside(shift: tuple[int, int]) -> None:
     """Of 2 x 10 elements the long edges exceed the ends by 10 - 2 - 2 faces each."""

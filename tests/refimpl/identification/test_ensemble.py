@@ -19,12 +19,6 @@ from refimpl.scene.scene_file import read_scene
 SPAN = np.geomspace(1.0, 200.0, 9)  # N
 
 
-def test_one_realisation_has_no_scatter() -> None:
-    one = [[_linear(mu, (mu, 0.1))] for mu in (0.1, 0.2, 0.3)]
-    assert math.isinf(scatter(one).degrees)
-    assert not working_variances(one, np.array([1.0, 2.0, 4.0])).any()
-
-
 def test_the_scatter_is_the_variance_of_another_draw_about_the_mean() -> None:
     """Three draws 1, 2, 3: variance 1, and 1 + 1/3 with the mean's; four times that at twice tau."""
     found = scatter([[_linear(mu, (mu, 0.0)) for mu in (1.0, 2.0, 3.0)]])

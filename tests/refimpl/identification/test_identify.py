@@ -106,16 +106,6 @@ def test_flat_rough_planes_determine_a_combination(planes: rf.Scene) -> None:
     assert found.combination.low < truth < found.combination.high
 
 
-def test_the_proposed_loads_narrow_the_interval(smooth: rf.Scene) -> None:
-    rows = _rows(smooth, 0.03, (20.0, 26.0, 34.0))
-    before = identify(smooth, rows, M)
-    assert before.proposal is not None
-    more = _rows(smooth, 0.03, before.proposal.loads)
-    after = identify(smooth, [*rows, *more], M)
-    assert after.values["tau"].relative < 0.5 * before.values["tau"].relative
-    assert after.values["tau"].relative == pytest.approx(before.proposal.widths[0], rel=0.3)
-
-
 def test_an_outlier_is_named(smooth: rf.Scene) -> None:
     rows = _rows(smooth, 0.02)
     rows[2] = replace(rows[2], mu=1.3 * rows[2].mu)
@@ -170,19 +160,6 @@ def test_data_of_a_limited_law_prefer_the_limited_law(smooth: rf.Scene) -> None:
     linear, limited = laws["tau + beta f"], laws["min(tau + beta f, r_max)"]
     assert limited.parameters["r_max"] == pytest.approx(20e6, rel=0.05)
     assert limited.chi_square < 0.1 * linear.chi_square
-
-
-def test_solves_are_kept(smooth: rf.Scene) -> None:
-    memory: dict[str, object] = {}
-
-    def key(scene: rf.Scene, settings: object) -> str:
-        return f"{scene.load} {scene.friction} {settings}"
-
-    rows = _rows(smooth, 0.02)
-    first = identify(smooth, rows, M, memory=memory, key=key)  # type: ignore[arg-type]
-    again = identify(smooth, rows, M, memory=memory, key=key)  # type: ignore[arg-type]
-    assert (first.solves > 0, again.solves) == (True, 0)
-    assert again.values == first.values
 
 
 def test_friction_has_no_tolerance(smooth: rf.Scene) -> None:

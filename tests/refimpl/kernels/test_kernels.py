@@ -22,32 +22,9 @@ from refimpl.kernels.quadrature import (
 from verification.cases.kernels import kernels
 from verification.exact import kernel_reference as reference
 from verification.exact.kernel_points import random_points
-from verification.framework.case import Status
-from verification.framework.registry import find
 
 # Twice the error allowed to either; they differ in the order and the axis of quadrature.
 SAME = 2 * kernels.TOLERANCE
-
-CASES = [
-    "kernels/normal-50-digits",
-    "kernels/tangential-50-digits",
-    "kernels/normal-enclosed",
-    "kernels/tangential-enclosed",
-    "kernels/references-agree",
-    "kernels/tables-50-digits",
-    "kernels/textbook-normal-fails",
-    "kernels/textbook-tangential-fails",
-    "kernels/quadrature-bound",
-    "kernels/love-at-centre",
-    "kernels/cerruti-at-edge",
-]
-
-
-@pytest.mark.parametrize("id", CASES)
-def test_case_passes(id):
-    assert find(id).module == kernels.__name__
-    result = find(id).run()
-    assert result.status == Status.PASS, f"{result.value} {result.note}"
 
 
 @pytest.mark.parametrize(

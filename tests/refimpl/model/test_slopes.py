@@ -23,12 +23,6 @@ def test_central_differences_are_exact_on_quadratics_inside() -> None:
     np.testing.assert_allclose(slopes.tan_y[inside], (X - 2)[inside], atol=1e-13)
 
 
-def test_one_sided_at_the_border() -> None:
-    slopes = Slopes.of_surface(X**2, GRID, 0.0)
-    np.testing.assert_allclose(slopes.tan_x[0], GRID.x[0] + GRID.x[1])
-    np.testing.assert_allclose(slopes.tan_x[-1], GRID.x[-2] + GRID.x[-1])
-
-
 @pytest.mark.parametrize("angle", [0.0, 0.7, 2.0, -3.0])
 def test_directions_of_a_plane(angle: float) -> None:
     """Uphill along sliding is positive; theta_y looks 90 degrees anticlockwise."""
@@ -73,10 +67,6 @@ def test_cosines_and_sines_are_those_of_the_angles() -> None:
     np.testing.assert_allclose(slopes.obliqueness, np.cos(theta_x) * np.cos(theta_y), rtol=1e-15)
 
 
-def test_a_single_element_has_no_slope() -> None:
-    assert Slopes.of_surface(np.array([[5.0]]), Grid.square(1.0, 1), 0.3).tan_x == 0
-
-
 def test_distance_looks_only_where_asked() -> None:
     one, two = Slopes(np.zeros(3), np.zeros(3)), Slopes(np.array([0.0, 9.0, 0.2]), np.array([0.1, 9.0, 0.0]))
     assert one.distance(two, np.array([True, False, True])) == 0.2
@@ -106,11 +96,3 @@ def test_slopes_of_a_window_are_zero_elsewhere() -> None:
     assert whole.tan_x.sum() == 4
     assert np.all(whole.tan_y[1:3, :2] == 2)
     assert np.all(whole.cos_x[0] == 1)
-
-
-def test_slopes_cannot_be_changed() -> None:
-    """What follows from them is computed once."""
-    slopes = Slopes(np.ones(3), np.zeros(3))
-    for name in ("tan_x", "tan_y"):
-        with pytest.raises(AttributeError, match="cannot assign"):
-            setattr(slopes, name, np.zeros(3))

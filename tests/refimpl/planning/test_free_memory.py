@@ -31,10 +31,6 @@ def group(folder: Path, limit: str, **other: str) -> None:
         (folder / name).write_text(text)
 
 
-def test_without_groups_and_limits_the_system_says(system: Path) -> None:
-    assert free_memory() == 8 * GB
-
-
 @pytest.mark.parametrize(
     ("limit", "left"), [("max", 8), (f"{4 * GB}", 3), (f"{GB // 2}", 0), ("nonsense", 8)]
 )

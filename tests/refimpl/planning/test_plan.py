@@ -142,14 +142,6 @@ def test_a_rough_contact_is_expected_within_a_factor_of_two() -> None:
     assert 0.5 < expected.approach / s.approach < 2
 
 
-def test_two_flats_and_one_element_have_an_expected_contact() -> None:
-    flat = replace(SMOOTH, upper=rf.Body(STEEL, rf.Flat()))
-    assert planned(flat, 8).contact.elements == 64
-    assert planned(SMOOTH, 1).contact.elements == 1
-    assert planned(flat, Grid((1, 6), (1e-3, 1e-3))).contact.elements == 6
-    assert planned(flat, 8, approach=0.0).contact.elements >= 1
-
-
 @pytest.mark.parametrize("periodic", [False, True])
 def test_a_turned_rectangle_has_the_same_plan(periodic: bool) -> None:
     """Heights transposed, and the sliding direction mirrored at the diagonal."""
@@ -169,14 +161,6 @@ def test_a_turned_rectangle_has_the_same_plan(periodic: bool) -> None:
     for term, image in zip(one.terms, other.terms, strict=True):
         assert (term.name, term.included, term.reason) == (image.name, image.included, image.reason)
         assert vars(term.effect) == pytest.approx(vars(image.effect), rel=1e-9)
-
-
-def test_a_plan_goes_over_to_another_grid_with_its_terms() -> None:
-    coarse = planned(ROUGH, RECTANGLE, demand=0.1)
-    fine = coarse.on(RECTANGLE.refined((288, 160)))
-    assert fine.grid.shape == (288, 160)
-    assert fine.memory == 4 * coarse.memory
-    assert (fine.terms, fine.contact, fine.decided_on) == (coarse.terms, coarse.contact, coarse.decided_on)
 
 
 def test_memory_is_that_of_all_elements_and_a_refusal_names_the_longer_side(
@@ -219,21 +203,6 @@ def test_shear_tilts_the_common_surface_of_twins() -> None:
     assert "shear" in tilted.cost.applications
     assert "shear" not in level.cost.applications
     assert 0 < lost <= term_effects.tilted(scales).friction * scales.mu < 3 * lost
-
-
-def test_parts_add_up_to_the_whole() -> None:
-    """Coupling and tilt are the two halves of one displacement: leaving one out leaves the other whole."""
-    whole = rf.solve(ROUGH, 32, tolerance=1e-10)
-    apart = {
-        word: rf.solve(ROUGH, 32, tolerance=1e-10, coupled=word[0], tilted=word[1])
-        for word in ((True, True), (True, False), (False, True), (False, False))
-    }
-    assert np.array_equal(whole.pressure, apart[True, True].pressure)
-    change = {word: s.friction_coefficient - whole.friction_coefficient for word, s in apart.items()}
-    assert abs(change[True, False]) > 1e-6
-    assert abs(change[False, True]) > 1e-6
-    together = change[True, False] + change[False, True]
-    assert change[False, False] == pytest.approx(together, rel=0.2)
 
 
 def test_dense_and_fft_neglect_the_same() -> None:

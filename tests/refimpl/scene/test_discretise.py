@@ -11,11 +11,9 @@ import pytest
 import refimpl as rf
 from refimpl.accuracy.peak import NO_PEAK
 from refimpl.grid import Array, Grid
-from refimpl.model.certificate import certify
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import Discretiser, discretise
 from refimpl.surfaces import SurfaceWarning
-from verification.exact.dense_influence import DenseInfluence
 
 SCENE = rf.read_scene("table1-smooth")
 FLAT = Terms(coupled=False, oblique=False, tilted=False)
@@ -81,14 +79,6 @@ def test_a_discretisers_problem_is_that_of_discretise_and_is_not_kept(grid: Grid
         assert np.array_equal(problem.gap, expected.gap)
         assert np.array_equal(problem.mean_surface, expected.mean_surface)
     assert discretiser.problem(grid, FLAT).gap is not whole.gap
-
-
-def test_on_another_grid_or_at_an_approach_heights_are_sampled_again() -> None:
-    discretiser = Discretiser(SCENE, 1e-6)
-    discretiser.with_all_terms(SCENE.grid(24))
-    problem = discretiser.problem(SCENE.grid(16), FLAT)
-    assert problem.gap.shape == (16, 16)
-    assert (problem.load, problem.approach) == (None, 1e-6)
 
 
 def test_notes_are_kept_once_each_and_not_shown(recwarn: pytest.WarningsRecorder) -> None:
@@ -176,25 +166,6 @@ def test_error_bars_of_a_periodic_approach_do_not_hang_on_first_contact() -> Non
     assert found.features.numbers["approach"] == found.approach
     expected = found.certificate.largest * (found.approach + found.problem.datum)
     assert found.uncertainty["approach"]["iteration"] == pytest.approx(expected, rel=1e-6, abs=0)
-
-
-def test_a_certified_state_counts_from_first_contact() -> None:
-    """The datum is subtracted once, where a solution is built."""
-    found = rf.solve(PLANES, 8, method="dense")
-    state = certify(
-        found.problem,
-        DenseInfluence(found.grid, found.sliding_direction),
-        found.pressure,
-        found.traction,
-        found.slopes,
-    )
-    assert state.approach - found.problem.datum == pytest.approx(found.approach, rel=1e-12)
-
-
-@pytest.mark.parametrize("approach", [0.0, 1e-9])
-def test_beyond_mean_planes_a_periodic_approach_is_refused(approach: float) -> None:
-    with pytest.raises(rf.InputError, match="approach"):
-        rf.solve(PLANES, 8, approach=approach)
 
 
 def test_the_least_approach_of_mean_planes_is_ten_units_in_the_last_place_of_their_gap() -> None:

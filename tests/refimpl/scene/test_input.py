@@ -141,10 +141,6 @@ def test_refused_by_one_line_that_names_the_field(name: str) -> None:
     assert len(str(caught.value)) < 400
 
 
-def test_input_errors_are_value_errors() -> None:
-    assert issubclass(rf.InputError, ValueError)
-
-
 @pytest.mark.parametrize(("method", "grid"), [("dense", 3000), ("fft", 3_000_000)])
 def test_a_grid_beyond_memory_is_refused_before_anything_is_allocated(method: str, grid: int) -> None:
     """One field of that grid would take 72 MB, or 72 TB; the refusal takes less than one."""
@@ -287,9 +283,3 @@ def test_binary_and_deeply_nested_files_are_refused(tmp_path: Path) -> None:
         path.write_bytes(content)
         with pytest.raises(rf.InputError, match="valid TOML"):
             rf.read_scene(path)
-
-
-@pytest.mark.parametrize("side", [0.0, -0.5, math.inf, math.nan])
-def test_a_grid_has_a_positive_side(side: float) -> None:
-    with pytest.raises(rf.InputError, match="side"):
-        rf.Grid.square(side, 4)

@@ -31,11 +31,6 @@ def test_parameters_are_stored_as_doubles(width: Any) -> None:
     assert numbers == (2.0, 0.0, 3.0, 5.0, 1.0, 1.0, 70.0, 1.0, 1.0, 0.0)
 
 
-def test_what_is_not_given_stays_so() -> None:
-    assert rf.Material(E=1.0, nu=0.3).hardness is None
-    assert Options(scene=SCENE, grid=16).approach is None
-
-
 def test_single_precision_in_is_double_precision_throughout() -> None:
     side, load = np.float32(SCENE.side), np.float32(SCENE.load)
     single = rf.solve(replace(SCENE, side=side, load=load), np.int64(24), tolerance=np.float64(1e-8))

@@ -156,13 +156,6 @@ def test_arrays_are_never_squeezed() -> None:
             rf.ArraySurface(z, pixel=pixel)  # type: ignore[arg-type]
 
 
-def test_arrays_of_the_grids_shape_are_used_as_they_are() -> None:
-    z = 1e-7 * np.random.default_rng(0).normal(size=(20, 40))
-    scene = strip((1e-3, 1e-3), lower=rf.Body(COPPER, rf.ArraySurface(z, pixel=(5e-5, 2.5e-5))))
-    lower, _ = scene.sampled(scene.grid((20, 40)))
-    np.testing.assert_allclose(lower - lower[0, 0], z - z[0, 0], rtol=0, atol=1e-22)
-
-
 # --- files ---
 
 TOML = """
@@ -232,17 +225,6 @@ def test_a_rigid_body_is_the_limit_of_stiff_ones(
     assert limit.warnings == tuple(line for line in stiff.warnings if "is outside 1e+06" not in line)
     assert limit.slope_error == stiff.slope_error
     assert limit.bounds.friction_coefficient == stiff.bounds.friction_coefficient
-
-
-def test_budgets_with_a_rigid_body() -> None:
-    scene = strip(upper=rf.Body(rf.Material(E=math.inf, nu=0.3), rf.Sphere(0.14)))
-    solution = rf.solve(scene, 32)
-    found = rf.sensitivity(scene, solution)
-    assert not any(name.startswith("upper.material") for name in found.parameters)
-    stiff = strip(upper=rf.Body(rf.Material(E=1e90, nu=0.3), rf.Sphere(0.14)))
-    same = rf.sensitivity(stiff, rf.solve(stiff, 32))
-    for number, row in found.derivatives.items():
-        assert row == {name: same.derivatives[number][name] for name in row}
 
 
 def test_two_rigid_bodies_are_refused() -> None:

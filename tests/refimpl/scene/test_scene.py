@@ -58,18 +58,6 @@ def test_bodies_take_arrays_and_sums() -> None:
     np.testing.assert_allclose(together.surface.heights(GRID), apart, rtol=1e-15)
 
 
-def test_a_scene_is_frozen() -> None:
-    with pytest.raises(FrozenInstanceError):
-        SCENE.load = 1.0  # type: ignore[misc]  # the point of the test
-
-
-def test_a_body_does_not_follow_its_array() -> None:
-    z = np.zeros((16, 16))
-    body = rf.Body(STEEL, z)
-    z[0, 0] = 1.0
-    assert body.surface.heights(GRID).max() == 0
-
-
 def test_a_scenes_grid_has_its_side_and_its_kind() -> None:
     for periodic in (False, True):
         scene = replace(SCENE, periodic=periodic)
@@ -78,3 +66,8 @@ def test_a_scenes_grid_has_its_side_and_its_kind() -> None:
     for count in (0, -1, 8.0, "8", True):
         with pytest.raises(rf.InputError, match="grid"):
             SCENE.grid(count)  # type: ignore[arg-type]  # the point of the test
+
+
+def test_a_scene_is_frozen() -> None:
+    with pytest.raises(FrozenInstanceError):
+        SCENE.load = 1.0  # type: ignore[misc]  # the point of the test

@@ -53,21 +53,6 @@ def test_every_shipped_scene_survives_a_round_trip(tmp_path: Path) -> None:
             assert np.array_equal(one, two)
 
 
-def test_what_ships_is_what_the_issue_names() -> None:
-    assert set(rf.shipped_scenes()) >= {
-        "hertz", "table1-smooth", "table1-rough", "metal-polymer", "rough-planes"
-    }  # fmt: skip
-    hertz, smooth, rough = (rf.read_scene(n) for n in ("hertz", "table1-smooth", "table1-rough"))
-    assert is_frictionless(hertz.friction)
-    assert (smooth.load, smooth.side, smooth.friction) == (70.0, 1.61e-3, rf.Friction(15e6, 0.08))
-    assert smooth.upper.material == rf.Material(200e9, 0.3)
-    assert smooth.lower.material == rf.Material(118e9, 0.3)
-    parts = [*rough.upper.surface.parts, *rough.lower.surface.parts]
-    rms = [part.rms for part in parts if part.kind == "gaussian"]
-    assert np.hypot(*rms) == pytest.approx(0.511e-6, rel=1e-3)
-    assert rf.read_scene("rough-planes").periodic
-
-
 def test_a_name_gives_way_to_a_file_of_that_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = rf.scene_to_toml(rf.read_scene("hertz")).replace("load = 70.0", "load = 1.0")
     (tmp_path / "hertz").write_text(text)

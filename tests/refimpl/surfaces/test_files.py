@@ -28,18 +28,6 @@ from tests.refimpl.surfaces.measured import (
 )
 
 
-@pytest.mark.parametrize("name", ["a.npy", "a.csv", "a.asc", "a.txt"])
-def test_plain_tables_are_indexed_along_x_then_y(tmp_path: Path, name: str) -> None:
-    path = tmp_path / name
-    if name.endswith("npy"):
-        np.save(path, ROUGH * 1e9)
-    else:
-        np.savetxt(path, ROUGH * 1e9, fmt="%.17g", delimiter="," if name.endswith("csv") else " ")
-    reading = MeasuredSurface(path, unit="nm", pixel_size=[DX, DY]).reading  # type: ignore[arg-type]  # as in TOML
-    np.testing.assert_allclose(reading.heights, ROUGH, rtol=1e-15, atol=0)
-    assert reading.pixel == (DX, DY)
-
-
 @pytest.mark.parametrize("name", ["a.csv", "a.asc", "a.txt"])
 def test_a_byte_order_mark_is_no_number(tmp_path: Path, name: str) -> None:
     path = tmp_path / name
@@ -48,13 +36,6 @@ def test_a_byte_order_mark_is_no_number(tmp_path: Path, name: str) -> None:
     path.write_text(rows + "\n", encoding="utf-8-sig")
     reading = MeasuredSurface(path, unit="nm", pixel_size=(DX, DY)).reading
     np.testing.assert_allclose(reading.heights, ROUGH, rtol=1e-15, atol=0)
-
-
-def test_x3p_keeps_its_oblong_pixels_and_its_axes(tmp_path: Path) -> None:
-    surface = MeasuredSurface(write_x3p(tmp_path / "a.x3p", ROUGH))
-    np.testing.assert_array_equal(surface.reading.heights, ROUGH)
-    np.testing.assert_allclose(surface.reading.pixel, (DX, DY), rtol=1e-15)
-    assert "x3p" in surface.describe(Grid.square(SIDE, 16))[0]
 
 
 def test_text_with_an_instruments_header_is_scaled_by_it(tmp_path: Path) -> None:
@@ -201,8 +182,8 @@ def test_zip_bombs_are_not_unpacked(tmp_path: Path) -> None:
 
 def test_large_junk_is_refused_at_once(tmp_path: Path) -> None:
     path = tmp_path / "junk.asc"
-    path.write_bytes(b"junk\n" * 4_000_000)
+    path.write_bytes(b"junk\n" * 1_000_000)
     start = time.process_time()
     with pytest.raises(InputError, match="rows of numbers"):
         MeasuredSurface(path).reading  # noqa: B018  # likewise
-    assert time.process_time() - start < 5  # 20 MB in CPU seconds; the text reader itself needs 18
+    assert time.process_time() - start < 1.5  # 5 MB in CPU seconds; the text reader itself needs 4.5

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import SurfaceTopography
 
 import refimpl as rf
 from refimpl.surfaces import roughness_fit
@@ -78,55 +77,7 @@ def test_a_sphere_cap(tmp_path: Path) -> None:
     assert sphere.parameters["Sq"] < 1e-6 * found["Sq"]
 
 
-def test_a_gaussian_field() -> None:
-    """Means over 12 fields against Eq. (9): Sdq, Sal, lengths, Nayak's 3; within three deviations."""
-    fields = [gaussian(seed=k) for k in range(12)]
-    l, rms = GAUSSIAN["lx"], GAUSSIAN["rms"]  # noqa: E741  # Eq. (9)'s letter
-    expected = {
-        "Sq": rms,
-        "Ssk": 0.0,
-        "Sku": 3.0,
-        "Sdq": rms * math.sqrt(9.2) / l,
-        "nayak": 3.0,
-        "l_e": l * math.sqrt(1 / 2.3),
-        "l_20": l * math.sqrt(math.log(5) / 2.3),
-    }
-    found: dict[str, list[float]] = {name: [] for name in expected}
-    for z in fields:
-        for name, value in height_parameters(z).items():
-            if name in found:
-                found[name].append(value)
-        found["Sdq"].append(math.sqrt(sum(mean_square_slopes(z, PIXEL))))
-        found["nayak"].append(nayak(z, PIXEL))
-        acf = Autocorrelation.of(z, PIXEL)
-        found["l_e"].append(float(np.mean(acf.distances(math.exp(-1)))))
-        found["l_20"].append(float(np.mean(acf.distances(0.2))))
-    for name, values in found.items():
-        error = abs(np.mean(values) - expected[name])
-        scatter = np.std(values, ddof=1) / math.sqrt(len(values))
-        assert error < 3 * scatter + 0.01 * abs(expected[name]), (
-            name
-        )  # 1 %: differences over 20 points a length
-
-
 # --- SurfaceTopography ---
-
-
-def test_parameters_agree_with_surface_topography() -> None:
-    z = gaussian(seed=5)
-    z -= z.mean()
-    sizes = tuple(n * edge for n, edge in zip(SHAPE, PIXEL, strict=True))
-    theirs = SurfaceTopography.Topography(z, sizes)
-    assert height_parameters(z)["Sq"] == pytest.approx(theirs.rms_height_from_area(), rel=1e-12)
-    assert math.sqrt(sum(mean_square_slopes(z, PIXEL))) == pytest.approx(theirs.rms_gradient(), rel=5e-3)
-    # along x: A(r) = <(h(0) - h(r))^2> / 2; a twelfth of the points lies within r of an edge and counts less
-    r, half = theirs.autocorrelation_from_profile()
-    use = ~np.ma.getmaskarray(half) & (r > 0) & (r < 20e-6)
-    assert np.count_nonzero(use) > 5
-    acf = Autocorrelation.of(z, PIXEL)
-    middle = tuple(n // 2 for n in acf.values.shape)
-    ours = np.interp(r[use], acf.lags[0][middle[0] :], acf.values[middle[0] :, middle[1]])
-    np.testing.assert_allclose(ours, 1 - np.asarray(half[use]) / np.var(z), rtol=0, atol=1 / 12)
 
 
 @pytest.mark.parametrize(
@@ -151,16 +102,6 @@ def test_parameters_agree_with_surfalize(
     found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=1e-6).parameters
     for name, value in stated.items():
         assert found[name] == pytest.approx(value, rel=1e-3 if name in ("Sal", "Str") else 1e-9), name
-
-
-def test_spectra_agree_with_surface_topography() -> None:
-    z = _drawn(SHAPE, PIXEL, _self_affine_psd(FRACTAL), 1e-6, np.random.default_rng(8))
-    sizes = tuple(n * edge for n, edge in zip(SHAPE, PIXEL, strict=True))
-    q, C = SurfaceTopography.Topography(z - z.mean(), sizes).power_spectrum_from_area(window="hann")
-    ours = Spectrum.of(z, PIXEL)
-    use = (q > 0.15e6) & (q < 1.4e6) & ~np.ma.getmaskarray(C)
-    ratio = np.exp(np.interp(np.log(q[use]), np.log(ours.q), np.log(ours.C))) / np.asarray(C[use])
-    assert np.exp(np.mean(np.log(ratio))) == pytest.approx(1, abs=0.05)  # their window is round, ours square
 
 
 def test_the_spectrum_integrates_to_the_mean_square() -> None:
@@ -240,11 +181,11 @@ def test_a_self_affine_surface_comes_back_within_its_deviations() -> None:
 
 
 def test_stated_deviations_are_the_scatter() -> None:
-    fits = [fit_roughness(gaussian(seed=k), PIXEL, "gaussian", 8) for k in range(10)]
+    fits = [fit_roughness(gaussian(seed=k), PIXEL, "gaussian", 8) for k in range(6)]
     for name in ("rms", "lx"):
         scatter = np.std([fit.values[name] for fit in fits], ddof=1)
         stated = np.mean([fit.deviations[name] for fit in fits])
-        assert 0.5 < stated / scatter < 2.0  # 95 % of ratios of ten draws each
+        assert 0.5 < stated / scatter < 2.0  # 94 % of the ratios of six draws (chi-square, 5 freedoms)
 
 
 def test_the_bias_of_drawn_maps_is_taken_off(monkeypatch: pytest.MonkeyPatch) -> None:

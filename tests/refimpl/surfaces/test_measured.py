@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import FrozenInstanceError
-from inspect import Parameter, signature
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +28,6 @@ from tests.refimpl.surfaces.measured import (
     points,
     quietly,
     write_npy,
-    write_x3p,
 )
 
 # --- window and resampling ---
@@ -135,12 +133,6 @@ def test_points_on_the_windows_edge_lie_in_it(tmp_path: Path) -> None:
         window.lengths = (9.0, 9.0)  # type: ignore[misc]  # the point of the test
 
 
-def test_all_but_the_path_goes_by_name() -> None:
-    kinds = [p.kind for name, p in signature(MeasuredSurface).parameters.items() if name != "path"]
-    assert len(kinds) > 5
-    assert set(kinds) == {Parameter.KEYWORD_ONLY}
-
-
 # --- gaps ---
 
 
@@ -220,31 +212,7 @@ def test_the_fraction_that_may_be_missing_is_allowed_and_no_more(tmp_path: Path)
             surface(refused)
 
 
-def test_masked_points_of_instrument_files_are_missing_points(tmp_path: Path) -> None:
-    surface = MeasuredSurface(write_x3p(tmp_path / "a.x3p", holed(ROUGH)))
-    np.testing.assert_array_equal(np.isnan(surface.reading.heights), np.isnan(holed(ROUGH)))
-
-
 # --- level ---
-
-
-@pytest.mark.parametrize("level", ["mean", "plane", "paraboloid"])
-def test_levelling_takes_off_its_form_and_nothing_else(tmp_path: Path, level: str) -> None:
-    x, y = (p / 1e-5 for p in points())
-    one = np.ones_like(x * y)
-    forms = [1.7 * one, 0.4 * x - 0.9 * y, 3 * x**2 - x * y + 0.2 * y**2]
-    form = sum(1e-6 * f for f in forms[: DEGREES[level] + 1])
-    kwargs = {"unit": "m", "pixel_size": (DX, DY), "level": level}
-    np.save(tmp_path / "a.npy", ROUGH)
-    np.save(tmp_path / "b.npy", ROUGH + form)
-    plain, tilted = (MeasuredSurface(tmp_path / f, **kwargs) for f in ("a.npy", "b.npy"))  # type: ignore[arg-type]
-    for offset in ((0.0, 0.0), (3e-7, -2e-6)):  # one form for all offsets: a rigid surface
-        np.testing.assert_allclose(
-            quietly(tilted, Grid.square(SIDE, 20), offset),
-            quietly(plain, Grid.square(SIDE, 20), offset),
-            rtol=0,
-            atol=1e-20,
-        )
 
 
 @pytest.mark.parametrize("grid", [Grid.square(7.2e-6, 16), Grid((16, 9), (9e-6, 7.2e-6))], ids=str)

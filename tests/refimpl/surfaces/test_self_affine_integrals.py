@@ -56,23 +56,6 @@ def test_either_size_gives_the_same_shape() -> None:
     np.testing.assert_allclose(double, 2 * rough().sample(grid), rtol=1e-12)
 
 
-def test_missed_slope_and_curvature_are_those_of_differences() -> None:
-    """Against differences over the spacing, averaged over 6 seeds and a periodic domain."""
-    surface = rough(rms=1.0)
-    for M in (250, 100):  # 5 and 2 elements per shortest wave
-        h, slopes, curvatures = SIDE / M, [], []
-        for seed in range(6):
-            z = rough(rms=1.0, seed=seed).sample(Grid.square(SIDE, M, periodic=True))
-            slopes.append(np.mean((np.roll(z, -1, 0) - np.roll(z, 1, 0)) ** 2) / (2 * h) ** 2)
-            curvatures.append(np.mean((np.roll(z, -1, 0) - 2 * z + np.roll(z, 1, 0)) ** 2) / h**4)
-        slope, curvature = surface.missed(h)
-        full = math.sqrt(0.5 * surface.moment(2) / surface.moment(0))
-        bent = math.sqrt(0.375 * surface.moment(4) / surface.moment(0))
-        # waves of the domain against the integral (2 % measured), and scatter of six realisations (1 %)
-        assert math.sqrt(np.mean(slopes)) == pytest.approx((1 - slope) * full, rel=0.04)
-        assert math.sqrt(np.mean(curvatures)) == pytest.approx((1 - curvature) * bent, rel=0.04)
-
-
 @pytest.mark.parametrize("spacing", [2e-6, 9e-6])
 def test_what_differences_miss_is_that_of_an_integral_over_wavenumbers(spacing: float) -> None:
     """``(1 - J0(2 q h)) / (2 h^2)`` for ``q^2 / 2`` and so on, under the PSD, by scipy's quadrature."""

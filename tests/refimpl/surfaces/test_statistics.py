@@ -7,8 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from refimpl.grid import Grid
-from refimpl.surfaces import GaussianRoughness
 from refimpl.surfaces import statistics as stats
 
 N = 64
@@ -67,18 +65,3 @@ def test_correlation_length_of_a_step_by_hand() -> None:
         assert stats.correlation_length(z, 0.5, level) == pytest.approx(expected, rel=1e-14)
     assert stats.correlation_length(z, 0.5) == stats.correlation_length(z, 0.5, 0.1)
     assert stats.correlation_length(z, 0.5, -0.1) is None
-
-
-def test_gaussian_roughness_has_its_parameters() -> None:
-    side, length = 60.0, 1.0
-    z = GaussianRoughness(1.0, length, seed=2).heights(Grid.square(side, 480))
-    h, area = side / 480, side**2
-    # four standard errors: relative variances 2 pi / 4.6 / area of z^2, 1.5 pi / 4.6 / area of slope^2
-    assert abs(stats.rms_height(z) - 1) < 2 * math.sqrt(2 * math.pi / 4.6 / area)
-    seen = math.sqrt((1 - math.exp(-2.3 * (2 * h) ** 2)) / (2 * h**2))
-    for slope in stats.rms_slopes(z, h):
-        assert abs(slope / seen - 1) < 2 * math.sqrt(1.5 * math.pi / 4.6 / area)
-    found = stats.correlation_length(z, h, level=math.exp(-2.3))
-    # the autocorrelation there falls by 4.6 / l * 0.1; its error is sqrt(pi / 4.6 / area)
-    assert found is not None
-    assert abs(found - length) < 4 * math.sqrt(math.pi / 4.6 / area) / 0.46

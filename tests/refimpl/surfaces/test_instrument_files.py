@@ -310,33 +310,20 @@ def test_levels_are_fitted_to_measured_points_only(tmp_path: Path, level: str | 
 
 
 def test_a_large_hole_is_filled_in_bounded_time() -> None:
-    """880^2 in 1000^2 takes 1.3 s; elimination took 42 s and 2.3 GB."""
-    x = np.linspace(0.0, 1.0, 1000)
+    """440^2 in 500^2; elimination of 880^2 in 1000^2 took 42 s and 2.3 GB."""
+    x = np.linspace(0.0, 1.0, 500)
     saddle = x[:, None] ** 2 - x[None, :] ** 2
     holed = saddle.copy()
-    holed[60:940, 60:940] = np.nan
+    holed[30:470, 30:470] = np.nan
     start = time.process_time()
     filled = missing_points.fill(holed, (1.0, 1.0))
-    assert time.process_time() - start < 15
+    assert time.process_time() - start < 5
     np.testing.assert_allclose(filled, saddle, rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize("pixel", [(1.0, 1.0), (1.0, 3.0)])
-def test_both_ways_of_filling_agree(monkeypatch: pytest.MonkeyPatch, pixel: tuple[float, float]) -> None:
-    z = np.random.default_rng(2).normal(size=(70, 90))
-    z[10:50, 20:80] = z[65:, :] = z[:4, 60:] = z[2, :] = np.nan
-    z[30, 40] = 0.3
-    eliminated = missing_points.fill(z, pixel)
-    monkeypatch.setattr(missing_points, "MAX_ELIMINATED", 3)
-    np.testing.assert_allclose(missing_points.fill(z, pixel), eliminated, rtol=0, atol=1e-8)
-    monkeypatch.setattr(missing_points, "MAX_ELIMINATED", 10**6)
-    monkeypatch.setattr(missing_points, "MAX_TOGETHER", 3)
-    np.testing.assert_allclose(missing_points.fill(z, pixel), eliminated, rtol=0, atol=1e-8)
-
-
 def test_a_map_of_which_almost_all_is_missing_is_filled() -> None:
-    z = np.full((300, 300), np.nan)
-    z[:10, :10], z[299, 299] = 1.0, 2.0
+    z = np.full((150, 150), np.nan)
+    z[:10, :10], z[149, 149] = 1.0, 2.0
     filled = missing_points.fill(z, (1.0, 1.0))
     assert np.isfinite(filled).all()
     assert (filled >= 1.0).all()

@@ -7,12 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import refimpl as rf
-from refimpl.grid import Grid
 from refimpl.surfaces.areal_parameters import Spectrum, nayak
-from refimpl.surfaces.crop import Crop
-from refimpl.surfaces.detrending import fit_form
-from refimpl.surfaces.inspection import Inspection
 from refimpl.surfaces.missing_points import MAX_ELIMINATED, fill
 from refimpl.surfaces.orientation import oriented
 from refimpl.surfaces.preparation import prepare
@@ -74,19 +69,6 @@ def test_the_centre_turns_with_the_map(
     assert abs(found.reading.heights[min(i, 29), min(j, 29)] - reading.heights[5, 6]) <= 31
 
 
-@pytest.mark.parametrize(("lost", "refused"), [(5, False), (6, True)])
-def test_exactly_the_allowed_share_may_be_missing(tmp_path: Path, lost: int, refused: bool) -> None:
-    z = np.random.default_rng(2).normal(size=(10, 10))
-    z[0, :lost] = np.nan
-    np.save(tmp_path / "map.npy", z)
-    surface = rf.MeasuredSurface(tmp_path / "map.npy", unit="um", pixel_size=1e-6, max_missing=0.05)
-    if refused:
-        with pytest.raises(rf.InputError, match="6 of 100 points"):
-            surface.sample(Grid.square(1e-5, 10))
-    else:
-        assert np.isfinite(surface.sample(Grid.square(1e-5, 10))).all()
-
-
 @pytest.mark.parametrize("pixel", [(1.0, 1.0), (1.0, 3.0), (2.0, 0.5)])
 @pytest.mark.parametrize("size", [20, 70])
 def test_holes_are_filled_by_the_saddle_around_them(pixel: tuple[float, float], size: int) -> None:
@@ -115,44 +97,9 @@ def test_nayaks_parameter_of_one_wave() -> None:
     assert nayak(np.sin(q * (x[:, None] + x[None, :])), (1.0, 1.0)) == pytest.approx(1.0, rel=2e-2)
 
 
-def test_the_hurst_exponent_of_a_map_of_that_exponent() -> None:
-    surface = rf.SelfAffineRoughness(
-        hurst=0.6, rms=1e-6, roll_off=4e-4, long_cut=1e-3, short_cut=6e-6, seed=1
-    )
-    grid = Grid.square(1e-3, 512)
-    z = surface.sample(grid)
-    found = Inspection(None, z, grid.spacings, (0.0, 0.0), None).parameters  # type: ignore[arg-type]
-    assert found["psd_slope"] == pytest.approx(-3.2, abs=0.3)
-    assert found["hurst"] == pytest.approx(0.6, abs=0.15)
-
-
-@pytest.mark.parametrize("radius", [0.04, -0.09])
-def test_a_removed_sphere_has_its_radius_and_sign(radius: float) -> None:
-    """A bump of 40 mm, and a hollow of 90 mm, on 2 x 3 mm."""
-    x, y = np.arange(41.0), np.arange(61.0)
-    squared = ((x[:, None] - 20) * 5e-5) ** 2 + ((y[None, :] - 30) * 5e-5) ** 2
-    z = -np.sign(radius) * (abs(radius) - np.sqrt(radius**2 - squared))
-    form = fit_form(x, y, z, "sphere", (5e-5, 5e-5))
-    assert form.radius == pytest.approx(radius, rel=1e-6)
-    assert np.abs(form(x, y) - z).max() < 1e-12
-
-
 def test_a_high_pass_takes_the_plane_and_a_low_pass_leaves_it() -> None:
     x, y = np.arange(50.0), np.arange(40.0)
     plane = 3.0 + 0.2 * x[:, None] - 0.1 * y[None, :]
     reading = Reading(plane, (1.0, 1.0), "map", "by hand")
     assert np.allclose(prepare(reading, low_pass=8.0).heights, plane, rtol=0, atol=1e-9)
     assert np.allclose(prepare(reading, high_pass=8.0).heights, 0.0, rtol=0, atol=1e-9)
-
-
-def test_a_window_is_splined_with_what_lies_around_it() -> None:
-    """The points beside the window enter: its border is no end of the spline."""
-    z = np.cos(np.arange(60.0)[:, None] / 3) * np.sin(np.arange(50.0)[None, :] / 4)
-    crop = Crop(Reading(z, (1.0, 1.0), "map", "by hand"), (20.0, 16.0))
-    flat = fit_form(np.arange(2.0), np.arange(2.0), np.zeros((2, 2)), "none")
-    heights, (i, j) = crop.filled(flat)
-    inner_i, inner_j = crop.points
-    assert (inner_i.stop - inner_i.start, inner_j.stop - inner_j.start) == (20, 16)
-    assert i.start < inner_i.start - 5
-    assert j.stop > inner_j.stop + 5
-    assert np.array_equal(heights, z[i, j][: heights.shape[0], : heights.shape[1]])
