@@ -94,7 +94,7 @@ class Model(SimpleNamespace):
         (a_lower, a_upper), (c_lower, c_upper) = self.a_of, self.c_of
         return [a_lower * pressed + c_lower * sheared, a_upper * pressed - c_upper * sheared]
 
-    def v(self) -> Array:
+    def v(self) -> Any:
         return sum(self.displacements()) / self.K + self.h
 
     def forces(self) -> Any:
@@ -108,7 +108,7 @@ class Model(SimpleNamespace):
         if self.softer is not None:
             w_p = np.where(self.part == PLASTIC, (self.delta - self.v()) * self.K, 0.0)
             z += w_p / 2 if self.softer == "upper" else -w_p / 2
-        odd = {} if self.periodic else {"reflect_type": "odd"}  # makes differences one-sided at the border
+        odd: Any = {} if self.periodic else {"reflect_type": "odd"}  # one-sided differences at the border
         z = np.pad(z.reshape(self.shape), 1, mode="wrap" if self.periodic else "reflect", **odd)
         x = ((z[2:, 1:-1] - z[:-2, 1:-1]) / (2 * self.spacing[0])).ravel()
         y = ((z[1:-1, 2:] - z[1:-1, :-2]) / (2 * self.spacing[1])).ravel()
