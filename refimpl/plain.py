@@ -28,7 +28,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-LARGEST = 64 * 64  # elements; each of three matrices then takes 134 MB
 OPEN, PARTIAL, CONTACT, PLASTIC = range(4)  # f = 0 = q; f = 0 < q < tau; 0 < f < H; f = H
 ROUNDING = 1e-13  # relative, of pressures and displacements against their limits; slopes: 10 times that
 Array = NDArray[Any]
@@ -76,8 +75,7 @@ class Model(SimpleNamespace):
         self.part = np.where(self.h < self.delta, CONTACT, OPEN)
         self.f, self.q, self.ended = np.zeros(gap.size), np.zeros(gap.size), "converged"
         self.set_slopes(np.zeros((2, gap.size)))
-        if self.slopes:
-            self.set_slopes(self.deformed_slopes())
+        self.set_slopes(self.deformed_slopes() if self.slopes else self.tan)
 
     def set_slopes(self, tan: Array) -> None:
         x, y = np.arctan(tan)
@@ -88,9 +86,7 @@ class Model(SimpleNamespace):
     def displacements(self) -> Any:
         r = self.q + self.beta * self.f
         pressed = self.J @ (self.f - r * self.in_u[0])
-        sheared = self.Js @ (r + self.f * self.in_u[0])
-        if self.facets:
-            sheared += self.Jt @ (self.f * self.in_u[1])
+        sheared = self.Js @ (r + self.f * self.in_u[0]) + self.Jt @ (self.f * self.in_u[1])
         (a_lower, a_upper), (c_lower, c_upper) = self.a_of, self.c_of
         return [a_lower * pressed + c_lower * sheared, a_upper * pressed - c_upper * sheared]
 
@@ -112,8 +108,8 @@ class Model(SimpleNamespace):
         z = np.pad(z.reshape(self.shape), 1, mode="wrap" if self.periodic else "reflect", **odd)
         x = ((z[2:, 1:-1] - z[:-2, 1:-1]) / (2 * self.spacing[0])).ravel()
         y = ((z[1:-1, 2:] - z[1:-1, :-2]) / (2 * self.spacing[1])).ravel()
-        cos, sin = np.cos(self.direction), np.sin(self.direction)
-        return np.array([cos * x + sin * y, cos * y - sin * x])
+        along = (x + 1j * y) * np.exp(-1j * self.direction)  # turned into the frame of the sliding
+        return np.array([along.real, along.imag])
 
     def free_one(self) -> None:
         """Free the element next to change, to balance the load; where H balances it, delta in the middle."""
@@ -135,12 +131,9 @@ class Model(SimpleNamespace):
         down = np.where(contact, 1 - self.beta * tan_x, -tan_x)[s]
         along, across = np.where(contact, self.beta + tan_x, 1.0)[s], np.where(contact, tan_y, 0.0)[s]
         right = (self.K * (partial * self.reach - self.h) - sum(self.displacements()))[s]
-        square = np.ix_(s, s)
-        matrix = self.a * self.J[square] * down + self.c * self.Js[square] * along
-        if self.facets:
-            matrix += self.c * self.Jt[square] * across
-        if active is None:
-            matrix[np.diag_indices(s.size)] += (partial * self.K * self.reach / self.tau)[s]
+        J, Js, Jt = (table[np.ix_(s, s)] for table in (self.J, self.Js, self.Jt))
+        matrix = self.a * J * down + self.c * (Js * along + Jt * across)
+        matrix[np.diag_indices(s.size)] += (partial * self.K * self.reach / (self.tau or 1.0))[s]
         if self.load is None or not contact.any():
             x = np.linalg.solve(matrix / unit, (right + self.K[s] * self.delta) / unit)
         else:  # the last row is Eq. (2), the last unknown delta; ``unit`` scales both to the others
@@ -202,7 +195,7 @@ def solve(
     ValueError for other shapes, more than 64 x 64 elements, a load above the hardness times the domain.
     """
     arguments, shape = dict(locals()), z_lower.shape
-    if z_upper.shape != shape or len(shape) != 2 or z_lower.size > LARGEST:
+    if z_upper.shape != shape or len(shape) != 2 or z_lower.size > 64**2:  # six arrays of 134 MB
         raise ValueError(f"heights of {shape} and {z_upper.shape}: expected one shape, 64 x 64 at most")
     if (load is None) == (approach is None) or (load or 0) > hardness * lengths[0] * lengths[1]:
         raise ValueError(f"load = {load}, approach = {approach}: expected one, load <= hardness * domain")
@@ -215,9 +208,8 @@ def solve(
         model.part[~active] = OPEN
     while touch:
         model.settle(active)
-        leave = active & (model.part < CONTACT)
-        active = active & ~leave
-        if tau == 0 or not leave.any():
+        before, active = active, active & (model.part >= CONTACT)
+        if (active == before).all():
             break
     contact = model.part >= CONTACT
     model.f, model.q = np.where(contact, np.maximum(model.f, 0.0), 0.0), tau * active * contact
