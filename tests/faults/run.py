@@ -1,14 +1,13 @@
 """Cross-check by fault: production with one fault in its source against the one-page reference.
 
-`python -m tests.faults.run [--only ID ...] [--json FILE]` copies `refimpl` for each fault of ``faults.toml``,
-patches the copy, solves all scenes with it in a process of its own, and prints what a comparison sees.
+For each fault of ``faults.toml`` `refimpl` is copied, the copy patched, and all scenes are solved with it in
+a process of its own.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 import shutil
 import subprocess
@@ -29,22 +28,21 @@ SECONDS = 120  # limit of one process
 
 
 class Fault(NamedTuple):
-    """A replacement of ``old``, which occurs once in ``refimpl/file``, by ``new``."""
+    """A replacement of ``old``, once in ``refimpl/file``; ``unseen``: why it changes no number."""
 
     id: str
     area: str
     file: str
     old: str
     new: str
+    unseen: str = ""
 
 
 class Verdict(NamedTuple):
-    """Outcome of a fault.
+    """Largest relative changes from production without the fault, and differences from the reference.
 
-    changed, differs : largest relative difference from the unpatched production solver, and from the reference
-    where : the scene and number of the latter
-    unexpected : scenes that end otherwise than they should, by name
-    silent : whether production ends as converged or cycled everywhere
+    ``where`` is the scene and number of the latter, ``unexpected`` are scenes with another status, and
+    ``silent`` says whether production ends as converged or cycled everywhere.
     """
 
     id: str
@@ -61,9 +59,8 @@ class Verdict(NamedTuple):
         return self.differs > LEAST or bool(self.unexpected)
 
 
-FAULTS = tuple(
-    Fault(**table) for table in tomllib.loads((ROOT / "tests/faults/faults.toml").read_text("utf-8"))["fault"]
-)
+TABLE = tomllib.loads((ROOT / "tests/faults/faults.toml").read_text("utf-8"))["fault"]
+FAULTS = {table["id"]: Fault(**table) for table in TABLE}
 
 
 def solved(fault: Fault | None, names: Sequence[str] = NAMES) -> dict[str, Record]:
@@ -74,10 +71,10 @@ def solved(fault: Fault | None, names: Sequence[str] = NAMES) -> dict[str, Recor
             path = Path(folder, "refimpl", fault.file)
             path.write_text(path.read_text("utf-8").replace(fault.old, fault.new), "utf-8")
         command = [sys.executable, "-W", "ignore", "-m", "tests.faults.scenes", *names]
-        paths = {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}", "OMP_NUM_THREADS": "1"}
+        environment = os.environ | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}", "OPENBLAS_NUM_THREADS": "1"}
         try:
             done = subprocess.run(
-                command, cwd=folder, env=os.environ | paths, capture_output=True, text=True, timeout=SECONDS
+                command, cwd=folder, env=environment, capture_output=True, text=True, timeout=SECONDS
             )
         except subprocess.TimeoutExpired:
             return {name: {"status": f"no end within {SECONDS} s"} for name in names}
@@ -87,7 +84,7 @@ def solved(fault: Fault | None, names: Sequence[str] = NAMES) -> dict[str, Recor
 
 
 @cache
-def references(names: tuple[str, ...] = NAMES) -> tuple[dict[str, Record], dict[str, Record]]:
+def references(names: Sequence[str] = NAMES) -> tuple[dict[str, Record], dict[str, Record]]:
     """Records by the reference, and by production without a fault."""
     return {name: expected(name) for name in names}, solved(None, names)
 
@@ -104,27 +101,28 @@ def judged(fault: Fault, names: tuple[str, ...] = NAMES) -> Verdict:
     return Verdict(fault.id, fault.area, changed, differs, f"{scene}: {number}", unexpected, silent)
 
 
-def main() -> None:
-    """Run the faults, two at a time, and print a table and its sums."""
+def main() -> int:
+    """Run the faults, two at a time, and print them; return how many change numbers without being noticed."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", nargs="+", metavar="ID")
+    parser.add_argument("--only", nargs="+", metavar="ID", default=FAULTS)
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
-    references()
+    references()  # once, before the threads ask
     with ThreadPoolExecutor(2) as pool:
-        verdicts = list(pool.map(judged, [f for f in FAULTS if not options.only or f.id in options.only]))
+        verdicts = list(pool.map(judged, [FAULTS[name] for name in options.only]))
     for v in verdicts:
-        verdict = ("silent" if v.silent else "status") if v.noticed else "UNSEEN"
-        print(f"{v.id:24}{v.area:17}{v.changed:9.1e}{v.differs:9.1e}  {verdict}  {v.where}", *v.unexpected)
+        seen = ("comparison alone" if v.silent else "production too") if v.noticed else "not noticed"
+        print(f"{v.id:24}{v.area:17}{v.changed:9.1e}{v.differs:9.1e}  {seen}  {v.where}")
     changing = [v for v in verdicts if v.changed > LEAST]
-    seen = [v for v in verdicts if v.noticed]
-    print(f"{len(verdicts)} faults, {len(changing)} change a number by more than {LEAST:g}, of these noticed:")
-    print(f"{sum(v.noticed for v in changing)}; by the comparison alone: {sum(v.silent for v in seen)}")
+    noticed = [v for v in changing if v.noticed]
+    alone = sum(v.silent for v in noticed)
+    print(f"{len(verdicts)} faults; {len(changing)} change a number by more than {LEAST:g}; noticed:")
+    print(f"{len(noticed)}, {alone} by the comparison alone: production ends as converged or cycled")
     if options.json:
         rows = [v._asdict() | {"noticed": v.noticed} for v in verdicts]
-        finite = [{k: str(x) if x == math.inf else x for k, x in row.items()} for row in rows]
-        options.json.write_text(json.dumps(finite, indent=1) + "\n", "utf-8")
+        options.json.write_text(json.dumps(rows, indent=1).replace("Infinity", '"inf"') + "\n", "utf-8")
+    return len(changing) - len(noticed)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -38,7 +38,7 @@ Record = dict[str, Any]
 
 
 class Moved(Case):
-    """A ball with waves on a ball that has slid along, on a window of nested grids; arrays sampled by hand."""
+    """A ball with waves on a ball that has slid, with nested grids and windows; sampled by hand."""
 
     offset, radius = 4e-6, 100e-6
 
