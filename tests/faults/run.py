@@ -13,7 +13,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import tomllib
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -21,21 +20,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.faults.scenes import NAMES, Record, difference, expected
+from tests.faults.table import FAULTS, Fault
 from tests.layers import ROOT
 
 LEAST = 1e-6  # relative difference that counts
 SECONDS = 120  # limit of one process
-
-
-class Fault(NamedTuple):
-    """A replacement of ``old``, once in ``refimpl/file``; ``unseen``: why it changes no number."""
-
-    id: str
-    area: str
-    file: str
-    old: str
-    new: str
-    unseen: str = ""
 
 
 class Verdict(NamedTuple):
@@ -57,10 +46,6 @@ class Verdict(NamedTuple):
     def noticed(self) -> bool:
         """Whether the comparison with the reference sees the fault."""
         return self.differs > LEAST or bool(self.unexpected)
-
-
-TABLE = tomllib.loads((ROOT / "tests/faults/faults.toml").read_text("utf-8"))["fault"]
-FAULTS = {table["id"]: Fault(**table) for table in TABLE}
 
 
 def solved(fault: Fault | None, names: Sequence[str] = NAMES) -> dict[str, Record]:

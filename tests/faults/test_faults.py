@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.faults.run import FAULTS, LEAST, TABLE, Fault, judged, references
+from tests.faults.run import LEAST, judged, references
 from tests.faults.scenes import difference
+from tests.faults.table import FAULTS, TABLE, Fault
 from tests.layers import ROOT
 
 SCENES = ("periodic approach", "cap of the upper body", "steep", "cycled")
