@@ -1,0 +1,51 @@
+"""Faults that only the comparison with the one-page reference sees; `make nightly` runs the whole table."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.faults.run import LEAST, judged, references
+from tests.faults.scenes import difference
+from tests.faults.table import FAULTS, TABLE, Fault
+from tests.layers import ROOT
+
+SCENES = ("periodic approach", "cap of the upper body", "steep", "cycled")
+ALONE = (
+    "tilt-exchanged",
+    "surface-half",
+    "F-percent",
+    "shear-compliance-half",
+    "share-exchanged",
+    "slope-across-sign",
+    "F-traction-cosine",
+    "mean-surface",
+    "softer-exchanged",
+    "symbol-shear-sign",
+    "approach-datum",
+    "reach-half",
+)
+
+
+def test_the_table() -> None:
+    assert len(FAULTS) == len(TABLE) >= 60
+
+
+@pytest.mark.parametrize("fault", FAULTS.values(), ids=lambda fault: fault.id)
+def test_the_source_has_the_text_once(fault: Fault) -> None:
+    assert (ROOT / "refimpl" / fault.file).read_text("utf-8").count(fault.old) == 1
+    assert fault.new != fault.old
+
+
+def test_without_a_fault_production_agrees() -> None:
+    plain, unpatched = references(SCENES)
+    for name in SCENES:
+        assert difference(unpatched[name], plain[name])[0] < 1e-9
+        assert unpatched[name]["status"] == plain[name]["status"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ALONE)
+def test_only_the_comparison_notices(name: str) -> None:
+    verdict = judged(FAULTS[name], SCENES)
+    assert verdict.differs > LEAST
+    assert verdict.silent
