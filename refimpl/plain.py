@@ -60,7 +60,7 @@ class Model(SimpleNamespace):
     """Matrices of a problem, and its state: f, q, delta, slopes, the part of each element."""
 
     def __init__(self, **arguments: Any) -> None:
-        super().__init__(**arguments)  # those of `solve`
+        super().__init__(**arguments)  # arguments of `solve`
         self.shape = self.z_lower.shape
         self.spacing = self.lengths[0] / self.shape[0], self.lengths[1] / self.shape[1]
         self.dA = self.spacing[0] * self.spacing[1]
