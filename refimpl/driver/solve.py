@@ -69,8 +69,8 @@ def solve(
     progress : called with a line of text at every step of the work
 
     Raises `InputError` for input that is out of range, before anything large is allocated; and, by "dense"
-    alone, `ArithmeticError` where a problem on its way has no solution: if shear on slopes bears more than
-    the load, for example, no approach balances it. Other methods end with a status then.
+    alone, `ArithmeticError` where the equations of a problem on its way are singular. Other methods end with
+    a status then.
     """
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "a function of one line of text")
