@@ -66,7 +66,7 @@ A file that is not listed judges all code.
 """
 
 
-ONCE = frozenset(("class_costs", "coverage_classes", "priors"))
+ONCE = frozenset(("class_costs", "coverage_classes"))
 """Files of a sample that is looked at once: they judge the code of their commit, and stay as a record."""
 
 

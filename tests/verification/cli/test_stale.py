@@ -138,11 +138,11 @@ def test_a_sample_that_is_looked_at_once_is_a_record_and_no_failure(
     assert set(stale.JUDGED) > stale.ONCE
     made = provenance.provenance() | {"commit": None}
     changed = made | {"sources": {**provenance.sources(), "refimpl": "other"}}
-    documents = {"class_costs": {"provenance": changed}, "priors": {"provenance": made}}
+    documents = {"class_costs": {"provenance": changed}, "coverage_classes": {"provenance": made}}
     monkeypatch.setattr(stale, "read_results", lambda folder: documents)
     assert main(["verify", "--stale", "--json", "-"]) == 0
     states = {line["name"]: line["state"] for line in json.loads(capsys.readouterr().out)}
-    assert states == {"class_costs": "record", "priors": "current"}
+    assert states == {"class_costs": "record", "coverage_classes": "current"}
 
 
 def test_the_command_fails_when_one_is_stale(

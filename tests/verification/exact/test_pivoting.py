@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from refimpl.grid import Mask
-from refimpl.solvers import pivoting
+from verification.exact import pivoting
 from verification.exact.pivoting import complementarity, restricted_solve
 
 
