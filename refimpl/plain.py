@@ -195,7 +195,7 @@ def solve(
     ValueError for other shapes, more than 64 x 64 elements, a load above the hardness times the domain.
     """
     arguments, shape = dict(locals()), z_lower.shape
-    if z_upper.shape != shape or len(shape) != 2 or z_lower.size > 64**2:  # six arrays of 134 MB
+    if z_upper.shape != shape or len(shape) != 2 or z_lower.size > 64**2:  # nine arrays of 134 MB
         raise ValueError(f"heights of {shape} and {z_upper.shape}: expected one shape, 64 x 64 at most")
     if (load is None) == (approach is None) or (load or 0) > hardness * lengths[0] * lengths[1]:
         raise ValueError(f"load = {load}, approach = {approach}: expected one, load <= hardness * domain")

@@ -19,10 +19,10 @@ DECISION_GRID = 256  # elements along the longer side on which terms are decided
 
 # Bytes per element at the peak, measured with slopes and coupling: of the grid, when the solution is built
 # from the certified state; of the contact's window before that: FFT work arrays, two kernel tables and their
-# transforms; or dense matrices of Eq. (7), 6.1 of them (24 to 48 elements a side).
+# transforms; or dense matrices of Eq. (7), 9.1 of them (24 to 48 elements a side).
 _GRID_BYTES, _WINDOW_BYTES = 176, 520
 _GROWTH = 1.5  # a window over the contact expected from heights: 0.7 to 2.3 of it on rough balls, as solved
-_DENSE_MATRICES = 7
+_DENSE_MATRICES = 10
 
 
 @dataclass(frozen=True)
