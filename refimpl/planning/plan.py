@@ -23,6 +23,7 @@ DECISION_GRID = 256  # elements along the longer side on which terms are decided
 _GRID_BYTES, _WINDOW_BYTES = 176, 520
 _GROWTH = 1.5  # a window over the contact expected from heights: 0.7 to 2.3 of it on rough balls, as solved
 _DENSE_MATRICES = 10
+LARGEST_DENSE = 64 * 64  # elements; `refimpl.plain` takes no more
 
 
 @dataclass(frozen=True)
@@ -124,8 +125,8 @@ def make_plan(
 def estimated_memory(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
     """Return the estimated bytes at the peak of a solve.
 
-    ``extent``: share of the grid in the rectangle around the
-    expected contact; by default only arrays of the whole grid are counted.
+    ``extent``: share of the grid in the rectangle around the expected contact; by default only arrays of the
+    whole grid are counted.
     """
     if method == "dense":
         return 8 * _DENSE_MATRICES * grid.elements**2
@@ -133,7 +134,9 @@ def estimated_memory(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
 
 
 def memory_of(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
-    """Return the `estimated_memory`; raise `InputError` if it exceeds the free memory."""
+    """Return the `estimated_memory`; raise `InputError` if it exceeds the free memory or the dense method."""
+    if method == "dense" and grid.elements > LARGEST_DENSE:
+        raise InputError("grid", max(grid.shape), f"at most {LARGEST_DENSE} elements by method dense")
     memory, free = estimated_memory(method, grid, extent=extent), free_memory()
     if memory > free:
         allowed = f"a grid whose estimated {memory / 1e9:.3g} GB fit into the free {free / 1e9:.3g} GB"

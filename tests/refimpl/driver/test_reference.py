@@ -97,3 +97,8 @@ def test_a_rigid_body_takes_both_terms_or_neither() -> None:
     rigid = replace(scene, upper=rf.Body(rf.Material(float("inf"), 0.3), rf.Flat()))
     with pytest.raises(rf.InputError, match="tilted = False"):
         rf.solve(rigid, 5, method="dense", coupled=True, tilted=False, oblique=True)
+
+
+def test_a_grid_beyond_the_page_is_refused() -> None:
+    with pytest.raises(rf.InputError, match="grid = 65: expected at most 4096 elements by method dense"):
+        rf.solve(rf.read_scene("hertz"), 65, method="dense")

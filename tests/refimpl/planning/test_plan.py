@@ -191,7 +191,7 @@ def test_the_grid_that_decides_the_terms_need_not_fit_into_memory(
     assert chosen.memory > room
     assert chosen.on(SMOOTH.grid(32)).memory <= room
     with pytest.raises(rf.InputError, match="GB"):
-        Options(scene=SMOOTH, grid=256, method=method).plan()
+        Options(scene=SMOOTH, grid=256 if method == "fft" else 64, method=method).plan()
 
 
 def test_shear_tilts_the_common_surface_of_twins() -> None:
