@@ -247,10 +247,10 @@ def test_solutions() -> None:
     assert found["neglected"] == {name: asdict(one) for name, one in solution.neglected.items()}
     assert len(found["warnings"]) == len(solution.warnings) > 0
     again = pickle.loads(pickle.dumps(solution))
-    for field in fields(rf.Solution):
-        one, other = getattr(solution, field.name), getattr(again, field.name)
+    for name in (name for name in dir(solution) if not name.startswith("_")):
+        one, other = getattr(solution, name), getattr(again, name)
         same = np.array_equal(one, other) if isinstance(one, np.ndarray) else repr(one) == repr(other)
-        assert same, field.name
+        assert same or callable(one), name
 
 
 @FEW

@@ -13,13 +13,13 @@ from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid, Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
-from refimpl.model.state import SolverResult, Status
+from refimpl.model.state import Status
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import whole_grid_influence
 from refimpl.planning.plan import Method, Plan
 from refimpl.scene.discretise import Discretiser
 from refimpl.solution.cost import Cost, total_cost
-from refimpl.solution.solved import Solved
+from refimpl.solution.evidence import Evidence
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.nested_solver import solve_fft
@@ -33,14 +33,14 @@ def solve_on_grid(
     tolerance: float,
     progress: Progress | None,
     guess: InitialGuess | None,
-) -> Solved:
+) -> Evidence:
     """Discretise, solve and certify on one grid."""
     started = time.perf_counter()
     counter = Counter() if progress is None else _ReportingCounter(plan.grid, progress)
     problem = discretiser.problem(plan.grid, plan.switches)
-    result, state = _solve_problem(problem, plan.method, tolerance, counter, guess)
-    cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, result.iterations)
-    solved = Solved(problem, plan, result, state, tolerance, cost, discretiser.scene)
+    state = _solve_problem(problem, plan.method, tolerance, counter, guess)
+    cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, state.iterations)
+    solved = Evidence(discretiser.scene, problem, plan, state, tolerance, cost)
     hardness = problem.pair.softer_hardness or math.inf
     if plan.requested.plastic is not None or plan.includes("plastic") or state.max_pressure <= hardness:
         return solved
@@ -50,24 +50,22 @@ def solve_on_grid(
 
 def _solve_problem(
     problem: Problem, method: Method, tolerance: float, counter: Counter, guess: InitialGuess | None
-) -> tuple[SolverResult, State]:
+) -> State:
     if problem.approach is not None and problem.approach <= 0:
         return _without_contact(problem)
     if method == "dense":
         return solve_reference(problem)
     if method == "paper":
-        result, state, _ = solve_paper(problem, tolerance, counter)
-        return result, state
+        return solve_paper(problem, tolerance, counter)[0]
     return solve_fft(problem, tolerance, counter, guess)
 
 
-def _without_contact(problem: Problem) -> tuple[SolverResult, State]:
+def _without_contact(problem: Problem) -> State:
     """The state of surfaces that do not touch at the approach: nothing is loaded."""
     zero = np.zeros(problem.gap.shape)
     slopes = problem.slopes(zero, zero)
     operator = whole_grid_influence(problem.grid, problem.direction, Window(0, 1, 0, 1))
-    result = SolverResult(zero, zero, slopes, Status.NO_CONTACT, zero > 0)
-    return result, certify(problem, operator, zero, zero, slopes)
+    return certify(problem, operator, zero, zero, slopes, status=Status.NO_CONTACT)
 
 
 class _ReportingCounter(Counter):

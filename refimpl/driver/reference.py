@@ -14,14 +14,14 @@ from refimpl.model.elasticity import Elasticity
 from refimpl.model.friction import Friction
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import SolverResult, Status
+from refimpl.model.state import Status
 from refimpl.operators.influence import whole_grid_influence
 
 _SOFTER = {1: "lower", -1: "upper", 0: None}
 
 
-def solve_reference(problem: Problem) -> tuple[SolverResult, State]:
-    """Return the plain solution as a result and its certified state.
+def solve_reference(problem: Problem) -> State:
+    """Return the plain solution as a certified state.
 
     Statuses are `CONVERGED`, `CYCLED` and `ITERATION_LIMIT`, and concern the loops only. Raises `InputError`
     for a friction law other than `Friction`, and `ArithmeticError` where the problem has no solution.
@@ -63,5 +63,5 @@ def solve_reference(problem: Problem) -> tuple[SolverResult, State]:
     status = Status.CYCLED if excluded.any() else Status.CONVERGED
     if found.ended != "converged" or 2 * np.count_nonzero(excluded) > np.count_nonzero(found.pressure > 0):
         status = Status.ITERATION_LIMIT
-    result = SolverResult(found.pressure, found.traction, slopes, status, excluded, {}, depth)
-    return result, certify(problem, operator, found.pressure, found.traction, slopes, depth)
+    f, r = found.pressure, found.traction
+    return certify(problem, operator, f, r, slopes, depth, excluded=excluded, status=status)

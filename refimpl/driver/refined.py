@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from refimpl.accuracy.grid_features import GridFeatures
@@ -28,10 +29,9 @@ from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
 from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.data_error import finest_by_data
+from refimpl.solution.evidence import Evidence
 from refimpl.solution.limits import Notice
-from refimpl.solution.plausibility import notes
 from refimpl.solution.solution import Solution, assemble
-from refimpl.solution.solved import Solved
 
 _CONVERGED = (Status.CONVERGED, Status.CYCLED)
 
@@ -55,27 +55,24 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
         )
     except KeyboardInterrupt as interrupt:
         if grids.last is not None:
-            interrupt.args = (_interrupted(scene, grids, discretiser),)
+            interrupt.args = (_interrupted(grids.last, total_cost(grids.costs), discretiser.notes),)
         raise
     solved, cost = grids.solved(), total_cost(grids.costs)
-    remarks = notes(scene, solved, discretiser.notes)
     if not ended.results[-1].touching:
-        return assemble(scene, solved, uncertainty([ended.results[-1]]), remarks, cost=cost)
+        return assemble(solved, uncertainty([ended.results[-1]]), discretiser.notes, cost=cost)
     shortfall = None
     if ended.refusal:
         bound = relative_bound(ended.results, quantity)
         reached = f"known to {bound:.2g}, not" if math.isfinite(bound) else "not bounded, let alone"
         shortfall = Notice(f"{quantity} is {reached} to {options.accuracy:.2g}: {ended.refusal}")
-    return assemble(scene, solved, uncertainty(ended.results), remarks, shortfall=shortfall, cost=cost)
+    bars = uncertainty(ended.results)
+    return assemble(solved, bars, discretiser.notes, shortfall=shortfall, cost=cost)
 
 
-def _interrupted(scene: Scene, grids: _Refinement, discretiser: Discretiser) -> Solution:
+def _interrupted(solved: Evidence, cost: Cost, notes: Sequence[str]) -> Solution:
     """The last finished grid's solution of a refinement that was interrupted."""
-    solved = grids.solved()
     line = Notice("interrupted: the finest grid that was finished")
-    remarks = notes(scene, solved, discretiser.notes)
-    bars = uncertainty([solved.features])
-    return assemble(scene, solved, bars, remarks, shortfall=line, cost=total_cost(grids.costs))
+    return assemble(solved, uncertainty([solved.features]), notes, shortfall=line, cost=cost)
 
 
 @dataclass(frozen=True)
@@ -125,7 +122,7 @@ class _Refinement:
     ) -> None:
         self.scene, self.plan = scene, plan
         self.costs: list[Cost] = []
-        self.last: Solved | None = None
+        self.last: Evidence | None = None
         self._discretiser, self._progress = discretiser, progress
         self._tolerance, self.allowance = options.residual_tolerance, Allowance(options.limits)
 
@@ -158,7 +155,7 @@ class _Refinement:
             return self.features_at(M)
         return solved.features
 
-    def solved(self) -> Solved:
+    def solved(self) -> Evidence:
         """Return what was solved last."""
         assert self.last is not None
         return self.last

@@ -12,7 +12,6 @@ from refimpl.planning.plan import Method
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
-from refimpl.solution.plausibility import notes
 from refimpl.solution.solution import Solution, assemble
 
 
@@ -94,5 +93,4 @@ def solve(
     if start is not None:
         guess = initial_guess(start.problem, start.pressure, start.clearance, start.approach)
     solved = solve_on_grid(plan, discretiser, options.residual_tolerance, progress, guess)
-    remarks = notes(scene, solved, discretiser.notes)
-    return assemble(scene, solved, uncertainty([solved.features]), remarks)
+    return assemble(solved, uncertainty([solved.features]), discretiser.notes)

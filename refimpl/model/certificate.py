@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from refimpl.model.forces import (
 )
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.model.state import Status
 
 # rounding of Eq. (7) on n elements, over sqrt(n) eps times the displacement by the peak pressure on the whole
 # domain; measured on flat periodic planes, 2 to 32 elements a side, dense sums: 0.3 to 0.7
@@ -59,7 +61,7 @@ class Certificate:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A state with everything that follows from its pressure and traction; arrays of the problem's shape.
+    """A solver's arrays, how it ended, and everything that follows from them; arrays of the problem's shape.
 
     pressure, traction : f and r (Pa)
     displacement_lower, displacement_upper : normal displacements into each body (m)
@@ -72,6 +74,9 @@ class State:
     contact_area, contact_area_corrected : real contact area, and less the excess along its edge (m^2)
     plastic, plastic_area : elements at the hardness, and their area (m^2)
     certificate : residuals
+    excluded : elements that the rule for tau's active set leaves without adhesive shear
+    status : how the solver's loops ended
+    iterations : counts by loop
     """
 
     pressure: Array
@@ -89,6 +94,9 @@ class State:
     plastic: Mask
     plastic_area: float
     certificate: Certificate
+    excluded: Mask
+    status: Status = Status.CONVERGED
+    iterations: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def contact(self) -> Mask:
@@ -151,8 +159,15 @@ def certify(
     traction: Array,
     slopes: Slopes,
     indentation: Array | None = None,
+    *,
+    excluded: Mask | None = None,
+    status: Status = Status.CONVERGED,
+    iterations: Mapping[str, int] | None = None,
 ) -> State:
     """Recompute displacements, slopes, approach, forces and every residual from the returned arrays.
+
+    All arguments but the first two are the fields of a `SolverResult`; what it says of its own end
+    (``excluded``, ``status``, ``iterations``) is passed on and enters no number.
 
     ``slopes`` enter only through the facet tractions of the slope correction and through the residual
     ``slope``, and the plastic ``indentation`` (m) only through the slopes of the common surface; the cosines
@@ -214,6 +229,9 @@ def certify(
             slope=max(on_slopes.distance(other, contact) for other in (slopes.windowed(box), requested)),
             law_violations=int(np.count_nonzero(r != problem.friction.traction(f, contact))),
         ),
+        excluded=np.zeros(pressure.shape, dtype=bool) if excluded is None else excluded,
+        status=status,
+        iterations=iterations or {},
     )
 
 

@@ -10,24 +10,7 @@ from numpy.typing import NDArray
 
 from refimpl.errors import InputError
 from refimpl.grid.contact_patches import patch_labels
-from refimpl.solution.reported import Reported
-
-UNITS = {
-    "friction_coefficient": "1",
-    "contact_area": "m^2",
-    "contact_area_corrected": "m^2",
-    "contact_area_share": "1",
-    "plastic_area": "m^2",
-    "plastic_share": "1",
-    "max_pressure": "Pa",
-    "mean_pressure": "Pa",
-    "mean_gap": "m",
-    "approach": "m",
-    "normal_force": "N",
-    "friction_force": "N",
-    "binormal_force": "N",
-}
-"""Numbers of a solution with their units."""
+from refimpl.solution.record import UNITS, Record
 
 
 class Field(NamedTuple):
@@ -38,7 +21,7 @@ class Field(NamedTuple):
     description: str
 
 
-def fields_of(solution: Reported) -> dict[str, Field]:
+def fields_of(solution: Record) -> dict[str, Field]:
     """Return the fields that array files hold, by name; all of the grid's shape, indexed along x, then y."""
     periodic = solution.grid.periodic
     labels = patch_labels(solution.contact, periodic=periodic)
@@ -57,12 +40,12 @@ def fields_of(solution: Reported) -> dict[str, Field]:
     }
 
 
-def numbers_of(solution: Reported) -> dict[str, float]:
+def numbers_of(solution: Record) -> dict[str, float]:
     """Return the numbers of `UNITS`."""
     return {name: float(getattr(solution, name)) for name in UNITS}
 
 
-def attributes_of(solution: Reported, provenance: Mapping[str, str] | None = None) -> dict[str, Any]:
+def attributes_of(solution: Record, provenance: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Return status, numbers with their errors, settings and provenance as plain attributes of a file."""
     found: dict[str, Any] = {
         "title": "rough contact with friction, after Karpenko and Akay (2001)",
@@ -82,7 +65,7 @@ def attributes_of(solution: Reported, provenance: Mapping[str, str] | None = Non
     return found | dict(provenance or {})
 
 
-def as_dataset(solution: Reported, provenance: Mapping[str, str] | None = None) -> Any:
+def as_dataset(solution: Record, provenance: Mapping[str, str] | None = None) -> Any:
     """Return an `xarray.Dataset`: the fields over x and y (m, element centres), units as attributes.
 
     Raises `InputError` where xarray is not installed.

@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 
 from refimpl.grid import Array
-from refimpl.solution.reported import Reported
+from refimpl.solution.record import Record
 
 # attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 SHOWN = (
@@ -28,14 +28,14 @@ _CELLS = 32  # cells along the longer side of the map
 _INK = "#0072B2"  # Okabe and Ito 2008
 
 
-def line(solution: Reported) -> str:
+def line(solution: Record) -> str:
     """Return one line: status, grid, mu with its error, A."""
     mu = with_error(solution.friction_coefficient, solution.error("friction_coefficient"))
     area = with_error(solution.contact_area * 1e6, solution.error("contact_area") * 1e6)
     return f"<Solution {solution.status.value}, {solution.grid}: mu = {mu}, A = {area} mm^2>"
 
 
-def table(solution: Reported) -> str:
+def table(solution: Record) -> str:
     """Return the numbers with their errors, and the warnings."""
     rows = _rows(solution)
     width, number = (max(len(row[k]) for row in rows) for k in (0, 1))
@@ -44,7 +44,7 @@ def table(solution: Reported) -> str:
     return "\n".join([head, *body, *(f"warning: {text}" for text in solution.warnings)])
 
 
-def html(solution: Reported) -> str:
+def html(solution: Record) -> str:
     """Return the short table with a map of pressure: an image made of squares, without any library."""
     rows = "".join(
         f"<tr><td>{escape(name)}</td><td>{escape(value)}</td><td>{escape(unit)}</td></tr>"
@@ -81,7 +81,7 @@ def with_error(value: float, error: float) -> str:
     return f"{shown:.{digits}f} +- {bar:.{digits}f}"
 
 
-def _rows(solution: Reported) -> list[tuple[str, str, str]]:
+def _rows(solution: Record) -> list[tuple[str, str, str]]:
     left = set() if solution.plastic_area else {"plastic_area"}
     return [
         (name, with_error(getattr(solution, attribute) * factor, solution.error(attribute) * factor), unit)
@@ -90,7 +90,7 @@ def _rows(solution: Reported) -> list[tuple[str, str, str]]:
     ]
 
 
-def _map(solution: Reported) -> str:
+def _map(solution: Record) -> str:
     """Squares shaded by the pressure's maximum in each, x to the right and y up."""
     coarse = _coarse(solution.pressure)
     top = coarse.max()

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
 import numpy as np
 
-from refimpl.grid import Grid, Mask
+from refimpl.grid import Grid
 from refimpl.grid.contact_patches import patch_sizes
-from refimpl.model.certificate import State
-from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.planning.plan import Plan
-from refimpl.planning.term_effects import Effect
 from refimpl.planning.terms import LABELS
 from refimpl.scene.resolution import resolution
 from refimpl.scene.scene import Body, Scene
+from refimpl.solution.evidence import Evidence
 from refimpl.solution.half_space_warning import ALLOWED, half_space_excess
 from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.surfaces import Flat, Sphere
@@ -88,30 +83,6 @@ def plain_warning(text: str) -> dict[str, Any]:
     return {"name": Notice.limit, "number": None, "limit": None, "text": text}
 
 
-@dataclass(frozen=True)
-class Evidence:
-    """Everything that the limits of the model are compared with.
-
-    scene, problem, plan, state : what was posed, solved and found
-    excluded : elements that the rule for tau's active set leaves without adhesive shear
-    slope_error : coefficient error at the contact's slopes
-    neglected : effects of the neglected terms, from the solved contact
-    """
-
-    scene: Scene
-    problem: Problem
-    plan: Plan
-    state: State
-    excluded: Mask
-    slope_error: SlopeError
-    neglected: Mapping[str, Effect]
-
-    @property
-    def grid(self) -> Grid:
-        """The grid of the problem."""
-        return self.problem.grid
-
-
 def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
     """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact."""
     if not evidence.state.contact.any():
@@ -137,7 +108,7 @@ def _plastic_notes(evidence: Evidence) -> list[Notice]:
     pair, state = evidence.problem.pair, evidence.state
     area = state.contact_area
     if pair.softer_hardness is None:
-        mean = float(state.pressure.sum()) * evidence.grid.element_area / area
+        mean = float(state.pressure.sum()) * evidence.problem.grid.element_area / area
         text = (
             f"no hardness given: mean contact pressure {mean / 1e6:.4g} MPa, maximum "
             f"{state.max_pressure / 1e6:.4g} MPa; plasticity not checked"
@@ -177,7 +148,7 @@ def _plasticity(evidence: Evidence) -> ModelWarning | None:
     hardness = pair.softer_hardness
     if hardness is None or evidence.problem.terms.plastic:
         return None
-    index = pair.reduced_modulus / hardness * roughness_slope(evidence.scene, evidence.grid)
+    index = pair.reduced_modulus / hardness * roughness_slope(evidence.scene, evidence.problem.grid)
     text = f"plasticity index {index:.3g} of Eq. (12) reaches 1: contact is no longer purely elastic; "
     text += "set plastic = true"
     return ModelWarning(Limit.PLASTICITY, index, _PLASTICITY, text) if index >= _PLASTICITY else None
@@ -242,7 +213,7 @@ def _half_space(evidence: Evidence) -> ModelWarning | None:
 
 
 def _border(evidence: Evidence) -> ModelWarning | None:
-    touching = evidence.grid.on_border(evidence.state.contact)
+    touching = evidence.problem.grid.on_border(evidence.state.contact)
     scene = evidence.scene
     concave = [
         name for name, sign in (("lower", 1), ("upper", -1)) if _is_concave(getattr(scene, name), sign)
@@ -272,7 +243,7 @@ def _is_concave(body: Body, sign: int) -> bool:
 
 
 def _correlation(evidence: Evidence) -> ModelWarning | None:
-    found = resolution(evidence.scene, evidence.grid, evidence.plan.demand)
+    found = resolution(evidence.scene, evidence.problem.grid, evidence.plan.demand)
     if found is None or found.elements >= found.detail.resolved:
         return None
     detail = found.detail
@@ -286,7 +257,7 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
 
 def _data(evidence: Evidence) -> ModelWarning | None:
     """Measured heights and arrays are sampled, not averaged."""
-    scene, grid = evidence.scene, evidence.grid
+    scene, grid = evidence.scene, evidence.problem.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     pitches = [pitch for part in parts if (pitch := part.pitch(grid.lengths)) is not None]
     points = max(grid.spacings) / min(pitches, default=math.inf)
@@ -299,7 +270,7 @@ def _data(evidence: Evidence) -> ModelWarning | None:
 
 def _radius(evidence: Evidence) -> ModelWarning | None:
     """Mean radius of circles; full contact has no edge to resolve."""
-    contact, grid = evidence.state.contact, evidence.grid
+    contact, grid = evidence.state.contact, evidence.problem.grid
     if contact.all():
         return None
     box = grid.window_around(contact, margin=0)
@@ -313,7 +284,7 @@ def _radius(evidence: Evidence) -> ModelWarning | None:
 
 
 def _active_set(evidence: Evidence) -> ModelWarning | None:
-    excluded = int(np.count_nonzero(evidence.excluded & evidence.state.contact))
+    excluded = int(np.count_nonzero(evidence.state.excluded & evidence.state.contact))
     text = (
         f"the contact edge alternates under tau: {excluded} elements in contact carry no adhesive shear; "
         "mu's error bar includes them"

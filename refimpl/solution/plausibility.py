@@ -11,8 +11,8 @@ from collections.abc import Iterator, Sequence
 from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
 from refimpl.scene.scene import Scene
+from refimpl.solution.evidence import Evidence
 from refimpl.solution.limits import Notice
-from refimpl.solution.solved import Solved
 from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
 
 MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
@@ -22,9 +22,10 @@ _INDEX = 1e3  # plasticity index
 _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
 
 
-def notes(scene: Scene, solved: Solved, lines: Sequence[str]) -> tuple[Notice, ...]:
+def notes(solved: Evidence, lines: Sequence[str]) -> tuple[Notice, ...]:
     """Notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its own."""
-    grid, parts = solved.problem.grid, (*scene.lower.surface.parts, *scene.upper.surface.parts)
+    scene, grid = solved.scene, solved.problem.grid
+    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     lines = (*implausible(scene, solved.plan), *lines)
     rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
     named = {line for part in rough for line in part.cautions(grid)}

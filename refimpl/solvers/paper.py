@@ -59,8 +59,8 @@ class Trace:
     coarser: tuple[Trace, ...] = ()
 
 
-def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[SolverResult, State, Trace]:
-    """Return the result, its certified state and the finest grid's trace.
+def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[State, Trace]:
+    """Return the certified state and the finest grid's trace.
 
     ``tolerance`` is that of the load; the pressure's is a tenth of it.
     """
@@ -75,9 +75,8 @@ def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[S
         traces.append(scheme.trace)
     scheme = _Scheme(finest, tolerance, counter, pressure, approach)
     scheme.trace.coarser = tuple(traces)
-    result = scheme.result()
-    state = certify(finest, scheme.operator, result.pressure, result.traction, result.slopes)
-    return result, state, scheme.trace
+    state = certify(finest, scheme.operator, **vars(scheme.result()))
+    return state, scheme.trace
 
 
 def _refinements(problem: Problem) -> list[Problem]:

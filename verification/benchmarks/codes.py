@@ -95,10 +95,10 @@ def _alone(kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
 
     def press() -> Pressed:
         counter = Counter()
-        result, _ = solve_fft(posed, tolerance, counter)
+        state = solve_fft(posed, tolerance, counter)
         work = {f"{name} products": float(n) for name, n in counter.tally.items()}
-        converged = result.status is rf.Status.CONVERGED
-        return Pressed(result.pressure, converged, work | {"n log2 n": counter.point_logs})
+        converged = state.status is rf.Status.CONVERGED
+        return Pressed(state.pressure, converged, work | {"n log2 n": counter.point_logs})
 
     return press
 

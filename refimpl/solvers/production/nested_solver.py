@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from refimpl.grid import Array, Mask, Window, inner, resampled
 from refimpl.model.certificate import State, certify, relative_gap
 from refimpl.model.problem import Problem
@@ -24,10 +26,10 @@ from refimpl.solvers.tau_active_set import first_set
 
 def solve_fft(
     problem: Problem, tolerance: float, counter: Counter, start: InitialGuess | None = None
-) -> tuple[SolverResult, State]:
-    """Return the result and certified state of the problem, to a certificate of about ``tolerance``.
+) -> State:
+    """Return the certified state of the problem, to a certificate of about ``tolerance``.
 
-    The result's status concerns the loops only; the certificate is that of the whole grid. ``start`` is the
+    Its status concerns the loops only; the certificate is that of the whole grid. ``start`` is the
     solution on a grid that is not finer: nested grids no finer than it are not solved again. A start on this
     very grid is used only where it fits: load or contact off by more than 2 % cost more than nested grids.
     """
@@ -50,8 +52,7 @@ def solve_fft(
             state = certified(problem, result, counter)
             missed = missed_by_window(problem, state, window, tolerance)
             if not missed.any():
-                result.iterations.update(iterations)
-                return result, state
+                return replace(state, iterations={**state.iterations, **iterations})
             needed |= missed  # windows only grow, so the loop ends
         solver = widened(problem, result, needed, counter, needs_mixing=needs_mixing)
 
@@ -109,7 +110,7 @@ def certified(problem: Problem, result: SolverResult, counter: Counter) -> State
     """Return the state on the whole grid, from a source window that holds all tractions."""
     loaded = Window.around((result.pressure != 0) | (result.traction != 0), margin=0)
     operator = whole_grid_influence(problem.grid, problem.direction, loaded, counter)
-    return certify(problem, operator, result.pressure, result.traction, result.slopes, result.indentation)
+    return certify(problem, operator, **vars(result))
 
 
 def missed_by_window(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:

@@ -235,7 +235,7 @@ def test_the_unit_of_pressure_changes_no_bit() -> None:
 def test_a_loop_that_meets_its_limit_says_so(limit: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever the certificate makes of the state that it left."""
     monkeypatch.setattr(module, limit, 1)
-    result, _, _ = module.solve_paper(hertz(friction=rf.Friction(beta=0.1)), 1e-9, Counter())
+    result, _ = module.solve_paper(hertz(friction=rf.Friction(beta=0.1)), 1e-9, Counter())
     assert result.status is Status.ITERATION_LIMIT
 
 

@@ -45,8 +45,8 @@ def paper(name: str, tolerance: float) -> rf.Solution:
 def traced(scene: rf.Scene, M: int, tolerance: float) -> tuple[Array, Trace]:
     """Pressure (Pa) and trace of the scheme."""
     plan = Options(scene=scene, grid=M, method="paper").plan()
-    result, _, trace = solve_paper(discretise(scene, plan.grid, plan.switches), tolerance, Counter())
-    return result.pressure, trace
+    state, trace = solve_paper(discretise(scene, plan.grid, plan.switches), tolerance, Counter())
+    return state.pressure, trace
 
 
 def distance(found: rf.Solution, reference: rf.Solution) -> float:

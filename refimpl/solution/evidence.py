@@ -1,4 +1,4 @@
-"""A solved and certified problem on one grid, with what its own solution leaves open of its numbers."""
+"""The evidence for a solved problem on one grid: certificate, features, error parts, neglected effects."""
 
 from __future__ import annotations
 
@@ -8,38 +8,58 @@ from functools import cached_property
 from refimpl.accuracy.first_contact import HERTZ_EXPONENTS
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import AREAS, Uncertainty, active_set_parts, iteration_parts, merged
+from refimpl.grid import Array
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem
-from refimpl.model.state import SolverResult, Status
+from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect, effects_in, neglected_parts
 from refimpl.scene.scene import Scene
 from refimpl.solution.cost import Cost
+from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.solution.unseen import unseen_parts
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
-    """A solved and certified problem on one grid, before it becomes a `Solution`.
+class Evidence:
+    """Everything that the numbers of a solve on one grid are judged by.
 
-    ``scene`` says what lies beyond the domain and between points of data, if it is known.
+    scene : with what lies beyond the domain and between points of data
+    problem, plan, state : posed, modelled and found
+    tolerance : what the certificate's residuals must meet
+    cost : work done
     """
 
+    scene: Scene
     problem: Problem
     plan: Plan
-    result: SolverResult
     state: State
     tolerance: float
     cost: Cost
-    scene: Scene | None = None
 
     @property
     def status(self) -> Status:
         """The loops' status; a loop that ended well still fails on a certificate that does not hold."""
-        ended_well = self.result.status in (Status.CONVERGED, Status.CYCLED)
+        ended_well = self.state.status in (Status.CONVERGED, Status.CYCLED)
         if ended_well and not self.state.certificate.satisfies(self.tolerance):
             return Status.STAGNATED
-        return self.result.status
+        return self.state.status
+
+    @cached_property
+    def surfaces(self) -> tuple[Array, Array]:
+        """Deformed heights of the lower and the upper surface (m)."""
+        lower, upper = self.problem.heights
+        lower -= self.state.displacement_lower
+        upper += self.state.displacement_upper
+        upper -= self.state.approach
+        return lower, upper
+
+    @cached_property
+    def slope_error(self) -> SlopeError:
+        """Error of flat-surface influence coefficients at this contact's slopes, by Appendix A's table."""
+        problem, state = self.problem, self.state
+        plane = constant_along_an_axis(problem.gap, problem.mean_surface)
+        return slope_error(state.slopes, state.pressure, problem.pair, plane=plane)
 
     @cached_property
     def neglected(self) -> dict[str, Effect]:

@@ -1,0 +1,210 @@
+"""Numbers and arrays of a solution, each read where it stands: in the state, its evidence, or the problem."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cached_property
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.errors import InputError
+from refimpl.grid import Array, Grid, Mask
+from refimpl.model.certificate import Certificate, State
+from refimpl.model.friction import FrictionLaw
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
+from refimpl.model.state import Status
+from refimpl.planning.plan import Plan
+from refimpl.planning.term_effects import Effect
+from refimpl.solution.bounds import Bounds, proven_bounds
+from refimpl.solution.cost import Cost
+from refimpl.solution.evidence import Evidence
+from refimpl.solution.influence_error import SlopeError
+from refimpl.solution.limits import ModelWarning, Notice
+from refimpl.solution.model_form import ModelForm, model_form
+
+UNITS = {
+    "friction_coefficient": "1",
+    "contact_area": "m^2",
+    "contact_area_corrected": "m^2",
+    "contact_area_share": "1",
+    "plastic_area": "m^2",
+    "plastic_share": "1",
+    "max_pressure": "Pa",
+    "mean_pressure": "Pa",
+    "mean_gap": "m",
+    "approach": "m",
+    "normal_force": "N",
+    "friction_force": "N",
+    "binormal_force": "N",
+}
+"""Numbers of a solution with their units."""
+
+
+class _FromPart:
+    """An attribute that a part of the record holds, under the same name if none is given."""
+
+    def __init__(self, part: str, name: str) -> None:
+        self._part, self._name = attrgetter(part), name
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = self._name or name
+
+    def __get__(self, record: Record | None, owner: type) -> Any:
+        if record is None:
+            return self
+        part = self._part(record)
+        return part[self._name] if isinstance(part, Mapping) else getattr(part, self._name)
+
+
+def _from(part: str, name: str = "") -> Any:
+    return _FromPart(part, name)
+
+
+class Record:
+    """Everything that a `Solution` says of itself; its attributes are described there."""
+
+    evidence: Evidence
+    status: Status
+    uncertainty: Mapping[str, Mapping[str, float]]
+    warnings: tuple[ModelWarning | Notice, ...]
+    cost: Cost
+
+    problem: Problem = _from("evidence")
+    plan: Plan = _from("evidence")
+    state: State = _from("evidence")
+    features: GridFeatures = _from("evidence")
+    neglected: Mapping[str, Effect] = _from("evidence")
+    slope_error: SlopeError = _from("evidence")
+    tolerance: float = _from("evidence")
+
+    approach: float = _from("features.numbers")
+    normal_force: float = _from("features.numbers")
+    friction_force: float = _from("features.numbers")
+    binormal_force: float = _from("features.numbers")
+    friction_coefficient: float = _from("features.numbers")
+    contact_area: float = _from("features.numbers")
+    contact_area_corrected: float = _from("features.numbers")
+    plastic_area: float = _from("features.numbers")
+    max_pressure: float = _from("features.numbers")
+
+    pressure: Array = _from("state")
+    traction: Array = _from("state")
+    slopes: Slopes = _from("state")
+    excluded: Mask = _from("state")
+    certificate: Certificate = _from("state")
+    grid: Grid = _from("problem")
+    friction: FrictionLaw = _from("problem")
+    sliding_direction: float = _from("problem", "direction")
+
+    @cached_property
+    def surface_lower(self) -> Array:
+        """Deformed heights of the lower surface (m)."""
+        return self.evidence.surfaces[0]
+
+    @cached_property
+    def surface_upper(self) -> Array:
+        """Deformed heights of the upper surface (m)."""
+        return self.evidence.surfaces[1]
+
+    @cached_property
+    def gap(self) -> Array:
+        """Deformed gap by Eq. (6) (m)."""
+        return self.state.gap
+
+    @cached_property
+    def plastic_indentation(self) -> Array:
+        """Depth w_p by which the softer body has yielded (m)."""
+        return self.grid.zeros if self.state.indentation is None else self.state.indentation
+
+    @property
+    def contact(self) -> Mask:
+        """Elements with ``f > 0``."""
+        return self.pressure > 0
+
+    @property
+    def separation(self) -> Array:
+        """Height of the upper deformed surface over the lower one (m).
+
+        On slopes Eq. (6) leaves it ``u (1 / (cos theta_x cos theta_y) - 1)`` below the `gap`.
+        """
+        return self.surface_upper - self.surface_lower
+
+    @property
+    def clearance(self) -> Array:
+        """``v - approach`` (m): the `gap` without the plastic indentation."""
+        return self.gap - self.plastic_indentation / self.slopes.obliqueness
+
+    @cached_property
+    def theta_x(self) -> Array:
+        """Slope angle along the sliding direction, positive uphill (rad)."""
+        return np.arctan(self.slopes.tan_x)
+
+    @cached_property
+    def theta_y(self) -> Array:
+        """Slope angle along the direction 90 degrees anticlockwise of sliding (rad)."""
+        return np.arctan(self.slopes.tan_y)
+
+    @property
+    def converged(self) -> bool:
+        """True if the loops ended well and the certificate holds; an alternating contact edge is certified
+        too."""
+        return self.status in (Status.CONVERGED, Status.CYCLED)
+
+    @property
+    def certified(self) -> bool:
+        """True if the certificate holds, as it may where a requested accuracy was not reached."""
+        return self.certificate.satisfies(self.tolerance)
+
+    @property
+    def plastic_share(self) -> float:
+        """Share of the contact area that is at the hardness; 0 without contact."""
+        return self.plastic_area / self.contact_area if self.contact_area else 0.0
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """Proven bounds at the state's slopes and active set of tau; computed when first used."""
+        return proven_bounds(self.problem, self.pressure, self.traction, self.slopes)
+
+    @cached_property
+    def model_form(self) -> ModelForm:
+        """Stated relative errors of the half-space in approach and N; computed when first used."""
+        lower, upper = self.problem.heights
+        approach = self.approach + self.problem.datum
+        moved = lower - self.surface_lower, self.surface_upper - upper + approach
+        return model_form(self.problem, self.pressure, self.traction, moved, approach)
+
+    @property
+    def contact_area_share(self) -> float:
+        """Real over nominal contact area, A/A0; A0 is the whole domain."""
+        return self.contact_area / math.prod(self.grid.lengths)
+
+    @property
+    def mean_pressure(self) -> float:
+        """Mean pressure of the elements in contact (Pa); 0 without contact."""
+        return float(self.pressure[self.contact].mean()) if self.contact_area else 0.0
+
+    @property
+    def mean_gap(self) -> float:
+        """Mean gap between the deformed surfaces over the domain (m)."""
+        return float(self.gap.mean())
+
+    @property
+    def plastic(self) -> Mask:
+        """Elements at the hardness."""
+        return self.pressure >= self.problem.cap
+
+    def error(self, name: str) -> float:
+        """Return the error bar of a number: the sum of its parts, in its unit; inf where unbounded.
+
+        A/A0 has that of A; a number without any part has 0. Raises `InputError` for an unknown name.
+        """
+        if name == "contact_area_share":
+            return self.error("contact_area") / math.prod(self.grid.lengths)
+        if name not in UNITS:
+            raise InputError("error", name, f"one of {', '.join(UNITS)}")
+        return math.fsum(self.uncertainty.get(name, {}).values())
