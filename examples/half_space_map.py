@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image
 
 from refimpl import Material
-from refimpl.solution.influence_error import coefficient_error
+from refimpl.half_space.influence_error import coefficient_error
 
 NU = float(sys.argv[1]) if len(sys.argv) > 1 else 0.3
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "half_space_map.png"

@@ -12,6 +12,7 @@
 from refimpl.driver.solve import solve
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.measured import Inspection, MeasuredSurface, inspect
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material
 from refimpl.model.state import Status
@@ -23,14 +24,11 @@ from refimpl.surfaces import (
     ArraySurface,
     Flat,
     GaussianRoughness,
-    Inspection,
-    MeasuredSurface,
     SelfAffineRoughness,
     Sphere,
     Surface,
     SurfaceSum,
     SurfaceWarning,
-    inspect,
 )
 
 __all__ = [

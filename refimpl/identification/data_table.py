@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
+from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import SurfaceSum
-from refimpl.surfaces.measured import MeasuredSurface
 
 MAX_ROWS, MAX_BYTES = 1000, 1_000_000
 MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN

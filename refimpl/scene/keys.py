@@ -19,8 +19,7 @@ from refimpl.model.materials import Material
 from refimpl.scene import key_texts
 from refimpl.scene.scene import Body, Scene
 from refimpl.scene.scene_file import scene_from_dict
-from refimpl.surfaces import surface_from_dict
-from refimpl.surfaces.from_table import KINDS
+from refimpl.surfaces.from_table import KINDS, surface_from_dict
 
 Table = dict[str, Any]
 

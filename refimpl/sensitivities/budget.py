@@ -9,7 +9,7 @@ Every entry is a half-width in the number's unit that holds with 95 %.
 - sampling: of a mean over realisations of roughness; of one realisation there is none to state.
 - model form: what is known of the model's own error. V&V 20 leaves it to comparison with experiment;
   four of its sources can be found from within. "coefficients": a flat half-space's influence coefficients on
-  a slope (`refimpl.solution.influence_error`), taken as if all of them were wrong by as much as the worst
+  a slope (`refimpl.half_space.influence_error`), taken as if all of them were wrong by as much as the worst
   neighbour at the contact's rms gradient, which is a change of both moduli by that share. "half-space": what
   the undeformed surfaces' own error (`refimpl.sensitivities.half_space`) exceeds that by. "cosines": the
   printed cosines of Eqs (2) and (3) against the exact tractions of a facet. "plasticity": of an elastic

@@ -1,7 +1,7 @@
 """Error of the half-space in a solution's numbers: the scene solved again with its surfaces' recession.
 
 The undeformed surfaces change the displacements at first order in their slopes
-(`refimpl.solution.boundary_perturbation`). That change, taken at the solved tractions, is a change of the
+(`refimpl.half_space.boundary_perturbation`). That change, taken at the solved tractions, is a change of the
 heights: the scene is solved again with it, under the load and at the approach. What is left is of second
 order, and bounded by a factor times the mean square slope, fitted to finite elements. Finite strain adds a
 share of the first order, from neo-Hookean bodies.
@@ -17,10 +17,10 @@ import numpy as np
 
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
+from refimpl.half_space.boundary_perturbation import gap_changes
+from refimpl.half_space.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
 from refimpl.scene.discretise import discretise
 from refimpl.scene.scene import Body, Scene
-from refimpl.solution.boundary_perturbation import gap_changes
-from refimpl.solution.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import ArraySurface
 

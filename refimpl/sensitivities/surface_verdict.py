@@ -11,6 +11,9 @@ import numpy as np
 from refimpl.driver.solve import solve
 from refimpl.errors import require_number
 from refimpl.grid import Array
+from refimpl.half_space.influence_error import constant_along_an_axis
+from refimpl.half_space.local_error import local_error, share_above, short_wave_share
+from refimpl.half_space.model_form import steepness
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material
 from refimpl.scene.discretise import discretise
@@ -22,9 +25,6 @@ from refimpl.sensitivities.half_space import (
     advice,
     half_space_error,
 )
-from refimpl.solution.influence_error import constant_along_an_axis
-from refimpl.solution.local_error import local_error, share_above, short_wave_share
-from refimpl.solution.model_form import steepness
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import Flat
 

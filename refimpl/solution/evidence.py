@@ -9,6 +9,7 @@ from refimpl.accuracy.first_contact import HERTZ_EXPONENTS
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import AREAS, Uncertainty, active_set_parts, iteration_parts, merged
 from refimpl.grid import Array
+from refimpl.half_space.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem
 from refimpl.model.state import Status
@@ -16,8 +17,7 @@ from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect, effects_in, neglected_parts
 from refimpl.scene.scene import Scene
 from refimpl.solution.cost import Cost
-from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
-from refimpl.solution.unseen import unseen_parts
+from refimpl.solution.domain_error import unseen_parts
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,15 +10,15 @@ import numpy as np
 
 from refimpl.grid import Grid
 from refimpl.grid.contact_patches import patch_sizes
+from refimpl.half_space.influence_error import SlopeError, constant_along_an_axis, slope_error
+from refimpl.half_space.warning import ALLOWED, half_space_excess
+from refimpl.measured.crop import ROUNDING
 from refimpl.model.slopes import Slopes
 from refimpl.planning.terms import LABELS
 from refimpl.scene.resolution import resolution
 from refimpl.scene.scene import Body, Scene
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.half_space_warning import ALLOWED, half_space_excess
-from refimpl.solution.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.surfaces import Flat, Sphere
-from refimpl.surfaces.crop import ROUNDING
 from refimpl.surfaces.statistics import rms_slopes
 
 _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (Greenwood and Williamson 1966)

@@ -11,8 +11,11 @@ from typing import Any
 import numpy as np
 
 from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.bounds.proven_bounds import Bounds, proven_bounds
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Mask
+from refimpl.half_space.influence_error import SlopeError
+from refimpl.half_space.model_form import ModelForm, model_form
 from refimpl.model.certificate import Certificate, State
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem
@@ -20,12 +23,9 @@ from refimpl.model.slopes import Slopes
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect
-from refimpl.solution.bounds import Bounds, proven_bounds
 from refimpl.solution.cost import Cost
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.influence_error import SlopeError
 from refimpl.solution.limits import ModelWarning, Notice
-from refimpl.solution.model_form import ModelForm, model_form
 
 UNITS = {
     "friction_coefficient": "1",

@@ -8,14 +8,12 @@ from typing import Any
 
 from refimpl.errors import InputError, within
 from refimpl.surfaces.gaussian import GaussianRoughness
-from refimpl.surfaces.measured import MeasuredSurface
 from refimpl.surfaces.self_affine import SelfAffineRoughness
 from refimpl.surfaces.shapes import Flat, Sphere
 from refimpl.surfaces.surface import Surface, SurfaceSum
 
-KINDS: dict[str, type[Surface]] = {
-    c.kind: c for c in (Flat, Sphere, GaussianRoughness, SelfAffineRoughness, MeasuredSurface)
-}
+KINDS: dict[str, type[Surface]] = {c.kind: c for c in (Flat, Sphere, GaussianRoughness, SelfAffineRoughness)}
+"""Surfaces by their ``kind``; `refimpl.measured` adds its own."""
 
 
 def surface_from_dict(table: dict[str, Any], folder: Path = Path(), place: str = "surface") -> Surface:

@@ -81,7 +81,7 @@ def look_up(options: argparse.Namespace) -> int:
 def element(options: argparse.Namespace) -> int:
     """Percent by which a square element's coefficients are off, the largest on crest, flank and valley."""
     from refimpl import Material
-    from refimpl.solution.influence_error_3d import element_error
+    from refimpl.half_space.influence_error_3d import element_error
 
     upper = _upper(options)
     bodies = [Material(options.E, options.nu), *([] if upper is None else [Material(*upper)])]

@@ -9,9 +9,9 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from refimpl.half_space.warning import ALLOWED, expected_error
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
-from refimpl.solution.half_space_warning import ALLOWED, expected_error
 from verification.cli.output import columns
 
 if TYPE_CHECKING:

@@ -97,7 +97,7 @@ def run(options: argparse.Namespace) -> int:
 
 def table(found: Inspection) -> str:
     """The file and its parameters, in the units of the object."""
-    from refimpl.surfaces.inspection import PARAMETERS
+    from refimpl.measured.inspection import PARAMETERS
 
     doc = found.document()
     nx, ny = doc["points"]

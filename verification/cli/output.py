@@ -77,7 +77,7 @@ def _one_file(path: Path, other: Path) -> bool:
 
 def files_of(scene: Scene) -> list[Path]:
     """The files that a scene's surfaces were measured into."""
-    from refimpl.surfaces.measured import MeasuredSurface
+    from refimpl.measured.measured_surface import MeasuredSurface
 
     parts = (*scene.upper.surface.parts, *scene.lower.surface.parts)
     return [Path(part.path) for part in parts if isinstance(part, MeasuredSurface)]

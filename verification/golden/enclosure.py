@@ -5,7 +5,7 @@ pressures and the approach. Their balls contain the exact solution, whatever the
 ball on S is above 0, and the ball of ``w = u + K (h - approach)`` elsewhere, S is the contact set and the
 balls contain the solution. There is no other: ``a + beta c`` is positive definite, and under a load, at flat
 slopes, the difference of two solutions has no resultant, so that the approach drops out. (With slopes see
-`refimpl.solution.bounds`.)
+`refimpl.bounds.proven_bounds`.)
 
 Shares nothing with `refimpl`: influence coefficients are the textbook's corner sums (Love 1929; Johnson 1985,
 Eqs 3.25 and 3.73), or the modes' sums where periodic.

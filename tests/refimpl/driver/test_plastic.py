@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.bounds.proven_bounds import NO_BOUND_PLASTIC, proven_bounds
 from refimpl.driver.options import Options
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.parameters import with_parameter
 from refimpl.sensitivities.budget import budget
-from refimpl.solution.bounds import NO_BOUND_PLASTIC, proven_bounds
 from refimpl.solution.limits import Limit, ModelWarning
 
 H = 0.8e9

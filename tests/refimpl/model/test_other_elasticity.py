@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.bounds.energy_norm import EnergyNorm
 from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid
 from refimpl.model.certificate import State, certify
@@ -18,7 +19,6 @@ from refimpl.model.problem import Problem, Terms
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.scene.discretise import discretise
-from refimpl.solution.energy_norm import EnergyNorm
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.exact.dense_influence import DenseInfluence
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from refimpl.bounds.energy_norm import SMALLEST_SYMBOL, smallest_symbol
 from refimpl.grid import Grid, Window
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.influence import WindowInfluence, window_influence
 from refimpl.operators.kernel_tables import unit_table
 from refimpl.operators.preconditioner import SpectralPreconditioner
-from refimpl.solution.energy_norm import SMALLEST_SYMBOL, smallest_symbol
 from verification.exact.dense_influence import DenseInfluence
 
 COMPLIANCE = 1e-11

@@ -13,11 +13,11 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
+from refimpl.half_space.influence_error import coefficient_error
+from refimpl.half_space.local_error import local_error
 from refimpl.scene.discretise import discretise
 from refimpl.sensitivities import half_space
 from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error
-from refimpl.solution.influence_error import coefficient_error
-from refimpl.solution.local_error import local_error
 
 SIZE, ELEMENTS = (3e-3, 2e-3), (9, 6)
 SOFT, STIFF = (

@@ -11,6 +11,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
+from refimpl.half_space.influence_error import coefficient_error
+from refimpl.half_space.influence_error_3d import element_error
+from refimpl.half_space.local_error import local_error, share_above, short_wave_share
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
@@ -22,9 +25,6 @@ from refimpl.sensitivities.surface_verdict import (
     pressed_on_a_flat,
     surface_verdict,
 )
-from refimpl.solution.influence_error import coefficient_error
-from refimpl.solution.influence_error_3d import element_error
-from refimpl.solution.local_error import local_error, share_above, short_wave_share
 
 RIGID = rf.Material(math.inf, 0.3)
 COPPER, STEEL = rf.Material(118e9, 0.3), rf.Material(200e9, 0.3)

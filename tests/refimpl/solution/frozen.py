@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 import refimpl as rf
+from refimpl.bounds.energy_norm import EnergyNorm
+from refimpl.bounds.proven_bounds import Bounds
 from refimpl.grid import Array, Grid
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
-from refimpl.solution.bounds import Bounds
-from refimpl.solution.energy_norm import EnergyNorm
 from verification.exact.dense_influence import DenseInfluence
 from verification.exact.pivoting import complementarity, restricted_solve
 

@@ -10,11 +10,11 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
+from refimpl.half_space import model_form
+from refimpl.half_space.boundary_perturbation import Contact, gap_changes
 from refimpl.model.materials import Material, Pair
 from refimpl.model.slopes import Slopes
 from refimpl.sensitivities.half_space import half_space_error
-from refimpl.solution import model_form
-from refimpl.solution.boundary_perturbation import Contact, gap_changes
 from tests.refimpl.states import state_of
 
 NU, E = 0.2, 3e9

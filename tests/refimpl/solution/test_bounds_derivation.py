@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
+from refimpl.bounds.energy_norm import EnergyNorm
+from refimpl.bounds.proven_bounds import UNPROVEN, _Frozen, _shear_row, proven_bounds
 from refimpl.grid import Array, Mask
 from refimpl.model.forces import Forces, resultants
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.solution.bounds import UNPROVEN, _Frozen, _shear_row, proven_bounds
-from refimpl.solution.energy_norm import EnergyNorm
 from tests.refimpl.solution.frozen import assert_true, frozen_solution, posed, widened
 from verification.exact.dense_influence import DenseInfluence
 

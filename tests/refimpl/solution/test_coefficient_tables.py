@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.solution.coefficient_tables import PLANE, SPACE, Layout, read_table, shipped_table
+from refimpl.half_space.coefficient_tables import PLANE, SPACE, Layout, read_table, shipped_table
 
 
 def shipped(layout: Layout) -> dict[str, Any]:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.bounds.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
 from refimpl.grid import Array
-from refimpl.solution.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
 from tests.refimpl.solution.frozen import M, posed, scene, widened
 from verification.exact.dense_influence import DenseInfluence
 

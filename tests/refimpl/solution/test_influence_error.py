@@ -12,15 +12,15 @@ import pytest
 
 import refimpl as rf
 from appendix_a.fem.coefficient_map import CoefficientMap
-from refimpl.model.materials import Pair
-from refimpl.model.slopes import Slopes
-from refimpl.solution.influence_error import (
+from refimpl.half_space.influence_error import (
     SlopeError,
     coefficient_error,
     constant_along_an_axis,
     slope_error,
 )
-from refimpl.solution.influence_error_3d import element_error
+from refimpl.half_space.influence_error_3d import element_error
+from refimpl.model.materials import Pair
+from refimpl.model.slopes import Slopes
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 PAIR = Pair(lower=COPPER, upper=STEEL)

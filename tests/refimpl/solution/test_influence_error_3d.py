@@ -16,7 +16,7 @@ from appendix_a.fem3d.leading_order import first_order
 from appendix_a.fem3d.patch import normal_coefficient
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.wavy import Waviness
-from refimpl.solution.influence_error_3d import element_error
+from refimpl.half_space.influence_error_3d import element_error
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RIGID = rf.Material(E=1e22, nu=0.3)

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.half_space.influence_error import SlopeError
 from refimpl.model.forces import Forces, plasticity_index
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.influence_error import SlopeError
 from refimpl.solution.limits import (
     Limit,
     ModelWarning,

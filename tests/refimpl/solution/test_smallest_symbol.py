@@ -8,9 +8,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from refimpl.bounds.energy_norm import SMALLEST_SYMBOL, smallest_symbol
 from refimpl.grid import Grid
 from refimpl.kernels import normal_table
-from refimpl.solution.energy_norm import SMALLEST_SYMBOL, smallest_symbol
 from verification.exact.dense_influence import DenseInfluence
 
 ASPECTS = [0.1, 0.15, 0.3, 0.5, 0.8, 0.99, 1.0, 1.01, 1.3, 2.0, 3.0, 5.0, 10.0]

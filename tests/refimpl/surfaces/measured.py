@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface, SurfaceWarning
+from refimpl.measured import MeasuredSurface
+from refimpl.surfaces import SurfaceWarning
 
 DX, DY = 1.5e-7, 3.1e-7  # pixels that are not square
 NX, NY = 60, 50

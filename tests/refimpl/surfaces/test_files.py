@@ -14,7 +14,7 @@ import SurfaceTopography.Exceptions
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface, readers
+from refimpl.measured import MeasuredSurface, readers
 from tests.refimpl.surfaces.measured import (
     DX,
     DY,

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from refimpl.errors import InputError
-from refimpl.surfaces.readers import read
-from refimpl.surfaces.reading import ARRAY, IMAGE
+from refimpl.measured.readers import read
+from refimpl.measured.reading import ARRAY, IMAGE
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import MAP, MISSING, PIXEL, Writer
 

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.surfaces import roughness_fit
-from refimpl.surfaces.areal_parameters import (
+from refimpl.measured import roughness_fit
+from refimpl.measured.areal_parameters import (
     Autocorrelation,
     Spectrum,
     height_parameters,
     mean_square_slopes,
     nayak,
 )
-from refimpl.surfaces.inspection import PARAMETERS
-from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd, _self_affine_psd, fit_roughness
+from refimpl.measured.inspection import PARAMETERS
+from refimpl.measured.roughness_fit import _drawn, _gaussian_psd, _self_affine_psd, fit_roughness
 
 SHAPE, PIXEL = (256, 200), (1e-6, 1.5e-6)
 GAUSSIAN = {"rms": 1e-6, "lx": 20e-6, "ly": 20e-6}

@@ -15,8 +15,8 @@ import SurfaceTopography
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface, missing_points
-from refimpl.surfaces.readers import read
+from refimpl.measured import MeasuredSurface, missing_points
+from refimpl.measured.readers import read
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import MAP, NX, NY, PIXEL, sur_bytes
 from tests.refimpl.surfaces.measured import quietly

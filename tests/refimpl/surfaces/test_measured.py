@@ -12,10 +12,11 @@ from scipy.interpolate import RectBivariateSpline
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface, SurfaceWarning
-from refimpl.surfaces.crop import Crop
-from refimpl.surfaces.detrending import DEGREES, fit
-from refimpl.surfaces.missing_points import fill
+from refimpl.measured import MeasuredSurface
+from refimpl.measured.crop import Crop
+from refimpl.measured.detrending import DEGREES, fit
+from refimpl.measured.missing_points import fill
+from refimpl.surfaces import SurfaceWarning
 from tests.refimpl.surfaces.measured import (
     DX,
     DY,

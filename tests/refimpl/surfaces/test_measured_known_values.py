@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from refimpl.surfaces.areal_parameters import Spectrum, nayak
-from refimpl.surfaces.missing_points import MAX_ELIMINATED, fill
-from refimpl.surfaces.orientation import oriented
-from refimpl.surfaces.preparation import prepare
-from refimpl.surfaces.readers import read
-from refimpl.surfaces.reading import Reading
+from refimpl.measured.areal_parameters import Spectrum, nayak
+from refimpl.measured.missing_points import MAX_ELIMINATED, fill
+from refimpl.measured.orientation import oriented
+from refimpl.measured.preparation import prepare
+from refimpl.measured.readers import read
+from refimpl.measured.reading import Reading
 
 
 @pytest.mark.parametrize("suffix", ["npy", "txt", "csv"])

@@ -11,7 +11,8 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface, surface_from_dict
+from refimpl.measured import MeasuredSurface
+from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceWarning
 
 DX, DY, NX, NY = 2e-6, 1e-6, 12, 20  # the area is 24 x 20 um

@@ -10,11 +10,11 @@ import pytest
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface
-from refimpl.surfaces.detrending import Curved, fit_form
-from refimpl.surfaces.preparation import _off_neighbours, gaussian_filter, prepare
-from refimpl.surfaces.reading import Reading
-from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd
+from refimpl.measured import MeasuredSurface
+from refimpl.measured.detrending import Curved, fit_form
+from refimpl.measured.preparation import _off_neighbours, gaussian_filter, prepare
+from refimpl.measured.reading import Reading
+from refimpl.measured.roughness_fit import _drawn, _gaussian_psd
 from tests.refimpl.surfaces.measured import quietly
 
 PIXEL = (1e-6, 1.5e-6)

@@ -10,7 +10,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.errors import require_number
-from refimpl.surfaces import MeasuredSurface
+from refimpl.measured import MeasuredSurface
 
 SCENE = rf.scene_to_toml(rf.read_scene("hertz"))
 

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from refimpl.errors import LEAST, InputError
 from refimpl.grid import Grid
+from refimpl.measured import MeasuredSurface
 from refimpl.surfaces import (
     ArraySurface,
     Flat,
     GaussianRoughness,
-    MeasuredSurface,
     Sphere,
     Surface,
     SurfaceSum,

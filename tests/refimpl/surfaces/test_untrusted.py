@@ -10,8 +10,8 @@ import pytest
 import scipy.io
 
 import refimpl as rf
-from refimpl.surfaces import MeasuredSurface
-from refimpl.surfaces.untrusted import read_untrusted
+from refimpl.measured import MeasuredSurface
+from refimpl.measured.untrusted import read_untrusted
 
 HEIGHTS = 1e-8 * np.random.default_rng(5).standard_normal((9, 10))
 GRID = rf.Grid.square(8e-6, 8)

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 import refimpl as rf
-from refimpl.surfaces.inspection import PARAMETERS
+from refimpl.measured.inspection import PARAMETERS
 from tests.refimpl.surfaces.instrument_writers import write_plu, write_txt
 from verification.cli import main
 

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from refimpl.identification import Interval, Prediction, Row
 from refimpl.identification.design import Proposal
 from refimpl.identification.laws import Law
+from refimpl.measured.inspection import PARAMETERS
 from refimpl.sensitivities import surface_verdict
 from refimpl.solution.patches import Patch
-from refimpl.surfaces.inspection import PARAMETERS
 from verification.cli import arrays, half_space, identify, inspect, plot_surface
 
 

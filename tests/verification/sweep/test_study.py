@@ -12,8 +12,8 @@ import pytest
 
 import refimpl as rf
 from refimpl.errors import InputError
+from refimpl.measured import measured_surface as measured
 from refimpl.scene.scene_file import scene_from_dict
-from refimpl.surfaces import measured
 from verification.sweep import study as study_module
 from verification.sweep.run import COORDINATES, OUTCOMES, execute
 from verification.sweep.study import Study

@@ -15,7 +15,7 @@ from appendix_a.fem.sinusoid import setup_for
 from appendix_a.leading_order import slope_of_error
 from appendix_a.strip import first_order
 from refimpl import Material
-from refimpl.solution.influence_error import coefficient_error
+from refimpl.half_space.influence_error import coefficient_error
 from verification.cases.appendix_a.fem import POINTS, POINTS_REASON, percent
 from verification.framework.case import Measured
 from verification.framework.registry import case
@@ -164,7 +164,7 @@ def small_slope_error() -> Measured:
     """Coefficient error that a solution states, on a small slope.
 
     Claim: at 0.1 degrees on a flank the error read from the map is that of first-order theory
-    Source: appendix_a.strip.first_order; refimpl.solution.influence_error
+    Source: appendix_a.strip.first_order; refimpl.half_space.influence_error
     Tolerance: second order over first: of the slope's size, 0.0017; 0.0010 measured, times five
     """
     slope, wavelength, flank, nu = 0.1, 64.0, 0.25, 0.3

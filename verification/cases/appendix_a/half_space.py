@@ -9,9 +9,9 @@ import numpy as np
 
 from appendix_a.contact_fem.contact import NotConverged
 from appendix_a.contact_fem.scene import Material as Elastic
+from refimpl.half_space.influence_error import coefficient_error
+from refimpl.half_space.influence_error_3d import element_error
 from refimpl.model.materials import Material
-from refimpl.solution.influence_error import coefficient_error
-from refimpl.solution.influence_error_3d import element_error
 from verification.cases.appendix_a import finite_strain, solid_half_space
 from verification.cases.appendix_a.undeformed_study import (
     JUDGED_ON,
@@ -225,7 +225,7 @@ def strain() -> Measured:
 
     Claim: A neo-Hookean wave adds 12 to 14 % to the approach's error: less than the stated share of 20 %
     Source: scikit-fem, the same mesh and active set for both laws
-    Tolerance: refimpl.solution.model_form.FINITE_STRAIN, stated of the first order
+    Tolerance: refimpl.half_space.model_form.FINITE_STRAIN, stated of the first order
     """
     found = {slope: finite_strain.approaches(slope, 0.0, 0.3) for slope in (2.5, 6.5, 15.0)}
     shares = {f"{slope:g} degrees": added / first for slope, (first, added) in found.items()}
@@ -242,7 +242,7 @@ def space_over_plane() -> Measured:
 
     Claim: nu 0 at 10 degrees 12.7 against 8.8 %, nu 0.3 at 6.5 degrees 4.15 against 3.30 %, steel on copper
     at 10 degrees 2.58 against 1.74 %
-    Source: refimpl.solution.influence_error_3d and influence_error, both tables by finite elements
+    Source: refimpl.half_space.influence_error_3d and influence_error, both tables by finite elements
     Tolerance: percentage points: half of the last digit of the numbers found independently, and the tables'
     stated errors
     """

@@ -2,7 +2,7 @@
 
 A contact is drawn from a seed: slopes from 1 to 20 degrees, crest on crest, crest on a flat, flanks that
 climb and descend, and profiles of three waves; pairs from equal to rigid on soft. One seed served to build
-the estimate of `refimpl.solution.model_form`, others judge it.
+the estimate of `refimpl.half_space.model_form`, others judge it.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from appendix_a.contact_fem.bodies import Harmonics, MeshPlan, wave_height, wavy
 from appendix_a.contact_fem.contact import Contact, Friction, press
 from appendix_a.contact_fem.ends import contact_ends
 from appendix_a.contact_fem.scene import WAVENUMBER, Material
+from refimpl.half_space.model_form import FINITE_STRAIN, SECOND_ORDER, steepness
 from refimpl.sensitivities.half_space import half_space_error
-from refimpl.solution.model_form import FINITE_STRAIN, SECOND_ORDER, steepness
 
 Array = NDArray[np.float64]
 BUILT_FROM, JUDGED_ON, WARNED_ON = 39, 40, 41

@@ -1,4 +1,4 @@
-"""The proven bounds of `refimpl.solution.bounds` against solutions that are proven by ball arithmetic."""
+"""The bounds of `refimpl.bounds.proven_bounds` against solutions that are proven by ball arithmetic."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
+from refimpl.bounds.energy_norm import EnergyNorm
+from refimpl.bounds.proven_bounds import Bounds, proven_bounds
 from refimpl.grid import Array
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.solution.bounds import Bounds, proven_bounds
-from refimpl.solution.energy_norm import EnergyNorm
 from verification.exact.dense_influence import DenseInfluence
 from verification.framework.case import Measured
 from verification.framework.registry import case
@@ -21,7 +21,7 @@ from verification.properties.states import compliances
 from verification.properties.textbook import normal_matrix
 from verification.scenes.cross_checks import pressed
 
-SOURCE = "derivation in refimpl/solution/bounds.py; truth from ball arithmetic, verification/golden"
+SOURCE = "derivation in refimpl/bounds/proven_bounds.py; truth from ball arithmetic, verification/golden"
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 PROVEN = "a bound that is exceeded once is none; the truth is enclosed to 1e-16"
 
@@ -178,7 +178,7 @@ def least_eigenvalue() -> Measured:
     """Least eigenvalue of the flexibility.
 
     Claim: the symbol's smallest value is below every grid's smallest eigenvalue, and within 0.5 % at M = 16
-    Source: refimpl/solution/energy_norm.py; numpy.linalg.eigvalsh
+    Source: refimpl/bounds/energy_norm.py; numpy.linalg.eigvalsh
     Tolerance: a lower bound that is exceeded once is none; eigvalsh errs by 1e-15
     """
     sizes, ratios = (1, 2, 3, 5, 8, 12, 16), []

@@ -56,7 +56,7 @@ def bounds() -> Measured:
 
     Claim: no error of pressure, approach or mu exceeds its bound, and no element is marked wrongly as
     plastic, in contact or apart: 16 scenes at three tolerances
-    Source: refimpl.solution.bounds, from the variational inequality with two bounds; dense matrices
+    Source: refimpl.bounds.proven_bounds, from the variational inequality with two bounds; dense matrices
     Tolerance: proven; a bound that is met to rounding would be 1
     """
     found = {str(seed): shares_of_bounds(seed) for seed in range(SCENES)}

@@ -1,7 +1,7 @@
 """Certified pressures of a problem: solved far beyond the suite's claim, with proven bounds on their errors.
 
-The solver's own proof is `refimpl.solution.bounds`; at a prescribed periodic approach, of which that proves
-nothing, `periodic_bound`. The residual beside them is recomputed by `reference_solution`, which
+The solver's own proof is `refimpl.bounds.proven_bounds`; at a prescribed periodic approach, of which
+it proves nothing, `periodic_bound`. The residual beside them is recomputed by `reference_solution`, which
 shares nothing with the solver.
 """
 

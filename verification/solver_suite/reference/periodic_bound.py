@@ -1,7 +1,7 @@
 """Proven bounds at a prescribed periodic approach, where the mean pressure displaces nothing.
 
 Pressures f of the load ``P = dA sum f`` are near the solution f1 under that load, by
-`refimpl.solution.bounds`, which bounds its approach too: it differs from the prescribed one by some ``d`` at
+`refimpl.bounds.proven_bounds`, which bounds its approach too: it differs from the prescribed one by ``d`` at
 most. Let f2 be the solution at the prescribed approach, ``e`` the difference of f1 and f2 in the order of
 their approaches, ``e0`` its part without the mean m, and N the number of elements. Each pressure meets only
 separations that are not negative, and c is skew, so ``||e0||^2 = e.a e <= d sum e = d N m``. Displacements
@@ -25,8 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import refimpl as rf
+from refimpl.bounds.proven_bounds import proven_bounds
 from refimpl.grid import Array, Mask
-from refimpl.solution.bounds import proven_bounds
 from verification.solver_suite import reference_solution
 from verification.solver_suite.protocol import ContactProblem
 

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from refimpl.half_space.model_form import model_form, steepness
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem
-from refimpl.solution.model_form import model_form, steepness
 
 _REST = 0.25  # N times tan^2: with 0.2, which is stated, the largest left by 24 finite-element contacts
 ALLOWED = 0.05  # stated error of N at a given approach

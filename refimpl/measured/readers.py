@@ -15,7 +15,7 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.surfaces.instrument_files import (
+from refimpl.measured.instrument_files import (
     BROKEN,
     brief,
     broken,
@@ -26,8 +26,8 @@ from refimpl.surfaces.instrument_files import (
     read_instrument,
     stream,
 )
-from refimpl.surfaces.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Given, Reading, checked
-from refimpl.surfaces.text_tables import TextTable, decoded, is_triples, on_grid, read_table
+from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Given, Reading, checked
+from refimpl.measured.text_tables import TextTable, decoded, is_triples, on_grid, read_table
 
 __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Given", "Reading", "read"]
 

@@ -13,7 +13,7 @@ import zlib
 from pathlib import Path
 
 from refimpl.errors import InputError
-from refimpl.surfaces.reading import MAX_BYTES
+from refimpl.measured.reading import MAX_BYTES
 
 Source = str | io.BytesIO
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.half_space.influence_error import coefficient_error, constant_along_an_axis
+from refimpl.half_space.influence_error_3d import element_error, steepest_tabulated
 from refimpl.model.materials import Material
 from refimpl.model.problem import Problem
-from refimpl.solution.influence_error import coefficient_error, constant_along_an_axis
-from refimpl.solution.influence_error_3d import element_error, steepest_tabulated
 
 _NODES = 61  # slopes from 0 to 30 degrees, half a degree apart
 SHORTEST = 10.0  # elements: the table of square elements has no shorter wavelength

@@ -21,8 +21,8 @@ from scipy.io.matlab import MatReadError
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.surfaces.reading import ARRAY, IMAGE, MAX_POINTS, UNITS, Given, Reading, checked
-from refimpl.surfaces.workarounds import NMS_UNIT, Source, rewritten
+from refimpl.measured.reading import ARRAY, IMAGE, MAX_POINTS, UNITS, Given, Reading, checked
+from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 
 T = TypeVar("T")
 

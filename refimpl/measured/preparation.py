@@ -10,9 +10,9 @@ from scipy.ndimage import percentile_filter
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.surfaces.detrending import fit
-from refimpl.surfaces.missing_points import fill
-from refimpl.surfaces.reading import Reading
+from refimpl.measured.detrending import fit
+from refimpl.measured.missing_points import fill
+from refimpl.measured.reading import Reading
 from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis

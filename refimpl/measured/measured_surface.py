@@ -11,15 +11,16 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
+from refimpl.measured.crop import ROUNDING, Crop, by, extent
+from refimpl.measured.detrending import Form, check_level, fit_form
+from refimpl.measured.missing_points import fill
+from refimpl.measured.orientation import Oriented, check_orientation, checked_centre, oriented
+from refimpl.measured.preparation import check_preparation, prepare
+from refimpl.measured.readers import UNITS, Reading, read
+from refimpl.measured.untrusted import read_untrusted, refuse_huge
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
-from refimpl.surfaces.crop import ROUNDING, Crop, by, extent
-from refimpl.surfaces.detrending import Form, check_level, fit_form
-from refimpl.surfaces.missing_points import fill
-from refimpl.surfaces.orientation import Oriented, check_orientation, checked_centre, oriented
-from refimpl.surfaces.preparation import check_preparation, prepare
-from refimpl.surfaces.readers import UNITS, Reading, read
+from refimpl.surfaces.from_table import KINDS
 from refimpl.surfaces.surface import Surface, finite, pixel_edges, require_one_of
-from refimpl.surfaces.untrusted import read_untrusted, refuse_huge
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
@@ -246,3 +247,6 @@ class MeasuredSurface(Surface):
     def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
         path = table["path"]
         return cls(**table | {"path": folder / path if isinstance(path, str) and path else path})
+
+
+KINDS[MeasuredSurface.kind] = MeasuredSurface

@@ -18,8 +18,8 @@ import numpy as np
 
 from refimpl.errors import require_number
 from refimpl.grid import Array
+from refimpl.half_space.coefficient_tables import SPACE, shipped_table
 from refimpl.model.materials import Material
-from refimpl.solution.coefficient_tables import SPACE, shipped_table
 
 _POSITIONS = (0.0, 0.25, 0.5)  # crest, flank, valley as the lower body sees them
 _MIRRORED = [0, 4, 5, 6, 1, 2, 3, 7, 8, 9]  # +x and -x change places

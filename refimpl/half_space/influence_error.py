@@ -17,10 +17,10 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
+from refimpl.half_space.coefficient_tables import PLANE, shipped_table
+from refimpl.half_space.influence_error_3d import element_error, steepest_tabulated
 from refimpl.model.materials import Material, Pair
 from refimpl.model.slopes import Slopes
-from refimpl.solution.coefficient_tables import PLANE, shipped_table
-from refimpl.solution.influence_error_3d import element_error, steepest_tabulated
 
 _NEIGHBOUR = 2.0  # offset of the next element in half-widths
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from refimpl.errors import InputError
-from refimpl.surfaces.readers import Reading
+from refimpl.measured.readers import Reading
 from refimpl.surfaces.surface import finite, require_one_of
 
 TURNS = (0, 90, 180, 270)  # degrees, anticlockwise seen from outside the body

@@ -59,12 +59,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from refimpl.bounds.energy_norm import EnergyNorm
 from refimpl.grid import Array, Mask
 from refimpl.model.certificate import approach_from
 from refimpl.model.forces import resultants
 from refimpl.model.problem import Problem, no_elements
 from refimpl.model.slopes import Slopes
-from refimpl.solution.energy_norm import EnergyNorm
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,10 +9,10 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.measured.detrending import Form
+from refimpl.measured.missing_points import fill
+from refimpl.measured.readers import Reading
 from refimpl.surfaces.bicubic import MEMORY
-from refimpl.surfaces.detrending import Form
-from refimpl.surfaces.missing_points import fill
-from refimpl.surfaces.readers import Reading
 
 ROUNDING = 1e-9  # relative slack of lengths: far above double rounding, far below a pixel
 

@@ -16,8 +16,8 @@ from scipy.optimize import minimize
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.surfaces.areal_parameters import Autocorrelation, Pixel, Spectrum
-from refimpl.surfaces.detrending import fit as fit_polynomial
+from refimpl.measured.areal_parameters import Autocorrelation, Pixel, Spectrum
+from refimpl.measured.detrending import fit as fit_polynomial
 from refimpl.surfaces.noise_lattice import DECAY
 
 KINDS = ("gaussian", "self-affine")

@@ -29,7 +29,7 @@ each positive and rising with q. So ``d/ds [A(theta) - A(pi)] = 2 [h(pi/2) - h(z
 once, from + to -; and the difference is 0 at s = 0 and at infinity. Hence it is never negative.
 
 *Least eigenvalue, periodic.* The symbol is ``2 pi compliance / q``, least in the corner of the band. The mean
-pressure displaces nothing; under a load ``m K K'`` may be added to ``a`` (see `refimpl.solution.bounds`).
+pressure displaces nothing; under a load ``m K K'`` may be added to ``a`` (`refimpl.bounds.proven_bounds`).
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Model-form error of the half-space, from both bodies' undeformed surfaces, without another solve.
 
-At a given load the surfaces' recession (`refimpl.solution.boundary_perturbation`) raises the approach by its
-mean, weighted by dp/dN: the pressure of a flat punch on the contact. On a Hertzian patch that is ``1 / p``;
-so it is taken here everywhere, with at least a twentieth of p_max for p. At a given approach N falls by the
-same times the contact's stiffness. By Thomson's principle this is at least ``N / (2 U / N)``, U being the
-elastic energy, for a flat punch's pressure has the least energy; contacts that grow are stiffer.
+At a given load the surfaces' recession (`refimpl.half_space.boundary_perturbation`) raises the approach by
+its mean, weighted by dp/dN: the pressure of a flat punch on the contact. On a Hertzian patch that is
+``1 / p``; so it is taken here everywhere, with at least a twentieth of p_max for p. At a given approach N
+falls by the same times the contact's stiffness. By Thomson's principle this is at least ``N / (2 U / N)``, U
+being the elastic energy, for a flat punch's pressure has the least energy; contacts that grow are stiffer.
 `refimpl.sensitivities.half_space_error` solves again instead, and has every number.
 """
 
@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.grid import Array, Mask
+from refimpl.half_space.boundary_perturbation import Contact, gap_changes
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.solution.boundary_perturbation import Contact, gap_changes
 
 FINITE_STRAIN = (
     0.2  # share of the first order: neo-Hookean waves, 0.12 to 0.14 measured (case model-form/finite-strain)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from refimpl.grid import Array
-from refimpl.surfaces.areal_parameters import (
+from refimpl.measured.areal_parameters import (
     DIRECTIONS,
     Autocorrelation,
     Spectrum,
@@ -19,8 +19,8 @@ from refimpl.surfaces.areal_parameters import (
     mean_square_slopes,
     nayak,
 )
-from refimpl.surfaces.measured import MeasuredSurface
-from refimpl.surfaces.roughness_fit import RoughnessFit, fit_roughness
+from refimpl.measured.measured_surface import MeasuredSurface
+from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
 
 SAL_LEVEL = 0.2  # ISO 25178-2
 
