@@ -20,8 +20,8 @@ import refimpl as rf
 from appendix_a.fem.coefficient_map import CoefficientMap
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.grid import Grid
+from refimpl.model.problem import Terms
 from refimpl.planning.plan import Plan, make_plan
-from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import discretise
 from refimpl.scene.scene_file import scene_from_dict, scene_to_dict, scene_to_toml
 from refimpl.surfaces import surface_from_dict
@@ -218,7 +218,7 @@ def test_a_case_keeps_its_numbers_to_the_report() -> None:
 
 def test_plans() -> None:
     scene = rf.read_scene("table1-rough")
-    requested = RequestedTerms(coupled=True, tilted=False, plastic=False)
+    requested = Terms(coupled=True, tilted=False, plastic=False)
     found = make_plan(discretise(scene, scene.grid(24)), "dense", requested, demand=0.03)
     assert plain(pickle.loads(pickle.dumps(found))) == plain(found)
     other = scene.grid((20, 28))

@@ -9,8 +9,8 @@ from refimpl.driver.limits import Limits
 from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Grid
 from refimpl.model.friction import is_frictionless
+from refimpl.model.problem import Terms
 from refimpl.planning.plan import DECISION_GRID, METHODS, Method, Plan, make_plan, memory_of
-from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution
@@ -33,12 +33,13 @@ class Options:
     accuracy: float | None = None
     quantity: Quantity | None = None
     approach: float | None = None
-    requested: RequestedTerms = field(default_factory=RequestedTerms)
+    requested: Terms = field(default_factory=Terms)
     tolerance: float | None = None
     start: Solution | None = None
     limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
+        self.requested.check()
         if not isinstance(self.scene, Scene):
             raise InputError("scene", self.scene, "a Scene (read_scene reads one from a file)")
         if self.approach is not None:

@@ -48,7 +48,7 @@ def solve_reference(problem: Problem) -> State:
             hardness=problem.cap,
             softer=_SOFTER[int(pair.softer_sign)] if math.isfinite(problem.cap) else None,
             periodic=problem.grid.periodic,
-            slopes=problem.terms.oblique,
+            slopes=bool(problem.terms.oblique),
             facets=problem.terms.slope_correction,
         )
     except np.linalg.LinAlgError:

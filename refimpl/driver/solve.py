@@ -8,8 +8,8 @@ from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
 from refimpl.driver.options import Options
 from refimpl.driver.refined import refined
 from refimpl.errors import InputError
+from refimpl.model.problem import Terms
 from refimpl.planning.plan import Method
-from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution, assemble
@@ -80,7 +80,7 @@ def solve(
         accuracy=accuracy,
         quantity=quantity,
         approach=approach,
-        requested=RequestedTerms(coupled, oblique, tilted, slope_correction, plastic),
+        requested=Terms(coupled, oblique, tilted, slope_correction, plastic),
         tolerance=tolerance,
         start=start,
         limits=Limits(max_grid, max_seconds, max_memory),

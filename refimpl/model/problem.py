@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Mask, Window
 from refimpl.model.elasticity import Elasticity, Influence
 from refimpl.model.friction import FrictionLaw
@@ -16,20 +17,40 @@ from refimpl.model.slopes import Slopes
 
 @dataclass(frozen=True)
 class Terms:
-    """Which optional terms enter.
+    """Switches of the optional terms: True, False, or None where the scene decides (`refimpl.planning`).
 
     coupled : shear closes the gap (c, lower minus upper): normal-tangential coupling
     oblique : slope terms; without them cosines are 1 and sines 0 (small-slope approximation)
     tilted : shear moves the common surface (c, mean of both bodies): slope change by shear
-    slope_correction : exact facet tractions in Eq. (7)
+    slope_correction : exact facet tractions in Eq. (7); False unless requested
     plastic : pressures end at the hardness of the softer body
     """
 
-    coupled: bool = True
-    oblique: bool = True
-    tilted: bool = True
+    coupled: bool | None = None
+    oblique: bool | None = None
+    tilted: bool | None = None
     slope_correction: bool = False
-    plastic: bool = False
+    plastic: bool | None = None
+
+    def check(self) -> None:
+        """Raise `InputError` for other values, and for requests that exclude one another."""
+        for name in ("oblique", "coupled", "tilted", "plastic"):
+            if not isinstance(getattr(self, name), bool | None):
+                raise InputError(name, getattr(self, name), "True, False, or None to let the scene decide")
+        if not isinstance(self.slope_correction, bool):
+            raise InputError("slope_correction", self.slope_correction, "True or False")
+        if self.slope_correction and self.oblique is False:
+            raise InputError("oblique", self.oblique, "true or unset: the slope correction needs the slopes")
+        if self.slope_correction and self.coupled is False:
+            raise InputError("coupled", self.coupled, "true or unset: facet tractions include shear")
+        if self.slope_correction and self.plastic:
+            raise InputError("plastic", self.plastic, "false or unset with the slope correction")
+
+    @property
+    def decided(self) -> Terms:
+        """The switches of a `Problem`: where nothing is decided all terms enter, and no pressure cap."""
+        coupled, oblique, tilted = (s is not False for s in (self.coupled, self.oblique, self.tilted))
+        return Terms(coupled, oblique, tilted, self.slope_correction, bool(self.plastic))
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +63,7 @@ class Problem:
     elasticity : tractions to displacements, Eq. (7)
     friction : the local friction law, Eq. (1)
     direction : sliding direction phi (rad)
-    terms : which optional terms enter
+    terms : which optional terms enter; decided, all of them
     load, approach : exactly one is given; N, or m from first contact
     datum : approach from first contact minus the reported approach (m); 0 on a free domain
     """
@@ -57,6 +78,9 @@ class Problem:
     load: float | None
     approach: float | None
     datum: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "terms", self.terms.decided)
 
     @property
     def pair(self) -> Pair:
@@ -86,8 +110,9 @@ class Problem:
         Without slope terms nothing feels the common surface, and shear moves both bodies by what they are.
         Facet tractions include shear: with the slope correction it always closes the gap.
         """
+        terms = terms.decided
         coupled = terms.coupled or terms.slope_correction
-        tilted = terms.tilted if terms.oblique else coupled
+        tilted = bool(terms.tilted) if terms.oblique else coupled
         elasticity = replace(self.elasticity, coupled=coupled, tilted=tilted)
         return replace(self, terms=terms, elasticity=elasticity)
 

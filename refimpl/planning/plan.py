@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 from refimpl.errors import InputError
@@ -10,7 +10,7 @@ from refimpl.grid import Grid
 from refimpl.model.problem import Problem, Terms
 from refimpl.planning.expected_contact import ExpectedContact, expected_contact
 from refimpl.planning.free_memory import free_memory
-from refimpl.planning.terms import RequestedTerms, Term, budget_of, choose
+from refimpl.planning.terms import Term, budget_of, choose
 
 Method = Literal["dense", "fft", "paper"]
 METHODS: tuple[Method, ...] = ("dense", "fft", "paper")
@@ -47,7 +47,7 @@ class Plan:
     memory: int
     demand: float
     budget: float
-    requested: RequestedTerms
+    requested: Terms
     decided_on: int
     contact: ExpectedContact
 
@@ -67,13 +67,7 @@ class Plan:
     @property
     def switches(self) -> Terms:
         """The terms as the solvers' switches."""
-        return Terms(
-            coupled=self.includes("coupled"),
-            oblique=self.includes("oblique"),
-            tilted=self.includes("tilted"),
-            slope_correction=self.includes("slope_correction"),
-            plastic=self.includes("plastic"),
-        )
+        return Terms(**{f.name: self.includes(f.name) for f in fields(Terms)})
 
     def on(self, grid: Grid) -> Plan:
         """Return the same terms on another grid, checked against the free memory."""
@@ -95,7 +89,7 @@ class Plan:
 def make_plan(
     problem: Problem,
     method: Method = "fft",
-    requested: RequestedTerms | None = None,
+    requested: Terms | None = None,
     *,
     demand: float = 1e-8,
     for_mu: bool = False,
@@ -106,7 +100,8 @@ def make_plan(
     effect is compared with. Memory is estimated and not checked: on a grid that is only decided on nothing
     is solved (`memory_of`, `Plan.on`).
     """
-    requested = requested or RequestedTerms()
+    requested = requested or Terms()
+    requested.check()
     contact = expected_contact(problem)
     budget = budget_of(problem, contact, demand)
     return Plan(

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from refimpl.errors import InputError
 from refimpl.model.friction import is_frictionless
-from refimpl.model.problem import Problem
+from refimpl.model.problem import Problem, Terms
 from refimpl.planning.expected_contact import ExpectedContact
 from refimpl.planning.term_effects import ESTIMATES, NONE, Effect, Scales
 
@@ -23,30 +22,6 @@ LABELS = {
     "plastic": "pressure cap at the hardness",
 }
 """The terms of a plan, by the names of their switches, as people read them."""
-
-
-@dataclass(frozen=True)
-class RequestedTerms:
-    """The user's request for each term: True, False, or None to let planning decide."""
-
-    coupled: bool | None = None
-    oblique: bool | None = None
-    tilted: bool | None = None
-    slope_correction: bool = False
-    plastic: bool | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("oblique", "coupled", "tilted", "plastic"):
-            if not isinstance(getattr(self, name), bool | None):
-                raise InputError(name, getattr(self, name), "True, False, or None to let the scene decide")
-        if not isinstance(self.slope_correction, bool):
-            raise InputError("slope_correction", self.slope_correction, "True or False")
-        if self.slope_correction and self.oblique is False:
-            raise InputError("oblique", self.oblique, "true or unset: the slope correction needs the slopes")
-        if self.slope_correction and self.coupled is False:
-            raise InputError("coupled", self.coupled, "true or unset: facet tractions include shear")
-        if self.slope_correction and self.plastic:
-            raise InputError("plastic", self.plastic, "false or unset with the slope correction")
 
 
 @dataclass(frozen=True)
@@ -86,7 +61,7 @@ def budget_of(problem: Problem, contact: ExpectedContact, demand: float) -> floa
 def choose(
     problem: Problem,
     contact: ExpectedContact,
-    requested: RequestedTerms,
+    requested: Terms,
     budget: float,
     *,
     for_mu: bool = False,
@@ -102,7 +77,7 @@ def choose(
 class _Choice:
     """What the choice of every term looks at."""
 
-    def __init__(self, problem: Problem, scales: Scales, requested: RequestedTerms) -> None:
+    def __init__(self, problem: Problem, scales: Scales, requested: Terms) -> None:
         self.problem, self.pair = problem, problem.pair
         self.requested = requested
         self.frictionless = scales.frictionless

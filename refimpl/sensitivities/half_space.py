@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.driver.solve import solve
 from refimpl.grid import Array
 from refimpl.half_space.boundary_perturbation import gap_changes
 from refimpl.half_space.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
 from refimpl.scene.discretise import discretise
 from refimpl.scene.scene import Body, Scene
+from refimpl.sensitivities.sensitivity import solved_again
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import ArraySurface
 
@@ -92,18 +92,7 @@ def _surface(heights: Array, solution: Solution) -> ArraySurface:
 
 
 def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solution:
-    terms = solution.problem.terms
-    found = solve(
-        scene,
-        solution.grid.shape,
-        approach=approach,
-        oblique=terms.oblique,
-        slope_correction=terms.slope_correction,
-        coupled=None if terms.slope_correction else terms.coupled,
-        tilted=terms.tilted,
-        plastic=terms.plastic,
-        tolerance=solution.tolerance,
-    )
+    found = solved_again(scene, solution, plastic=solution.problem.terms.plastic, approach=approach)
     if not found.converged:
         raise ArithmeticError(f"the solve with the surfaces' recession ended as {found.status.value}")
     return found

@@ -231,13 +231,16 @@ def difference_quotients(scene: Scene, solution: Solution, name: str, value: flo
     return {number: (getattr(above, number) - getattr(below, number)) / (high - low) for number in NUMBERS}
 
 
-def solved_again(scene: Scene, solution: Solution, *, plastic: bool) -> Solution:
+def solved_again(
+    scene: Scene, solution: Solution, *, plastic: bool | None, approach: float | None = None
+) -> Solution:
     """Solve a scene on a solution's grid, with its terms and its tolerance."""
     terms = solution.problem.terms
     corrected = terms.slope_correction and not plastic
     return solve(
         scene,
         solution.grid.shape,
+        approach=approach,
         oblique=terms.oblique,
         slope_correction=corrected,
         coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear

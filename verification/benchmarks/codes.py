@@ -16,8 +16,8 @@ import refimpl as rf
 from refimpl.driver.options import Options
 from refimpl.grid import Array
 from refimpl.model.friction import is_frictionless
+from refimpl.model.problem import Terms
 from refimpl.operators.fft import Counter
-from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
@@ -90,7 +90,7 @@ def _own(friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: flo
 
 def _alone(kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
     frictionless = scene(kind, M, rf.Friction())
-    plan = Options(scene=frictionless, grid=M, requested=RequestedTerms(oblique=False)).plan()
+    plan = Options(scene=frictionless, grid=M, requested=Terms(oblique=False)).plan()
     posed = discretise(frictionless, plan.grid, plan.switches)
 
     def press() -> Pressed:

@@ -180,13 +180,13 @@ def _explain(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, A
     from refimpl.driver.limits import Limits
     from refimpl.driver.options import Options
     from refimpl.driver.refined import forecast
-    from refimpl.planning.terms import RequestedTerms
+    from refimpl.model.problem import Terms
     from refimpl.scene.discretise import Discretiser
     from verification.cli import explain
 
     checked = Options(
         scene=scene,
-        requested=RequestedTerms(**{name: keywords[name] for name in SWITCHES}),
+        requested=Terms(**{name: keywords[name] for name in SWITCHES}),
         limits=Limits(**{name: keywords[name] for name in LIMITS}),
         **{name: keywords[name] for name in PASSED_ON},
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import get_type_hints
 
 from refimpl.driver.options import Options
-from refimpl.planning.terms import RequestedTerms
+from refimpl.model.problem import Terms
 from refimpl.scene.key_texts import FRICTION, SCENE
 from refimpl.scene.keys import (
     REQUIRED,
@@ -118,8 +118,8 @@ def _vary() -> tuple[Key, ...]:
 
 def _solve() -> tuple[Key, ...]:
     _complete("solve", _SETTINGS, SOLVE_KEYS)
-    found = {f.name: f for made in (RequestedTerms, Options) for f in fields(made)}
-    hints: dict[str, object] = get_type_hints(Options) | get_type_hints(RequestedTerms)
+    found = {f.name: f for made in (Terms, Options) for f in fields(made)}
+    hints: dict[str, object] = get_type_hints(Options) | get_type_hints(Terms)
     return tuple(
         Key(name, type_in_words(hints[name]), unit, default_of(found[name]), _refusal("solve", name), meaning)
         for name, (unit, meaning) in _SETTINGS.items()

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.driver.options import Options
+from refimpl.model.problem import Terms
 from refimpl.planning.plan import memory_of
-from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_from_dict
 from verification.sweep.study import Study
@@ -33,7 +33,7 @@ def check(study: Study) -> None:
     and windows on the way of a slide that miss too many points.
     """
     options = {key: value for key, value in study.settings.items() if key not in _SWITCHES}
-    requested = RequestedTerms(**{key: study.settings[key] for key in _SWITCHES if key in study.settings})
+    requested = Terms(**{key: study.settings[key] for key in _SWITCHES if key in study.settings})
     for run in replace(study, realisations=1).runs():
         scene = scene_from_dict(run.inputs["scene"], Path())
         Options(scene=scene, grid=run.inputs["grid"], requested=requested, **options)

@@ -12,8 +12,8 @@ from typing import Any
 
 from refimpl import Scene, read_scene
 from refimpl.errors import InputError, require_number
+from refimpl.model.problem import Terms
 from refimpl.planning.plan import METHODS
-from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.parameters import parameters
 from refimpl.scene.scene_file import read_toml, scene_to_dict
 from verification.sweep import posable
@@ -151,7 +151,7 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
         require_number("solve.accuracy", settings["accuracy"], "a number between 0 and 1", above=0, below=1)
     elif "quantity" in settings:
         raise InputError("solve.quantity", settings["quantity"], "none without an accuracy")
-    RequestedTerms(oblique=settings.get("oblique"), slope_correction=settings.get("slope_correction", False))
+    Terms(oblique=settings.get("oblique"), slope_correction=settings.get("slope_correction", False)).check()
 
 
 def _by_axis(vary: Mapping[str, Any]) -> dict[str, Any]:

@@ -92,7 +92,7 @@ class LaggedTerms:
         """Whether shear displacements depend on the pressure beyond what CG takes in."""
         terms, law = self._problem.terms, self._problem.friction
         by_pressure = law.slope != 0 and not self._weakly_coupled
-        return terms.slope_correction or (terms.coupled and (by_pressure or not self._held_is_constant))
+        return terms.slope_correction or (bool(terms.coupled) and (by_pressure or not self._held_is_constant))
 
     @property
     def _held_is_constant(self) -> bool:
@@ -135,7 +135,7 @@ class LaggedTerms:
         if mixing is None or self._used is None:
             self._used = self._requested
             return
-        oblique, sheared = self._problem.terms.oblique, self._shear_lags
+        oblique, sheared = bool(self._problem.terms.oblique), self._shear_lags
         fields = self._cg.normal_displacement, self._requested[0]
         scale = max(float(np.abs(field).max()) for field in fields) or 1.0
 

@@ -12,7 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl.bounds.proven_bounds import NO_BOUND_PLASTIC, proven_bounds
 from refimpl.driver.options import Options
-from refimpl.planning.terms import RequestedTerms
+from refimpl.model.problem import Terms
 from refimpl.scene.parameters import with_parameter
 from refimpl.sensitivities.budget import budget
 from refimpl.solution.limits import Limit, ModelWarning
@@ -167,7 +167,7 @@ def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:
     assert "plastic" not in rf.scene_to_toml(ROUGH)
     with pytest.raises(rf.InputError, match="plastic"):
         replace(ROUGH, plastic=1)
-    assert Options(scene=off, grid=8, requested=RequestedTerms()).requested.plastic is False
+    assert Options(scene=off, grid=8, requested=Terms()).requested.plastic is False
 
 
 def test_bounds_of_capped_states() -> None:

@@ -12,12 +12,13 @@ import pytest
 import refimpl as rf
 from refimpl.driver.options import Options
 from refimpl.grid import Array, Grid
+from refimpl.model.problem import Terms
 from refimpl.operators import fft
 from refimpl.planning import plan, term_effects, terms
 from refimpl.planning.expected_contact import expected_contact, solved_contact
 from refimpl.planning.plan import Plan, make_plan, memory_of
 from refimpl.planning.term_effects import Scales, effects_in
-from refimpl.planning.terms import LABELS, RequestedTerms
+from refimpl.planning.terms import LABELS
 from refimpl.scene.discretise import discretise
 from refimpl.solution.solution import REPORTED
 
@@ -43,9 +44,7 @@ def planned(
 ) -> Plan:
     """The plan of a scene on ``M x M`` elements, or on any grid, with what is requested of each term."""
     grid = scene.grid(grid) if isinstance(grid, int) else grid
-    return make_plan(
-        discretise(scene, grid, approach=approach), "fft", RequestedTerms(**words), demand=demand
-    )
+    return make_plan(discretise(scene, grid, approach=approach), "fft", Terms(**words), demand=demand)
 
 
 @pytest.mark.parametrize(

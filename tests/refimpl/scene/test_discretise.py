@@ -72,9 +72,9 @@ def test_a_refinement_samples_each_grid_once_and_the_one_that_decides() -> None:
 def test_a_discretisers_problem_is_that_of_discretise_and_is_not_kept(grid: Grid) -> None:
     discretiser, expected = Discretiser(SCENE, None), discretise(SCENE, grid, FLAT)
     whole = discretiser.with_all_terms(grid)
-    assert whole.terms == Terms()
+    assert whole.terms == Terms().decided
     for problem in (discretiser.problem(grid, FLAT), discretiser.problem(grid, FLAT)):
-        assert (problem.grid, problem.terms, problem.datum) == (grid, FLAT, expected.datum)
+        assert (problem.grid, problem.terms, problem.datum) == (grid, FLAT.decided, expected.datum)
         assert problem.elasticity == expected.elasticity
         assert np.array_equal(problem.gap, expected.gap)
         assert np.array_equal(problem.mean_surface, expected.mean_surface)

@@ -11,8 +11,8 @@ import pytest
 
 import refimpl as rf
 from refimpl.driver.options import Options
+from refimpl.model.problem import Terms
 from refimpl.planning import plan
-from refimpl.planning.terms import RequestedTerms
 from refimpl.solution.limits import Limit, ModelWarning
 
 SOFT, HARD = rf.Material(2e9, 0.35), rf.Material(7e9, 0.2)
@@ -140,4 +140,4 @@ def test_loads_under_a_cap_end_at_the_hardness_times_the_rectangle(size: tuple[f
     with pytest.raises(rf.InputError) as refused:
         Options(scene=replace(scene, load=601.0), grid=8)
     assert refused.value.field == "load"
-    Options(scene=replace(scene, load=601.0), grid=8, requested=RequestedTerms(plastic=False))
+    Options(scene=replace(scene, load=601.0), grid=8, requested=Terms(plastic=False))

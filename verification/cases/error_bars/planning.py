@@ -11,7 +11,7 @@ import refimpl as rf
 from refimpl.driver.options import Options
 from refimpl.model.problem import Terms
 from refimpl.operators.fft import Counter
-from refimpl.planning.terms import LABELS, RequestedTerms
+from refimpl.planning.terms import LABELS
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.cli.explain import explained
@@ -141,7 +141,7 @@ def explanation() -> Measured:
     missing = []
     for name in ("frictionless, smooth", "identical materials, no slopes"):
         scene, oblique = scenes()[name]
-        options = Options(scene=scene, grid=M, requested=RequestedTerms(oblique=oblique))
+        options = Options(scene=scene, grid=M, requested=Terms(oblique=oblique))
         text = explained(options, options.plan(), name)
         rows = {line.strip() for line in text.splitlines()}
         missing += [
