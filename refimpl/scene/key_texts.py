@@ -1,6 +1,7 @@
-"""Units and meanings of the keys of scene files, by table; types, defaults and limits come from the classes.
+"""The keys of scene files, by table, with units and meanings; types, defaults and limits stand in the classes.
 
-A key that is missing here, or stated twice, is refused by `refimpl.scene.keys.scene_keys`.
+What reads, writes and explains scene files takes the keys from here. `refimpl.scene.keys.scene_keys` refuses a
+key that its class does not have, or one that is missing.
 """
 
 from __future__ import annotations

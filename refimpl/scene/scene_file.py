@@ -6,7 +6,7 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ import tomli_w
 from refimpl.errors import InputError, within
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material
+from refimpl.scene.key_texts import BODY, FRICTION, MATERIAL, SCENE
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import surface_from_dict
@@ -25,9 +26,11 @@ _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a sc
 _MAX_PARTS = 32  # parts of a dotted key: parse time grows with their square
 _PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_MAX_PARTS}}}")
-_OPTIONAL_KEYS = ("side", "size", "sliding_direction", "sliding_offset", "periodic", "plastic")
+_SCENE_KEYS = tuple(SCENE)
+_OPTIONAL_KEYS = tuple(
+    key for key in SCENE if key not in ("load", "upper", "lower", "friction", "tolerances")
+)
 _RIGID = "rigid"  # E of a rigid body
-_SCENE_KEYS = ("load", "upper", "lower", "friction", "tolerances", *_OPTIONAL_KEYS)
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -92,9 +95,9 @@ def shipped_scenes() -> tuple[str, ...]:
 
 def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
     """The scene of a parsed TOML table; unknown and missing keys raise `InputError`."""
-    _refuse_unknown("scene", table, _SCENE_KEYS)
+    _refuse_unknown("scene", table, SCENE)
     friction = _table(table, "friction", {})
-    _refuse_unknown("friction", friction, ("tau", "beta"))
+    _refuse_unknown("friction", friction, FRICTION)
     optional = {key: table[key] for key in _OPTIONAL_KEYS if key in table}
     scene = Scene(
         upper=_body(table, "upper", folder),
@@ -111,18 +114,9 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
     """The scene as a plain table; raises `InputError` for surfaces that are bare arrays."""
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
-    return {
-        "load": scene.load,
-        **({} if scene.side is None else {"side": scene.side}),
-        **({} if scene.size is None else {"size": list(scene.size)}),
-        "sliding_direction": scene.sliding_direction,
-        "sliding_offset": scene.sliding_offset,
-        "periodic": scene.periodic,
-        **({} if scene.plastic is None else {"plastic": scene.plastic}),
-        "friction": {"tau": scene.friction.tau, "beta": scene.friction.beta},
-        "upper": _body_to_dict(scene.upper),
-        "lower": _body_to_dict(scene.lower),
-    }
+    bodies = {name: _body_to_dict(getattr(scene, name)) for name in ("upper", "lower")}
+    table = _given(scene, ("load", *_OPTIONAL_KEYS)) | {"friction": _given(scene.friction, FRICTION)} | bodies
+    return table if scene.size is None else table | {"size": list(scene.size)}
 
 
 def scene_to_toml(scene: Scene) -> str:
@@ -138,9 +132,9 @@ def _tolerances(table: Mapping[str, Any], scene: Scene) -> dict[str, float]:
 
 def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     body = _table(table, name, None)
-    _refuse_unknown(name, body, ("material", "surface"))
+    _refuse_unknown(name, body, BODY)
     material = _table(body, "material", None, prefix=f"{name}.")
-    _refuse_unknown(f"{name}.material", material, ("E", "nu", "hardness"))
+    _refuse_unknown(f"{name}.material", material, MATERIAL)
     parts = body.get("surface", [{"kind": "flat"}])
     if isinstance(parts, Mapping):
         parts = [parts]
@@ -150,23 +144,23 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     modulus = _required(material, "E", "Young's modulus in Pa", prefix=f"{name}.material.")
     ratio = _required(material, "nu", "Poisson's ratio", prefix=f"{name}.material.")
     with within(f"{name}.material"):
-        matter = Material(
-            E=math.inf if modulus == _RIGID else modulus, nu=ratio, hardness=material.get("hardness")
-        )
+        matter = Material(math.inf if modulus == _RIGID else modulus, ratio, material.get("hardness"))
     return Body(matter, sum(surfaces[1:], start=surfaces[0]))
 
 
 def _body_to_dict(body: Body) -> dict[str, Any]:
     parts = body.surface.parts if isinstance(body.surface, SurfaceSum) else (body.surface,)
-    hardness = {} if body.material.hardness is None else {"hardness": body.material.hardness}
+    rigid = {"E": _RIGID} if body.material.is_rigid else {}
     return {
-        "material": {
-            "E": _RIGID if body.material.is_rigid else body.material.E,
-            "nu": body.material.nu,
-            **hardness,
-        },
+        "material": _given(body.material, MATERIAL) | rigid,
         "surface": [part.to_dict() for part in parts],
     }
+
+
+def _given(made: object, keys: Iterable[str]) -> dict[str, Any]:
+    """The values of these keys, without those that are not set."""
+    values = {key: getattr(made, key) for key in keys}
+    return {key: value for key, value in values.items() if value is not None}
 
 
 def _table(table: Mapping[str, Any], name: str, default: Any, prefix: str = "") -> Mapping[str, Any]:
@@ -182,7 +176,7 @@ def _required(table: Mapping[str, Any], name: str, allowed: str, prefix: str = "
     return table[name]
 
 
-def _refuse_unknown(name: str, table: Mapping[str, Any], known: tuple[str, ...]) -> None:
+def _refuse_unknown(name: str, table: Mapping[str, Any], known: Iterable[str]) -> None:
     for key in table:
         if key not in known:
             raise InputError(f"{name}.{key}", table[key], f"no such key; known are {', '.join(known)}")

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import LEAST, InputError, as_double
+from refimpl.errors import LEAST, InputError, require_number
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.arrays import cautions_of, check_domain, checked, sampled, use_of
 
@@ -244,20 +244,16 @@ def require_one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:
         raise InputError(field, value, "one of " + ", ".join(allowed))
 
 
-def finite(field: str, value: object, allowed: str) -> float:
+def finite(field: str, value: Any, allowed: str) -> float:
     """``value`` as a float if it is a finite real number (no text, no truth value); else InputError."""
-    number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    if not number or not math.isfinite(as_double(value)):
-        raise InputError(field, value, allowed)
-    return float(value)  # type: ignore[arg-type]  # as above
+    require_number(field, value, allowed)
+    return float(value)
 
 
-def positive(field: str, value: object, allowed: str) -> float:
+def positive(field: str, value: Any, allowed: str) -> float:
     """``value`` as a float if it is a finite number from ``LEAST`` up; else InputError."""
-    allowed = f"{allowed}, from {LEAST} up"
-    if finite(field, value, allowed) < LEAST:
-        raise InputError(field, value, allowed)
-    return float(value)  # type: ignore[arg-type]  # `finite` has seen it
+    require_number(field, value, f"{allowed}, from {LEAST} up", at_least=LEAST)
+    return float(value)
 
 
 def pixel_edges(field: str, value: object) -> tuple[float, float]:
