@@ -1,7 +1,7 @@
-"""The keys of scene files, by table, with units and meanings; types, defaults and limits stand in the classes.
+"""The keys of scene files with units and meanings, by table; types, defaults and limits stand in the classes.
 
-What reads, writes and explains scene files takes the keys from here. `refimpl.scene.keys.scene_keys` refuses a
-key that its class does not have, or one that is missing.
+What reads, writes and explains scene files takes the keys from here. `refimpl.scene.keys.scene_keys` refuses
+a key that its class does not have, or one that is missing.
 """
 
 from __future__ import annotations

@@ -27,9 +27,8 @@ _MAX_PARTS = 32  # parts of a dotted key: parse time grows with their square
 _PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_MAX_PARTS}}}")
 _SCENE_KEYS = tuple(SCENE)
-_OPTIONAL_KEYS = tuple(
-    key for key in SCENE if key not in ("load", "upper", "lower", "friction", "tolerances")
-)
+_TABLES = ("upper", "lower", "friction", "tolerances")
+_OPTIONAL_KEYS = tuple(key for key in SCENE if key not in ("load", *_TABLES))
 _RIGID = "rigid"  # E of a rigid body
 
 
