@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -120,3 +120,12 @@ def require_size(field: str, value: object, allowed: str) -> None:
     refimpl.errors.InputError: side = 1e-200: expected a positive length in m, 1e-30 to 1e+30
     """
     require_number(field, value, f"{allowed}, {LEAST} to {MOST}", at_least=LEAST, at_most=MOST)
+
+
+def size_text(lengths: Iterable[float]) -> str:
+    """Return lengths or counts as they stand in messages: ``a x b``, six digits each.
+
+    >>> size_text((1.61e-3, 0.5)), size_text((64, 32))
+    ('0.00161 x 0.5', '64 x 32')
+    """
+    return " x ".join(f"{length:.6g}" for length in lengths)

@@ -82,12 +82,12 @@ def refine_until(
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
     remaining, refusal = [M * slenderness for M in grid_sizes], ""
     while results[-1].touching and relative_bound(results, quantity) > accuracy:
-        if reason := out_of_reach(results, accuracy, quantity):
+        if reason := reason_unreachable(results, accuracy, quantity):
             return Refinement(tuple(results), reason)
-        last = size_of(results[-1])
+        last = longer_side(results[-1])
         remaining = [M for M in remaining if last < M]
         useful = remaining
-        if leaves("data", results[-1], accuracy, quantity):
+        if exceeds("data", results[-1], accuracy, quantity):
             useful = [M for M in remaining if finest_by_data >= M]
             refusal = refusal if useful else REMAINING_PARTS["data"]
         if useful and (needed := forecast(results, accuracy, quantity)) > max(useful):
@@ -104,15 +104,17 @@ def refine_until(
     return Refinement(tuple(results), "")
 
 
-def out_of_reach(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> str:
+def reason_unreachable(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> str:
     """Return why no finer grid can reach an accuracy; empty where none is known not to."""
     if math.isinf(_own_bound(results[-1], quantity)):
         return "the domain cuts the contact off: enlarge it"
-    reasons = (text for part, text in REMAINING_PARTS.items() if remains(part, results, accuracy, quantity))
+    reasons = (
+        text for part, text in REMAINING_PARTS.items() if no_longer_falls(part, results, accuracy, quantity)
+    )
     return next(reasons, "")
 
 
-def size_of(features: GridFeatures) -> int:
+def longer_side(features: GridFeatures) -> int:
     """Return the number of elements along the longer side of a grid."""
     return max(features.grid.shape)
 
@@ -124,7 +126,7 @@ def next_grid(
     fine = results[-1]
     predictable = estimates(results)[quantity].half_width < abs(fine.numbers[quantity])
     ratio = MAX_REFINEMENT if predictable else MAX_BLIND_REFINEMENT
-    reach = [size for size in grid_sizes if size <= ratio * size_of(fine)] or grid_sizes[:1]
+    reach = [size for size in grid_sizes if size <= ratio * longer_side(fine)] or grid_sizes[:1]
     return predicted_size(results, accuracy, quantity, reach) or reach[-1]
 
 
@@ -136,7 +138,7 @@ def predicted_size(
     found, estimate = fine.numbers[quantity], estimates(results)[quantity]
     own, order = _own_bound(fine, quantity), _own_order(results, quantity)
     for M in grid_sizes:
-        finer = size_of(fine) / M
+        finer = longer_side(fine) / M
         bound = estimate.predicted_bound(found, finer) + own * finer**order
         if bound <= _MARGIN * accuracy * abs(found):
             return M
@@ -153,7 +155,7 @@ def _own_order(results: Sequence[GridFeatures], quantity: str) -> float:
     coarse, fine = (_own_bound(result, quantity) for result in results[-2:])
     if len(results) == len(FIRST_GRIDS) or not min(coarse, fine) > 0:
         return 1.0
-    refinement = size_of(results[-1]) / size_of(results[-2])
+    refinement = longer_side(results[-1]) / longer_side(results[-2])
     return min(max(math.log(coarse / fine) / math.log(refinement), 0.0), 1.0)
 
 
@@ -164,15 +166,15 @@ REMAINING_PARTS = {
 """Parts that need not fall on finer grids, and what is said where they do not."""
 
 
-def remains(part: str, results: Sequence[GridFeatures], accuracy: float, quantity: str) -> bool:
+def no_longer_falls(part: str, results: Sequence[GridFeatures], accuracy: float, quantity: str) -> bool:
     """Return whether a part leaves more than the accuracy open, and no less than on the grid before."""
     if len(results) == len(FIRST_GRIDS):
         return False
     coarse, fine = (result.parts.get(quantity, {}).get(part, 0.0) for result in results[-2:])
-    return fine >= coarse and leaves(part, results[-1], accuracy, quantity)
+    return fine >= coarse and exceeds(part, results[-1], accuracy, quantity)
 
 
-def leaves(part: str, result: GridFeatures, accuracy: float, quantity: str) -> bool:
+def exceeds(part: str, result: GridFeatures, accuracy: float, quantity: str) -> bool:
     """Return whether a part alone leaves more than the accuracy open."""
     return result.parts.get(quantity, {}).get(part, 0.0) > accuracy * abs(result.numbers[quantity])
 
@@ -182,13 +184,13 @@ def forecast(results: Sequence[GridFeatures], accuracy: float, quantity: str) ->
 
     The size of the last grid where that cannot be said: before a third grid, or from bars beyond the number.
     """
-    size = size_of(results[-1])
+    size = longer_side(results[-1])
     if len(results) <= len(FIRST_GRIDS):
         return size
     coarse, fine = relative_bound(results[:-1], quantity), relative_bound(results, quantity)
     if not 0 < fine < 1 or not math.isfinite(coarse):
         return size
-    steps = math.log(size / size_of(results[-2]))
+    steps = math.log(size / longer_side(results[-2]))
     order = min(max(math.log(coarse / fine) / steps, LEAST_ORDER), MOST_ORDER)
     return size * math.exp(math.log(fine / accuracy) / order)
 

@@ -111,7 +111,7 @@ def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Sl
     yields = bool(pressure.max() >= problem.cap)
     if yields and problem.load is not None and not slopes.is_flat:
         return _none(problem, NO_BOUND_PLASTIC)
-    norm = EnergyNorm(problem, slopes.obliqueness)
+    norm = EnergyNorm(problem, slopes.cosine_product)
     if problem.approach is not None and not norm.operator.displaces_mean:
         return _none(problem, NO_BOUND_PERIODIC)
     if norm.floor <= 0:
@@ -138,7 +138,7 @@ class _Frozen:
         self.problem, self.norm, self.slopes = problem, norm, slopes
         self.pressure, self.traction = pressure, traction
         self.slope = problem.friction.slope
-        self.K = slopes.obliqueness
+        self.K = slopes.cosine_product
         self.coupled = self.slope > 0 and problem.elasticity.coupling_ratio != 0
         self._set(np.maximum(pressure, 0.0))
         spurious = (self.f > 0) & (self.w >= norm.diagonal * self.f)
@@ -216,7 +216,7 @@ class _Capped(_Frozen):
         self.problem, self.norm, self.slopes = problem, norm, slopes
         self.pressure, self.traction = pressure, traction
         self.slope = problem.friction.slope
-        self.K = slopes.obliqueness
+        self.K = slopes.cosine_product
         self.coupled = self.slope > 0 and problem.elasticity.coupling_ratio != 0
         f = np.clip(pressure, 0.0, problem.cap)
         between: Mask = (f > 0) & (f < problem.cap)

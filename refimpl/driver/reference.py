@@ -58,7 +58,7 @@ def solve_reference(problem: Problem) -> State:
     slopes = Slopes(*found.tangents) if problem.terms.oblique else Slopes.flat(shape)
     u_lower, u_upper = problem.displacements(operator, found.pressure, found.traction, slopes)
     depth = problem.indentation(
-        found.pressure, u_lower + u_upper, slopes.obliqueness, found.approach + problem.datum
+        found.pressure, u_lower + u_upper, slopes.cosine_product, found.approach + problem.datum
     )
     status = Status.CYCLED if excluded.any() else Status.CONVERGED
     if found.ended != "converged" or 2 * np.count_nonzero(excluded) > np.count_nonzero(found.pressure > 0):

@@ -10,12 +10,12 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.refinement import (
     FIRST_GRIDS,
     GRID_SIZES,
-    leaves,
-    out_of_reach,
+    exceeds,
+    longer_side,
     predicted_size,
+    reason_unreachable,
     refine_until,
     relative_bound,
-    size_of,
     uncertainty,
 )
 from refimpl.driver.limits import Allowance
@@ -96,14 +96,16 @@ def forecast(options: Options, plan: Plan, discretiser: Discretiser) -> Forecast
     assert accuracy is not None
     grids = _Refinement(scene, plan, discretiser, options, None)
     results = [grids.features_at(M * scene.slenderness) for M in FIRST_GRIDS]
-    size, refusal = size_of(results[-1]), ""
+    size, refusal = longer_side(results[-1]), ""
     if results[-1].touching and relative_bound(results, quantity) > accuracy:
-        finest = finest_by_data(scene) if leaves("data", results[-1], accuracy, quantity) else math.inf
+        finest = finest_by_data(scene) if exceeds("data", results[-1], accuracy, quantity) else math.inf
         finer = [M * scene.slenderness for M in GRID_SIZES if size < M * scene.slenderness <= finest]
         enough = predicted_size(results, accuracy, quantity, finer)
         size = enough or max(finer, default=size)
         if enough is None:
-            refusal = out_of_reach(results, accuracy, quantity) or f"{size} elements a side do not suffice"
+            refusal = (
+                reason_unreachable(results, accuracy, quantity) or f"{size} elements a side do not suffice"
+            )
     expected = grids.plan.on(scene.refined(size))
     seconds = grids.allowance.expected_seconds(expected.grid)
     return Forecast(expected.grid, seconds, expected.memory, tuple(r.grid for r in results), refusal)

@@ -84,7 +84,7 @@ class Forward:
         """
         if self._report is not None:
             self._report(f"solve {self.solves + 1}: {scene.load:.4g} N")
-        friction = np.maximum(theta[: len(NAMES)], floors(scene))
+        friction = np.maximum(theta[: len(NAMES)], least_parameters(scene))
         for name, value in zip(NAMES, friction, strict=True):
             scene = with_parameter(scene, name, float(value))
         for name, logarithm in zip(self.further, theta[len(NAMES) :], strict=True):
@@ -97,20 +97,20 @@ class Forward:
         else:
             key = self._key(scene, settings)
             if (stored := self._memory.get(key)) is not None:
-                return restored(stored)
+                return response_from_dict(stored)
             found = _response(scene, self.grid, at, tolerances, self.further)
             self._memory[key] = asdict(found)
         self.solves += found.solves
         return found
 
 
-def restored(stored: Mapping[str, Any]) -> Response:
+def response_from_dict(stored: Mapping[str, Any]) -> Response:
     """Return a response from its fields, as JSON keeps them."""
     tuples = {name: tuple(value) for name, value in stored.items() if isinstance(value, list | tuple)}
     return Response(**{**stored, **tuples})
 
 
-def floors(scene: Scene) -> tuple[float, float]:
+def least_parameters(scene: Scene) -> tuple[float, float]:
     """Least parameters that are solved for (Pa, 1): too small to matter, large enough to differentiate."""
     return _FLOOR * 1e-4 * scene.materials.reduced_modulus, _FLOOR * 1e-2
 

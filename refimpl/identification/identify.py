@@ -15,11 +15,11 @@ from refimpl.identification.data_table import Row, check_rows
 from refimpl.identification.design import Proposal, propose, trial_responses
 from refimpl.identification.ensemble import MIN_REALISATIONS, draws, is_random, mean_response
 from refimpl.identification.fit import Fit, fit_rows, profile_of, shares
-from refimpl.identification.forward import NAMES, Forward, Key, Memory, Response, floors
+from refimpl.identification.forward import NAMES, Forward, Key, Memory, Response, least_parameters
 from refimpl.identification.further import further_parameters
 from refimpl.identification.laws import compare
+from refimpl.identification.notes import notes
 from refimpl.identification.profile import Profile, quantile
-from refimpl.identification.remarks import remarks
 from refimpl.identification.result import WIDE, Identification, Interval, Prediction
 from refimpl.identification.varying_profile import VaryingProfile
 from refimpl.scene.parameters import check_tolerances, parameters
@@ -105,7 +105,7 @@ def identify(
         passes=fitted.passes,
         fitted=fitted,
     )
-    return replace(result, warnings=remarks(result))
+    return replace(result, warnings=notes(result))
 
 
 def _fitted(
@@ -186,7 +186,7 @@ def _start(scene: Scene, rows: Sequence[Row]) -> Array:
     found = np.array([parameters(scene)[name] for name in NAMES])
     if found.all():
         return found
-    return np.maximum([0.0, min(row.mu for row in rows)], floors(scene))
+    return np.maximum([0.0, min(row.mu for row in rows)], least_parameters(scene))
 
 
 def _best_factor(covariance: Array, mean: Array) -> float:

@@ -43,7 +43,9 @@ def floor(gradient: Array) -> float:
     return 0.0 if bounded else -math.inf
 
 
-def ends(excess: Callable[[float], float], middle: float, spread: float, least: float) -> tuple[float, float]:
+def interval_ends(
+    excess: Callable[[float], float], middle: float, spread: float, least: float
+) -> tuple[float, float]:
     """Return where ``excess`` changes its sign below and above ``middle``.
 
     The low end is ``least`` where that is inside; an end further than `_FARTHEST` is infinite.
@@ -130,7 +132,7 @@ class Profile:
         """
         middle, g = float(gradient @ self.optimum), gradient * self.scale
         spread = math.sqrt(float(g @ np.linalg.inv(self.precision) @ g))
-        return ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
+        return interval_ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
 
     def excess(self, gradient: Array, value: float) -> float:
         """Return how far ``gradient theta = value`` is outside the 95 % interval; negative inside."""

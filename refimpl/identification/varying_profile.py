@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 
 from refimpl.grid import Array
-from refimpl.identification.profile import BOUNDED, Profile, ends, floor
+from refimpl.identification.profile import BOUNDED, Profile, floor, interval_ends
 
 
 class VaryingProfile:
@@ -43,7 +43,7 @@ class VaryingProfile:
     def interval(self, gradient: Array) -> tuple[float, float]:
         """Return the 95 % interval of ``gradient theta``, as `Profile.interval` does."""
         middle, spread = float(gradient @ self.base.optimum), math.sqrt(self._variance(gradient))
-        return ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
+        return interval_ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
 
     def excess(self, gradient: Array, value: float) -> float:
         """Return how far ``gradient theta = value`` is outside the 95 % interval; negative inside."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 from refimpl.measured.detrending import Form
 from refimpl.measured.missing_points import fill
-from refimpl.measured.readers import Reading
+from refimpl.measured.readers import RawHeights
 from refimpl.surfaces.bicubic import MEMORY
 
 ROUNDING = 1e-9  # relative slack of lengths: far above double rounding, far below a pixel
@@ -28,7 +28,7 @@ class Crop:
     at (i, j).
     """
 
-    reading: Reading
+    reading: RawHeights
     lengths: tuple[float, float]
     offset: tuple[float, float] = (0.0, 0.0)
     centre: tuple[float, float] | None = None
@@ -39,15 +39,15 @@ class Crop:
         room = tuple((whole - length) / 2.0 for whole, length in zip(most, self.lengths, strict=True))
         if min(room) < -slack / 2:
             about = "" if self.centre is None else " about the centre"
-            allowed = f"at most the measured {by(most)} m of {name}{about}"
+            allowed = f"at most the measured {size_text(most)} m of {name}{about}"
             raise InputError("side", self.lengths[room.index(min(room))], allowed)
         moved = extent(self.reading, self._middle, self.offset)
         if any(length - whole > 2 * slack for length, whole in zip(self.lengths, moved, strict=True)):
-            fits = f"; a size of {by(moved)} m fits this offset" if min(moved) > 0 else ""
-            raise InputError("offset", self.offset, f"at most {by(room)} m either way in {name}{fits}")
+            fits = f"; a size of {size_text(moved)} m fits this offset" if min(moved) > 0 else ""
+            raise InputError("offset", self.offset, f"at most {size_text(room)} m either way in {name}{fits}")
         counts = tuple(s.stop - s.start for s in self.points)
         if min(counts) < 4:
-            least = f"at least 4 pixels of {self.reading.name}, each {by(self.reading.pixel)} m"
+            least = f"at least 4 pixels of {self.reading.name}, each {size_text(self.reading.pixel)} m"
             raise InputError("side", self.lengths[counts.index(min(counts))], least)
 
     @property
@@ -86,7 +86,7 @@ class Crop:
 
 
 def extent(
-    reading: Reading, centre: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)
+    reading: RawHeights, centre: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)
 ) -> tuple[float, float]:
     """Return the largest rectangle (m) about a point, moved by an offset, that the measured area covers."""
     x, y = (
@@ -94,8 +94,3 @@ def extent(
         for edge, at, moved in zip(reading.area, centre, offset, strict=True)
     )
     return x, y
-
-
-def by(lengths: tuple[float, ...]) -> str:
-    """``a x b``."""
-    return " x ".join(f"{length:.6g}" for length in lengths)

@@ -21,7 +21,7 @@ from scipy.io.matlab import MatReadError
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.measured.reading import ARRAY, IMAGE, MAX_POINTS, UNITS, Given, Reading, checked
+from refimpl.measured.reading import ARRAY, IMAGE, MAX_POINTS, UNITS, Overrides, RawHeights, checked
 from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 
 T = TypeVar("T")
@@ -43,7 +43,7 @@ BROKEN: tuple[type[Exception], ...] = (
 )  # fmt: skip
 
 
-def read_instrument(path: Path, given: Given, head: bytes) -> Reading:
+def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     """Heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
     library = library_for(path)
     formats = _formats(library, path, head)
@@ -88,8 +88,8 @@ def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
 
 
 def read_as(
-    library: ModuleType, path: Path, name: str, given: Given, source: Source, notes: tuple[str, ...] = ()
-) -> Reading:
+    library: ModuleType, path: Path, name: str, given: Overrides, source: Source, notes: tuple[str, ...] = ()
+) -> RawHeights:
     """Heights of one file, read as the format ``name`` from ``source``."""
     quiet = contextlib.redirect_stdout(io.StringIO())  # SciPy prints what it cannot reshape
     with quiet, warnings.catch_warnings(record=True) as said, np.errstate(all="ignore"):
@@ -107,7 +107,7 @@ def read_as(
     told = [f"SurfaceTopography: {brief(w.message)}" for w in said if issubclass(w.category, UserWarning)]
     upwards = name in UPWARDS
     heights = heights * stated
-    return Reading(
+    return RawHeights(
         np.ascontiguousarray(heights if upwards else heights[:, ::-1]),
         pixel, path.name, f"by SurfaceTopography's {name} reader", unit, ARRAY if upwards else IMAGE,
         str(channel.name), tuple(str(c.name) for c in reader.channels),
@@ -115,7 +115,7 @@ def read_as(
     )  # fmt: skip
 
 
-def _choose(path: Path, reader: Any, given: Given) -> tuple[int, Any]:
+def _choose(path: Path, reader: Any, given: Overrides) -> tuple[int, Any]:
     """The channel of the given name or number, by default the first map of heights from the library's own."""
     channels = list(reader.channels)
     names = [str(c.name) for c in channels]

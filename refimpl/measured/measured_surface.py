@@ -9,14 +9,14 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array, Grid
-from refimpl.measured.crop import ROUNDING, Crop, by, extent
+from refimpl.measured.crop import ROUNDING, Crop, extent
 from refimpl.measured.detrending import Form, check_level, fit_form
 from refimpl.measured.missing_points import fill
 from refimpl.measured.orientation import Oriented, check_orientation, checked_centre, oriented
 from refimpl.measured.preparation import check_preparation, prepare
-from refimpl.measured.readers import UNITS, Reading, read
+from refimpl.measured.readers import UNITS, RawHeights, read
 from refimpl.measured.untrusted import read_untrusted, refuse_huge
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
@@ -101,7 +101,7 @@ class MeasuredSurface(Surface):
         return self._file.name
 
     @cached_property
-    def reading(self) -> Reading:
+    def reading(self) -> RawHeights:
         """The content of the file, as it is (read once)."""
         pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
         found = read_untrusted(self._file, lambda: read(self._file, self.unit, pixel, self.channel))
@@ -109,7 +109,7 @@ class MeasuredSurface(Surface):
         return found
 
     @cached_property
-    def prepared(self) -> Reading:
+    def prepared(self) -> RawHeights:
         """The map without outliers and with its wavelengths filtered."""
         return prepare(self.reading, self.outliers, self.low_pass, self.high_pass, self.repeats)
 
@@ -154,7 +154,7 @@ class MeasuredSurface(Surface):
         reading, centre = self._oriented.reading, self._oriented.centre
         times = [length / period for length, period in zip(grid.lengths, reading.area, strict=True)]
         if grid.periodic and any(abs(n - max(round(n), 1)) > ROUNDING * n for n in times):
-            allowed = f"whole multiples of the {by(reading.area)} m with which {reading.name} repeats"
+            allowed = f"whole multiples of the {size_text(reading.area)} m with which {reading.name} repeats"
             raise InputError("side", max(grid.lengths), allowed)
         x, y = (
             (at - length / 2 + moved + middle) / edge - 0.5
@@ -194,16 +194,17 @@ class MeasuredSurface(Surface):
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, reading = self._file.name, self._oriented.reading
         z, form, rest = self._central(grid.lengths)
-        tilt = by(tuple(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True)))
+        tilt = size_text(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True))
         bent = "" if form.radius is None else f", radius {form.radius:.4g} m"
         return (
-            f"{name}: {by(reading.heights.shape)} points on {by(reading.area)} m, read {reading.source}",
-            f"{name}: the window of {by(grid.lengths)} m about {self._about} is used, {by(z.shape)} points, "
-            f"resampled bicubically to {grid} elements",
+            f"{name}: {size_text(reading.heights.shape)} points on {size_text(reading.area)} m, "
+            f"read {reading.source}",
+            f"{name}: the window of {size_text(grid.lengths)} m about {self._about} is used, "
+            f"{size_text(z.shape)} points, resampled bicubically to {grid} elements",
             f"{name}: level {self.level!r} fitted in that window (slopes {tilt}{bent}) and subtracted; "
             f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after",
             *(f"{name}: {note}" for note in self.file_notes),
-            *self.cautions(grid),
+            *self.notes(grid),
         )
 
     @property
@@ -221,7 +222,7 @@ class MeasuredSurface(Surface):
     def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self.reading.pixel)
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         name, window = self._file.name, self._crop(grid.lengths)
         said = []
         if window.lost:
@@ -232,7 +233,7 @@ class MeasuredSurface(Surface):
         if min(e / p for e, p in zip(grid.spacings, pixel, strict=True)) < 1.0 - ROUNDING:
             said.append(
                 f"{name}: the element, {min(grid.spacings):.4g} m, is finer than the measured pixel, "
-                f"{by(pixel)} m: what lies between the points is interpolated"
+                f"{size_text(pixel)} m: what lies between the points is interpolated"
             )
         return tuple(said)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from refimpl.errors import InputError
-from refimpl.measured.readers import Reading
+from refimpl.measured.readers import RawHeights
 from refimpl.surfaces.surface import finite, require_one_of
 
 TURNS = (0, 90, 180, 270)  # degrees, anticlockwise seen from outside the body
@@ -37,7 +37,7 @@ def checked_centre(centre: object) -> tuple[float, float]:
 class Oriented:
     """A reading as it lies on its body, and the point of it at the domain's middle (m from its corner)."""
 
-    reading: Reading
+    reading: RawHeights
     centre: tuple[float, float]
 
     def negated(self) -> Oriented:
@@ -70,7 +70,7 @@ class Oriented:
 
 
 def oriented(
-    reading: Reading,
+    reading: RawHeights,
     *,
     replica: bool,
     mirror: str | None,
@@ -82,7 +82,7 @@ def oriented(
 
     ``centre`` (m) counts from the corner of the file's own measured area; None is its middle.
 
-    >>> steps = Reading(np.array([[1.0, 2.0], [3.0, 4.0]]), (1.0, 1.0), "steps", "by hand")
+    >>> steps = RawHeights(np.array([[1.0, 2.0], [3.0, 4.0]]), (1.0, 1.0), "steps", "by hand")
     >>> found = oriented(steps, replica=False, mirror=None, rotate_deg=90, turned_over=False, centre=None)
     >>> found.reading.heights  # heights that rose along x rise along y
     array([[2., 4.],

@@ -12,7 +12,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.measured.detrending import fit
 from refimpl.measured.missing_points import fill
-from refimpl.measured.reading import Reading
+from refimpl.measured.reading import RawHeights
 from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
@@ -41,12 +41,12 @@ def check_preparation(channel: object, outliers: object, low_pass: object, high_
 
 
 def prepare(
-    reading: Reading,
+    reading: RawHeights,
     outliers: float | None = None,
     low_pass: float | None = None,
     high_pass: float | None = None,
     repeats: bool = False,
-) -> Reading:
+) -> RawHeights:
     """Return the map with outliers missing and wavelengths filtered, a note for each step.
 
     outliers   points further off their neighbours than that many spreads become missing. The distance is the
@@ -64,7 +64,7 @@ def prepare(
     return reading
 
 
-def _without_outliers(reading: Reading, times: float, repeats: bool) -> Reading:
+def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHeights:
     missing = np.isnan(reading.heights)
     away = _off_neighbours(_filled(reading), repeats)
     typical = MAD_TO_RMS * float(np.median(away[~missing]))
@@ -94,7 +94,9 @@ def _off_neighbours(z: Array, repeats: bool) -> Array:
     return np.abs(total - low - high) / 2.0
 
 
-def _filtered(reading: Reading, low_pass: float | None, high_pass: float | None, repeats: bool) -> Reading:
+def _filtered(
+    reading: RawHeights, low_pass: float | None, high_pass: float | None, repeats: bool
+) -> RawHeights:
     x, y = (np.arange(n, dtype=float) for n in reading.heights.shape)
     plane = fit(x, y, reading.heights, 0 if repeats else 1)(x, y)
     z, notes = _filled(replace(reading, heights=reading.heights - plane)), list(reading.notes)
@@ -140,7 +142,7 @@ def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, rep
     return np.asarray(mean / weights[0][:, None] / weights[1][None, :])
 
 
-def _filled(reading: Reading) -> Array:
+def _filled(reading: RawHeights) -> Array:
     if np.isnan(reading.heights).all():
         raise InputError("missing", f"all points of {reading.name}", "a measured point at least")
     return fill(reading.heights, reading.pixel)

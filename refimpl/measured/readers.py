@@ -26,10 +26,10 @@ from refimpl.measured.instrument_files import (
     read_instrument,
     stream,
 )
-from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Given, Reading, checked
+from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Overrides, RawHeights, checked
 from refimpl.measured.text_tables import TextTable, decoded, is_triples, on_grid, read_table
 
-__all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Given", "Reading", "read"]
+__all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"]
 
 _HEAD = 2**16  # bytes that tell text from binary
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
@@ -40,7 +40,7 @@ def read(
     unit: str | None = None,
     pixel_size: tuple[float, float] | None = None,
     channel: str | int | None = None,
-) -> Reading:
+) -> RawHeights:
     """Heights of one file, x to the right and y up as seen from outside.
 
     ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) serve files that state none and override
@@ -50,7 +50,7 @@ def read(
     Raises InputError.
     """
     _check_size(path)
-    given = Given(unit, pixel_size, channel)
+    given = Overrides(unit, pixel_size, channel)
     head = guarded(path, _head)
     if path.suffix.lower() == ".npy":
         return _plain(path, checked(path, guarded(path, _npy)), given, "as a plain array")
@@ -86,12 +86,12 @@ def _npy(path: Path) -> Array:
     return np.lib.format.open_memmap(path, mode="r")
 
 
-def _plain(path: Path, raw: Array, given: Given, source: str, notes: tuple[str, ...] = ()) -> Reading:
+def _plain(path: Path, raw: Array, given: Overrides, source: str, notes: tuple[str, ...] = ()) -> RawHeights:
     unit, pixel, _ = given.resolve(path.name, None, None)
-    return Reading(raw * UNITS[unit], pixel, path.name, source, unit, notes=notes)
+    return RawHeights(raw * UNITS[unit], pixel, path.name, source, unit, notes=notes)
 
 
-def _text(path: Path, given: Given) -> Reading:
+def _text(path: Path, given: Overrides) -> RawHeights:
     table = read_table(path)
     rows, columns = table.rows.shape
     if path.suffix.lower() == ".xyz" and columns not in (2, 3):
@@ -123,18 +123,18 @@ def _refuse_interruption(path: Path, table: TextTable) -> None:
         raise InputError("path", str(path), f"numbers in one block ({found})")
 
 
-def _with_header(path: Path, table: TextTable, given: Given) -> Reading:
+def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
     library = library_for(path)
     text = table.normalised() if table.notes or "," in table.header[-1] else decoded(path).encode()
 
-    def load(file: Path) -> Reading:
+    def load(file: Path) -> RawHeights:
         return read_as(library, file, "asc", given, stream(text), table.notes)
 
     return guarded(path, load, broken(library))
 
 
-def _points(path: Path, table: TextTable, given: Given) -> Reading:
+def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     if given.unit is None:
         allowed = f"one: {path.name} holds points x, y, z and states no unit"
         raise InputError("unit", None, allowed)
@@ -143,6 +143,6 @@ def _points(path: Path, table: TextTable, given: Given) -> Reading:
     if heights.size > MAX_POINTS:
         raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
     source, orientation = "as points x, y, z", "coordinates as the file states them"
-    return Reading(
+    return RawHeights(
         checked(path, heights), pixel, path.name, source, unit, orientation, notes=(*table.notes, *notes)
     )

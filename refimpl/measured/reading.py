@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 
 MAX_BYTES = 256 * 2**20
@@ -30,7 +30,7 @@ IMAGE = "lines along x, the first line at the top"
 
 
 @dataclass(frozen=True)
-class Reading:
+class RawHeights:
     """Heights of one file.
 
     heights      m, ``[i, j]`` along x, y, positive out of the material, missing points NaN
@@ -60,7 +60,7 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Given:
+class Overrides:
     """Statements of a scene about a file: unit of heights (a key of UNITS), pixel's edges (m), channel."""
 
     unit: str | None = None
@@ -85,7 +85,7 @@ class Given:
             and pixel is not None
             and not np.allclose(self.pixel_size, pixel, 1e-6, 0)
         ):
-            sizes = (" x ".join(f"{edge:.6g}" for edge in pair) for pair in (self.pixel_size, pixel))
+            sizes = (size_text(pair) for pair in (self.pixel_size, pixel))
             notes.append("a pixel of {} m is used; the file states {} m".format(*sizes))
         used = self.unit or unit or "m"
         edges = self.pixel_size or pixel or (1.0, 1.0)

@@ -116,7 +116,7 @@ class State:
         """
         gap = self.clearance
         if self.indentation is not None:
-            gap += self.indentation / self.slopes.obliqueness
+            gap += self.indentation / self.slopes.cosine_product
         return gap
 
     @property
@@ -177,7 +177,7 @@ def certify(
     normal = problem.elasticity.normal(operator, pressure)
     lower, upper = problem.displacements(operator, pressure, traction, slopes, normal=normal)
     found = problem.slopes(lower, upper, indentation)
-    v = found.per_obliqueness(lower + upper)
+    v = found.per_cosine_product(lower + upper)
     v += problem.gap
     box = Window.around((pressure != 0) | (traction != 0), margin=0)  # elsewhere the summands vanish
     f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
@@ -202,7 +202,7 @@ def certify(
         missed = missed_approach(pressure, v, cap, approach)
         missed += math.ulp(approach)  # the least approaches have no digits to agree in
         load_error = relative_gap(missed, energy) if total > 0 else 0.0
-    plastic = problem.indentation(pressure, lower + upper, found.obliqueness, approach)
+    plastic = problem.indentation(pressure, lower + upper, found.cosine_product, approach)
     requested = on_slopes if plastic is None else problem.slopes(lower, upper, plastic).windowed(box)
     everywhere, at_cap = pressure > 0, pressure >= cap
     beyond = max(0.0, -float(f.min()), float(f.max()) - cap)

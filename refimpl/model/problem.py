@@ -191,7 +191,7 @@ class Problem:
         ``sum(held sin theta_x cos theta_y) dA``.
         """
         if slopes.is_flat:
-            return slopes.obliqueness, 0.0
+            return slopes.cosine_product, 0.0
         weights = (slopes.cos_x - self.friction.slope * slopes.sin_x) * slopes.cos_y
         offset = float(np.sum(held_traction * slopes.sin_x * slopes.cos_y)) * self.grid.element_area
         return weights, offset

@@ -91,7 +91,7 @@ class Slopes:
         return self.tan_y * self.cos_y
 
     @cached_property
-    def obliqueness(self) -> Array:
+    def cosine_product(self) -> Array:
         """``cos(theta_x) cos(theta_y)``, the factor of Eq. (6). On a large grid every array counts."""
         if self.is_flat:
             return self.cos_x
@@ -103,9 +103,9 @@ class Slopes:
         np.sqrt(squares, out=squares)
         return np.divide(1, squares, out=squares)
 
-    def per_obliqueness(self, values: Array) -> Array:
-        """Return ``values / obliqueness``, in place where that is 1 everywhere."""
-        return values if self.is_flat else values / self.obliqueness
+    def per_cosine_product(self, values: Array) -> Array:
+        """Return ``values / cosine_product``, in place where that is 1 everywhere."""
+        return values if self.is_flat else values / self.cosine_product
 
     def windowed(self, window: Window) -> Slopes:
         """Return the slopes on a window of their grid."""

@@ -83,5 +83,5 @@ class Discretiser:
 
     def _problem(self, grid: Grid) -> Problem:
         problem = discretise(self._scene, grid, approach=self._approach)
-        self.notes = self._scene.cautions(grid)
+        self.notes = self._scene.notes(grid)
         return problem

@@ -59,7 +59,7 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
     return replace(scene, upper=body) if which == "upper" else replace(scene, lower=body)
 
 
-def moving(scene: Scene) -> dict[str, float]:
+def differentiable_parameters(scene: Scene) -> dict[str, float]:
     """Return the parameters that have derivatives: those that are not zero.
 
     Without the modulus and Poisson's ratio of a rigid body, which change nothing, and without the numbers of
@@ -79,7 +79,8 @@ def moving(scene: Scene) -> dict[str, float]:
 
 def check_tolerances(scene: Scene, tolerances: Mapping[str, float]) -> None:
     """Raise `InputError` unless every name is a parameter that moves and every tolerance is relative."""
+    known = differentiable_parameters(scene) if tolerances else {}
     for name, tolerance in tolerances.items():
-        if name not in moving(scene):
-            raise InputError(f"tolerances.{name!r}", tolerance, f"one of {', '.join(moving(scene))}")
+        if name not in known:
+            raise InputError(f"tolerances.{name!r}", tolerance, f"one of {', '.join(known)}")
         require_number(f"tolerances.{name!r}", tolerance, _TOLERANCE, at_least=0, below=1)

@@ -11,7 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import MOST, InputError, keep_doubles, printable, require_number, require_size, within
+from refimpl.errors import (
+    MOST,
+    InputError,
+    keep_doubles,
+    printable,
+    require_number,
+    require_size,
+    size_text,
+    within,
+)
 from refimpl.grid import Array, Grid
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
@@ -199,18 +208,18 @@ class Scene:
         Mid-heights are subtracted because only the gap enters: heights may come with any datum.
 
         Raises `InputError` when a surface's peak-to-valley exceeds the side, which means a wrong unit; warns
-        (`SurfaceWarning`) of `cautions`.
+        (`SurfaceWarning`) of `notes`.
         """
-        for caution in self.cautions(grid):
+        for caution in self.notes(grid):
             warnings.warn(caution, SurfaceWarning, stacklevel=2)
         return self.sampled(grid)
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         """Return the notes on how the heights of this grid are computed, each once."""
         parts = (*self.parts("lower"), *self.parts("upper"))
-        lines = [line for part in parts for line in part.cautions(grid)]
+        lines = [line for part in parts for line in part.notes(grid)]
         if self.side is None and self.size is None:
-            shown = " x ".join(f"{length:.6g}" for length in self.lengths)
+            shown = size_text(self.lengths)
             lines.append(f"no size given: {shown} m, the largest rectangle that all measured surfaces cover")
         given = self.upper.surface.parts
         for part, placed in zip(given, self.parts("upper"), strict=True):

@@ -54,7 +54,7 @@ class FixedContact:
         self._slopes = Slopes(slopes.tan_x[cut], slopes.tan_y[cut])
         traction = problem.friction.traction(self.pressure, self.active)
         u = np.add(*self.problem.displacements(self.operator, self.pressure, traction, self._slopes))
-        v = self._slopes.per_obliqueness(u) + self.problem.gap
+        v = self._slopes.per_cosine_product(u) + self.problem.gap
         self.approach = approach_from(self.pressure, v, problem.cap)
         self._base = self.residual(self.problem, self.pressure, self.approach)
 
@@ -123,7 +123,7 @@ class FixedContact:
         return pressure, self.approach * float(x[-1])
 
     def _state(self, problem: Problem, pressure: Array, approach: float) -> tuple[Array, Array, Forces]:
-        """Displacement u (m), obliqueness and forces.
+        """Displacement u (m), product of cosines and forces.
 
         Facet tractions take the slopes that they leave themselves, and so does plastic indentation: from the
         base state's, a few times over. Elements at the hardness bear the problem's own.
@@ -134,7 +134,7 @@ class FixedContact:
         repeated = problem.terms.slope_correction or bool(self.capped.any())
         for _ in range(_FACETS if repeated else 1):
             lower, upper = problem.displacements(self.operator, pressure, traction, slopes)
-            yielded = problem.indentation(pressure, lower + upper, slopes.obliqueness, approach)
+            yielded = problem.indentation(pressure, lower + upper, slopes.cosine_product, approach)
             slopes = problem.slopes(lower, upper, yielded)
         forces = resultants(pressure, traction, slopes, problem.grid.element_area)
-        return lower + upper, slopes.obliqueness, forces
+        return lower + upper, slopes.cosine_product, forces

@@ -33,7 +33,7 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.materials import RIGID
 from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
-from refimpl.scene.parameters import moving, parameters, with_parameter
+from refimpl.scene.parameters import differentiable_parameters, parameters, with_parameter
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.edge_motion import EdgeMotion
 from refimpl.sensitivities.fixed_contact import FixedContact
@@ -84,7 +84,7 @@ class Sensitivity:
 
 
 def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
-    """Derivatives of mu, A, f_max and Q with respect to every parameter of `moving(scene)`.
+    """Derivatives of mu, A, f_max and Q by every parameter of `differentiable_parameters(scene)`.
 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, and two
     solves on the solution's grid for the load and for each number of a surface. ``names`` restricts the
@@ -96,7 +96,7 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
     base = solution.problem.with_terms(_terms(solution))
     active = solution.contact & ~solution.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
-    values, yields = moving(scene), bool(fixed.capped.any())
+    values, yields = differentiable_parameters(scene), bool(fixed.capped.any())
     if names is not None:
         values = {name: value for name, value in values.items() if name in ("load", *names)}
     answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}

@@ -28,7 +28,7 @@ def notes(solved: Evidence, lines: Sequence[str]) -> tuple[Notice, ...]:
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     lines = (*implausible(scene, solved.plan), *lines)
     rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
-    named = {line for part in rough for line in part.cautions(grid)}
+    named = {line for part in rough for line in part.notes(grid)}
     return tuple(Notice(line) for line in lines if line not in named)
 
 

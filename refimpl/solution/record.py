@@ -137,7 +137,7 @@ class Record:
     @property
     def clearance(self) -> Array:
         """``v - approach`` (m): the `gap` without the plastic indentation."""
-        return self.gap - self.plastic_indentation / self.slopes.obliqueness
+        return self.gap - self.plastic_indentation / self.slopes.cosine_product
 
     @cached_property
     def theta_x(self) -> Array:

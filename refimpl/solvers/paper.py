@@ -198,7 +198,7 @@ class _Scheme:
         for first in (True, *(_PASSES - 1) * (False,)):
             self.trace.passes += 1
             shear, held = self._update(approach, active)
-            u = self.slopes.obliqueness * (approach - problem.gap) - shear  # Eqs (6a), (7)
+            u = self.slopes.cosine_product * (approach - problem.gap) - shear  # Eqs (6a), (7)
             if first:  # later passes only mend: the periodic contact would throw returned elements out again
                 inside = self._iterate(u, inside, on_circle=True)
                 self.trace.periodicity_before = self._residual(u, inside)
@@ -223,7 +223,7 @@ class _Scheme:
     def _update(self, approach: float, active: ActiveSet) -> tuple[Array, Array]:
         """Slopes; returned are all displacements but ``a f`` (m), and the held traction (Pa)."""
         law, normal = self.problem.friction, self._apply(self.pressure)
-        v = self.slopes.per_obliqueness(normal + self._shear) + self.problem.gap
+        v = self.slopes.per_cosine_product(normal + self._shear) + self.problem.gap
         self._clearance = v - approach
         traction = active.traction(law, self.pressure, self._last_clearance)
         lower, upper = self.problem.displacements(self.operator, self.pressure, traction, self.slopes)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.bicubic import resample, resample_periodic
 
@@ -63,27 +63,27 @@ def check_domain(
     edges = tuple(length / n for length, n in zip(lengths, shape, strict=True))
     if pixel is None:
         if max(edges) > _SQUARE * min(edges):
-            found = f"array of shape {shape}, whose pixels here are {_metres(edges)} m"
+            found = f"array of shape {shape}, whose pixels here are {size_text(edges)} m"
             raise InputError("heights", found, "square pixels, or ArraySurface(z, pixel=(dx, dy))")
     elif any(abs(edge / own - 1) > _SPANS for edge, own in zip(edges, pixel, strict=True)):
         own = tuple(n * edge for n, edge in zip(shape, pixel, strict=True))
-        found = f"array of {_metres(own)} m on a domain of {_metres(lengths)} m"
+        found = f"array of {size_text(own)} m on a domain of {size_text(lengths)} m"
         raise InputError("pixel", found, "a domain that the array spans: it is never squeezed")
 
 
-def use_of(shape: tuple[int, ...], grid: Grid) -> str:
+def sampling_note(shape: tuple[int, ...], grid: Grid) -> str:
     """Return how data of that shape are used on a grid, as a sentence."""
     if shape == grid.shape:
-        return f"the array of {_by(shape)} heights is used as it is"
-    return f"the array of {_by(shape)} heights is resampled bicubically to {grid}"
+        return f"the array of {size_text(shape)} heights is used as it is"
+    return f"the array of {size_text(shape)} heights is resampled bicubically to {grid}"
 
 
-def cautions_of(shape: tuple[int, ...], grid: Grid) -> tuple[str, ...]:
+def interpolation_notes(shape: tuple[int, ...], grid: Grid) -> tuple[str, ...]:
     """Return what a user should be warned of when data of that shape are used on a grid."""
     if all(points >= n for points, n in zip(shape, grid.shape, strict=True)):
         return ()
     return (
-        f"the grid of {grid} is finer than the array of {_by(shape)} heights: "
+        f"the grid of {grid} is finer than the array of {size_text(shape)} heights: "
         "what lies between them is interpolated",
     )
 
@@ -93,11 +93,3 @@ def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:
     if any(abs(o) > r * (1.0 + 1e-9) for o, r in zip(offset, room, strict=True)):  # 1e-9: rounding of h / 2
         allowed = f"at most {min(room):.6g} m either way: the array ends with the domain"
         raise InputError("offset", offset, allowed)
-
-
-def _metres(lengths: tuple[float, ...]) -> str:
-    return " x ".join(f"{length:.6g}" for length in lengths)
-
-
-def _by(shape: tuple[int, ...]) -> str:
-    return " x ".join(map(str, shape))

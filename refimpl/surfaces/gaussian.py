@@ -22,12 +22,12 @@ from typing import ClassVar, NoReturn
 import numpy as np
 from scipy.sparse import csr_array
 
-from refimpl.errors import InputError, require_number, require_size
+from refimpl.errors import InputError, require_number, require_size, size_text
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.lay import Lay
 from refimpl.surfaces.noise_lattice import DECAY, NoiseLattice
 from refimpl.surfaces.surface import Detail, Surface, finite, positive, require_seed
-from refimpl.surfaces.waves import Torus, turned
+from refimpl.surfaces.waves import PeriodicLattice, rotated
 
 RESOLVED = 4.0  # elements per correlation length from which slopes count as resolved
 _REACH = 26.6  # l q of the highest wave: exp(-26.6^2 / 18.4) = 2e-17
@@ -140,13 +140,13 @@ class GaussianRoughness(Surface):
         scale = self.rms / math.sqrt(torus.mean_squares(self._amplitude)[0])
         return scale * torus.field(self._amplitude, self.seed, x, y)
 
-    def _torus(self, grid: Grid) -> Torus:
+    def _torus(self, grid: Grid) -> PeriodicLattice:
         along_x, along_y = (2.0 * math.pi / _REACH * length for length in self.ellipse.on_axes)
-        return Torus.holding(grid.lengths, (along_x, along_y), self._refused)
+        return PeriodicLattice.holding(grid.lengths, (along_x, along_y), self._refused)
 
     def _amplitude(self, qx: Array, qy: Array) -> Array:
         """Root of Eq. (9)'s transform over its peak."""
-        along, across = turned(qx, qy, self.lay)
+        along, across = rotated(qx, qy, self.lay)
         lx, ly = self.ellipse.along, self.ellipse.across
         return np.asarray(np.exp(-((lx * along) ** 2 + (ly * across) ** 2) / (8.0 * DECAY)))
 
@@ -184,10 +184,10 @@ class GaussianRoughness(Surface):
         return Detail("correlation length", length, RESOLVED, math.sqrt(8.0 * DECAY))
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        over = f"over the domain of {_by(grid.lengths)} m" if self.normalise else "in the ensemble"
+        over = f"over the domain of {size_text(grid.lengths)} m" if self.normalise else "in the ensemble"
         return (
             f"Gaussian roughness of seed {self.seed}: rms {self.rms:.6g} m {over}, {self._said_lengths}",
-            *self.cautions(grid),
+            *self.notes(grid),
         )
 
     @property
@@ -199,7 +199,7 @@ class GaussianRoughness(Surface):
             return f"correlation lengths {given[0]:.6g} m along and {given[1]:.6g} m across{at}, {turned}"
         return f"correlation length {given:.6g} m{at}"
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         length = self.detail(max(grid.spacings)).length
         if max(grid.spacings) <= length / RESOLVED:
             return ()
@@ -225,7 +225,3 @@ def _panels(side: float, length: float) -> tuple[Array, Array]:
     node, weight = np.polynomial.legendre.leggauss(10)
     points = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (side / panels)).ravel()
     return points, np.tile(weight / (2.0 * panels), panels)
-
-
-def _by(lengths: tuple[float, float]) -> str:
-    return " x ".join(f"{length:.6g}" for length in lengths)

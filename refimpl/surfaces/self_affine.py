@@ -35,7 +35,7 @@ from refimpl.errors import InputError, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.lay import Lay
 from refimpl.surfaces.surface import Detail, Surface, finite, require_seed
-from refimpl.surfaces.waves import ROUNDING, Torus, turned
+from refimpl.surfaces.waves import ROUNDING, PeriodicLattice, rotated
 
 RESOLVED = 4.0  # elements per shortest wave from which slopes count as resolved
 _PERIODS = 8  # long_cuts in the period of a free surface, at least: waves of all directions at the long end
@@ -172,23 +172,23 @@ class SelfAffineRoughness(Surface):
         z = torus.field(self._amplitude, self.seed, grid.x + offset[0], grid.y + offset[1])
         return np.asarray(z * (size / present))
 
-    def _torus(self, grid: Grid) -> Torus:
+    def _torus(self, grid: Grid) -> PeriodicLattice:
         if grid.periodic:
             if self.long_cut > min(grid.lengths):
                 raise InputError("long_cut", self.long_cut, f"at most the period, {min(grid.lengths):.6g} m")
             along_x, along_y = self.ellipse.on_axes
             shortest = (along_x * self.short_cut, along_y * self.short_cut)
-            return Torus.holding(grid.lengths, shortest, self._refused)
+            return PeriodicLattice.holding(grid.lengths, shortest, self._refused)
         far = _FAR * max(grid.lengths) / min(self.anisotropy, 1.0)
         doublings = math.ceil(math.log2(max(_PERIODS, far / self.long_cut * (1.0 - ROUNDING))))
         period = self.long_cut * 2.0**doublings
         a, shear, b = self.ellipse.sheared
         shortest = (a * self.short_cut, b * self.short_cut)
-        return Torus.holding((a * period, b * period), shortest, self._refused, shear)
+        return PeriodicLattice.holding((a * period, b * period), shortest, self._refused, shear)
 
     def _amplitude(self, qx: Array, qy: Array) -> Array:
         """Root of the PSD over its plateau."""
-        along, across = turned(qx, qy, self.lay)
+        along, across = rotated(qx, qy, self.lay)
         return np.sqrt(self._shape(np.hypot(self.anisotropy * along, across)))
 
     def _refused(self, factor: float, limit: str) -> NoReturn:
@@ -236,10 +236,10 @@ class SelfAffineRoughness(Surface):
             f"self-affine roughness of seed {self.seed}: Hurst exponent {self.hurst:.4g}, waves from "
             f"{self.long_cut:.6g} m (roll-off {self.roll_off:.6g} m) to {self.short_cut:.6g} m{stretched}; "
             f"rms height {self.rms:.6g} m, rms gradient {self.rms_gradient:.6g} ({self.given} given)",
-            *self.cautions(grid),
+            *self.notes(grid),
         )
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         spacing = max(grid.spacings)
         elements = self.short_cut / spacing
         if elements >= RESOLVED:

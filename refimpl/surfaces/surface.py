@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from refimpl.errors import LEAST, InputError, require_number
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.arrays import cautions_of, check_domain, checked, sampled, use_of
+from refimpl.surfaces.arrays import check_domain, checked, interpolation_notes, sampled, sampling_note
 
 
 class SurfaceWarning(UserWarning):
@@ -63,10 +63,10 @@ class Surface(ABC):
 
         ``x_i`` and ``y_j`` are the element centres; ``offset`` in m. On a periodic grid heights repeat with
         the grid's lengths. Raises `InputError` where the surface is not defined there; warns
-        (`SurfaceWarning`) of everything in ``cautions(grid)``.
+        (`SurfaceWarning`) of everything in ``notes(grid)``.
         """
         z = self.sample(grid, offset)
-        for caution in self.cautions(grid):
+        for caution in self.notes(grid):
             warnings.warn(caution, SurfaceWarning, stacklevel=2)
         return z
 
@@ -79,9 +79,9 @@ class Surface(ABC):
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         """Return how heights are read, cut, levelled, resampled or normalised here, one sentence each."""
-        return self.cautions(grid)
+        return self.notes(grid)
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         """The part of ``describe`` that a user should be warned of."""
         return ()
 
@@ -163,8 +163,8 @@ class SurfaceSum(Surface):
     def describe(self, grid: Grid) -> tuple[str, ...]:
         return tuple(line for term in self.terms for line in term.describe(grid))
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
-        return tuple(line for term in self.terms for line in term.cautions(grid))
+    def notes(self, grid: Grid) -> tuple[str, ...]:
+        return tuple(line for term in self.terms for line in term.notes(grid))
 
     def to_dict(self) -> dict[str, Any]:
         return {"kind": self.kind, "terms": [term.to_dict() for term in self.terms]}
@@ -199,10 +199,10 @@ class ArraySurface(Surface):
         return sampled(self.data, grid, offset)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        return use_of(self.data.shape, grid), *self.cautions(grid)
+        return sampling_note(self.data.shape, grid), *self.notes(grid)
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
-        return cautions_of(self.data.shape, grid)
+    def notes(self, grid: Grid) -> tuple[str, ...]:
+        return interpolation_notes(self.data.shape, grid)
 
     def pitch(self, lengths: tuple[float, float]) -> float:
         nx, ny = self.data.shape

@@ -45,7 +45,7 @@ _SHAPE = 0.75 * math.pi * _WIDTH  # shape of the Kaiser-Bessel kernel at twofold
 
 
 @dataclass(frozen=True)
-class Torus:
+class PeriodicLattice:
     """The waves of a torus.
 
     periods : P and Q (m)
@@ -64,7 +64,7 @@ class Torus:
         shortest: Iterable[float],
         refuse: Callable[[float, str], object],
         shear: float = 0.0,
-    ) -> Torus:
+    ) -> PeriodicLattice:
         """Return the torus with its waves down to the ``shortest`` (m) along both axes.
 
         Calls ``refuse(factor, limit)``, which raises, where they are too many by a factor.
@@ -133,7 +133,7 @@ class Torus:
         return ahead, behind[::-1, ::-1].copy()
 
 
-def turned(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
+def rotated(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
     """Components of wave vectors along a lay and across it."""
     cosine, sine = math.cos(lay), math.sin(lay)
     return qx * cosine + qy * sine, qy * cosine - qx * sine

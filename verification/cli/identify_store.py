@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
-from refimpl.identification.forward import restored
+from refimpl.identification.forward import response_from_dict
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_to_dict
 from verification.cli.output import files_of
@@ -55,7 +55,7 @@ def _read(path: Path) -> dict[str, Any]:
             raise InputError("store", str(path), allowed)
         solves: dict[str, Any] = document["solves"]
         for stored in solves.values():
-            restored(stored)
+            response_from_dict(stored)
     except InputError:
         raise
     except OSError as refused:

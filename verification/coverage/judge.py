@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.refinement import FIRST_GRIDS, refine_until, relative_bound, size_of
+from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side, refine_until, relative_bound
 from refimpl.model.friction import is_frictionless
 from verification.coverage.scenes import random_scene
 from verification.coverage.store import NUMBERS, Rung
@@ -78,7 +78,7 @@ def _judged(rungs: Sequence[Rung], kind: str, number: str, accuracy: float) -> V
     ladder = [M for M in usable if M not in FIRST_GRIDS]
     refined = refine_until(lambda M: usable[M].result, accuracy, number, ladder)
     value = refined.results[-1].numbers[number]
-    grids = tuple(map(size_of, refined.results))
+    grids = tuple(map(longer_side, refined.results))
     met = not refined.refusal
     candidates = (FIRST_GRIDS[-1], *ladder)
     errors = {M: _relative_error(usable[M], number, reference) for M in candidates}

@@ -13,7 +13,7 @@ from typing import Any
 import refimpl as rf
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import Peak
-from refimpl.accuracy.refinement import FIRST_GRIDS, size_of
+from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
 from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.friction import is_frictionless
 from verification.coverage.scenes import random_scene
@@ -45,7 +45,7 @@ class Rung:
     @property
     def M(self) -> int:
         """Elements per side."""
-        return size_of(self.result)
+        return longer_side(self.result)
 
 
 def climb(

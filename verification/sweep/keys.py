@@ -21,7 +21,7 @@ from refimpl.scene.keys import (
     sample_scene,
     type_in_words,
 )  # fmt: skip
-from refimpl.scene.parameters import moving, parameters
+from refimpl.scene.parameters import differentiable_parameters, parameters
 from refimpl.scene.scene_file import scene_from_dict
 from verification.sweep.study import AXES
 from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict, varied_names
@@ -83,7 +83,7 @@ def uses(kind: str) -> dict[str, str]:
     found = {}
     for choice in range(len(SAMPLES[kind])):
         scene = scene_from_dict(sample_scene(kind, choice), Path())
-        tables = {"vary": set(varied_names(scene)), "tolerances": set(moving(scene))}
+        tables = {"vary": set(varied_names(scene)), "tolerances": set(differentiable_parameters(scene))}
         for name in parameters(scene):
             found[name] = ", ".join(table for table, names in tables.items() if name in names)
     return found

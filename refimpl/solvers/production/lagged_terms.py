@@ -75,7 +75,7 @@ class LaggedTerms:
         self._requested: tuple[Array, Array]
         self._of_held: tuple[ActiveSet, Array] | None = None  # active set, and its traction's shear product
         self._of_pressure: tuple[float, Array] | None = None  # sum of a pressure, and its shear product
-        self._set_problem(np.broadcast_to(0.0, problem.gap.shape), self.slopes.obliqueness, None)
+        self._set_problem(np.broadcast_to(0.0, problem.gap.shape), self.slopes.cosine_product, None)
 
     def iterate(self) -> None:
         """One CG step; the shear product of the old pressure is dropped."""
@@ -121,10 +121,10 @@ class LaggedTerms:
         if problem.terms.slope_correction or self.indentation is not None:  # no gap shows these changes
             change = slopes.distance(self.slopes, self._cg.pressure > 0)
         within = max(shear.max(), -shear.min()) < LARGEST_DISPLACEMENT * problem.grid.size
-        self.diverged = not (slopes.obliqueness.min() > STEEPEST_COSINE and within)
+        self.diverged = not (slopes.cosine_product.min() > STEEPEST_COSINE and within)
         if not self.diverged:
             self.slopes = slopes
-        K = self.slopes.obliqueness
+        K = self.slopes.cosine_product
         target, load_error = self._target(K)
         self._requested = shear, K
         self._set_problem(shear, K, target)
@@ -185,7 +185,7 @@ class LaggedTerms:
             lower, upper = problem.displacements(
                 operator, pressure, self.traction, self.slopes, normal=displacement
             )
-        K = self.slopes.obliqueness
+        K = self.slopes.cosine_product
         self.indentation = problem.indentation(pressure, lower + upper, K, self._approach())
         return lower + upper - displacement, problem.slopes(lower, upper, self.indentation)
 

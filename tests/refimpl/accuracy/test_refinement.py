@@ -17,9 +17,9 @@ from refimpl.accuracy.refinement import (
     FIRST_GRIDS,
     GRID_SIZES,
     next_grid,
+    no_longer_falls,
     refine_until,
     relative_bound,
-    remains,
 )
 from refimpl.solution.solution import REPORTED
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, PEAK, made_up
@@ -81,7 +81,10 @@ def test_what_stays_open_is_measured_by_the_finest_grids_number() -> None:
     grids = [replace(made_up(M), parts={"approach": {"active set": 3e-8}}) for M in (32, 64, 128)]
     numbers = {**grids[0].numbers, "approach": 1e-3}
     grids[0] = replace(grids[0], numbers=numbers)
-    assert [remains("active set", grids, accuracy, "approach") for accuracy in (0.02, 0.04)] == [True, False]
+    assert [no_longer_falls("active set", grids, accuracy, "approach") for accuracy in (0.02, 0.04)] == [
+        True,
+        False,
+    ]
 
 
 def test_a_zero_that_is_exact_has_no_bar() -> None:

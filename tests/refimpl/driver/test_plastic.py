@@ -113,7 +113,7 @@ def test_indentation_is_where_pressures_are_capped() -> None:
     assert np.count_nonzero(at_cap) * s.grid.element_area == pytest.approx(s.plastic_area)
     assert not s.plastic_indentation[~at_cap].any()
     assert s.plastic_indentation[at_cap].min() >= 0
-    K = s.slopes.obliqueness
+    K = s.slopes.cosine_product
     # with the indentation the bodies fit: v - approach + w_p / K vanishes where pressures are capped
     assert np.abs(s.clearance + s.plastic_indentation / K)[at_cap].max() < 1e-12
 

@@ -44,7 +44,7 @@ def test_the_plastic_indentation_is_measured_from_elements_below_the_hardness(ob
     between = state.v[free]
     assert np.ptp(between) < 1e-11 * between.mean()
     assert state.indentation is not None
-    depth = (between.mean() - state.v) * state.slopes.obliqueness
+    depth = (between.mean() - state.v) * state.slopes.cosine_product
     assert state.indentation[state.plastic] == pytest.approx(depth[state.plastic], rel=1e-8)
     assert not state.indentation[~state.plastic].any()
 

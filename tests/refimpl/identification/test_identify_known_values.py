@@ -16,8 +16,8 @@ from refimpl.identification.ensemble import mean_response, scatter
 from refimpl.identification.fit import linear_fit, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
+from refimpl.identification.notes import _model
 from refimpl.identification.profile import Profile
-from refimpl.identification.remarks import _model
 from refimpl.identification.result import Identification
 
 MADE: dict[str, Any] = {

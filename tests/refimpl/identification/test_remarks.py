@@ -16,7 +16,7 @@ from refimpl.identification.design import Proposal, trial_responses
 from refimpl.identification.ensemble import is_random, redrawn
 from refimpl.identification.forward import Forward, Response
 from refimpl.identification.laws import Law
-from refimpl.identification.remarks import remarks
+from refimpl.identification.notes import notes
 
 SCENE = rf.read_scene("hertz")
 LOADS, SIZE = (1.0, 2.0, 5.0, 10.0, 20.0), math.log(2.0)
@@ -106,7 +106,7 @@ def test_each_remark_by_itself_and_none_at_the_thresholds(
     if "responses" in changes:
         fitted = replace(fitted, responses=tuple(replace(NONE, **change) for change in changes["responses"]))
         others["rows"] = found.rows[:2]
-    texts = remarks(replace(found, fitted=fitted, **others))
+    texts = notes(replace(found, fitted=fitted, **others))
     assert len(texts) == bool(said)
     assert said in "".join(texts)
 

@@ -139,7 +139,7 @@ def test_slopes_are_of_the_mean_of_both_deformed_surfaces() -> None:
     found = problem.slopes(u_lower, u_upper)
     np.testing.assert_allclose(found.tan_x, expected.tan_x, atol=1e-17)
     np.testing.assert_allclose(found.tan_y, expected.tan_y, atol=1e-17)
-    assert np.all(problem_with(Terms(oblique=False)).slopes(u_lower, u_upper).obliqueness == 1)
+    assert np.all(problem_with(Terms(oblique=False)).slopes(u_lower, u_upper).cosine_product == 1)
 
 
 @pytest.mark.parametrize(("lower", "upper", "sign"), [(1e6, None, -0.5), (2e6, 1e6, 0.5)])

@@ -64,7 +64,7 @@ def test_cosines_and_sines_are_those_of_the_angles() -> None:
     np.testing.assert_allclose(slopes.sin_x, np.sin(theta_x), rtol=1e-15)
     np.testing.assert_allclose(slopes.cos_y, np.cos(theta_y), rtol=1e-15)
     np.testing.assert_allclose(slopes.sin_y, np.sin(theta_y), rtol=1e-15)
-    np.testing.assert_allclose(slopes.obliqueness, np.cos(theta_x) * np.cos(theta_y), rtol=1e-15)
+    np.testing.assert_allclose(slopes.cosine_product, np.cos(theta_x) * np.cos(theta_y), rtol=1e-15)
 
 
 def test_distance_looks_only_where_asked() -> None:
@@ -79,10 +79,10 @@ def test_distance_looks_only_where_asked() -> None:
 
 def test_a_flat_holds_no_array_and_stays_flat_on_the_whole_grid() -> None:
     flat = Slopes.flat((3, 4))
-    for values in (flat.tan_x, flat.sin_x, flat.cos_x, flat.sin_y, flat.cos_y, flat.obliqueness):
+    for values in (flat.tan_x, flat.sin_x, flat.cos_x, flat.sin_y, flat.cos_y, flat.cosine_product):
         assert values.shape == (3, 4)
         assert not any(values.strides)
-    assert np.all(flat.obliqueness == 1)
+    assert np.all(flat.cosine_product == 1)
     assert np.all(flat.sin_y == 0)
     assert np.all(flat.sin_x == 0)
     whole = flat.spread(Window(1, 4, 0, 4), Grid((5, 7), (1.0, 1.0)))

@@ -34,7 +34,7 @@ class Counted(rf.Sphere):
         self.sampled.append(grid.shape[0])
         return super().sample(grid, offset)
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         return ("counted by hand",)
 
 
@@ -45,7 +45,7 @@ class Noting(rf.Sphere):
     radius: float = 0.14
     kind: ClassVar[str] = "noting"
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         return (f"on {grid.shape[0]}",)
 
 

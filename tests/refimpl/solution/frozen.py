@@ -39,7 +39,7 @@ def frozen_solution(problem: Problem, held: Array, slopes: Slopes) -> tuple[Arra
     influence = DenseInfluence(problem.grid, problem.direction)
     C, beta = problem.pair.shear_compliance * problem.terms.coupled, problem.friction.slope
     a = problem.pair.normal_compliance * influence.normal_matrix
-    K = slopes.obliqueness.ravel()
+    K = slopes.cosine_product.ravel()
     size = math.sqrt(math.prod(problem.grid.lengths))
     lift = problem.pair.normal_compliance * size / K.size if problem.grid.periodic else 0.0
     G = a + beta * C * influence.shear_matrix + lift * np.outer(K, K)
@@ -75,7 +75,7 @@ def assert_true(bounds: Bounds, problem: Problem, pressure: Array, traction: Arr
     held = traction - beta * pressure
     exact, approach, a = frozen_solution(problem, held, slopes)
     e, dA = pressure.ravel() - exact, problem.grid.element_area
-    K, tan_x, tan_y = slopes.obliqueness.ravel(), slopes.tan_x.ravel(), slopes.tan_y.ravel()
+    K, tan_x, tan_y = slopes.cosine_product.ravel(), slopes.tan_x.ravel(), slopes.tan_y.ravel()
     touching = (exact > 0).reshape(pressure.shape)
     energy = float(e @ a @ e) * dA
     assert energy <= bounds.energy
@@ -94,7 +94,7 @@ def assert_true(bounds: Bounds, problem: Problem, pressure: Array, traction: Arr
     assert low <= touching.sum() * dA <= high
     if problem.load is not None and (pressure >= 0).all():
         v = problem.displacements(
-            EnergyNorm(problem, slopes.obliqueness).operator, pressure, traction, slopes
+            EnergyNorm(problem, slopes.cosine_product).operator, pressure, traction, slopes
         )
         free = np.add(*v).ravel() + K * problem.gap.ravel()
         mean = float(pressure.ravel() @ free) / float(pressure.ravel() @ K)

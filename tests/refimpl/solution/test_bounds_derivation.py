@@ -25,10 +25,10 @@ class Derived:
     def __init__(self, problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> None:
         self.problem, self.pressure, self.traction, self.slopes = problem, pressure, traction, slopes
         influence = DenseInfluence(problem.grid, problem.direction)
-        norm = EnergyNorm(problem, slopes.obliqueness)
+        norm = EnergyNorm(problem, slopes.cosine_product)
         self.floor, self.lift, self.diagonal = norm.floor, norm.lift, norm.diagonal
         self.beta, self.C = problem.friction.slope, problem.pair.shear_compliance * problem.terms.coupled
-        self.shear, self.K = influence.shear_matrix, slopes.obliqueness.ravel()
+        self.shear, self.K = influence.shear_matrix, slopes.cosine_product.ravel()
         self.plain = problem.pair.normal_compliance * influence.normal_matrix
         self.matrix = self.plain + self.lift * np.outer(self.K, self.K)
         self.f = np.maximum(pressure.ravel(), 0.0)

@@ -231,9 +231,9 @@ def test_the_longest_periodic_length_is_the_period_and_the_shortest_normalised_s
 def test_unresolved_roughness_warns() -> None:
     with pytest.warns(SurfaceWarning, match="not resolved"):
         unit().heights(Grid.square(SIDE, 48))
-    assert unit().cautions(Grid.square(SIDE, 64)) == ()
-    assert unit(length=1.0).cautions(Grid.square(4.0, 16)) == ()  # just a quarter
-    (said,) = unit(length=2.0).cautions(Grid.square(1.25, 2))
+    assert unit().notes(Grid.square(SIDE, 64)) == ()
+    assert unit(length=1.0).notes(Grid.square(4.0, 16)) == ()  # just a quarter
+    (said,) = unit(length=2.0).notes(Grid.square(1.25, 2))
     assert "the element, 0.625 m, exceeds a quarter of the roughness's correlation length, 2 m" in said
 
 

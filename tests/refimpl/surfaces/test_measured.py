@@ -309,7 +309,7 @@ def test_texts_are_of_the_map_as_it_lies(tmp_path: Path) -> None:
     grid = Grid((8, 12), (4e-6, 1.2e-6))
     assert surface.pitch((1e-6, 1e-6)) == DX
     assert surface.on_upper_body().reading is surface.reading
-    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.cautions(grid)[0]
+    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.notes(grid)[0]
     assert (
         "the window of 4e-06 x 1.2e-06 m about (4e-06, 7e-06) m is used, 13 x 8" in surface.describe(grid)[1]
     )

@@ -12,7 +12,7 @@ from refimpl.measured.missing_points import MAX_ELIMINATED, fill
 from refimpl.measured.orientation import oriented
 from refimpl.measured.preparation import prepare
 from refimpl.measured.readers import read
-from refimpl.measured.reading import Reading
+from refimpl.measured.reading import RawHeights
 
 
 @pytest.mark.parametrize("suffix", ["npy", "txt", "csv"])
@@ -59,7 +59,7 @@ def test_the_centre_turns_with_the_map(
     degrees: int, centre: tuple[float, float], pixel: tuple[float, float]
 ) -> None:
     """(10, 20) m of 60 x 90 m, anticlockwise."""
-    reading = Reading(np.arange(900.0).reshape(30, 30), (2.0, 3.0), "map", "by hand")
+    reading = RawHeights(np.arange(900.0).reshape(30, 30), (2.0, 3.0), "map", "by hand")
     words = {"replica": False, "mirror": None, "turned_over": False, "centre": (10.0, 20.0)}
     found = oriented(reading, rotate_deg=degrees, **words)  # type: ignore[arg-type]  # as named
     assert found.centre == centre
@@ -100,6 +100,6 @@ def test_nayaks_parameter_of_one_wave() -> None:
 def test_a_high_pass_takes_the_plane_and_a_low_pass_leaves_it() -> None:
     x, y = np.arange(50.0), np.arange(40.0)
     plane = 3.0 + 0.2 * x[:, None] - 0.1 * y[None, :]
-    reading = Reading(plane, (1.0, 1.0), "map", "by hand")
+    reading = RawHeights(plane, (1.0, 1.0), "map", "by hand")
     assert np.allclose(prepare(reading, low_pass=8.0).heights, plane, rtol=0, atol=1e-9)
     assert np.allclose(prepare(reading, high_pass=8.0).heights, 0.0, rtol=0, atol=1e-9)

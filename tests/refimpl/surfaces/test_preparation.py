@@ -13,7 +13,7 @@ from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface
 from refimpl.measured.detrending import Curved, fit_form
 from refimpl.measured.preparation import _off_neighbours, gaussian_filter, prepare
-from refimpl.measured.reading import Reading
+from refimpl.measured.reading import RawHeights
 from refimpl.measured.roughness_fit import _drawn, _gaussian_psd
 from tests.refimpl.surfaces.measured import quietly
 
@@ -99,8 +99,8 @@ def test_levels_that_are_none(level: object) -> None:
 # --- outliers ---
 
 
-def reading_of(z: np.ndarray, pixel: tuple[float, float] = PIXEL) -> Reading:
-    return Reading(z, pixel, "map", "by hand")
+def reading_of(z: np.ndarray, pixel: tuple[float, float] = PIXEL) -> RawHeights:
+    return RawHeights(z, pixel, "map", "by hand")
 
 
 def test_outliers_become_missing_and_nothing_else() -> None:

@@ -273,9 +273,9 @@ def test_pinned() -> None:
 def test_an_unresolved_short_cut_is_warned_of() -> None:
     with pytest.warns(SurfaceWarning, match=r"2 elements per shortest wave, 2e-05 m: the grid misses"):
         rough().heights(Grid.square(SIDE, 100))
-    assert rough().cautions(Grid.square(SIDE, 200)) == ()
+    assert rough().notes(Grid.square(SIDE, 200)) == ()
     slope, curvature = rough().missed(SIDE / 100)
-    (said,) = rough().cautions(Grid.square(SIDE, 100))
+    (said,) = rough().notes(Grid.square(SIDE, 100))
     assert f"misses {slope:.0%} of the rms slope and {curvature:.0%} of the rms curvature" in said
 
 

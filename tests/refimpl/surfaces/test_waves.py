@@ -9,7 +9,7 @@ import pytest
 
 from refimpl.grid import Array
 from refimpl.surfaces import waves
-from refimpl.surfaces.waves import MAX_WAVES, Torus
+from refimpl.surfaces.waves import MAX_WAVES, PeriodicLattice
 from refimpl.surfaces.white_noise import STREAM, white_noise
 
 
@@ -21,7 +21,7 @@ def falling(qx: Array, qy: Array) -> Array:
 @pytest.mark.parametrize("shear", [0.0, 0.37, -2.0])
 @pytest.mark.parametrize("count", [(15, 25), (70, 3), (0, 4), (64, 63)])
 def test_the_field_is_the_plain_sum_of_waves(shear: float, count: tuple[int, int]) -> None:
-    torus = Torus((1.3, 2.1), count, shear)
+    torus = PeriodicLattice((1.3, 2.1), count, shear)
     x, y = np.random.default_rng(3).uniform(-3, 5, (2, 12))
     k, across = (np.arange(-n, n + 1.0) for n in count)
     qx, qy = torus.wave_vectors(k, across)
@@ -35,7 +35,7 @@ def test_the_field_is_the_plain_sum_of_waves(shear: float, count: tuple[int, int
 
 
 def test_mean_squares_are_the_sums_over_all_waves() -> None:
-    torus = Torus((1.3, 2.1), (15, 25), 0.4)
+    torus = PeriodicLattice((1.3, 2.1), (15, 25), 0.4)
     qx, qy = torus.wave_vectors(np.arange(-15, 16.0), np.arange(-25, 26.0))
     power = falling(qx, qy) ** 2
     expected = power.sum(), (power * (qx**2 + qy**2)).sum()
@@ -43,7 +43,7 @@ def test_mean_squares_are_the_sums_over_all_waves() -> None:
 
 
 def test_wave_vectors_are_the_gradients_of_the_phases() -> None:
-    torus = Torus((1.3, 2.1), (3, 3), 0.4)
+    torus = PeriodicLattice((1.3, 2.1), (3, 3), 0.4)
     qx, qy = torus.wave_vectors(np.array([2.0]), np.array([-1.0]))
 
     def phase(x: float, y: float) -> float:
@@ -54,7 +54,7 @@ def test_wave_vectors_are_the_gradients_of_the_phases() -> None:
 
 def test_heights_are_the_same_in_any_company() -> None:
     """A point's height depends on no other point: strips, grids and orders are out of the question."""
-    torus = Torus((1.0, 1.0), (150, 150), 0.2)
+    torus = PeriodicLattice((1.0, 1.0), (150, 150), 0.2)
     x = np.random.default_rng(4).uniform(0, 1, 150)
     all_of_them = torus.field(falling, 1, x, x)
     some = torus.field(falling, 1, x[100:40:-7], x[3:90:11])
@@ -77,10 +77,10 @@ def test_noise_of_waves_is_not_the_noise_of_lattices() -> None:
 
 def test_a_torus_holds_so_many_waves_and_no_more() -> None:
     refused = []
-    torus = Torus.holding((2.0, 1.0), (0.5, 0.25), lambda *why: refused.append(why))
+    torus = PeriodicLattice.holding((2.0, 1.0), (0.5, 0.25), lambda *why: refused.append(why))
     assert torus.waves == (4, 4)
     assert not refused
-    Torus.holding((2.0, 1.0), (2.0 / 8191, 1.0), lambda *why: refused.append(why))
+    PeriodicLattice.holding((2.0, 1.0), (2.0 / 8191, 1.0), lambda *why: refused.append(why))
     ((factor, limit),) = refused
     assert factor == pytest.approx((2 * 8191 + 1) / MAX_WAVES)
     assert limit == "8192 waves an axis"

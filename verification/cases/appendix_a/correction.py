@@ -77,7 +77,7 @@ def remedied(scene: rf.Scene, size: int, reach: int = 1) -> rf.Solution:
     lower, upper = scene.heights(scene.grid(size))
     found = rf.solve(scene, size)
     for _ in range(ROUNDS):
-        steep = found.slopes.obliqueness  # Eq. (6) divides displacements by it, and not heights
+        steep = found.slopes.cosine_product  # Eq. (6) divides displacements by it, and not heights
         sunk = near_field(found, scene.lower.material, 1.0, reach) / steep
         raised = near_field(found, scene.upper.material, -1.0, reach) / steep
         changed = replace(

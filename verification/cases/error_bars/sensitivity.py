@@ -10,7 +10,7 @@ from scipy.stats import qmc
 
 import refimpl as rf
 from refimpl.model.friction import is_frictionless
-from refimpl.scene.parameters import moving, with_parameter
+from refimpl.scene.parameters import differentiable_parameters, with_parameter
 from refimpl.sensitivities.budget import budget
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
 from verification.coverage.scenes import random_scene
@@ -52,7 +52,7 @@ def _differences(seed: int) -> tuple[list[Compared], int]:
     scene = random_scene(seed).scene
     found = rf.sensitivity(scene, rf.solve(scene, M, tolerance=TIGHT))
     compared, skipped = [], 0
-    for name, value in moving(scene).items():
+    for name, value in differentiable_parameters(scene).items():
         low, high = (
             rf.solve(with_parameter(scene, name, value * (1 + s)), M, tolerance=TIGHT) for s in (-STEP, STEP)
         )
@@ -154,7 +154,7 @@ def _budget_over_draws(M: int) -> dict[str, float]:
     for shares in stats.norm.ppf(points) / stats.norm.ppf(0.975):
         one = scene
         for share, (name, tolerance) in zip(shares, TOLERANCES.items(), strict=True):
-            one = with_parameter(one, name, moving(scene)[name] * (1 + share * tolerance))
+            one = with_parameter(one, name, differentiable_parameters(scene)[name] * (1 + share * tolerance))
         solution = rf.solve(one, M)
         for number in NUMBERS:
             drawn[number].append(getattr(solution, number))

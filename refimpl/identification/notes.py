@@ -18,7 +18,7 @@ _SETTLED = 0.5  # standard uncertainties by which the last solves may differ fro
 _UNLIKELY = 0.01  # probability of a chi-square as large, below which the model or the data are doubted
 
 
-def remarks(result: Identification) -> tuple[str, ...]:
+def notes(result: Identification) -> tuple[str, ...]:
     """Return the warnings, the most important first."""
     responses = result.fitted.responses
     return (
