@@ -85,7 +85,12 @@ def solve(
         start=start,
         limits=Limits(max_grid, max_seconds, max_memory),
     )
-    discretiser = Discretiser(scene, options.approach)
+    return _solved(options, progress)
+
+
+def _solved(options: Options, progress: Progress | None) -> Solution:
+    """The solution by checked options: on one grid, or on a sequence of them."""
+    discretiser, start = Discretiser(options.scene, options.approach), options.start
     plan = options.plan(discretiser)
     if options.accuracy is not None:
         return refined(options, plan, discretiser, progress)

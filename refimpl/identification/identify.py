@@ -66,46 +66,66 @@ def identify(
     check_rows(rows, len(NAMES) + len(further))
     forward = Forward(grid, memory, key, report, further)
     fitted, parts = _fitted(scene, rows, forward, realisations, tolerances)
-    covariance = np.asarray(sum(parts.values()))
     profile = profile_of(fitted, parts)
+    result = _result(rows, fitted, parts, profile, further)
+    result = replace(
+        result, predictions=_predictions(scene, rows, loads, forward, result, profile, realisations)
+    )
+    if design and result.values["tau"].relative > WIDE:
+        result = replace(result, proposal=_proposal(scene, forward, result, parts, realisations))
+    result = replace(result, solves=forward.solves)
+    return replace(result, warnings=notes(result))
+
+
+def _result(
+    rows: tuple[Row, ...],
+    fitted: Fit,
+    parts: Mapping[str, Array],
+    profile: Profile | VaryingProfile,
+    further: Sequence[str],
+) -> Identification:
+    """What follows from a fit and its covariance by source, without a further solve."""
+    covariance = np.asarray(sum(parts.values()))
     values = _values(fitted, profile, further)
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
     factor = _best_factor(covariance, np.mean([one.slopes for one in fitted.responses], axis=0))
     gradient = np.array([factor, 1.0] + [0.0] * len(further))
-    combination = Interval(float(gradient @ fitted.theta), *profile.interval(gradient))
-    new = [
-        mean_response(draws(forward, replace(scene, load=load), fitted.theta, realisations)) for load in loads
-    ]
-    responses, at = (*fitted.responses, *new), (*(row.load for row in rows), *loads)
-    predictions = tuple(
-        _prediction(load, response, fitted.theta, profile)
-        for load, response in zip(at, responses, strict=True)
-    )
     degrees = max(len(rows) - len(values), 0)
-    wide = design and values["tau"].relative > WIDE
-    proposal = _proposal(scene, rows, forward, fitted, covariance, realisations) if wide else None
-    result = Identification(
+    return Identification(
         rows=rows,
         values=values,
         covariance=covariance * np.outer(units, units),
         shares={name: _standard(part, units) for name, part in parts.items()},
         method="profile likelihood" if profile.is_bounded else "ellipse",
         factor=factor,
-        combination=combination,
-        predictions=predictions,
+        combination=Interval(float(gradient @ fitted.theta), *profile.interval(gradient)),
         residuals=tuple(map(float, fitted.residuals)),
         deleted=tuple(map(float, fitted.deleted)),
         chi_square=fitted.chi_square,
         degrees=degrees,
         probability=float(chi2.sf(fitted.chi_square, degrees)) if degrees else 1.0,
         laws=compare(rows, fitted),
-        proposal=proposal,
-        warnings=(),
-        solves=forward.solves,
         passes=fitted.passes,
         fitted=fitted,
     )
-    return replace(result, warnings=notes(result))
+
+
+def _predictions(
+    scene: Scene,
+    rows: Sequence[Row],
+    loads: Sequence[float],
+    forward: Forward,
+    result: Identification,
+    profile: Profile | VaryingProfile,
+    realisations: int,
+) -> tuple[Prediction, ...]:
+    """Predictions at the loads of all rows, whose responses the fit has, and at further ones (N)."""
+    theta = result.fitted.theta
+    new = [mean_response(draws(forward, replace(scene, load=load), theta, realisations)) for load in loads]
+    responses, at = (*result.fitted.responses, *new), (*(row.load for row in rows), *loads)
+    return tuple(
+        _prediction(load, response, theta, profile) for load, response in zip(at, responses, strict=True)
+    )
 
 
 def _fitted(
@@ -123,12 +143,13 @@ def _fitted(
 
 
 def _proposal(
-    scene: Scene, rows: Sequence[Row], forward: Forward, fitted: Fit, covariance: Array, realisations: int
+    scene: Scene, forward: Forward, result: Identification, parts: Mapping[str, Array], realisations: int
 ) -> Proposal | None:
     """Further loads, measured as well as the present ones in the median."""
-    trials = trial_responses(scene, rows, forward, fitted.theta, realisations)
+    rows, theta = result.rows, result.fitted.theta
+    trials = trial_responses(scene, rows, forward, theta, realisations)
     relative = float(np.median([row.u_mu / max(row.mu, row.u_mu) for row in rows]))
-    return propose(fitted.theta, covariance, trials, relative)
+    return propose(theta, np.asarray(sum(parts.values())), trials, relative)
 
 
 def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[str]) -> dict[str, Interval]:

@@ -62,18 +62,18 @@ class Identification:
     method: str
     factor: float
     combination: Interval
-    predictions: tuple[Prediction, ...]
     residuals: tuple[float, ...]
     deleted: tuple[float, ...]
     chi_square: float
     degrees: int
     probability: float
     laws: tuple[Law, ...]
-    proposal: Proposal | None
-    warnings: tuple[str, ...]
-    solves: int
     passes: int
     fitted: Fit = field(repr=False)
+    predictions: tuple[Prediction, ...] = ()
+    proposal: Proposal | None = None
+    warnings: tuple[str, ...] = ()
+    solves: int = 0
 
     @property
     def outliers(self) -> tuple[int, ...]:
