@@ -36,7 +36,7 @@ MARKLESS = ("mat", "nms", "hgt")  # read for their suffix alone
 
 # Errors that a reader may raise on bytes that do not have the format of their mark. SurfaceTopography's own
 # errors are plain Exceptions and join these where it is imported.
-BROKEN: tuple[type[Exception], ...] = (
+CORRUPT: tuple[type[Exception], ...] = (
     ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
     RuntimeError, SyntaxError, TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile,
     zlib.error,
@@ -53,8 +53,8 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
             return read_as(library, path, name, given, *rewritten(path, name))
         except InputError:
             raise
-        except broken(library) as error:
-            failures.append(f"{name}: {brief(error)}")
+        except corrupt(library) as error:
+            failures.append(f"{name}: {first_line(error)}")
     likely = failures[0] if failures else f"none of SurfaceTopography {library.__version__}'s formats fits"
     raise InputError("path", str(path), f"a file that can be read ({likely})")
 
@@ -104,7 +104,9 @@ def read_as(
     unit, pixel, overridden = given.resolve(path.name, unit, pixel)
     if given.unit is not None or stated is None:
         stated = UNITS[unit]
-    told = [f"SurfaceTopography: {brief(w.message)}" for w in said if issubclass(w.category, UserWarning)]
+    told = [
+        f"SurfaceTopography: {first_line(w.message)}" for w in said if issubclass(w.category, UserWarning)
+    ]
     upwards = name in UPWARDS
     heights = heights * stated
     return RawHeights(
@@ -163,14 +165,14 @@ def _loaded(
     return heights, unit, pixel
 
 
-def guarded(path: Path, load: Callable[[Path], T], kinds: tuple[type[Exception], ...] = BROKEN) -> T:
+def read_or_refuse(path: Path, load: Callable[[Path], T], kinds: tuple[type[Exception], ...] = CORRUPT) -> T:
     """``load(path)``, whose failures become one line of InputError."""
     try:
         return load(path)
     except InputError:
         raise
     except kinds as error:
-        raise InputError("path", str(path), f"a file that can be read ({brief(error)})") from error
+        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
 
 
 def library_for(path: Path) -> ModuleType:
@@ -188,18 +190,13 @@ def library_for(path: Path) -> ModuleType:
     return module
 
 
-def broken(library: ModuleType) -> tuple[type[Exception], ...]:
+def corrupt(library: ModuleType) -> tuple[type[Exception], ...]:
     """All that the library raises on files that are not what they claim to be."""
     own = library.Exceptions  # with no base in common
-    return (*BROKEN, MatReadError, own.ReadFileError, own.UnknownFileFormat, own.CannotPerformAnalysisError)
+    return (*CORRUPT, MatReadError, own.ReadFileError, own.UnknownFileFormat, own.CannotPerformAnalysisError)
 
 
-def stream(text: bytes) -> io.BytesIO:
-    """A file in memory."""
-    return io.BytesIO(text)
-
-
-def brief(error: object) -> str:
+def first_line(error: object) -> str:
     """One line of an error or a warning: its kind and its own words."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
     return f"{type(error).__name__}: {lines[0][:160]}"

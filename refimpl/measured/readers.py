@@ -6,6 +6,7 @@ unpacks to (Python's zipfile never unpacks more than that), are held against MAX
 
 from __future__ import annotations
 
+import io
 import os
 import zipfile
 from dataclasses import replace
@@ -16,15 +17,14 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.measured.instrument_files import (
-    BROKEN,
-    brief,
-    broken,
+    CORRUPT,
     claimed_by_magic,
-    guarded,
+    corrupt,
+    first_line,
     library_for,
     read_as,
     read_instrument,
-    stream,
+    read_or_refuse,
 )
 from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Overrides, RawHeights, checked
 from refimpl.measured.text_tables import TextTable, decoded, is_triples, on_grid, read_table
@@ -51,12 +51,12 @@ def read(
     """
     _check_size(path)
     given = Overrides(unit, pixel_size, channel)
-    head = guarded(path, _head)
+    head = read_or_refuse(path, _head)
     if path.suffix.lower() == ".npy":
-        return _plain(path, checked(path, guarded(path, _npy)), given, "as a plain array")
+        return _plain(path, checked(path, read_or_refuse(path, _npy)), given, "as a plain array")
     is_text = head.startswith(_UTF16) or b"\0" not in head
     if is_text and not claimed_by_magic(path, head):
-        return guarded(path, lambda file: _text(file, given))
+        return read_or_refuse(path, lambda file: _text(file, given))
     return read_instrument(path, given, head)
 
 
@@ -68,8 +68,8 @@ def _check_size(path: Path) -> None:
         if zipfile.is_zipfile(path):
             with zipfile.ZipFile(path) as archive:
                 size = max(size, sum(member.file_size for member in archive.infolist()))
-    except BROKEN as error:
-        raise InputError("path", str(path), f"a readable file ({brief(error)})") from error
+    except CORRUPT as error:
+        raise InputError("path", str(path), f"a readable file ({first_line(error)})") from error
     if not 0 < size <= MAX_BYTES:
         raise InputError(
             "path", str(path), f"at least 1 and at most {MAX_BYTES} bytes, unpacked as well (this: {size})"
@@ -129,9 +129,9 @@ def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     text = table.normalised() if table.notes or "," in table.header[-1] else decoded(path).encode()
 
     def load(file: Path) -> RawHeights:
-        return read_as(library, file, "asc", given, stream(text), table.notes)
+        return read_as(library, file, "asc", given, io.BytesIO(text), table.notes)
 
-    return guarded(path, load, broken(library))
+    return read_or_refuse(path, load, corrupt(library))
 
 
 def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:

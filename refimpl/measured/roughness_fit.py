@@ -19,6 +19,7 @@ from refimpl.grid import Array
 from refimpl.measured.areal_parameters import Autocorrelation, Pixel, Spectrum
 from refimpl.measured.detrending import fit as fit_polynomial
 from refimpl.surfaces.noise_lattice import DECAY
+from refimpl.surfaces.waves import rotated
 
 KINDS = ("gaussian", "self-affine")
 ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
@@ -120,7 +121,7 @@ def _gaussian_psd(values: Values) -> Callable[[Array, Array], Array]:
     lx, ly, lay = values["lx"], values["ly"], values.get("lay", 0.0)
 
     def density(qx: Array, qy: Array) -> Array:
-        along, across = _turned(qx, qy, lay)
+        along, across = rotated(qx, qy, lay)
         return np.asarray(np.exp(-((along * lx) ** 2 + (across * ly) ** 2) / (4.0 * DECAY)))
 
     return density
@@ -183,17 +184,12 @@ def _self_affine_psd(values: Values) -> Callable[[Array, Array], Array]:
     q_long, q_roll, q_short = (2 * math.pi / values[key] for key in ("long_cut", "roll_off", "short_cut"))
 
     def density(qx: Array, qy: Array) -> Array:
-        along, across = _turned(qx, qy, lay)
+        along, across = rotated(qx, qy, lay)
         q = np.hypot(g * along, across)
         power = np.maximum(q / q_roll, 1.0) ** (-2.0 - 2.0 * values["hurst"])
         return np.where((q >= 0.999 * q_long) & (q <= q_short), power, 0.0)
 
     return density
-
-
-def _turned(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
-    cos, sin = math.cos(lay), math.sin(lay)
-    return cos * qx + sin * qy, cos * qy - sin * qx
 
 
 def _estimates(

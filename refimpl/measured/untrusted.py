@@ -34,8 +34,8 @@ def read_untrusted(path: Path, load: Callable[[], T]) -> T:
     except InputError:
         raise
     except Exception as error:  # readers of forged bytes raise anything
-        brief = " ".join(f"{type(error).__name__}: {error}".split())[:160]
-        raise InputError("path", str(path), f"a file that can be read ({brief})") from error
+        found = " ".join(f"{type(error).__name__}: {error}".split())[:160]
+        raise InputError("path", str(path), f"a file that can be read ({found})") from error
 
 
 def _load_whole(path: Path, load: Callable[[], T]) -> T:

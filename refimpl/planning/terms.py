@@ -101,12 +101,17 @@ class _Choice:
         moved = coupled.included or oblique.included or correction.included
         return coupled, oblique, tilted, correction, self._active_set(moved), self._plastic()
 
+    def _requested(self, name: str, excluded: str = "excluded") -> Term | None:
+        """The term as the user requests it; None where the scene decides."""
+        included = getattr(self.requested, name)
+        if included is None:
+            return None
+        return Term(name, included, "requested" if included else excluded, self.effects.get(name, NONE))
+
     def _coupled(self, negligible: set[str]) -> Term:
         name, effect = "coupled", self.effects["coupled"]
-        if self.requested.coupled is not None:
-            return Term(
-                name, self.requested.coupled, "requested" if self.requested.coupled else "excluded", effect
-            )
+        if (requested := self._requested(name)) is not None:
+            return requested
         if self.pair.coupling_ratio == 0:
             return Term(name, False, self._why_uncoupled())
         if self.frictionless and not self.requested.slope_correction:
@@ -122,9 +127,8 @@ class _Choice:
 
     def _oblique(self, negligible: set[str]) -> Term:
         name, effect = "oblique", self.effects["oblique"]
-        if self.requested.oblique is not None:
-            reason = "requested" if self.requested.oblique else "excluded: small-slope approximation"
-            return Term(name, self.requested.oblique, reason, effect)
+        if (requested := self._requested(name, "excluded: small-slope approximation")) is not None:
+            return requested
         if name in negligible:
             reason = "negligible: small-slope approximation"
             return Term(name, False, reason, effect, negligible=effect != NONE)
@@ -135,10 +139,8 @@ class _Choice:
         name, effect, correction = "tilted", self.effects["tilted"], self.requested.slope_correction
         if not oblique.included:
             return Term(name, False, "no slope terms")
-        if self.requested.tilted is not None:
-            return Term(
-                name, self.requested.tilted, "requested" if self.requested.tilted else "excluded", effect
-            )
+        if (requested := self._requested(name)) is not None:
+            return requested
         if self.frictionless and not correction:
             return Term(name, False, "no friction")
         if self.pair.shear_ratio == 0:
@@ -150,9 +152,9 @@ class _Choice:
         return Term(name, True, "shear moves the common surface", effect)
 
     def _slope_correction(self) -> Term:
-        included = self.requested.slope_correction
-        reason = "requested" if included else "not requested: Eq. (7) as printed"
-        return Term("slope_correction", included, reason, self.effects["slope_correction"])
+        found = self._requested("slope_correction", "not requested: Eq. (7) as printed")
+        assert found is not None  # the scene never decides it
+        return found
 
     def _active_set(self, moved: bool) -> Term:
         name = "active_set"
@@ -165,9 +167,8 @@ class _Choice:
     def _plastic(self) -> Term:
         """Without a request the cap enters where expected pressures come near the hardness."""
         name, hardness = "plastic", self.pair.softer_hardness
-        if self.requested.plastic is not None:
-            reason = "requested" if self.requested.plastic else "excluded: elastic at any pressure"
-            return Term(name, self.requested.plastic, reason)
+        if (requested := self._requested(name, "excluded: elastic at any pressure")) is not None:
+            return requested
         if hardness is None:
             return Term(name, False, "no hardness given")
         if self.peak < hardness:

@@ -36,12 +36,6 @@ def slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array
     return np.asarray(np.gradient(z, dx, axis=0)), np.asarray(np.gradient(z, dy, axis=1))
 
 
-def slope_angles(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array]:
-    """Angles ``atan(dz/dx), atan(dz/dy)`` (rad)."""
-    dz_dx, dz_dy = slopes(z, spacing)
-    return np.arctan(dz_dx), np.arctan(dz_dy)
-
-
 def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, float]:
     """Root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts).
 
