@@ -140,12 +140,16 @@ class _Frozen:
         self.slope = problem.friction.slope
         self.K = slopes.cosine_product
         self.coupled = self.slope > 0 and problem.elasticity.coupling_ratio != 0
-        self._set(np.maximum(pressure, 0.0))
-        spurious = (self.f > 0) & (self.w >= norm.diagonal * self.f)
-        if spurious.any():
-            self._set(np.where(spurious, 0.0, self.f))
+        self._admit()
         self.clipped = norm.norm(self.f - pressure)
         self._split()
+
+    def _admit(self) -> None:
+        """The state at pressures that the bounds are for: those that stand where the gap is open are zero."""
+        self._set(np.maximum(self.pressure, 0.0))
+        spurious = (self.f > 0) & (self.w >= self.norm.diagonal * self.f)
+        if spurious.any():
+            self._set(np.where(spurious, 0.0, self.f))
 
     def _set(self, f: Array) -> None:
         """Pressure, approach and w, from the displacements of this pressure."""
@@ -210,23 +214,14 @@ class _Frozen:
 class _Capped(_Frozen):
     """The like for pressures up to the hardness; under a load for flat slopes, with f balanced first."""
 
-    def __init__(
-        self, problem: Problem, norm: EnergyNorm, pressure: Array, traction: Array, slopes: Slopes
-    ) -> None:
-        self.problem, self.norm, self.slopes = problem, norm, slopes
-        self.pressure, self.traction = pressure, traction
-        self.slope = problem.friction.slope
-        self.K = slopes.cosine_product
-        self.coupled = self.slope > 0 and problem.elasticity.coupling_ratio != 0
-        f = np.clip(pressure, 0.0, problem.cap)
+    def _admit(self) -> None:
+        problem, f = self.problem, np.clip(self.pressure, 0.0, self.problem.cap)
         between: Mask = (f > 0) & (f < problem.cap)
         if problem.load is not None and between.any():
             missing = problem.load / problem.grid.element_area - float(f.sum())
             f = np.where(between, f + missing / np.count_nonzero(between), f)
         self._set(f)
         self.between: Mask = (f > 0) & (f < problem.cap)
-        self.clipped = norm.norm(f - pressure)
-        self._split()
 
     def _level(self, f: Array, free: Array) -> float:
         return approach_from(f, free, self.problem.cap)
@@ -324,18 +319,5 @@ def _largest_root(quadratic: float, linear: float, constant: float) -> float:
 def _none(problem: Problem, why: str) -> Bounds:
     nowhere = no_elements(problem)
     whole = nowhere.size * problem.grid.element_area
-    return Bounds(
-        energy=math.inf,
-        pressure=math.inf,
-        pressure_l2=math.inf,
-        approach=math.inf,
-        normal_force=math.inf,
-        friction_force=math.inf,
-        binormal_force=math.inf,
-        friction_coefficient=math.inf,
-        in_contact=nowhere,
-        out_of_contact=nowhere,
-        contact_area=(0.0, whole),
-        plastic=nowhere,
-        unproven=why,
-    )
+    unbounded = (math.inf,) * 8  # of every number from the energy to mu
+    return Bounds(*unbounded, nowhere, nowhere, contact_area=(0.0, whole), plastic=nowhere, unproven=why)

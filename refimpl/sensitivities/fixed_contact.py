@@ -30,7 +30,7 @@ _RESTART, _CYCLES = 80, 5
 _FACETS = 4  # times: each leaves a hundredth of what slopes still change by (at 5 degrees; see the tests)
 
 
-class Response(NamedTuple):
+class LinearResponse(NamedTuple):
     """Answer of pressures (window's shape, Pa) and approach (m) to a unit of change; GMRES's residual."""
 
     pressure: Array
@@ -68,10 +68,10 @@ class FixedContact:
         misfit = (u + K * (problem.gap - approach))[self.free] / self.approach
         return np.append(misfit, forces.normal / (problem.load or forces.normal) - 1)
 
-    def response(self, change: Array) -> Response:
+    def response(self, change: Array) -> LinearResponse:
         """Solve ``J dx = -change``, the change being a derivative of the residual."""
         if not change.any():  # the modulus of a body that is as good as rigid
-            return Response(*self._unpacked(change), 0.0)
+            return LinearResponse(*self._unpacked(change), 0.0)
         size = len(change)
         jacobian, plain = (
             LinearOperator((size, size), matvec=product, dtype=np.float64)
@@ -79,7 +79,7 @@ class FixedContact:
         )
         x, _ = gmres(jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES, M=plain)
         left = float(np.linalg.norm(jacobian @ x + change) / np.linalg.norm(change))
-        return Response(*self._unpacked(x), left)
+        return LinearResponse(*self._unpacked(x), left)
 
     def jacobian(self, x: Array) -> Array:
         """Return ``J x`` by a difference quotient.

@@ -11,7 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.sensitivities.budget import budget
-from refimpl.sensitivities.fixed_contact import FixedContact, Response
+from refimpl.sensitivities.fixed_contact import FixedContact, LinearResponse
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity
 
 # by its module's name: the package has a function of the same name
@@ -125,7 +125,7 @@ def test_a_capped_solve_that_fails_bounds_nothing(
 def test_the_worst_of_the_linear_solves_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     respond, left = FixedContact.response, [1e-9, 3e-8, 2e-8, 5e-9]
 
-    def answered(self: FixedContact, change: object) -> Response:
+    def answered(self: FixedContact, change: object) -> LinearResponse:
         used.append(left[len(used) % 4])
         return respond(self, change)._replace(residual=used[-1])  # type: ignore[arg-type]  # an array
 
