@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -102,6 +103,12 @@ class Slopes:
         squares *= other
         np.sqrt(squares, out=squares)
         return np.divide(1, squares, out=squares)
+
+    @property
+    def obliqueness(self) -> Array:
+        """Former name of `cosine_product`, for one release."""
+        warnings.warn("Slopes.obliqueness is now Slopes.cosine_product", DeprecationWarning, stacklevel=2)
+        return self.cosine_product
 
     def per_cosine_product(self, values: Array) -> Array:
         """Return ``values / cosine_product``, in place where that is 1 everywhere."""
