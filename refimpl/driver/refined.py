@@ -26,7 +26,6 @@ from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import effects_in
 from refimpl.scene.discretise import Discretiser
-from refimpl.scene.scene import Scene
 from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.data_error import finest_by_data
 from refimpl.solution.evidence import Evidence
@@ -44,7 +43,7 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
     """
     scene, quantity = options.scene, options.target_quantity
     assert options.accuracy is not None
-    grids = _Refinement(scene, plan, discretiser, options, progress)
+    grids = _Refinement(options, plan, discretiser, progress)
     try:
         ended = refine_until(
             grids.features_at,
@@ -94,7 +93,7 @@ def forecast(options: Options, plan: Plan, discretiser: Discretiser) -> Forecast
     """Solve the grids that open a refinement, and say by their bars what it would end with."""
     scene, quantity, accuracy = options.scene, options.target_quantity, options.accuracy
     assert accuracy is not None
-    grids = _Refinement(scene, plan, discretiser, options, None)
+    grids = _Refinement(options, plan, discretiser, None)
     results = [grids.features_at(M * scene.slenderness) for M in FIRST_GRIDS]
     size, refusal = longer_side(results[-1]), ""
     if results[-1].touching and relative_bound(results, quantity) > accuracy:
@@ -115,14 +114,9 @@ class _Refinement:
     """Solves of one scene on finer and finer grids; terms that turn out to matter are restored for good."""
 
     def __init__(
-        self,
-        scene: Scene,
-        plan: Plan,
-        discretiser: Discretiser,
-        options: Options,
-        progress: Progress | None,
+        self, options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None
     ) -> None:
-        self.scene, self.plan = scene, plan
+        self.scene, self.plan = options.scene, plan
         self.costs: list[Cost] = []
         self.last: Evidence | None = None
         self._discretiser, self._progress = discretiser, progress
