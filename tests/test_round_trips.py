@@ -253,6 +253,18 @@ def test_solutions() -> None:
         assert same or callable(one), name
 
 
+def test_a_changed_solution_keeps_the_rest() -> None:
+    """Changes stay through further ones; names that are none are refused, and so is assignment."""
+    solution = rf.solve(rf.read_scene("hertz"), 8)
+    changed = replace(replace(solution, pressure=2 * solution.pressure), status=rf.Status.STAGNATED)  # type: ignore[call-arg]  # any attribute
+    assert changed.max_pressure == solution.max_pressure == 0.5 * changed.pressure.max()
+    assert (changed.status, changed.summary()["contact_area"]) == (rf.Status.STAGNATED, solution.contact_area)
+    with pytest.raises(TypeError, match="no attribute presure"):
+        replace(solution, presure=solution.pressure)  # type: ignore[call-arg]  # the point
+    with pytest.raises(AttributeError):
+        solution.pressure = 2 * solution.pressure  # type: ignore[misc]  # the point
+
+
 @FEW
 @given(instances(GridFeatures, KNOWN), instances(Grid, KNOWN))
 def test_features_change_no_field_beside_the_one_that_is_replaced(features: GridFeatures, grid: Grid) -> None:

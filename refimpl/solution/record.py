@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
 from typing import Any
@@ -54,7 +55,7 @@ class _FromPart:
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = self._name or name
 
-    def __get__(self, record: Record | None, owner: type) -> Any:
+    def __get__(self, record: Parts | None, owner: type) -> Any:
         if record is None:
             return self
         part = self._part(record)
@@ -65,14 +66,8 @@ def _from(part: str, name: str = "") -> Any:
     return _FromPart(part, name)
 
 
-class Record:
-    """Everything that a `Solution` says of itself; its attributes are described there."""
-
-    evidence: Evidence
-    status: Status
-    uncertainty: Mapping[str, Mapping[str, float]]
-    warnings: tuple[ModelWarning | Notice, ...]
-    cost: Cost
+class Parts:
+    """Attributes of a `Solution` that its evidence, state or problem holds, as described there."""
 
     problem: Problem = _from("evidence")
     plan: Plan = _from("evidence")
@@ -100,6 +95,38 @@ class Record:
     grid: Grid = _from("problem")
     friction: FrictionLaw = _from("problem")
     sliding_direction: float = _from("problem", "direction")
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Record(Parts):
+    """A `Solution` without its texts: what it stores, and what follows from that."""
+
+    evidence: Evidence
+    status: Status
+    uncertainty: Mapping[str, Mapping[str, float]]
+    warnings: tuple[ModelWarning | Notice, ...]
+    cost: Cost
+    changes: Mapping[str, Any]
+
+    def __init__(
+        self,
+        evidence: Evidence,
+        status: Status,
+        uncertainty: Mapping[str, Mapping[str, float]],
+        warnings: tuple[ModelWarning | Notice, ...],
+        cost: Cost,
+        changes: Mapping[str, Any] | None = None,
+        **others: Any,
+    ) -> None:
+        """Store what is no part of the evidence.
+
+        ``others`` are attributes that `dataclasses.replace` changes: they hide the evidence's own.
+        """
+        if unknown := [name for name in others if not hasattr(type(self), name)]:
+            raise TypeError(f"a Solution has no attribute {unknown[0]}")
+        changes = {**(changes or {}), **others}
+        own = {"evidence": evidence, "status": status, "uncertainty": uncertainty, "warnings": warnings}
+        vars(self).update(own, cost=cost, changes=changes, **changes)
 
     @cached_property
     def surface_lower(self) -> Array:

@@ -13,7 +13,7 @@ from refimpl.solution import display
 from refimpl.solution.arrays import as_dataset
 from refimpl.solution.cost import Cost
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import ModelWarning, Notice, model_warnings, plain_warning
+from refimpl.solution.limits import Notice, model_warnings, plain_warning
 from refimpl.solution.patches import Patch, patches_of
 from refimpl.solution.plausibility import notes
 from refimpl.solution.record import Record
@@ -55,33 +55,6 @@ class Solution(Record):
     evidence : state, features and effects on this grid, which the numbers and arrays are read from
     changes : numbers and arrays that `dataclasses.replace` put in place of those
     """
-
-    evidence: Evidence
-    status: Status
-    uncertainty: Mapping[str, Mapping[str, float]]
-    warnings: tuple[ModelWarning | Notice, ...]
-    cost: Cost
-    changes: Mapping[str, Any]
-
-    def __init__(
-        self,
-        evidence: Evidence,
-        status: Status,
-        uncertainty: Mapping[str, Mapping[str, float]],
-        warnings: tuple[ModelWarning | Notice, ...],
-        cost: Cost,
-        changes: Mapping[str, Any] | None = None,
-        **others: Any,
-    ) -> None:
-        """Store what is no part of the evidence.
-
-        ``others`` are attributes that `dataclasses.replace` changes: they hide the evidence's own.
-        """
-        if unknown := [name for name in others if not hasattr(type(self), name)]:
-            raise TypeError(f"a Solution has no attribute {unknown[0]}")
-        changes = {**(changes or {}), **others}
-        own = {"evidence": evidence, "status": status, "uncertainty": uncertainty, "warnings": warnings}
-        vars(self).update(own, cost=cost, changes=changes, **changes)
 
     def patches(self) -> tuple[Patch, ...]:
         """Return the contact patches in the order of the array: a row each, SI units."""
