@@ -44,7 +44,7 @@ def test_a_forecast_goes_no_farther_than_the_data_where_they_leave_more_than_the
     """Four elements a point of 24: 96, where no size up to there suffices; else up to the finest of all."""
     monkeypatch.setattr(refined, "GRID_SIZES", (64, 80, 96, 128, 256))
     monkeypatch.setattr(refined, "finest_by_data", lambda scene: 96.0)
-    monkeypatch.setattr(refined, "leaves", lambda *_: open_)
+    monkeypatch.setattr(refined, "exceeds", lambda *_: open_)
     monkeypatch.setattr(refined, "predicted_size", lambda *_: None)
     options = Options(scene=SCENE, accuracy=1e-4)
     discretiser = Discretiser(SCENE, None)
