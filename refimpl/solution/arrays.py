@@ -13,6 +13,7 @@ from refimpl.grid.contact_patches import patch_labels
 from refimpl.solution.reported import Reported
 
 UNITS = {
+    "friction_coefficient_corrected": "1",
     "friction_coefficient": "1",
     "contact_area": "m^2",
     "contact_area_corrected": "m^2",
@@ -25,6 +26,7 @@ UNITS = {
     "approach": "m",
     "normal_force": "N",
     "friction_force": "N",
+    "friction_force_corrected": "N",
     "binormal_force": "N",
 }
 """Numbers of a solution with their units."""

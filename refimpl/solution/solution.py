@@ -103,6 +103,16 @@ class Solution:
     features: GridFeatures
 
     @property
+    def friction_coefficient_corrected(self) -> float:
+        """mu without tau on the mean excess of the contact area along its edge."""
+        return self.features.numbers["friction_coefficient_corrected"]
+
+    @property
+    def friction_force_corrected(self) -> float:
+        """F without tau on the mean excess of the contact area along its edge (N)."""
+        return self.features.numbers["friction_force_corrected"]
+
+    @property
     def contact(self) -> Mask:
         """Elements with ``f > 0``."""
         return self.pressure > 0
