@@ -27,7 +27,8 @@ _DIFFERENCE_SOLVES = 2  # solves that a derivative by the load, a hardness or a 
 class Response:
     """Model of one row, linear about the parameters ``at``: tau (Pa), beta, logarithms of further ones.
 
-    mu : friction coefficient without tau on the contact edge's mean excess; slopes : ``d mu / d tau`` (1/Pa), ``d mu / d beta``, ``d mu / d ln p``
+    mu : friction coefficient, without tau on the mean excess of the contact edge
+    slopes : ``d mu / d tau`` (1/Pa), ``d mu / d beta``, ``d mu / d ln p``
     numerical, contact_edge : 95 % half-widths of mu: error bar, and choice at contact edges
     inputs : 95 % half-widths of mu by toleranced parameter, with the sign of the derivative
     area_per_load : A / P (m^2/N); border, plastic : shares of the contact on the border, at the hardness
