@@ -11,6 +11,8 @@ Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k
   Approaches count from first contact, which is a peak as well (`first_contact`).
 - Where the bodies differ, tau on whole elements displaces more than tau on the contact; this falls as h only
   (`SHEAR_BOUNDS`).
+- Approaches: by the border of a free domain, where the pressure of a contact that is cut off is singular as
+  under a punch (`BORDER_BOUND`, order h), and by the differences that slopes are (`SLOPE_BOUND`, order h^2).
 - The scatter of every other number comes from the grids themselves: from the edge fraction of the contact,
   and from how slopes bend from element to element. These fall as powers of h where a surface is resolved.
   Where it is not they do not fall, and the bars stay wide. Where elements with half of the maximum pressure
@@ -31,6 +33,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Bias, Estimate, Prior, fit_line
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD, OBLONG_SPREAD, single_element_share
 from refimpl.accuracy.first_contact import (
     HERTZ_EXPONENTS,
     at_first_contact,
@@ -39,13 +42,10 @@ from refimpl.accuracy.first_contact import (
     first_contact_share,
 )
 from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.iteration_error import CORRECTED
 from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 
-EDGE_SIZE, EDGE_SIZE_SPREAD = 0.78, 0.07  # c0, s_c
-OBLONG_SPREAD = 0.09  # s_c per ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
-SINGLE_EXCESS = 1.5  # further bias of single elements, over that of an edge
-STRAIGHT_EXCESS = 1.2  # the like of straight edges along the grid: 0.21 of an element, elsewhere 0.09
 STRAIGHT_SCATTER = 0.2  # standard deviation; its bound is 95 % of the range of an even distribution
 PEAK_BIAS, PEAK_BIAS_SPREAD = (
     0.028,
@@ -63,6 +63,11 @@ BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / ar
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
 BINORMAL = Prior(0.0002, 1.0)  # unit: normal force (edge / area)^1.5
 OTHER = Prior(0.02, 2.0)  # unit: value (edge / area)^1.5
+BORDER_BOUND = 0.13  # 95 %: approach of a contact that ends at a free border, over depth and border fraction
+BORDER_SLOPES = (
+    0.1  # standard deviation of mu by slopes under that pressure, over border fraction and rms slope
+)
+SLOPE_BOUND = 0.35  # the like by differenced slopes, over `slope_displacement_error`: of 38 scenes 0.24
 SHEAR_BOUNDS = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
 """95 % bounds of the change by tau on the contact's edge, over its change of the depth: of the approach under
 a load, of the others at an approach. Set so that a smooth ball under tau of 0.7 of its pressure stays within
@@ -112,7 +117,20 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     found, last = _estimates(results), results[-1]
     if last.yields:
         found["max_pressure"] = Estimate(last.numbers["max_pressure"], 0.0)
+    else:
+        found["plastic_area"] = Estimate(0.0, _area_that_may_yield(last, found["max_pressure"]))
     return found
+
+
+def _area_that_may_yield(fine: GridFeatures, peak: Estimate) -> float:
+    """The area (m^2) of elements whose pressure is within the maximum's error of the hardness."""
+    top = fine.numbers["max_pressure"]
+    missing = fine.cap - top
+    error = peak.error_bound(top)
+    if math.isinf(fine.cap) or missing > error:
+        return 0.0
+    level = max(0.0, (fine.cap - error) / top)
+    return fine.highest_areas[int(level * (len(fine.highest_areas) - 1))]
 
 
 def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
@@ -129,10 +147,13 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
         "max_pressure": _peak(grids),
         "binormal_force": grids.smooth(grids.found("binormal_force"), BINORMAL, *across),
     }
+    found |= {name: found[raw] for name, raw in CORRECTED.items()}
     last = grids.results[-1]
     if last.loaded:
         by_shear = SHEAR_BOUNDS["approach"] * last.shear_by_edge * last.depth
-        return found | {"approach": _approach(grids).widened(by_shear)}
+        by_border = BORDER_BOUND * last.border_fraction * last.depth
+        by_slopes = SLOPE_BOUND * last.slope_displacement_error
+        return found | {"approach": _approach(grids).widened(math.hypot(by_shear, by_border, by_slopes))}
     bounds = first_contact_bounds(last)
     widened = {name: estimate.widened(bounds.get(name, 0.0)) for name, estimate in found.items()}
     widened["normal_force"] = _force(grids)
@@ -157,6 +178,8 @@ def _peak(grids: _Grids) -> Estimate:
     Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
     for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
     """
+    if not grids.results[-1].peak.inside:
+        return Estimate(grids.finest("max_pressure"), math.inf)
     drop = grids.each(lambda result: result.peak.curvature_drop)
     bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)
     size = grids.each(lambda result: result.peak.widened(result.peak.curvature_drop))
@@ -190,11 +213,15 @@ def edge_scatter(results: Sequence[GridFeatures]) -> Array:
 
 
 def slope_scatter(results: Sequence[GridFeatures]) -> Array:
-    """Return how far slopes within elements leave mu open: all of mu where patches are single elements."""
+    """Return how far slopes within elements, and under a pressure that the border cuts off, leave mu open.
+
+    Where patches are single elements that is all of mu.
+    """
     uneven = np.array([result.slope_sampling_error for result in results])
     whole = abs(results[-1].numbers["friction_coefficient"])
-    wider: Array = np.maximum(uneven, np.minimum(uneven / _resolved(results, _SLOPES), whole))
-    return wider
+    wider = np.maximum(uneven, np.minimum(uneven / _resolved(results, _SLOPES), whole))
+    scatter: Array = np.hypot(wider, [BORDER_SLOPES * r.border_fraction * r.rms_slope for r in results])
+    return scatter
 
 
 def _resolved(results: Sequence[GridFeatures], power: int) -> Array:
@@ -203,14 +230,9 @@ def _resolved(results: Sequence[GridFeatures], power: int) -> Array:
     The powers are empirical, from surfaces of noise: with 1 bars of slopes were too short by a tenth, with 4
     those of corrected areas by a sixth.
     """
-    share: Array = np.maximum(1 - single_element_share(results) ** 2, _LEAST_SHARE) ** power
+    single = np.array([single_element_share(r.edge, r.numbers["contact_area"]) for r in results])
+    share: Array = np.maximum(1 - single**2, _LEAST_SHARE) ** power
     return share
-
-
-def single_element_share(results: Sequence[GridFeatures]) -> Array:
-    """Return each grid's edge fraction over that of a single element: 1 where all patches are single
-    elements."""
-    return np.array([result.edge_fraction for result in results]) / (4 * EDGE_SHARE)
 
 
 def _weights(size: Array, spacing: Array) -> Array:
@@ -245,12 +267,11 @@ def _area(results: Sequence[GridFeatures]) -> Estimate:
     Single elements have a larger bias: on finer grids less of their area remains. The likeliest excess is 1
     on the training scenes, 1.5 to 2 on surfaces of noise and on measured ones.
     """
-    area, edge = np.transpose([(result.numbers["contact_area"], result.edge) for result in results])
+    area, excess = np.transpose([(result.numbers["contact_area"], result.excess) for result in results])
     scatter = area_scatter(results)
     prior = AREA._replace(scatter=AREA.scatter * scatter[-1])
-    excess = edge * (1 + SINGLE_EXCESS * single_element_share(results) ** 2) + straight_excess(results)
     spread = math.hypot(EDGE_SIZE_SPREAD, OBLONG_SPREAD * math.log(results[-1].grid.aspect))
-    bias = Bias(excess, EDGE_SIZE, spread)
+    bias = Bias(excess / EDGE_SIZE, EDGE_SIZE, spread)
     return fit_line(area, scatter / scatter[-1], prior, bias)
 
 
@@ -284,12 +305,6 @@ def area_scatter(results: Sequence[GridFeatures]) -> Array:
         counted, np.minimum(counted / _resolved(results, _AREAS), _MOST_AREA * area / AREA.scatter)
     )
     return np.hypot(scatter, [straight_scatter(r) / AREA.scatter for r in results])
-
-
-def straight_excess(results: Sequence[GridFeatures]) -> Array:
-    """Return what straight edges along the grid add to each grid's excess, in the unit of ``edge`` (m^2)."""
-    faces = np.array([result.straight.faces * result.grid.element_area for result in results])
-    return STRAIGHT_EXCESS * EDGE_SHARE * faces
 
 
 def straight_scatter(result: GridFeatures) -> float:

@@ -72,4 +72,5 @@ def _at(features: GridFeatures, share: float) -> GridFeatures:
     numbers["friction_force"] = tau * numbers["contact_area"] + rest * numbers["normal_force"] / force
     numbers["friction_coefficient"] = numbers["friction_force"] / numbers["normal_force"]
     peak = replace(features.peak, height=features.peak.height * share ** HERTZ_EXPONENTS["max_pressure"])
-    return replace(features, numbers=numbers, peak=peak, dmu_dA=tau / numbers["normal_force"])
+    moved = replace(features, numbers=numbers, peak=peak, dmu_dA=tau / numbers["normal_force"])
+    return replace(moved, numbers=numbers | moved.corrected)

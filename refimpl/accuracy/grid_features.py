@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from refimpl.accuracy.iteration_error import merged, reported_numbers
+import numpy as np
+
+from refimpl.accuracy.contact_edge import mean_excess
+from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.grid import Array, Grid, inner, second_differences
 from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES, StraightEdges, straight_edges
@@ -16,6 +19,8 @@ from refimpl.model.forces import perimeter_corrected_area
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+
+_LEVELS = 16  # of pressure, in `highest_areas`
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,11 @@ class GridFeatures:
     plastic_edge : the like along the edge of the elements at the hardness (m^2)
     straight : edges of the contact along the grid
     plastic_straight : the like of the elements at the hardness
+    border_fraction : share of the contact's elements that lie on a free border
+    rms_slope : root mean square slope, weighted by pressure
+    slope_displacement_error : how far differenced slopes leave displacements along the vertical open (m)
+    highest_areas : contact area (m^2) of at least k/16 of the maximum pressure, k = 0 to 16
+    cap : largest pressure, the hardness (Pa)
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 
@@ -53,6 +63,11 @@ class GridFeatures:
     plastic_edge: float = 0.0
     straight: StraightEdges = NO_STRAIGHT_EDGES
     plastic_straight: StraightEdges = NO_STRAIGHT_EDGES
+    border_fraction: float = 0.0
+    rms_slope: float = 0.0
+    slope_displacement_error: float = 0.0
+    highest_areas: tuple[float, ...] = ()
+    cap: float = math.inf
     loaded: bool = True
 
     @property
@@ -72,6 +87,22 @@ class GridFeatures:
         return max(self.edge, 0.0) / area if area > 0 else 1.0
 
     @property
+    def excess(self) -> float:
+        """Mean excess of the counted contact area along its edge (m^2)."""
+        straight = self.straight.faces * self.grid.element_area
+        return mean_excess(self.edge, straight, self.numbers["contact_area"])
+
+    @property
+    def corrected(self) -> dict[str, float]:
+        """Friction without tau on the mean excess of the contact area along its edge."""
+        mu, force = self.numbers["friction_coefficient"], self.numbers["friction_force"]
+        share = self.dmu_dA * self.excess
+        return {
+            "friction_coefficient_corrected": mu - share,
+            "friction_force_corrected": force - share * self.numbers["normal_force"],
+        }
+
+    @property
     def shear_by_edge(self) -> float:
         """Change of the depth by tau on that edge, as a share of it."""
         return self.shear_to_normal_ratio * min(self.edge_fraction, 1.0)
@@ -83,7 +114,8 @@ class GridFeatures:
         Approaches of periodic problems do not count from first contact.
         """
         grid, per_area = problem.grid, friction_per_area(problem.friction, state.forces.normal)
-        return cls(
+        parts = merged(*stated)
+        features = cls(
             grid=grid,
             numbers=reported_numbers(problem, state),
             edge=state.contact_area - state.contact_area_corrected,
@@ -92,20 +124,60 @@ class GridFeatures:
             first_contact=deepest(problem.gap) if problem.counts_from_first_contact else NO_PEAK,
             slope_sampling_error=slope_sampling_error(state.pressure, state.slopes, grid),
             dmu_dA=per_area,
-            parts=merged(*stated),
+            parts=parts | {name: parts[raw] for name, raw in CORRECTED.items() if raw in parts},
             depth=depth(problem, state),
             shear_to_normal_ratio=abs(problem.elasticity.coupling_ratio) * per_area * state.contact_area,
             plastic_edge=state.plastic_area - perimeter_corrected_area(state.plastic, grid),
             straight=straight_edges(state.contact, grid),
             plastic_straight=straight_edges(state.plastic, grid),
+            border_fraction=grid.on_border(state.contact) / max(int(state.contact.sum()), 1),
+            rms_slope=math.sqrt(state.slopes.mean_square(state.pressure)),
+            slope_displacement_error=slope_displacement_error(problem, state),
+            highest_areas=highest_areas(state.pressure, grid),
+            cap=problem.cap,
             loaded=problem.load is not None,
         )
+        return replace(features, numbers=dict(features.numbers) | features.corrected)
 
 
 def depth(problem: Problem, state: State) -> float:
     """Return ``approach - h`` of Eq. (6), weighted by pressure (m)."""
     total = float(state.pressure.sum())
     return state.approach - inner(state.pressure, problem.gap) / total if total > 0 else 0.0
+
+
+def highest_areas(pressure: Array, grid: Grid) -> tuple[float, ...]:
+    """Return the contact area (m^2) whose pressure is at least k/16 of the maximum, for k from 0 to 16.
+
+    >>> highest_areas(np.array([[0.0, 1.0], [4.0, 3.9]]), Grid.square(2.0, 2))[::4]
+    (3.0, 3.0, 2.0, 2.0, 1.0)
+    """
+    loaded = np.sort(pressure[pressure > 0])
+    if not loaded.size:
+        return ()
+    levels = loaded[-1] * np.arange(_LEVELS + 1) / _LEVELS
+    return tuple(float(n) * grid.element_area for n in loaded.size - np.searchsorted(loaded, levels))
+
+
+def slope_displacement_error(problem: Problem, state: State) -> float:
+    """Return how far the slopes' differences leave ``u / (cos theta_x cos theta_y)`` open, but for a factor.
+
+    Central differences of a wave of number q lack the share ``(q h)^2 / 6`` of its tangent; the second
+    differences of tangents are ``(q h)^2`` of them. The root mean squares by pressure are taken: of u, of the
+    tangents and of their second differences.
+    """
+    pressure, slopes = state.pressure, state.slopes
+    total = float(pressure.sum())
+    if slopes.is_flat or not 0 < total < math.inf:
+        return 0.0
+    tangents = slopes.tan_x, slopes.tan_y
+    periodic = problem.grid.periodic
+    bends = [second_differences(tan, axis, periodic=periodic) for tan in tangents for axis in (0, 1)]
+    squares = (
+        sum(inner(pressure * field, field) for field in fields) / total
+        for fields in (tangents, bends, [state.approach - problem.gap])
+    )
+    return math.prod(map(math.sqrt, squares)) / 6
 
 
 def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> float:
@@ -116,7 +188,6 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> float:
     surface is resolved it falls as h^3. Where slopes are uncorrelated between elements it is 1.4 times the
     standard error of their mean.
 
-    >>> import numpy as np
     >>> bump = Slopes(np.pad([[1.0]], 1), np.zeros((3, 3)))
     >>> round(12 * slope_sampling_error(np.pad([[7.0]], 1), bump, Grid.square(1.0, 3)) ** 2, 9)  # bends of 2
     8.0

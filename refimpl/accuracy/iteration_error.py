@@ -17,7 +17,13 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 
 AREAS = "contact_area", "contact_area_corrected"  # both depend on the same elements
+CORRECTED = {
+    "friction_coefficient_corrected": "friction_coefficient",
+    "friction_force_corrected": "friction_force",
+}
+"""Friction without tau on the mean excess of the contact edge, by the number that it is taken off."""
 NUMBERS = (
+    "friction_coefficient_corrected",
     "friction_coefficient",
     *AREAS,
     "plastic_area",
@@ -25,6 +31,7 @@ NUMBERS = (
     "approach",
     "normal_force",
     "friction_force",
+    "friction_force_corrected",
     "binormal_force",
 )
 """The numbers that a solution reports, by their names there."""

@@ -27,11 +27,13 @@ class Peak:
     height : of the parabola through the highest elements and their neighbours along x and y
     curvature_drop : four times the highest element minus its four neighbours: minus h^2 times the Laplacian
     non_parabolicity : fourth differences over three times the drop: 0 on a parabola, 1 of single elements
+    inside : whether all maxima are surrounded by contact: at a sharp edge or a free border there is no limit
     """
 
     height: float
     curvature_drop: float
     non_parabolicity: float
+    inside: bool = True
 
     @property
     def error_factor(self) -> float:
@@ -63,15 +65,17 @@ def highest(field: Array, grid: Grid) -> Peak:
     """Return the peak of a field that is not negative; `NO_PEAK` of one that vanishes or is not finite.
 
     The non-parabolicity is the largest of all maxima that reach half of the highest: a resolved peak says
-    nothing about one beside it that is not. Along an axis of fewer than three elements there is no parabola,
-    and the non-parabolicity is 1.
+    nothing about one beside it that is not. A peak is not `inside` if such a maximum lies beside an element
+    without contact or beside a free border: the contact is narrower than a parabola there, or the pressure
+    has no limit. Along an axis of fewer than three elements there is no parabola, and the non-parabolicity
+    is 1.
 
     >>> x = np.arange(7.0) - 2.75
-    >>> found = highest(50 - x[:, None] ** 2 - 0 * x, Grid.square(1.0, 7))
+    >>> found = highest(50 - x[:, None] ** 2 - 0 * x, Grid.square(1.0, 7, periodic=True))
     >>> round(found.height, 12), round(found.curvature_drop, 12), round(found.non_parabolicity, 12)
     (50.0, 2.0, 0.0)
     >>> highest(np.pad([[3.0]], 3), Grid.square(1.0, 7))
-    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0)
+    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, inside=False)
     """
     top = float(field.max())
     if not 0 < top < math.inf:
@@ -79,7 +83,8 @@ def highest(field: Array, grid: Grid) -> Peak:
     if min(field.shape) < 3:
         return Peak(top, 0.0, 1.0)
     box = grid.window_around(field >= _RIVAL * top, margin=_REACH).slices
-    return _peak(grid.padded(field[box], _REACH), _RIVAL * top)
+    contact = np.pad(field[box] > 0, _REACH, mode=grid.continuation)
+    return _peak(grid.padded(field[box], _REACH), contact, _RIVAL * top)
 
 
 def deepest(field: Array) -> Peak:
@@ -94,17 +99,22 @@ def deepest(field: Array) -> Peak:
     return Peak(height, drop, rest)
 
 
-def _peak(padded: Array, least: float) -> Peak:
-    """The peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements."""
+def _peak(padded: Array, contact: Mask, least: float) -> Peak:
+    """The peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements.
+
+    ``contact`` has that frame too, without contact beyond a free border.
+    """
     inner, back, ahead = slice(2, -2), slice(1, -3), slice(3, -1)
     field = padded[inner, inner]
     maxima: Mask = field >= least
     for neighbour in (padded[back, inner], padded[ahead, inner], padded[inner, back], padded[inner, ahead]):
         maxima &= field >= neighbour
     i, j = np.nonzero(maxima)
-    heights, drops, rests = _parabolas(_lines(padded, i + _REACH, j + _REACH))
+    i, j = i + _REACH, j + _REACH
+    heights, drops, rests = _parabolas(_lines(padded, i, j))
+    around = contact[i - 1, j] & contact[i + 1, j] & contact[i, j - 1] & contact[i, j + 1]
     best = int(np.argmax(heights))
-    return Peak(float(heights[best]), float(drops[best]), float(rests.max()))
+    return Peak(float(heights[best]), float(drops[best]), float(rests.max()), bool(around.all()))
 
 
 def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp]) -> Array:

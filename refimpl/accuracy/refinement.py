@@ -16,8 +16,15 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import Uncertainty, merged
 from refimpl.errors import InputError, require_number
 
-Quantity = Literal["friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure"]
+Quantity = Literal[
+    "friction_coefficient_corrected",
+    "friction_coefficient",
+    "contact_area",
+    "contact_area_corrected",
+    "max_pressure",
+]
 QUANTITIES: tuple[Quantity, ...] = (
+    "friction_coefficient_corrected",
     "friction_coefficient",
     "contact_area",
     "contact_area_corrected",
@@ -53,6 +60,10 @@ def tolerance_for(accuracy: float) -> float:
     return min(1e-5, max(1e-8, _ITERATION_SHARE * accuracy))
 
 
+class Unfinished(ArithmeticError):
+    """A grid on which the solve does not converge."""
+
+
 @dataclass(frozen=True)
 class Refinement:
     """The grids solved, coarse to fine; ``refusal`` is the reason why no finer one was solved, or empty."""
@@ -75,9 +86,10 @@ def refine_until(
     On a slender domain all numbers of elements along the longer side are ``slenderness`` times larger.
 
     A grid that ``features_at`` refuses by `InputError` (memory) is replaced by the next coarser one, as long
-    as that is finer than the last. The part that tau's active set leaves open need not fall on finer grids:
-    where it has not fallen and exceeds the accuracy, the refinement ends. Where the data leave more open than
-    the accuracy, no grid is finer than ``finest_by_data`` elements along the longer side.
+    as that is finer than the last; one that is `Unfinished` ends the refinement on the grid before. The part
+    that tau's active set leaves open need not fall on finer grids: where it has not fallen and exceeds the
+    accuracy, the refinement ends. Where the data leave more open than the accuracy, no grid is finer than
+    ``finest_by_data`` elements along the longer side.
     """
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
     remaining, refusal = [M * slenderness for M in grid_sizes], ""
@@ -101,6 +113,8 @@ def refine_until(
             results.append(features_at(M))
         except InputError as refused:
             remaining, refusal = [size for size in remaining if size < M], str(refused)
+        except Unfinished as ended:
+            return Refinement(tuple(results), str(ended))
     return Refinement(tuple(results), "")
 
 

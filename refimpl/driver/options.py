@@ -131,7 +131,7 @@ class Options:
         """The quantity that the accuracy applies to."""
         if self.quantity is not None:
             return self.quantity
-        return "contact_area" if is_frictionless(self.scene.friction) else "friction_coefficient"
+        return "contact_area" if is_frictionless(self.scene.friction) else "friction_coefficient_corrected"
 
     @property
     def residual_tolerance(self) -> float:
@@ -158,7 +158,7 @@ class Options:
             self.method,
             self.requested,
             demand=self.accuracy or self.residual_tolerance,
-            for_mu=self.accuracy is not None and self.target_quantity == "friction_coefficient",
+            for_mu=self.accuracy is not None and self.target_quantity.startswith("friction_coefficient"),
         )
         return plan if self.grid is None else plan.on(grid)
 

@@ -10,6 +10,7 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.refinement import (
     FIRST_GRIDS,
     GRID_SIZES,
+    Unfinished,
     exceeds,
     longer_side,
     predicted_size,
@@ -123,7 +124,10 @@ class _Refinement:
         self._tolerance, self.allowance = options.residual_tolerance, Allowance(options.limits)
 
     def features_at(self, M: int) -> GridFeatures:
-        """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget."""
+        """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget.
+
+        Raises `Unfinished` where the solve does not converge and that on a coarser grid did.
+        """
         start = self.last if self.last is not None and self.last.status in _CONVERGED else None
         guess = None
         if start is not None:
@@ -137,10 +141,13 @@ class _Refinement:
             expected = self.allowance.expected_seconds(plan.grid)
             self._progress(f"{plan.grid} elements next: about {expected:.2g} s, {plan.memory / 1e9:.2g} GB")
         solved = solve_on_grid(plan, self._discretiser, self._tolerance, self._progress, guess)
-        self.plan = solved.plan  # with the cap, if it was restored
         self.costs.append(solved.cost)
-        self.last = solved
         self.allowance.record(plan.grid, solved.cost.seconds)
+        opened = len(self.costs) > len(FIRST_GRIDS)
+        if opened and start is not None and solved.status not in _CONVERGED:
+            raise Unfinished(f"{plan.grid} elements: {solved.status.value}")
+        self.plan = solved.plan  # with the cap, if it was restored
+        self.last = solved
         effects = effects_in(
             plan.neglected, solved.problem, solved.state.pressure, plan.contact, plan.decided_on
         )

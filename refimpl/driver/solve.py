@@ -45,7 +45,8 @@ def solve(
         paper's own scheme
     accuracy : refine until the error bar of ``quantity`` is this share of its value, on grids of one element
         ratio
-    quantity : "friction_coefficient" (the default with friction), "contact_area" (without),
+    quantity : "friction_coefficient_corrected" (the default with friction), "contact_area" (without),
+        "friction_coefficient",
         "contact_area_corrected" or "max_pressure"
     approach : prescribe the approach (m) instead of the scene's load
     oblique : False neglects every slope term: the classical small-slope theory that other codes solve; None

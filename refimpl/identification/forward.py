@@ -27,7 +27,8 @@ _DIFFERENCE_SOLVES = 2  # solves that a derivative by the load, a hardness or a 
 class Response:
     """Model of one row, linear about the parameters ``at``: tau (Pa), beta, logarithms of further ones.
 
-    mu : friction coefficient; slopes : ``d mu / d tau`` (1/Pa), ``d mu / d beta``, ``d mu / d ln p``
+    mu : friction coefficient, without tau on the mean excess of the contact edge
+    slopes : ``d mu / d tau`` (1/Pa), ``d mu / d beta``, ``d mu / d ln p``
     numerical, contact_edge : 95 % half-widths of mu: error bar, and choice at contact edges
     inputs : 95 % half-widths of mu by toleranced parameter, with the sign of the derivative
     area_per_load : A / P (m^2/N); border, plastic : shares of the contact on the border, at the hardness
@@ -122,15 +123,17 @@ def _response(
     if not solution.converged or not solution.contact.any():
         raise ArithmeticError(f"the solve at {scene.load:.4g} N ended as {solution.status.value}")
     inputs, solves = _inputs(scene, solution, tolerances)
-    slopes = (*friction_slopes(scene, solution), *(_log_slope(scene, solution, name) for name in further))
-    parts = dict(solution.uncertainty["friction_coefficient"])
+    by_tau, by_beta = friction_slopes(scene, solution)
+    by_tau -= solution.features.excess / scene.load
+    slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
+    parts = dict(solution.uncertainty["friction_coefficient_corrected"])
     edge = parts.pop("active set", 0.0)
     pressures, weights = _condensed(solution, scene.load)
     contact = solution.contact
     on_border = float(contact.sum() - contact[1:-1, 1:-1].sum()) / float(contact.sum())
     return Response(
         at=at,
-        mu=solution.friction_coefficient,
+        mu=solution.friction_coefficient_corrected,
         slopes=slopes,
         numerical=min(math.fsum(parts.values()), 10 * abs(solution.friction_coefficient)),
         contact_edge=edge,

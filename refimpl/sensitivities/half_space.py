@@ -65,6 +65,7 @@ def half_space_error(scene: Scene, solution: Solution) -> HalfSpaceError:
         scene,
         lower=Body(scene.lower.material, _surface(z_lower - lower, solution)),
         upper=Body(scene.upper.material, _surface(z_upper + upper, solution)),
+        sliding_offset=0.0,  # the heights were sampled at the scene's
     )
     gap = z_upper - z_lower + lower + upper
     shifted = discretise(receded, solution.grid)

@@ -12,7 +12,8 @@ from refimpl.solution.record import Record
 
 # attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 SHOWN = (
-    ("friction_coefficient", "friction coefficient mu", 1.0, ""),
+    ("friction_coefficient_corrected", "friction coefficient mu", 1.0, ""),
+    ("friction_coefficient", "  summed over elements", 1.0, ""),
     ("contact_area", "contact area A", 1e6, "mm^2"),
     ("contact_area_share", "A/A0", 1.0, ""),
     ("plastic_area", "plastic area", 1e6, "mm^2"),
@@ -30,7 +31,8 @@ _INK = "#0072B2"  # Okabe and Ito 2008
 
 def line(solution: Record) -> str:
     """Return one line: status, grid, mu with its error, A."""
-    mu = with_error(solution.friction_coefficient, solution.error("friction_coefficient"))
+    name = "friction_coefficient_corrected"
+    mu = with_error(getattr(solution, name), solution.error(name))
     area = with_error(solution.contact_area * 1e6, solution.error("contact_area") * 1e6)
     return f"<Solution {solution.status.value}, {solution.grid}: mu = {mu}, A = {area} mm^2>"
 

@@ -29,6 +29,7 @@ from refimpl.solution.evidence import Evidence
 from refimpl.solution.limits import ModelWarning, Notice
 
 UNITS = {
+    "friction_coefficient_corrected": "1",
     "friction_coefficient": "1",
     "contact_area": "m^2",
     "contact_area_corrected": "m^2",
@@ -41,6 +42,7 @@ UNITS = {
     "approach": "m",
     "normal_force": "N",
     "friction_force": "N",
+    "friction_force_corrected": "N",
     "binormal_force": "N",
 }
 """Numbers of a solution with their units."""
@@ -82,6 +84,8 @@ class Parts:
     friction_force: float = _from("features.numbers")
     binormal_force: float = _from("features.numbers")
     friction_coefficient: float = _from("features.numbers")
+    friction_coefficient_corrected: float = _from("features.numbers")
+    friction_force_corrected: float = _from("features.numbers")
     contact_area: float = _from("features.numbers")
     contact_area_corrected: float = _from("features.numbers")
     plastic_area: float = _from("features.numbers")

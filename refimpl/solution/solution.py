@@ -29,7 +29,9 @@ class Solution(Record):
     status : how the solve ended
     approach : from first contact, or from the mean planes when periodic
     normal_force, friction_force, binormal_force : N, F and the transverse (binormal) force Q
-    friction_coefficient : mu
+    friction_coefficient_corrected, friction_force_corrected : mu and F without tau on the mean excess of the
+        contact area along its edge: the numbers for people
+    friction_coefficient : mu, Eq. (4) of the discrete state: the number to compare between codes
     contact_area, contact_area_corrected : real contact area, and less the excess along its edge
     plastic_area : area of the contact at the hardness
     max_pressure : maximum contact pressure p_max

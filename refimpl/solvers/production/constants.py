@@ -54,3 +54,7 @@ STRONG_UPDATES = 2  # strong updates in a row that start the mixing; one may be 
 STALLED = 5  # plain updates in a row without halving the best residual: they do not contract
 RESTART = 10  # mixed updates in a row without halving it, before the history is dropped
 PATIENCE = 30  # mixed updates in a row without halving it, before the solve has stagnated
+
+# Plastic indentation and slopes, each from the other between two updates.
+SETTLED = 0.01  # share of the first change that may be left: the updates reduce the rest
+SETTLING_LIMIT = 30  # rounds

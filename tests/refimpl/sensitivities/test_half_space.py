@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from importlib import resources
 from types import SimpleNamespace
 from typing import Any
@@ -196,3 +197,13 @@ def test_beyond_the_slopes_that_were_judged_the_advice_is_finite_elements(
 def test_a_number_that_is_zero_has_no_relative_error(shallow: None) -> None:
     without: Any = SimpleNamespace(**{**vars(SOLVED), "friction_coefficient": 0.0})
     assert advice(made_up(-0.03, 0.008, 0.001), without).startswith("keep the half-space")
+
+
+def test_a_slid_scene_recedes_where_it_stands() -> None:
+    rough = rf.GaussianRoughness(2e-6, 8e-4, seed=3)
+    slid = replace(scene(rf.Sphere(0.1), rough), sliding_offset=1.3e-3)
+    solution = rf.solve(slid, (24, 16))
+    found = half_space_error(slid, solution)
+    z_lower, z_upper = solution.problem.heights
+    gap = z_upper - z_lower + found.gap_change
+    assert found.corrected.problem.gap == pytest.approx(gap - gap.min(), abs=1e-12 * np.ptp(gap))

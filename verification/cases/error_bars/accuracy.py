@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from refimpl.accuracy.discretisation_error import EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from verification.cases.contact import hertz
 from verification.cases.contact.hertz import mean_radii
 from verification.coverage.judge import verdicts

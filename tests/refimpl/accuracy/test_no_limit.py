@@ -1,0 +1,110 @@
+"""No closed bar where a number has no limit: borders, sharp edges, contacts of two elements, unseen yield."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+
+SIDE = 1e-3  # m
+
+
+def pressed(load: float, surface: rf.Surface, lower: rf.Material, **scene: bool) -> rf.Scene:
+    """A rigid rough body on an elastic flat."""
+    rigid = rf.Body(rf.Material(E=math.inf, nu=0.3), surface)
+    return rf.Scene(rigid, rf.Body(lower, rf.Flat()), rf.Friction(0.0, 0.1), load=load, side=SIDE, **scene)
+
+
+RUBBER = rf.Material(E=10e6, nu=0.3)
+FULL = pressed(0.1, rf.GaussianRoughness(10e-9, 0.2e-3, seed=1), RUBBER)
+
+
+def test_full_contact_of_a_free_domain_has_the_order_of_a_punch() -> None:
+    """The approach falls by h to 7.9325e-6 (from 128 and 256 elements, order 1 seen from 32 on)."""
+    solved = {M: rf.solve(FULL, M) for M in (32, 64, 128)}
+    limit = 2 * solved[128].approach - solved[64].approach
+    for s in solved.values():
+        assert abs(s.approach - limit) <= s.error("approach") < 3 * abs(s.approach - limit)
+        assert math.isinf(s.error("max_pressure"))
+
+
+def test_a_peak_at_a_sharp_edge_is_open() -> None:
+    """Trapezoidal grooves: the flats' edges are punches' edges."""
+    x = (np.arange(96) + 0.5) / 96
+    heights = np.clip(np.abs((4 * x) % 1 - 0.5) - 0.25, -0.1, 0.1) * 1e-5
+    grooves = rf.ArraySurface(heights[:, None] * np.ones(96))
+    s = rf.solve(pressed(2.0, grooves, rf.Material(E=1e9, nu=0.3), periodic=True), 96)
+    assert 0 < s.contact_area_share < 1
+    assert math.isinf(s.error("max_pressure"))
+    assert math.isfinite(s.error("contact_area"))
+
+
+@pytest.mark.parametrize("load", [0.01, 1e-6])
+@pytest.mark.parametrize("grid", [16, 17])
+def test_a_contact_below_two_elements_bounds_no_pressure(load: float, grid: int) -> None:
+    steel = rf.Material(E=200e9, nu=0.3)
+    ball = rf.Scene(
+        rf.Body(steel, rf.Sphere(0.02)), rf.Body(steel, rf.Flat()), rf.Friction(), load, side=SIDE
+    )
+    assert math.isinf(rf.solve(ball, grid).error("max_pressure"))
+
+
+def test_a_plastic_area_that_no_element_shows_is_bounded_by_the_pressures_bar() -> None:
+    steel = rf.Material(E=200e9, nu=0.3)
+    ball = rf.Scene(
+        rf.Body(steel, rf.Sphere(0.02)), rf.Body(steel, rf.Flat()), rf.Friction(), load=20.0, side=SIDE
+    )
+    elastic = rf.solve(ball, 24)
+    top, bar = elastic.max_pressure, elastic.error("max_pressure")
+    near, far = (
+        rf.solve(replace(ball, lower=rf.Body(replace(steel, hardness=H), rf.Flat())), 24)
+        for H in (top + 0.5 * bar, top + 1.5 * bar)
+    )
+    assert near.plastic_area == far.plastic_area == 0
+    assert near.error("plastic_area") >= near.grid.element_area
+    assert far.error("plastic_area") < near.grid.element_area
+
+
+def test_slopes_of_full_periodic_contact_leave_the_approach_open() -> None:
+    rough = rf.GaussianRoughness(4e-6, 0.2e-3, seed=2)
+    scene = replace(
+        pressed(2e4, rough, rf.Material(E=1e9, nu=0.3), periodic=True), friction=rf.Friction(1e6, 0.3)
+    )
+    solved = {M: rf.solve(scene, M) for M in (32, 64, 128)}
+    assert solved[32].contact_area_share == 1
+    limit = (4 * solved[128].approach - solved[64].approach) / 3
+    for M in (32, 64):
+        assert abs(solved[M].approach - limit) <= solved[M].error("approach") < abs(limit)
+
+
+def test_a_refinement_returns_its_best_finished_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    from refimpl.driver import refined
+
+    finest: list[int] = []
+    solve_on_grid = refined.solve_on_grid
+
+    def fails_beyond_64(plan, *rest, **named):  # type: ignore[no-untyped-def] # as the function itself
+        solved = solve_on_grid(plan, *rest, **named)
+        finest.append(plan.grid.shape[0])
+        if plan.grid.shape[0] <= 64:
+            return solved
+        return replace(solved, result=replace(solved.result, status=rf.Status.STAGNATED))
+
+    monkeypatch.setattr(refined, "solve_on_grid", fails_beyond_64)
+    steel = rf.Material(E=200e9, nu=0.3)
+    ball = rf.Scene(
+        rf.Body(steel, rf.Sphere(0.02)),
+        rf.Body(steel, rf.Flat()),
+        rf.Friction(1e7, 0.1),
+        load=20.0,
+        side=SIDE,
+    )
+    s = rf.solve(ball, accuracy=1e-4)
+    assert s.grid.shape == (64, 64)
+    assert max(finest) > 64
+    assert s.status is rf.Status.ACCURACY_NOT_REACHED
+    assert any("stagnated" in str(text) for text in s.warnings)
