@@ -144,7 +144,9 @@ def test_refused_by_one_line_that_names_the_field(name: str) -> None:
 @pytest.mark.parametrize(
     ("method", "grid", "reason"), [("dense", 3000, "4096 elements"), ("fft", 3_000_000, r"estimated .* GB")]
 )
-def test_a_grid_out_of_reach_is_refused_before_anything_is_allocated(method: str, grid: int, reason: str) -> None:
+def test_a_grid_out_of_reach_is_refused_before_anything_is_allocated(
+    method: str, grid: int, reason: str
+) -> None:
     """One field of that grid would take 72 MB, or 72 TB; the refusal takes less than one."""
     tracemalloc.start()
     try:

@@ -12,7 +12,7 @@ from refimpl.driver.reference import solve_reference
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.certificate import State, certify
-from refimpl.model.friction import FrictionLaw, is_frictionless, shear_at
+from refimpl.model.friction import FrictionLaw
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.state import SolverResult
@@ -62,16 +62,12 @@ SQUARE, OBLONG = Grid.square(1.6e-3, 20), Grid((24, 15), (1.6e-3, 1.6e-3))
 
 CASES = {
     "level": (SMOOTH, SQUARE, Terms(oblique=False), None),
-    "oblique": (SMOOTH, SQUARE, Terms(), None),
     "oblique, oblong elements": (SMOOTH, OBLONG, Terms(), None),
-    "at an approach": (SMOOTH, OBLONG, Terms(), 4e-6),
-    "rough": (ROUGH, SQUARE, Terms(), None),
     "rough, level": (ROUGH, OBLONG, Terms(oblique=False), None),
     "rough, at an approach": (ROUGH, SQUARE, Terms(), 5e-6),
     "uncoupled": (ROUGH, SQUARE, Terms(coupled=False), None),
     "facet tractions": (ROUGH, SQUARE, Terms(slope_correction=True), None),
     "periodic": (WAVY, replace(OBLONG, periodic=True), Terms(), None),
-    "periodic, at an approach": (WAVY, replace(SQUARE, periodic=True), Terms(oblique=False), -4e-7),
 }
 on_cases = pytest.mark.parametrize("case", CASES)
 
@@ -96,15 +92,6 @@ def agree(found: SolverResult, expected: SolverResult) -> None:
     assert np.array_equal(found.excluded, expected.excluded)
     assert np.abs(found.pressure - expected.pressure).max() <= SAME * expected.pressure.max()
     assert np.abs(found.traction - expected.traction).max() <= SAME * np.abs(expected.traction).max()
-
-
-def test_the_law_satisfies_the_protocol() -> None:
-    law: FrictionLaw = LimitedShear(2.0, 0.5, 5.0)
-    pressure, active = np.array([0.0, 2.0, 8.0, 8.0]), np.array([False, True, True, False])
-    np.testing.assert_array_equal(law.traction(pressure, active), [0.0, 3.0, 5.0, 4.0])
-    np.testing.assert_array_equal(law.held_traction(pressure, active), [0.0, 2.0, 1.0, 0.0])
-    assert shear_at(law, 100.0) == 5.0
-    assert not is_frictionless(law)
 
 
 @on_cases
@@ -139,7 +126,7 @@ def test_the_plain_reference_refuses_other_laws() -> None:
         solve_reference(problem_with("level", limited()))
 
 
-@pytest.mark.parametrize("case", ["level", "rough", "periodic"])
+@pytest.mark.parametrize("case", ["level", "periodic"])
 def test_a_law_without_a_jump_is_limited_too(case: str) -> None:
     """One solve, on an active set of all elements."""
     law = limited(tau=0.0)
@@ -172,8 +159,8 @@ def test_a_limit_of_tau_is_shear_of_tau_whatever_beta_is() -> None:
     """``min(tau + beta f, tau) = tau``: the part ``beta f`` that solvers invert must cancel."""
     tau = SMOOTH.friction.tau
     constant = rf.Friction(tau=tau, beta=0.0)
-    expected, _ = solve_reference(problem_with("rough", constant))
-    found, state = by_fft(problem_with("rough", LimitedShear(tau, 0.3, tau)))
+    expected, _ = solve_reference(problem_with("rough, level", constant))
+    found, state = by_fft(problem_with("rough, level", LimitedShear(tau, 0.3, tau)))
     assert np.abs(found.pressure - expected.pressure).max() <= SAME * expected.pressure.max()
     assert state.certificate.law_violations == 0
 

@@ -121,9 +121,3 @@ def test_the_smallest_grids(M: int) -> None:
     hertz = rf.read_scene("hertz")
     dense, paper = (rf.solve(hertz, M, method=m, tolerance=1e-9) for m in ("dense", "paper"))
     assert difference(paper.pressure, dense.pressure) <= 1e-8
-
-
-def test_without_contact_there_is_no_residual() -> None:
-    result, _, trace = run("hertz", (16, 16), approach=-1e-9)
-    assert trace.periodicity_before == trace.periodicity_after == 0
-    assert not result.pressure.any()

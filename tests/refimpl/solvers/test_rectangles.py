@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -31,9 +30,6 @@ SCENE = rf.Scene(
     sliding_direction=0.7,
 )
 GRIDS = {
-    "square domain": Grid((28, 17), (1.6e-3, 1.6e-3)),
-    "square elements": Grid((30, 20), (1.8e-3, 1.2e-3)),
-    "oblong elements along a longer side": Grid((18, 24), (2.4e-3, 1.2e-3)),
     "coarser grids": Grid((64, 40), (1.6e-3, 1.2e-3)),
     "strip": Grid((60, 5), (1.6e-3, 2e-4)),
     "row": Grid((24, 1), (1.6e-3, 1e-4)),
@@ -41,9 +37,6 @@ GRIDS = {
 }
 on_grids = pytest.mark.parametrize("name", GRIDS)
 of_topologies = pytest.mark.parametrize("periodic", [False, True])
-with_terms = pytest.mark.parametrize(
-    "terms", [Terms(), Terms(oblique=False), Terms(slope_correction=True)], ids=["oblique", "level", "facets"]
-)
 
 
 def heights(grid: Grid, seed: int = 3) -> Array:
@@ -55,19 +48,19 @@ def heights(grid: Grid, seed: int = 3) -> Array:
     return 5e-7 * found
 
 
-def problem_on(grid: Grid, terms: Terms | None = None) -> Problem:
+def problem_on(grid: Grid) -> Problem:
     upper = rf.Flat() if grid.periodic else SCENE.upper.surface
     lower = rf.ArraySurface(heights(grid), pixel=grid.spacings)
     rough = replace(SCENE, upper=rf.Body(HARD, upper), lower=rf.Body(SOFT, lower), periodic=grid.periodic)
     load = SCENE.load * grid.nominal_area / SCENE.side**2  # the same mean pressure on every domain
-    return replace(discretise(rough, grid, terms), load=load)
+    return replace(discretise(rough, grid, Terms()), load=load)
 
 
 @on_grids
 @of_topologies
-@with_terms
-def test_the_reference_and_the_production_solver_agree(name: str, periodic: bool, terms: Terms) -> None:
-    problem = problem_on(replace(GRIDS[name], periodic=periodic), terms)
+def test_the_reference_and_the_production_solver_agree(name: str, periodic: bool) -> None:
+    """On grids of one or two rows and with coarser ones, which the random scenes of `test_plain` lack."""
+    problem = problem_on(replace(GRIDS[name], periodic=periodic))
     (dense, exact), (fft, state) = solve_reference(problem), solve_fft(problem, TOLERANCE, Counter())
     assert fft.status is dense.status
     assert np.array_equal(fft.excluded, dense.excluded)
@@ -78,17 +71,6 @@ def test_the_reference_and_the_production_solver_agree(name: str, periodic: bool
 
 
 @on_grids
-@of_topologies
-def test_at_the_approach_found_under_a_load_is_the_same_state(name: str, periodic: bool) -> None:
-    problem = problem_on(replace(GRIDS[name], periodic=periodic))
-    dense, exact = solve_reference(problem)
-    again = replace(problem, load=None, approach=exact.approach)
-    fft, state = solve_fft(again, TOLERANCE, Counter())
-    assert np.abs(fft.pressure - dense.pressure).max() <= 1e-8 * dense.pressure.max()
-    assert state.forces.normal == pytest.approx(problem.load, rel=1e-8)
-
-
-@on_grids
 def test_the_papers_scheme_agrees_too(name: str) -> None:
     problem = problem_on(GRIDS[name])
     dense, _ = solve_reference(problem)
@@ -96,26 +78,6 @@ def test_the_papers_scheme_agrees_too(name: str) -> None:
     # pressure steps end at 1e-10 of the pressure; 100 of them for what steepest descent still had to go
     assert np.abs(paper.pressure - dense.pressure).max() <= 1e-8 * dense.pressure.max()
     assert paper.status is dense.status
-
-
-@on_grids
-@of_topologies
-def test_a_transposed_domain_has_the_transposed_solution(name: str, periodic: bool) -> None:
-    """Mirrored across the diagonal, with the transverse force of the other sign."""
-    problem = problem_on(replace(GRIDS[name], periodic=periodic))
-    grid = problem.grid
-    other = replace(
-        problem,
-        grid=Grid(grid.shape[::-1], grid.lengths[::-1], periodic),
-        gap=problem.gap.T.copy(),
-        mean_surface=problem.mean_surface.T.copy(),
-        direction=math.pi / 2 - problem.direction,
-    )
-    (here, state), (there, mirrored) = (solve_fft(p, TOLERANCE, Counter()) for p in (problem, other))
-    assert np.abs(there.pressure.T - here.pressure).max() <= SAME * here.pressure.max()
-    assert mirrored.forces.friction == pytest.approx(state.forces.friction, rel=1e-9)
-    bound = 1e-9 * state.forces.normal
-    assert mirrored.forces.binormal == pytest.approx(-state.forces.binormal, abs=bound)
 
 
 def test_oblong_elements_converge_to_the_same_contact() -> None:

@@ -59,12 +59,6 @@ def test_shares_of_a_gradual_set_fall_with_the_clearance_outside_the_contact(
     assert held.tolist() == [2.0 * share]
 
 
-def test_a_gradual_set_is_continuous_where_contact_ends() -> None:
-    law, reach = rf.Friction(tau=2.0, beta=0.1), GradualSet(1e-6)
-    pressed, touching = (reach.traction(law, np.array([p]), lambda: np.array([0.0])) for p in (1e-12, 0.0))
-    assert pressed == pytest.approx(touching, rel=1e-12)
-
-
 def test_the_reach_is_what_tau_on_an_element_moves_the_gap_by() -> None:
     """Twice as much; where bodies do not couple, a hundredth of what pressure as large as tau would."""
     found = first_set(ADHESIVE)
@@ -173,17 +167,18 @@ def test_a_set_that_loses_most_of_the_contact_is_given_up() -> None:
     assert more.status() is Status.ITERATION_LIMIT
 
 
-def test_a_contact_that_meets_the_windows_edge_ends_the_loop() -> None:
-    for edge, asked in (("?", ["? early"]), ("xx", ["? early", "xx early"])):
-        solver = Played({"?": "xx", "xx": "x."}, edge=edge)
-        assert not followed(solver).settled
-        assert solver.asked == asked
-
-
-def test_an_exhausted_solver_ends_the_loop() -> None:
-    solver = Played({"?": "xx", "xx": "x."}, exhausted="xx")
+@pytest.mark.parametrize(
+    ("end", "state", "asked"),
+    [
+        ("edge", "?", ["? early"]),
+        ("edge", "xx", ["? early", "xx early"]),
+        ("exhausted", "xx", ["? early", "xx early"]),
+    ],
+)
+def test_a_windows_edge_and_an_exhausted_solver_end_the_loop(end: str, state: str, asked: list[str]) -> None:
+    solver = Played({"?": "xx", "xx": "x."}, **{end: state})  # type: ignore[arg-type]  # two options of one type
     assert not followed(solver).settled
-    assert solver.asked == ["? early", "xx early"]
+    assert solver.asked == asked
 
 
 def test_the_loop_has_a_limit() -> None:

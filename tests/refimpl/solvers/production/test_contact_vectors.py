@@ -44,11 +44,6 @@ def test_what_is_kept_is_no_view() -> None:
         assert not np.any(FIELD == 9)
 
 
-def test_windows_of_views_that_are_not_contiguous() -> None:
-    mask = contact(6)
-    assert np.array_equal(ContactVectors(mask.T).gather(FIELD.T)[0], FIELD.T[mask.T])
-
-
 @pytest.mark.parametrize("name", ["table1-rough", "rough-planes"])
 def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """To rounding: measured 5e-15 of the largest pressure."""

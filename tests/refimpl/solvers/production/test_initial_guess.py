@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Mask, Window
+from refimpl.grid import Array, Window
 from refimpl.model.problem import Problem
 from refimpl.operators.fft import Counter
-from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.constants import MARGIN
 from refimpl.solvers.production.level import LevelSolver
@@ -38,15 +37,6 @@ def solved(problem: Problem, tolerance: float, window: Window | None = None) -> 
 
 def continued(solver: LevelSolver, finer: Problem) -> LevelSolver:
     return from_guess(finer, solver.initial_guess(), Counter())
-
-
-def test_a_whole_grid_needs_no_product_for_its_guess() -> None:
-    solver = solved(problem_of(BALL, 16), 1e-3)
-    before = dict(solver.counter.tally)
-    guess = solver.initial_guess()
-    assert solver.counter.tally == before
-    assert guess.shape == (16, 16)
-    assert np.array_equal(guess.pressure, solver.cg.pressure)
 
 
 def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() -> None:
@@ -79,13 +69,6 @@ def test_a_finer_grid_starts_close_to_its_solution(approach: float | None) -> No
         assert refined.cg_iterations < alone.cg_iterations
 
 
-def test_strong_feedback_is_mixed_on_finer_grids_from_the_first() -> None:
-    coarse = solved(problem_of(STEEP, 128, oblique=True), 1e-3)
-    assert coarse.needs_mixing
-    assert coarse.initial_guess().needs_mixing
-    assert continued(coarse, problem_of(STEEP, 256, oblique=True)).needs_mixing
-
-
 def test_steep_slopes_converge_on_fine_grids() -> None:
     """Their feedback grows with displacement over spacing; relaxed updates stagnated from 256 on."""
     coarse, fine = (rf.solve(STEEP, M) for M in (128, 256))
@@ -94,36 +77,12 @@ def test_steep_slopes_converge_on_fine_grids() -> None:
     assert fine.cost.iterations["CG at 256 x 256"] < 200
 
 
-def test_residuals_are_continued_beyond_the_contact_that_a_grid_starts_with(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked: list[Mask] = []
-
-    def recorded(precondition: Apply, contact: Mask) -> Apply:
-        asked.append(contact)
-        return precondition
-
-    monkeypatch.setattr(nested_solver, "extended", recorded)
-    finer = continued(solved(problem_of(BALL, 16), 1e-3), problem_of(BALL, 32))
-    assert finer.contact.any()
-    assert not finer.contact.all()
-    assert np.array_equal(asked[-1], finer.contact)
-
-
 def test_steps_are_reported_of_every_grid_and_the_finest_has_few_left() -> None:
     result, _ = solve_fft(problem_of(BALL, 128), 1e-6, Counter())
     assert list(result.iterations) == ["CG at 128 x 128", "CG at 32 x 32"]
     # measured: 7, and 12 where the coarser grids are not solved
     assert result.iterations["CG at 128 x 128"] <= 9
     assert max(result.iterations.values()) <= 9  # and no coarse grid is solved to the end
-
-
-def test_grids_are_solved_from_coarse_to_fine() -> None:
-    """Three of them: quartered, then halved; the last is the requested one."""
-    found = rf.solve(replace(BALL, friction=rf.Friction()), 256, oblique=False, tolerance=1e-3)
-    assert set(found.cost.iterations) == {"CG at 32 x 32", "CG at 128 x 128", "CG at 256 x 256"}
-    assert found.pressure.shape == (256, 256)
-    assert found.converged
 
 
 def test_a_guess_without_any_pressure_is_replaced_by_a_foundation(monkeypatch: pytest.MonkeyPatch) -> None:

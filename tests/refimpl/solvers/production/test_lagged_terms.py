@@ -15,7 +15,6 @@ from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production import lagged_terms
-from refimpl.solvers.production.anderson import AndersonMixing
 from refimpl.solvers.production.lagged_terms import (
     LaggedTerms,
     couples_weakly,
@@ -82,10 +81,6 @@ def test_weak_coupling_is_applied_with_the_pressure(strength: float, periodic: b
     assert couples_weakly(problem) is weak
     assert np.abs(apply(pressure) - expected).max() <= ROUNDING * np.abs(expected).max()
     assert sum(n for kind, n in counter.tally.items() if "kernel" not in kind) == 1
-
-
-def test_neglected_coupling_is_not_applied() -> None:
-    assert not couples_weakly(turned(0.2, coupled=False))
 
 
 @pytest.mark.parametrize(("slope_correction", "strength"), [(False, 0.0), (True, 2.5)])
@@ -176,13 +171,6 @@ def test_without_pressure_nothing_is_sheared() -> None:
         assert np.isfinite(lagged.slopes.tan_x).all()
 
 
-def test_without_facet_tractions_an_update_applies_no_pressure() -> None:
-    lagged, _, counter = lagging(turned(0.2), pressed(7))
-    before = dict(counter.tally)
-    lagged.update()
-    assert counter.tally == before
-
-
 @pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=1.0), rf.Friction(beta=0.1)])
 @pytest.mark.parametrize("coupled", [False, True])
 @pytest.mark.parametrize("oblique", [False, True])
@@ -235,86 +223,6 @@ class Problems:
         self._set(b, K, target=target, approach=approach)
 
 
-class Between(AndersonMixing):
-    """A mixing that goes a quarter of the way from what was used to what is requested, and keeps both."""
-
-    def next(self, used: Array, requested: Array) -> Array:
-        self.used, self.requested = used, requested
-        self.found = used + 0.25 * (requested - used)
-        return self.found
-
-
-@pytest.mark.parametrize(("strength", "oblique"), [(0.4, True), (0.4, False), (0.2, True)])
-def test_lagged_terms_are_mixed_without_units(
-    strength: float, oblique: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Shear that CG does not invert, over the largest displacement, and cosines where there are slopes."""
-    solver = level_solver(problem_of(coupled(strength), 16, oblique=oblique))
-    lagged, cg, gap, given = solver.lagged, solver.cg, solver.problem.gap, Problems(solver.cg, monkeypatch)
-    mixing = Between()
-    lagged.update()
-    lagged.mix(mixing)  # nothing to mix yet
-    assert len(given.K) == 1
-    lagged.iterate()
-    lagged.update()
-    scale = np.abs(cg.normal_displacement).max()
-    lagged.mix(mixing)
-    first_b, _, mixed_b = given.b
-    first_K, next_K, mixed_K = given.K
-    shear = [b - K * gap for b, K in zip(given.b, given.K, strict=True)]
-    bound = 1e-14 * np.abs(first_b).max()
-
-    def stacked(shear: Array, K: Array) -> Array:
-        return np.vstack([shear / scale] * (strength > 0.3) + [K] * oblique)
-
-    np.testing.assert_allclose(mixing.used, stacked(shear[0], first_K), rtol=0, atol=bound / scale)
-    np.testing.assert_allclose(mixing.requested, stacked(shear[1], next_K), rtol=0, atol=bound / scale)
-    assert np.abs(mixing.requested - mixing.used).max() > 1e-7  # CG moved something
-    expected_K = first_K + 0.25 * (next_K - first_K)
-    expected_shear = shear[0] + 0.25 * (shear[1] - shear[0]) if strength > 0.3 else shear[1]
-    np.testing.assert_allclose(mixed_K, expected_K, rtol=1e-14)
-    np.testing.assert_allclose(mixed_b, expected_K * gap + expected_shear, rtol=0, atol=bound)
-    lagged.update()
-    scale = np.abs(cg.normal_displacement).max()
-    lagged.mix(mixing)  # the mixture was used last
-    np.testing.assert_allclose(mixing.used, stacked(shear[2], mixed_K), rtol=0, atol=bound / scale)
-
-
-class Beyond(AndersonMixing):
-    """A mixing that goes too far: to cosines of no slope."""
-
-    def next(self, used: Array, requested: Array) -> Array:
-        return np.where(np.arange(requested.size).reshape(requested.shape) % 2, 1.1, -0.1)
-
-
-def test_mixed_cosines_stay_cosines(monkeypatch: pytest.MonkeyPatch) -> None:
-    solver = level_solver(problem_of(BALL, 16, oblique=True))
-    solver.lagged.update()
-    solver.lagged.mix(None)
-    given = Problems(solver.cg, monkeypatch)
-    solver.lagged.mix(Beyond())
-    assert set(np.unique(given.K[-1])) == {1e-6, 1.0}
-
-
-def test_without_an_active_set_tau_is_nowhere() -> None:
-    """As on coarse grids: tau's rule begins so, and there only."""
-    solver = level_solver(problem_of(coupled(0.3, tau=1e6), 16))
-    assert solver.solve(1e-9, FixedSet(solver.problem.gap < 0))
-    pressure, friction = solver.cg.pressure, solver.problem.friction
-    assert 1 < np.count_nonzero(pressure) < 16**2
-    assert np.array_equal(solver.lagged.traction, friction.slope * pressure)
-
-
-def test_any_pressure_is_contact() -> None:
-    """However small in pascals: it carries tau."""
-    diagonal = np.eye(8, dtype=bool)
-    problem = problem_of(replace(BALL, friction=rf.Friction(tau=1.0, beta=0.0)), 8)
-    solver = level_solver(problem, pressure=np.where(diagonal, 1e-3, 0.0))
-    assert np.array_equal(solver.contact, diagonal)
-    solver.lagged.active = FixedSet(solver.contact)
-    assert np.array_equal(solver.lagged.traction, 1.0 * diagonal)
-
-
 @pytest.mark.parametrize("inside", [True, False])
 def test_outdated_slopes_of_facets_count_where_there_is_contact(inside: bool) -> None:
     solver = level_solver(problem_of(BALL, 16, oblique=True, slope_correction=True))
@@ -350,24 +258,3 @@ def test_coupling_that_cg_inverts_ends_in_the_same_state_for_less(
     assert together.status is apart.status is rf.Status.CONVERGED
     assert np.abs(together.pressure - apart.pressure).max() <= 1e-6 * apart.max_pressure
     assert together.cost.point_logs <= 0.8 * apart.cost.point_logs
-
-
-@pytest.mark.parametrize(("strength", "pays"), [(0.5, True), (0.7, False)])
-def test_inverting_the_coupling_pays_beyond_its_limit_and_fails_still_further(
-    strength: float, pays: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What `WEAK_COUPLING` rests on, with room to spare: on four balls, work over the lagged updates' and
-    status."""
-    ratios, ended = [], []
-    for load in (0.5, 2.0, 8.0, 32.0):
-        scene = replace(coupled(strength), load=load)
-        apart = rf.solve(scene, 64, oblique=False)
-        with monkeypatch.context() as patched:
-            patched.setattr(lagged_terms, "WEAK_COUPLING", 1.0)
-            together = rf.solve(scene, 64, oblique=False)
-        assert apart.status is rf.Status.CONVERGED
-        ratios.append(together.cost.point_logs / apart.cost.point_logs)
-        ended.append(together.status)
-    assert (max(ratios) < 1) is pays
-    assert (min(ratios) < 1) is pays
-    assert all((status is rf.Status.CONVERGED) is pays for status in ended)

@@ -148,60 +148,6 @@ def test_a_solve_takes_no_more_updates_than_its_limit(monkeypatch: pytest.Monkey
     assert lagged.updates == 1 + 7
 
 
-def finely(monkeypatch: pytest.MonkeyPatch) -> float:
-    """A factor of CG's steps so close to one that its residual shows the goal; it has time to get there."""
-    monkeypatch.setattr(constants, "CG_PATIENCE", 10**6)
-    monkeypatch.setattr(constants, "CG_LIMIT", 10**7)
-    return 1 - 1e-4
-
-
-@pytest.mark.parametrize(("feedback", "next_share"), [(0.5, 0.1), (0.02, 0.02), (0.0, 1e-3), (-0.01, 1e-3)])
-def test_the_less_feedback_the_further_cg_goes_between_updates(
-    feedback: float, next_share: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """CG leaves a tenth at first, then as much as the last update fed back, a thousandth at least."""
-    monkeypatch.setattr(constants, "UPDATE_LIMIT", 2)
-    cg, left, residuals = Falling(finely(monkeypatch)), [1.0], [1.0]
-
-    def residual(update: int) -> float:
-        if update:
-            left.append(cg.residual)
-            cg.residual += feedback * residuals[-1]
-            residuals.append(cg.residual)
-        return cg.residual
-
-    solver, _ = scripted(cg, residual)
-    solver.solve(1e-12, NOTHING)
-    shares = [found / before for found, before in zip(left[1:], residuals, strict=False)]
-    assert shares == pytest.approx([0.1, next_share], rel=2e-4)
-
-
-@pytest.mark.parametrize(("has_lag", "share"), [(True, 0.3), (False, 0.9)])
-def test_cg_goes_no_further_than_the_tolerance_needs(
-    has_lag: bool, share: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The rest is for the lagged terms, or for rounding alone."""
-    cg = Falling(finely(monkeypatch))
-    solver, _ = scripted(cg, lambda k: cg.residual, has_lag=has_lag)
-    cg.residual = 2e-3
-    assert solver.solve(1e-3, NOTHING)
-    assert cg.residual == pytest.approx(share * 1e-3, rel=2e-4)
-
-
-@pytest.mark.parametrize(
-    ("residual", "left", "goal"), [(1e-2, 1e-3, 1e-4), (1e-3, 1e-2, 1e-4), (2e-8, 1e-8, 1e-9)]
-)
-def test_between_mixed_updates_cg_leaves_a_tenth_of_what_mixing_has_left(
-    residual: float, left: float, goal: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Without a step of CG an update would tell nothing new; a tenth of the tolerance is always enough."""
-    cg = Falling(finely(monkeypatch))
-    solver, lagged = scripted(cg, listed(residual, 0.0), needs_mixing=True, at_mixing=left)
-    assert solver.solve(1e-8, NOTHING)
-    assert lagged.mixings[0] is not None
-    assert cg.residual == pytest.approx(goal, rel=2e-4)
-
-
 @pytest.mark.parametrize("needs_mixing", [False, True])
 def test_cg_stops_where_the_contact_is_certain_and_enough_but_not_between_mixed_updates(
     needs_mixing: bool,
@@ -214,37 +160,11 @@ def test_cg_stops_where_the_contact_is_certain_and_enough_but_not_between_mixed_
     assert (cg.steps, lagged.updates) == ((4 if needs_mixing else 1), 2)
 
 
-@pytest.mark.parametrize("enough", [None, lambda contact: False])
-def test_a_state_whose_contact_is_not_enough_is_solved_to_the_end(enough: ContactTest | None) -> None:
-    cg = Falling(0.5, ends_at=np.eye(4, dtype=bool))
-    solver, _ = scripted(cg, lambda k: cg.residual, has_lag=False)
-    assert solver.solve(1e-8, NOTHING, enough)
-
-
 @pytest.mark.parametrize(("share", "met"), [(0.985, True), (0.995, False)])
 def test_a_hundredth_of_the_tolerance_is_left_to_the_certificates_rounding(share: float, met: bool) -> None:
     """At a tolerance of 1e-12 rounding is a thousandth of it."""
     solver, _ = scripted(Falling(0.0), listed(share * 1e-12))
     assert solver.solve(1e-12, NOTHING) is met
-
-
-@pytest.mark.parametrize("tolerance", np.geomspace(1e-3, 1e-8, 15))
-def test_without_lag_no_step_is_taken_below_the_tolerance(
-    tolerance: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """But for a tenth of it that is left to rounding."""
-    solver = level_solver(problem_of(replace(BALL, load=20.0), 64, coupled=False))
-    before: list[float] = []
-    iterate = solver.cg.iterate
-
-    def recorded() -> None:
-        before.append(max(solver.cg.residuals()))
-        iterate()
-
-    monkeypatch.setattr(solver.cg, "iterate", recorded)
-    assert solver.solve(tolerance, FixedSet(np.zeros((64, 64), dtype=bool)))
-    assert min(before) > 0.9 * tolerance
-    assert solver.cg_iterations == len(before) > 1
 
 
 def test_how_a_solve_ended(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -279,14 +199,6 @@ def test_without_tau_there_is_one_solve(friction: rf.Friction, monkeypatch: pyte
     else:
         assert all(enough is not None for enough in solves)
         assert len(solves) > 1
-
-
-@pytest.mark.parametrize(("tau", "too_small"), [(0.0, False), (1e6, True)])
-def test_only_states_of_taus_rule_must_keep_off_a_windows_edge(tau: float, too_small: bool) -> None:
-    """Without tau there is one state, and the check on the whole grid tells what its window lacks."""
-    problem = problem_of(coupled(0.3, tau=tau), 16)
-    solver = level_solver(problem, Window(4, 8, 4, 12), pressure=np.ones((4, 8)))
-    assert solver.window_too_small is too_small
 
 
 @pytest.mark.parametrize(

@@ -27,16 +27,6 @@ def test_much_load_that_a_cut_adds_is_taken_from_all() -> None:
     np.testing.assert_allclose(change, [[50 / 1.2 - 50, -1.0, 70 / 1.2 - 49]], rtol=1e-12)
 
 
-def test_at_an_approach_a_cut_gives_nothing_back() -> None:
-    kept, change = cut([50.0, 1.0, 49.0], [0.0, -21.0, 21.0], target=None)
-    assert kept
-    np.testing.assert_allclose(change, [[0.0, -1.0, 21.0]])
-
-
-def test_a_cut_that_leaves_nothing_says_so() -> None:
-    assert not cut([1.0, 2.0], [-2.0, -3.0], target=None)[0]
-
-
 def test_weights_count() -> None:
     """An element of twice the weight bears twice the load."""
     before, change = np.array([[300.0, 1.0, 199.5]]), np.array([[1.0, -3.0, 0.5]])
