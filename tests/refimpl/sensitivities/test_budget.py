@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -34,23 +33,9 @@ def found(solution: rf.Solution) -> Budgets:
     return budget(SCENE, solution, TOLERANCES, sampling={"contact_area": 1e-9})
 
 
-def test_inputs_are_derivatives_times_tolerances(found: Budgets) -> None:
-    mu = found.numbers["friction_coefficient"]
-    slope = found.derivatives.derivatives["friction_coefficient"]["friction.tau"]
-    assert mu.inputs["friction.tau"] == pytest.approx(abs(slope) * 40e6 * 0.1)
-    assert mu.input == pytest.approx(math.sqrt(sum(part**2 for part in mu.inputs.values())))
-    assert set(mu.inputs) == set(TOLERANCES)
-
-
-def test_input_of_the_peak_is_what_a_changed_scene_gives(found: Budgets) -> None:
-    stiffer = rf.Scene(
-        SCENE.upper,
-        rf.Body(rf.Material(118e9 * 1.02, 0.3), SCENE.lower.surface),
-        SCENE.friction,
-        100.0,
-        1.61e-3,
-    )
-    change = rf.solve(stiffer, 64).max_pressure - rf.solve(SCENE, 64).max_pressure
+def test_input_of_the_peak_is_what_a_changed_scene_gives(found: Budgets, solution: rf.Solution) -> None:
+    stiffer = replace(SCENE, lower=rf.Body(rf.Material(118e9 * 1.02, 0.3), SCENE.lower.surface))
+    change = rf.solve(stiffer, 64).max_pressure - solution.max_pressure
     share = found.numbers["max_pressure"].inputs["lower.material.E"]
     assert share == pytest.approx(change, rel=0.05)  # a step of 2 % is no derivative
 
@@ -80,22 +65,10 @@ def test_cosines_misjudge_the_load(found: Budgets, solution: rf.Solution) -> Non
     assert area.sources["cosines"] == pytest.approx(share * area.value, rel=1e-6, abs=0)
 
 
-def test_coefficients_act_like_a_change_of_both_moduli(found: Budgets, solution: rf.Solution) -> None:
-    wrong = solution.slope_error.at_rms
-    assert wrong is not None
-    relative = sum(
-        found.derivatives.relative("max_pressure", f"{body}.material.E") for body in ("upper", "lower")
-    )
-    peak = found.numbers["max_pressure"]
-    assert peak.sources["coefficients"] == pytest.approx(abs(relative) * wrong * peak.value)
-
-
 def test_parts_add_in_squares_and_model_form_as_it_is() -> None:
     part = Budget(1.0, numerical=3.0, inputs={"a": 4.0}, sources={"x": 1.0, "y": 0.5}, sampling=12.0)
     assert part.total == pytest.approx(1.5 + 13.0)
     assert Budget(1.0, 3.0, {}, {}).total == 3.0
-    with pytest.raises(FrozenInstanceError):
-        part.numerical = 0.0  # type: ignore[misc]  # on purpose
 
 
 def test_tolerances_stand_in_the_scenes_file(tmp_path: Path) -> None:
@@ -110,12 +83,6 @@ def test_without_tolerances_there_is_no_input(solution: rf.Solution) -> None:
     found = budget(SCENE, solution)
     assert found.tolerances == {}
     assert all(part.input == 0 for part in found.numbers.values())
-
-
-@pytest.mark.parametrize("tolerances", [{"lower.material.G": 0.02}, {"load": -0.1}])
-def test_bad_tolerances_have_no_budget(solution: rf.Solution, tolerances: dict[str, float]) -> None:
-    with pytest.raises(rf.InputError, match="tolerances"):
-        budget(SCENE, solution, tolerances)
 
 
 @pytest.mark.parametrize(

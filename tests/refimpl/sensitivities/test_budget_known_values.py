@@ -11,8 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.sensitivities.budget import budget
-from refimpl.sensitivities.fixed_contact import FixedContact, Response
-from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity
+from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
 
 # by its module's name: the package has a function of the same name
 module = importlib.import_module("refimpl.sensitivities.budget")
@@ -120,17 +119,3 @@ def test_a_capped_solve_that_fails_bounds_nothing(
         assert parts["max_pressure"] == pytest.approx(solution.max_pressure - 6e6)
     else:
         assert set(parts.values()) == {math.inf}
-
-
-def test_the_worst_of_the_linear_solves_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    respond, left = FixedContact.response, [1e-9, 3e-8, 2e-8, 5e-9]
-
-    def answered(self: FixedContact, change: object) -> Response:
-        used.append(left[len(used) % 4])
-        return respond(self, change)._replace(residual=used[-1])  # type: ignore[arg-type]  # an array
-
-    used: list[float] = []
-    monkeypatch.setattr(FixedContact, "response", answered)
-    found = sensitivity(SCENE, rf.solve(SCENE, 16, plastic=False))
-    assert len(used) >= 4
-    assert found.residual == 3e-8

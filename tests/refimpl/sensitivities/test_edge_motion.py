@@ -78,22 +78,6 @@ def test_a_load_that_moves_no_edge_foretells_none() -> None:
     assert edge.derivative(inside) == (0.0, 0.0)
 
 
-def test_scatter_is_what_other_neighbourhoods_find(monkeypatch: pytest.MonkeyPatch) -> None:
-    """5 x 5 elements against 9 x 9, where counting leaves nothing uncertain."""
-    inside, pressure = hertz_disc()
-    contact = inside < 1
-    moved = np.where(contact, np.random.default_rng(4).random(contact.shape), 0.0)
-    found = []
-    for widths in ((5, 9), (5, 5), (9, 9)):
-        monkeypatch.setitem(EdgeMotion.derivative.__globals__, "_WIDTHS", widths)
-        edge = EdgeMotion(fixed_contact(contact, pressure), (5.0, 0.0), contact / np.maximum(pressure, 0.1))
-        found.append(edge.derivative(moved))
-    (near, scatter), (five, none), (nine, _) = found
-    assert near == five != nine
-    assert none == 0
-    assert scatter == pytest.approx(abs(five - nine))
-
-
 @pytest.mark.parametrize("periodic", [False, True])
 def test_the_edge_is_where_a_neighbour_is_open(periodic: bool) -> None:
     """Outside a free square all is open; a periodic one has neighbours all round."""

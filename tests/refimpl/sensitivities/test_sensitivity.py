@@ -11,7 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import AREA
 from refimpl.model.forces import EDGE_SHARE
-from refimpl.scene.parameters import check_tolerances, parameters, with_parameter
+from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, friction_slopes, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
@@ -55,13 +55,6 @@ def test_smooth_numbers_agree_with_finite_differences(options: dict[str, bool]) 
             assert abs(found.derivatives[number][name] - expected[number]) <= 1e-4 * scale, (name, number)
 
 
-def test_correlation_length_agrees_where_the_set_stays() -> None:
-    scene, name = sliding(), "lower.surface[0].correlation_length"
-    found = sensitivity(scene, rf.solve(scene, M, tolerance=TIGHT))
-    expected = differences(scene, name, 1e-6)
-    assert found.derivatives["max_pressure"][name] == pytest.approx(expected["max_pressure"], rel=1e-3)
-
-
 @pytest.mark.parametrize("material", [POLYMER, rf.Material(E=2.5e9, nu=0.5)], ids=["twins", "incompressible"])
 def test_coupling_that_cancels_comes_back_with_a_change(material: rf.Material) -> None:
     """Of twins shear moves neither body towards the other, until one of them is another material."""
@@ -78,17 +71,6 @@ def test_coupling_that_cancels_comes_back_with_a_change(material: rf.Material) -
         for number in ("friction_coefficient", "max_pressure", "binormal_force"):
             scale = max(abs(expected[number]), abs(found.found[number] / found.parameters[name]))
             assert abs(found.derivatives[number][name] - expected[number]) <= 1e-4 * scale, (name, number)
-
-
-def test_facets_of_twins_have_derivatives() -> None:
-    """Facet tractions include shear, which for twins nothing else asks for."""
-    scene = sliding()
-    twins = replace(scene, upper=rf.Body(POLYMER, scene.upper.surface))
-    found = sensitivity(twins, rf.solve(twins, M, tolerance=TIGHT, slope_correction=True))
-    expected = differences(twins, "upper.material.E", 1e-5, slope_correction=True)
-    assert found.derivatives["max_pressure"]["upper.material.E"] == pytest.approx(
-        expected["max_pressure"], rel=1e-4
-    )
 
 
 def one_sided(scene: rf.Scene, name: str, step: float) -> dict[str, float]:
@@ -136,7 +118,7 @@ def test_friction_is_as_uncertain_as_the_area_that_tau_acts_on(adhesive: Sensiti
     assert adhesive.scatter["friction_coefficient"]["load"] == pytest.approx(5e5 / 20.0 * spread, rel=0.05)
 
 
-@pytest.mark.parametrize(("grid", "least", "most"), [(2 * M, 1.0, 1.12), (M, 1.0, 1.15), (12, 1.2, 3.0)])
+@pytest.mark.parametrize(("grid", "least", "most"), [(M, 1.0, 1.15), (12, 1.2, 3.0)])
 def test_an_areas_scatter_by_the_load_is_that_of_two_counts(grid: int, least: float, most: float) -> None:
     """Of edge elements that come in and out one by one, over a tenth of the load; more for small patches, and
     up to a tenth for edges along the grid."""
@@ -206,12 +188,13 @@ def test_periodic_scenes_have_no_derivative_by_length() -> None:
 
 
 def test_parameters_are_read_and_changed_by_name() -> None:
-    scene = sliding(tau=1e6)
-    for name, value in parameters(scene).items():
-        other = value + 4.0 if name.endswith(".seed") else 0.9 * value
-        changed = parameters(with_parameter(scene, name, other))
-        assert changed.pop(name) == pytest.approx(other)
-        assert changed.items() <= parameters(scene).items()
+    scene, fractal = sliding(tau=1e6), rf.SelfAffineRoughness(0.8, 8e-4, 1.6e-3, 2e-4, rms=2e-6, seed=3)
+    for given in (scene, replace(scene, lower=rf.Body(POLYMER, fractal))):
+        for name, value in parameters(given).items():
+            other = value + 4.0 if name.endswith(".seed") else 0.95 * value
+            changed = parameters(with_parameter(given, name, other))
+            assert changed.pop(name) == pytest.approx(other)
+            assert changed.items() <= parameters(given).items()
     with pytest.raises(rf.InputError, match=r"upper\.colour"):
         with_parameter(scene, "upper.colour", 1.0)
     with pytest.raises(rf.InputError, match="load"):
@@ -227,20 +210,6 @@ def test_a_changed_surface_keeps_its_kind() -> None:
     changed = with_parameter(scene, "lower.surface[0].rms", 1e-6)
     assert changed.lower.surface == rf.GaussianRoughness(1e-6, 400e-6, seed=3)
     assert changed.upper is scene.upper
-
-
-def test_tolerances_are_relative_and_of_what_moves() -> None:
-    scene = sliding()
-    check_tolerances(scene, {"load": 0.0, "lower.material.E": 0.999})
-    for name, tolerance in (("load", -1e-9), ("load", 1.0), ("friction.tau", 0.1), ("colour", 0.1)):
-        with pytest.raises(rf.InputError, match=name):
-            check_tolerances(scene, {name: tolerance})
-
-
-def test_what_has_no_sensitivity_is_refused() -> None:
-    scene = sliding()
-    with pytest.raises(rf.InputError, match="contact"):
-        sensitivity(scene, rf.solve(scene, 32, approach=-1e-6))
 
 
 def test_a_derivative_that_two_ways_disagree_on_says_so() -> None:
@@ -259,20 +228,6 @@ def test_a_derivative_that_two_ways_disagree_on_says_so() -> None:
         assert 0 < coarse.scatter[number]["load"] < 0.3 * abs(coarse.derivatives[number]["load"])
         steady = "lower.surface[0].rms"
         assert fine.scatter[number][steady] < 0.3 * abs(fine.derivatives[number][steady])
-
-
-def test_what_has_no_derivatives_is_refused() -> None:
-    flats = replace(
-        sliding(periodic=True), upper=rf.Body(STEEL, rf.Flat()), lower=rf.Body(POLYMER, rf.Flat())
-    )
-    for scene, solution, field in (
-        (flats, rf.solve(flats, 8), "solution"),
-        (flats, 3, "solution"),
-        ("hertz", rf.solve(flats, 8), "scene"),
-    ):
-        with pytest.raises(rf.InputError) as refused:
-            sensitivity(scene, solution)  # type: ignore[arg-type]  # on purpose
-        assert refused.value.field == field
 
 
 def test_no_per_cents_of_zero() -> None:

@@ -82,19 +82,6 @@ def test_bounds_of_a_converged_state_are_sharp_and_decide_every_element() -> Non
     assert bounds.normal_force == pytest.approx(abs(found.normal_force - 3.0), abs=1e-15)
 
 
-def test_bounds_cost_nothing_until_asked_for() -> None:
-    found = rf.solve(scene(0), M)
-    assert "bounds" not in vars(found)
-    assert found.bounds is found.bounds
-    assert found.bounds in {found.bounds}
-
-
-def test_surfaces_apart_are_exact() -> None:
-    bounds = rf.solve(scene(0), M, approach=-1e-6).bounds
-    assert bounds.energy <= 1e-30
-    assert bounds.out_of_contact.all()
-
-
 @pytest.mark.parametrize(
     ("options", "periodic", "why"),
     [

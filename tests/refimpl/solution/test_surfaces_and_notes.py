@@ -71,14 +71,6 @@ def test_without_a_hardness_the_note_states_the_load_over_the_contact() -> None:
     assert largest == pytest.approx(s.max_pressure / 1e6, rel=1e-3)
 
 
-def test_full_contact_has_no_radius() -> None:
-    """Nine elements in full contact have the mean radius 1.7: no edge, and no warning."""
-    flats = replace(SCENE, upper=rf.Body(HARD, rf.Flat()))
-    s = rf.solve(flats, 3, oblique=False)
-    assert s.contact.all()
-    assert not [w for w in s.warnings if isinstance(w, ModelWarning) and w.limit is Limit.RADIUS]
-
-
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
 @pytest.mark.parametrize("bodies", [("lower", "upper"), ("upper", "lower")])
 def test_points_of_the_finer_data_count(bodies: tuple[str, str]) -> None:
@@ -109,26 +101,27 @@ def test_notes_of_the_surfaces_stay_where_a_refinement_is_refused(monkeypatch: p
 MODULUS = 1 / (0.8775 / 2e9 + 0.96 / 7e9)
 
 
-@pytest.mark.parametrize(("strain", "inside", "outside"), [(1e-30, 1.001, 0.999), (1e6, 0.999, 1.001)])
-def test_loads_end_at_strains_of_1e_minus_30_and_of_1e6(strain: float, inside: float, outside: float) -> None:
-    end = strain * MODULUS * 16e-6
-    Options(scene=replace(SCENE, load=inside * end), grid=8)
+@pytest.mark.parametrize(
+    ("field", "end", "beyond"),
+    [
+        ("load", 1e-30 * MODULUS * 16e-6, 0.999),
+        ("load", 1e6 * MODULUS * 16e-6, 1.001),
+        ("friction.tau", 1e6 * MODULUS, 1.001),
+        ("approach", 1e6 * 4e-3, 1.001),
+        ("approach", -1e6 * 4e-3, 1.001),
+    ],
+)
+def test_strains_from_1e_minus_30_to_1e6_are_accepted(field: str, end: float, beyond: float) -> None:
+    def options(number: float) -> Options:
+        if field == "approach":
+            return Options(scene=SCENE, grid=8, approach=number)
+        changes = {"load": number} if field == "load" else {"friction": rf.Friction(tau=number)}
+        return Options(scene=replace(SCENE, **changes), grid=8)  # type: ignore[arg-type]  # one of two fields
+
+    options(end / beyond)
     with pytest.raises(rf.InputError) as refused:
-        Options(scene=replace(SCENE, load=outside * end), grid=8)
-    assert refused.value.field == "load"
-
-
-def test_tau_ends_at_a_million_moduli() -> None:
-    Options(scene=replace(SCENE, friction=rf.Friction(tau=0.999e6 * MODULUS)), grid=8)
-    with pytest.raises(rf.InputError, match=r"friction\.tau"):
-        Options(scene=replace(SCENE, friction=rf.Friction(tau=1.001e6 * MODULUS)), grid=8)
-
-
-@pytest.mark.parametrize("way", [1.0, -1.0])
-def test_approaches_end_at_a_million_sides_either_way(way: float) -> None:
-    Options(scene=SCENE, grid=8, approach=way * 0.999e6 * 4e-3)
-    with pytest.raises(rf.InputError, match="approach"):
-        Options(scene=SCENE, grid=8, approach=way * 1.001e6 * 4e-3)
+        options(end * beyond)
+    assert refused.value.field == field
 
 
 @pytest.mark.parametrize("size", [(2e-3, 1e-3), (1e-3, 2e-3)])

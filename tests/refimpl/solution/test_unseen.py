@@ -14,7 +14,7 @@ from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
-from refimpl.solution.data_error import data_error
+from refimpl.solution.data_error import data_error, finest_by_data
 from refimpl.solution.unseen import unseen_parts
 from refimpl.surfaces import Surface
 
@@ -93,9 +93,11 @@ def test_several_maps_are_seen_at_the_pitch_of_each() -> None:
     assert data_error(scene, Grid((8, 8), lengths, True)) == pytest.approx(0.01546 + 1.5 * 0.02998, abs=2e-5)
 
 
-@pytest.mark.parametrize("formula", [rf.Sphere(0.2), Wave(3e-6, wavelength=1e-3)])
-def test_formulas_leave_nothing_open(formula: Surface) -> None:
-    assert data_error(waves(rf.Flat(), formula), Grid((8, 4), LENGTHS, True)) == 0
+@pytest.mark.parametrize(
+    "lower", [rf.Sphere(0.2), Wave(3e-6, wavelength=1e-3), Wave(0.0, wavelength=4e-3, data=0.25e-3)]
+)
+def test_formulas_and_a_level_map_leave_nothing_open(lower: Surface) -> None:
+    assert data_error(waves(rf.Flat(), lower), Grid((8, 4), LENGTHS, True)) == 0
 
 
 def test_a_balls_slope_is_no_roughness_beside_the_data() -> None:
@@ -103,11 +105,6 @@ def test_a_balls_slope_is_no_roughness_beside_the_data() -> None:
     assert data_error(waves(rf.Sphere(0.2), MEASURED), Grid((8, 4), LENGTHS, True)) == pytest.approx(
         0.04804, abs=6e-6
     )
-
-
-def test_a_level_map_leaves_nothing_open() -> None:
-    level = Wave(0.0, wavelength=4e-3, data=0.25e-3)
-    assert data_error(waves(rf.Flat(), level), Grid((8, 4), LENGTHS, True)) == 0
 
 
 def test_a_map_of_two_points_has_no_octave_above() -> None:
@@ -190,3 +187,14 @@ def test_a_contact_within_the_domain_has_no_part() -> None:
     contact, parts, _ = ball(4e-6, (16, 8))
     assert contact.any()
     assert parts == {}
+
+
+def test_the_closest_points_of_both_bodies_limit_the_grid_along_the_longer_side() -> None:
+    """Points 10 um apart below, 25 um above, on 300 x 100 um: four elements in 10 um are 120 in 300."""
+    few, many, ball = np.zeros((12, 4)), np.zeros((30, 10)), rf.Sphere(0.1)
+    rough = rf.GaussianRoughness(1e-7, 1e-4, seed=2)
+    soft = rf.Material(2e9, 0.4)
+    for lower, upper, most in ((many, few, 120.0), (few, ball, 48.0), (rough, ball, math.inf)):
+        bodies = rf.Body(soft, upper), rf.Body(soft, lower)
+        scene = rf.Scene(*bodies, friction=rf.Friction(), load=1.0, size=(300e-6, 100e-6))
+        assert finest_by_data(scene) == most
