@@ -23,8 +23,7 @@ def bar(s: rf.Solution, name: str) -> float:
     return math.fsum(s.uncertainty[name].values())
 
 
-@pytest.mark.parametrize("share", [0.2, 0.5])
-@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize(("axis", "share"), [(0, 0.2), (1, 0.5)])
 def test_bars_of_grooves_hold_the_exact_numbers(axis: int, share: float) -> None:
     """Westergaard's strips at eight places within an element: A, corrected A, mu and the approach."""
     flattening = math.pi * MODULUS * AMPLITUDE / SIDE
@@ -47,7 +46,7 @@ def test_bars_of_grooves_hold_the_exact_numbers(axis: int, share: float) -> None
             assert abs(getattr(s, name) - number) <= bar(s, name), (place, name)
 
 
-@pytest.mark.parametrize("grid", [64, 128])
+@pytest.mark.parametrize("grid", [64, pytest.param(128, marks=pytest.mark.nightly)])
 def test_bars_hold_where_a_lay_is_along_the_grid(grid: int) -> None:
     """Under a ball, against four times the elements: in five of six surfaces at least."""
     held = 0
@@ -94,11 +93,6 @@ def test_limits_of_a_refinement_end_it_with_the_best_grid_within_them() -> None:
     assert s.status is rf.Status.ACCURACY_NOT_REACHED
     assert s.certified
     assert max(s.grid.shape) <= 96
-    for limit in ({"max_grid": 0}, {"max_seconds": -1.0}, {"max_memory": 0.0}):
-        with pytest.raises(rf.InputError):
-            rf.solve(MAP, accuracy=0.1, **limit)
-    with pytest.raises(rf.InputError, match="accuracy"):
-        rf.solve(MAP, 32, max_grid=64)
 
 
 def test_contact_that_fills_the_window_has_no_error_bar() -> None:
@@ -121,14 +115,10 @@ def test_contact_that_fills_the_window_has_no_error_bar() -> None:
     [
         ({"lower": rf.Body(rf.Material(E=200.0, nu=0.3), rf.Flat()), "load": 1e-3}, "did you mean GPa"),
         ({"friction": rf.Friction(tau=15e9, beta=0.08)}, "did you mean MPa"),
-        ({"lower": rf.Body(rf.Material(E=118e9, nu=0.3, hardness=50e9), rf.Flat())}, "above a tenth of E"),
-        ({"lower": rf.Body(rf.Material(E=118e9, nu=0.3, hardness=1e9), rf.Flat()),
-          "friction": rf.Friction(tau=2e9)}, "below tau"),
-        ({"upper": rf.Body(STEEL, rf.Sphere(0.5e-3))}, "is below the domain's"),
-        ({"lower": rf.Body(COPPER, rf.GaussianRoughness(1e-7, 104.0, seed=1))}, "beyond the domain's"),
     ],
-)  # fmt: skip
+)
 def test_inputs_that_are_seldom_meant_get_a_note_with_help(change: dict[str, object], said: str) -> None:
+    """Every note with its limits: `test_plausibility`."""
     tau, ball = rf.Friction(tau=15e6, beta=0.08), rf.Body(STEEL, rf.Sphere(0.14))
     usual = rf.Scene(ball, rf.Body(COPPER, rf.Flat()), tau, 70.0, 1.6e-3)
     assert not any(said in line for line in rf.solve(usual, 16).warnings)

@@ -40,33 +40,13 @@ def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) 
         assert found.value == pytest.approx(alone.value, rel=1e-12)
         assert found.half_width == pytest.approx(
             alone.half_width, rel=2e-4
-        )  # as closely as bounds are sought
+        )  # as bounds are sought
 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
 def test_bars_of_extreme_spreads(spread: float) -> None:
     assert Estimate(2.0, spread).error_bound(3.0) == (math.inf if math.isinf(spread) else 1.0)
     assert Estimate(2.0, spread).error_bound(2.0) == pytest.approx(spread)
-
-
-def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
-    """Numbers from the model itself with q = 0, their weights and edges, in the unit of the scatter."""
-    rng = np.random.default_rng(7)
-    weights = 2.0 ** (1.5 * np.arange(grids)[::-1])
-    edge = 5 * 2.0 ** np.arange(grids)[::-1]
-    size = rng.normal(EDGE_SIZE, EDGE_SIZE_SPREAD, count)
-    sigma = AREA.scatter * np.sqrt(AREA.weight / rng.chisquare(AREA.weight, count))
-    noise = rng.standard_normal((count, grids)) * weights * sigma[:, None]
-    return size[:, None] * edge + noise, weights, edge
-
-
-@pytest.mark.parametrize("grids", [1, 2, 4])
-def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
-    values, weights, edge = draws(800, grids)
-    bias = Bias(edge, EDGE_SIZE, EDGE_SIZE_SPREAD)
-    found = [fit_line(row, weights, AREA, bias) for row in values]
-    share = np.mean([abs(estimate.value) <= estimate.half_width for estimate in found])
-    assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
 
 
 def integrated(values: Array, weights: Array, prior: Prior, bias: Bias) -> tuple[float, float]:
@@ -101,10 +81,8 @@ def test_nine_nodes_do_for_the_factors_integral() -> None:
         scatter = prior.scatter * weights * draw.standard_normal(len(spacing))
         bias = Bias(sizes, EDGE_SIZE, EDGE_SIZE_SPREAD)
         values = 1 + sizes * draw.normal(EDGE_SIZE, EDGE_SIZE_SPREAD) + scatter
-        found, (value, bound) = (
-            fit_line(values, weights, prior, bias),
-            integrated(values, weights, prior, bias),
-        )
+        found = fit_line(values, weights, prior, bias)
+        value, bound = integrated(values, weights, prior, bias)
         off.append((abs(found.value - value) / bound, abs(found.half_width / bound - 1)))
     assert np.all(np.quantile(off, 0.9, axis=0) < (5e-5, 0.02))
     assert np.max(off) < 0.15
@@ -120,16 +98,10 @@ def test_bounds_know_no_unit(power: int) -> None:
     assert other == (unit * one.value, unit * one.half_width, one.orders)
 
 
-def test_zeros_are_exact() -> None:
-    assert fit_line(np.zeros(3), np.ones(3), Prior(0.1, 2.0)) == Estimate(0.0, 0.0)
-
-
 def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> None:
     calm, wild = np.array([1.0, 1.0, 1.0]), np.array([1.3, 0.9, 1.0])
     weights, prior = np.array([8.0, 2.8, 1.0]), Prior(0.01, 2.0)
     assert fit_line(wild, weights, prior).half_width > 2 * fit_line(calm, weights, prior).half_width
     alone = fit_line(np.array([3.0]), np.ones(1), prior)
     assert alone.value == 3.0
-    assert alone.half_width == pytest.approx(
-        4.303 * 0.01, rel=1e-3
-    )  # Student's t with two degrees of freedom
+    assert alone.half_width == pytest.approx(4.303 * 0.01, rel=1e-3)  # Student's t, two degrees of freedom

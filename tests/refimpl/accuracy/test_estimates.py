@@ -13,7 +13,6 @@ from refimpl.accuracy import discretisation_error
 from refimpl.accuracy.discretisation_error import (
     EDGE_SIZE,
     EDGE_SIZE_SPREAD,
-    area_scatter,
     edge_scatter,
     estimates,
 )
@@ -24,7 +23,7 @@ from refimpl.solution.limits import Limit
 from refimpl.solution.solution import REPORTED
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, DMU_DA, PEAK, SIDE, made_up, sloped
 
-HERTZ_GRIDS = (80, 96, 112, 128, 160, 192, 224, 256, 320, 384, 448, 512)
+HERTZ_GRIDS = (80, 96, 112, 128, 160, 192, 256, 320)
 
 
 def test_numbers_that_follow_the_model_are_extrapolated() -> None:
@@ -82,7 +81,6 @@ def test_what_slopes_leave_open_of_mu_they_leave_open_of_forces() -> None:
     ("scatter", "weights"),
     [
         ((1.0, 6.0, 3.0, 2.0), (3.0, 3.0, 1.5, 1.0)),
-        ((4.0, 3.0, 2.0, 1.0), (4.0, 3.0, 2.0, 1.0)),
         ((1.0, 1.0, 1.0, 0.0), (8**1.5, 4**1.5, 2**1.5, 1.0)),
     ],
 )
@@ -113,29 +111,6 @@ def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
     assert estimates([many])["contact_area"].half_width == pytest.approx(0.4e4 * area, rel=0.02)
 
 
-def test_what_is_known_of_spots_of_few_elements() -> None:
-    """Half as much edge as single elements have: of a count's scatter (4/3)^8, of bends 16/9, of the edge 3/8
-    more.
-    """
-    result = made_up(64)
-    area = result.numbers["contact_area"]
-    few, many = (
-        replace(result, edge=share * 4 * EDGE_SHARE * area, slope_sampling_error=0.01)
-        for share in (0.5, 0.01)
-    )
-    counted = [math.sqrt(r.edge / EDGE_SHARE) * r.grid.element_size for r in (few, many)]
-    assert area_scatter([few, many]) == pytest.approx([counted[0] * (4 / 3) ** 8, counted[1]], rel=1e-3)
-    off = EDGE_SIZE * few.edge * (1 + discretisation_error.SINGLE_EXCESS / 4)
-    assert estimates([few])["contact_area"].value == pytest.approx(area - off)
-    assert discretisation_error.slope_scatter([few, many]) == pytest.approx([0.01 * 16 / 9, 0.01], rel=1e-3)
-    single = replace(few, edge=4 * EDGE_SHARE * area)
-    mu = many.numbers["friction_coefficient"]
-    small = replace(few, numbers={**few.numbers, "friction_coefficient": 9.0})
-    assert discretisation_error.slope_scatter([small, single, many]) == pytest.approx(
-        [0.01 * 16 / 9, mu, 0.01], rel=1e-3
-    )
-
-
 def test_the_finest_grids_slip_turns_area_into_friction() -> None:
     coarse, fine = made_up(32), made_up(128)
     mu = BETA + 3 * DMU_DA * coarse.numbers["contact_area"]
@@ -145,14 +120,6 @@ def test_the_finest_grids_slip_turns_area_into_friction() -> None:
     assert found["friction_coefficient"].half_width == pytest.approx(
         DMU_DA * found["contact_area"].half_width, rel=0.3
     )
-
-
-def test_a_coarse_grids_area_hardly_counts_beside_a_fine_ones() -> None:
-    grids = [made_up(M) for M in (32, 64, 256)]
-    area = grids[0].numbers["contact_area"]
-    moved = replace(grids[0], numbers={**grids[0].numbers, "contact_area": 1.001 * area})
-    one, other = (estimates(results)["contact_area"].value for results in (grids, [moved, *grids[1:]]))
-    assert abs(other - one) < 0.02 * 1e-3 * area
 
 
 def test_a_grid_without_contact_knows_nothing_beside_one_that_has() -> None:
@@ -201,45 +168,15 @@ def test_what_an_edge_leaves_open_of_forces_goes_with_the_load() -> None:
     )  # Student's t
 
 
-def test_what_an_edge_leaves_open_of_forces_goes_with_the_finest_grids_load() -> None:
-    def spread(*loads: float) -> float:
-        results = [made_up(M, slope_sampling_error=0.01) for M in (32, 64)]
-        forces = [{"normal_force": load, "binormal_force": 5.0} for load in loads]
-        several = zip(results, forces, strict=True)
-        return estimates([replace(r, numbers={**r.numbers, **f}) for r, f in several])[
-            "binormal_force"
-        ].half_width
-
-    assert spread(700.0, 70.0) == pytest.approx(spread(70.0, 70.0))
-    assert spread(70.0, 700.0) > 5 * spread(70.0, 70.0)
-
-
-def test_single_elements_leave_mu_open_too() -> None:
-    """Once 0.3 +- 0.03 of a surface of noise, whose finer grids found 0.1."""
-    area = 12 * (SIDE / 64) ** 2
-    results = [
-        replace(
-            sloped(mu, M, 0.03),
-            edge=share * area,
-            numbers={**sloped(mu, M, 0.03).numbers, "contact_area": area},
-        )
-        for mu, M in ((0.29, 32), (0.3, 64), (0.3, 128))
-        for share in (4 * EDGE_SHARE,)
-    ]
-    assert 0.3 < estimates(results)["friction_coefficient"].error_bound(0.3) < 0.9
-    spread_out = [replace(result, edge=result.edge / 10) for result in results]
-    assert estimates(spread_out)["friction_coefficient"].error_bound(0.3) < 0.06
-
-
 @pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
-@pytest.mark.parametrize("seed", range(2))
-def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
+@pytest.mark.nightly
+def test_bars_on_heights_that_differ_from_point_to_point() -> None:
     """No grid resolves these. Of 160 solves of 32 such surfaces, 128 to 512 a side, all bars held, the peak's
     and the approach's in 90 for having no end. With grids of 32 and 64 before, which the bars take for
     surfaces that settle, A's, f_max's and the approach's hold in all, the corrected area's in 159, mu's in
     156 and Q's in 154.
     """
-    noise = np.random.default_rng(seed).normal(scale=60e-9, size=(128, 128))
+    noise = np.random.default_rng(0).normal(scale=60e-9, size=(128, 128))
     scene = rf.Scene(
         upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(radius=0.01)),
         lower=rf.Body(rf.Material(E=118e9, nu=0.3), noise),
@@ -261,7 +198,7 @@ def test_bars_on_heights_that_differ_from_point_to_point(seed: int) -> None:
 
 
 def test_bars_hold_against_hertz() -> None:
-    """Of twelve areas one is outside its 95 % bar, by 1 %: at 160, whose edge catches most elements."""
+    """Of eight areas one is outside its 95 % bar, by 1 %: at 160, whose edge catches most elements."""
     scene = rf.read_scene("hertz")
     a = (3 * scene.load * 0.14 / (4 * scene.materials.reduced_modulus)) ** (1 / 3)
     area, peak = math.pi * a**2, 1.5 * scene.load / (math.pi * a**2)
@@ -272,6 +209,6 @@ def test_bars_hold_against_hertz() -> None:
         bars, numbers = uncertainty(results), results[-1].numbers
         shares.append(abs(numbers["contact_area"] - area) / sum(bars["contact_area"].values()))
         assert abs(numbers["max_pressure"] - peak) <= sum(bars["max_pressure"].values())
-    assert sum(share > 1 for share in shares) <= 2
+    assert sum(share > 1 for share in shares) <= 1
     assert max(shares) < 1.1
     assert np.median(shares) > 0.5  # no longer than need be

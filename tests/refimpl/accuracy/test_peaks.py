@@ -51,15 +51,6 @@ def test_a_peak_that_stands_alone_is_not_bounded(non_parabolicity: float, more: 
     assert math.isinf(found) is math.isinf(more)
 
 
-def test_full_contact_may_have_a_lone_peak_too() -> None:
-    full = replace(peaked(64, 1.0, 3.0, 1.0), edge=0.0)
-    for results in ([full], [full, replace(full, grid=full.grid.refined((128, 128)))]):
-        found = estimates(results)
-        assert math.isinf(found["max_pressure"].half_width)
-        assert math.isinf(found["approach"].half_width)
-        assert math.isfinite(found["friction_coefficient"].half_width)
-
-
 def test_a_grid_whose_peak_stands_alone_does_not_count_beside_finer_ones() -> None:
     fine = [made_up(M) for M in (128, 256)]
     coarse = replace(made_up(64), peak=Peak(PEAK / 20, PEAK / 5, 1.0))

@@ -83,9 +83,3 @@ def test_at_an_approach_it_widens_the_force_and_the_peak() -> None:
         bound = SHEAR_BOUNDS[name] * share * grids[-1].numbers[name]
         assert after[name].half_width == pytest.approx(math.hypot(before[name].half_width, bound), rel=1e-12)
     assert {name for name in after if after[name] != before[name]} == {"normal_force", "max_pressure"}
-
-
-def test_an_edge_is_no_more_than_all_of_a_contact() -> None:
-    lone = replace(made_up(64), edge=1.0, shear_to_normal_ratio=0.3)
-    assert lone.edge_fraction > 1
-    assert lone.shear_by_edge == 0.3
