@@ -45,6 +45,11 @@ FORMATS = [
     ("map.al3d", write.write_al3d, {}, SINGLE, IMAGE),
 ]
 
+NOTES = {
+    "map.csv": ("separator ';', decimal comma", "a leading index column was dropped"),
+    "packed.sur": ("compressed SUR, unpacked here",),
+}
+
 
 @pytest.mark.parametrize(
     ("name", "writer", "given", "error", "orientation"), FORMATS, ids=[row[0] for row in FORMATS]
@@ -59,6 +64,7 @@ def test_a_format_comes_back(
     assert [tuple(at) for at in np.argwhere(np.isnan(reading.heights))] == [MISSING]
     np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-7)  # single precision
     assert reading.orientation == orientation
+    assert reading.notes == NOTES.get(name, ())
 
 
 @pytest.mark.parametrize(

@@ -7,12 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from refimpl.surfaces.areal_parameters import Spectrum, nayak
+from refimpl.surfaces.areal_parameters import Spectrum
 from refimpl.surfaces.missing_points import MAX_ELIMINATED, fill
-from refimpl.surfaces.orientation import oriented
-from refimpl.surfaces.preparation import prepare
 from refimpl.surfaces.readers import read
-from refimpl.surfaces.reading import Reading
 
 
 @pytest.mark.parametrize("suffix", ["npy", "txt", "csv"])
@@ -51,24 +48,6 @@ def test_the_pitch_of_points_is_their_span_over_whole_steps(tmp_path: Path) -> N
     assert found.heights[3, 2] == 32
 
 
-@pytest.mark.parametrize(
-    ("degrees", "centre", "pixel"),
-    [(90, (70.0, 10.0), (3.0, 2.0)), (180, (50.0, 70.0), (2.0, 3.0)), (270, (20.0, 50.0), (3.0, 2.0))],
-)
-def test_the_centre_turns_with_the_map(
-    degrees: int, centre: tuple[float, float], pixel: tuple[float, float]
-) -> None:
-    """(10, 20) m of 60 x 90 m, anticlockwise."""
-    reading = Reading(np.arange(900.0).reshape(30, 30), (2.0, 3.0), "map", "by hand")
-    words = {"replica": False, "mirror": None, "turned_over": False, "centre": (10.0, 20.0)}
-    found = oriented(reading, rotate_deg=degrees, **words)  # type: ignore[arg-type]  # as named
-    assert found.centre == centre
-    assert found.reading.pixel == pixel
-    # the pixel at the centre is the same one
-    i, j = (int(at / edge) for at, edge in zip(found.centre, found.reading.pixel, strict=True))
-    assert abs(found.reading.heights[min(i, 29), min(j, 29)] - reading.heights[5, 6]) <= 31
-
-
 @pytest.mark.parametrize("pixel", [(1.0, 1.0), (1.0, 3.0), (2.0, 0.5)])
 @pytest.mark.parametrize("size", [20, 70])
 def test_holes_are_filled_by_the_saddle_around_them(pixel: tuple[float, float], size: int) -> None:
@@ -88,18 +67,3 @@ def test_missing_points_do_not_lower_the_spectrum() -> None:
     z[np.random.default_rng(5).uniform(size=z.shape) < 1 / 3] = np.nan
     found = Spectrum.of(z, (2.0, 3.0))
     assert np.average(found.C, weights=found.count) == pytest.approx(24.0, rel=0.03)
-
-
-def test_nayaks_parameter_of_one_wave() -> None:
-    """Of sin(qx + qy): m0 = 1/2, m2 = q^2 / 2, m4 = q^4 / 2: 1, but for differences on 64 points a wave."""
-    q = 2 * np.pi / 64
-    x = np.arange(256.0)
-    assert nayak(np.sin(q * (x[:, None] + x[None, :])), (1.0, 1.0)) == pytest.approx(1.0, rel=2e-2)
-
-
-def test_a_high_pass_takes_the_plane_and_a_low_pass_leaves_it() -> None:
-    x, y = np.arange(50.0), np.arange(40.0)
-    plane = 3.0 + 0.2 * x[:, None] - 0.1 * y[None, :]
-    reading = Reading(plane, (1.0, 1.0), "map", "by hand")
-    assert np.allclose(prepare(reading, low_pass=8.0).heights, plane, rtol=0, atol=1e-9)
-    assert np.allclose(prepare(reading, high_pass=8.0).heights, 0.0, rtol=0, atol=1e-9)

@@ -11,7 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
-from refimpl.surfaces import MeasuredSurface, surface_from_dict
+from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceWarning
 
 DX, DY, NX, NY = 2e-6, 1e-6, 12, 20  # the area is 24 x 20 um
@@ -68,12 +68,6 @@ def test_every_way_up_is_the_function_of_the_turned_place(
     x, y = {"x": -x, None: x, "y": x}[mirror], {"y": -y, None: y, "x": y}[mirror]
     expected = sign * height(x + centre[0] - NX * DX / 2, y + centre[1] - NY * DY / 2)
     np.testing.assert_allclose(surface.heights(GRID, offset), expected, rtol=0, atol=1e-12 * np.ptp(expected))
-
-
-def test_the_offset_moves_the_surface_as_it_lies(tmp_path: Path) -> None:
-    surface = written(tmp_path, rotate_deg=90)
-    x, y = from_middle(GRID, (1e-6, 0.0))
-    np.testing.assert_allclose(surface.heights(GRID, (1e-6, 0.0)), height(y, -x), rtol=0, atol=1e-19)
 
 
 def test_a_bad_way_up_is_refused(tmp_path: Path) -> None:
@@ -210,13 +204,3 @@ def test_maps_that_repeat(tmp_path: Path) -> None:
         rf.InputError, match=r"whole multiples of the 1\.6e-05 x 2\.4e-05 m with which wave\.npy"
     ):
         rf.solve(refused, 24)
-
-
-def test_text_below_words_is_an_image_whose_first_line_is_the_top(tmp_path: Path) -> None:
-    path, table = tmp_path / "map.txt", np.random.default_rng(1).integers(-9, 9, (4, 5))
-    lines = "\n".join(" ".join(map(str, line)) for line in table)
-    path.write_text(f"heights of a sample\n{lines}\n")
-    reading = MeasuredSurface(path, unit="m", pixel_size=1e-6).reading
-    assert reading.heights.tolist() == table.T[:, ::-1].tolist()  # x to the right, y up
-    path.write_text(f"{lines}\n")  # without words: an array, whose first index is x
-    assert MeasuredSurface(path, unit="m", pixel_size=1e-6).reading.heights.tolist() == table.tolist()

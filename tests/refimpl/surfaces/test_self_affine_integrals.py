@@ -76,15 +76,3 @@ def test_what_differences_miss_is_that_of_an_integral_over_wavenumbers(spacing: 
     bends = integral(lambda q: (6 - 8 * j0(q * h) + 2 * j0(2 * q * h)) / h**4)
     bent = bends / integral(lambda q: 3 * q**4 / 8)
     assert surface.missed(spacing) == pytest.approx((1 - math.sqrt(seen), 1 - math.sqrt(bent)), rel=1e-7)
-
-
-@pytest.mark.parametrize("anisotropy", [1.0, 3.0])
-def test_the_spectrum_holds_the_mean_square_height_however_stretched(anisotropy: float) -> None:
-    """``(2 pi)^-2 int C(hypot(s qx, qy)) d^2q``: with s qx as a coordinate, ``int C q dq / (2 pi s)``."""
-    surface = rough(anisotropy=anisotropy)
-    ends = [2 * math.pi / wave for wave in (5e-4, 2e-4, 2e-5)]
-    held = sum(
-        quad(lambda q: float(surface.psd(np.array([q]))[0]) * q, low, high, epsabs=0, epsrel=1e-10)[0]
-        for low, high in pairwise(ends)
-    )
-    assert held / (2 * math.pi * anisotropy) == pytest.approx(1e-12, rel=1e-8)

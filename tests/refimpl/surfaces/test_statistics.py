@@ -47,14 +47,6 @@ def test_flat_heights_have_no_correlation_length() -> None:
     assert stats.correlation_length(np.zeros((4, 4)), 1.0) is None
 
 
-def test_correlation_length_interpolates() -> None:
-    crossing = stats.correlation_length(WAVE + WAVE.T, 1 / N, level=0.5)
-    # each axis sees one wave move and the other stand: (1 + cos(8 pi r)) / 2 falls to 1/2 at r = 1/16, four
-    # points; the finite length shifts the products of the moving wave by O(1 / N) of its amplitude
-    assert crossing is not None
-    assert abs(crossing - 1 / 16) < 0.2 / N
-
-
 def test_correlation_length_of_a_step_by_hand() -> None:
     """Heights 1, 1, -1, -1 along y: correlations 1, 1/3, -1, -1 there, and 1, 1, 1, 1 along x."""
     z = np.tile([1.0, 1.0, -1.0, -1.0], (4, 1))

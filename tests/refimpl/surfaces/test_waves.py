@@ -52,15 +52,6 @@ def test_wave_vectors_are_the_gradients_of_the_phases() -> None:
     assert (qx[0, 0], qy[0, 0]) == pytest.approx((phase(1, 0), phase(0, 1)), rel=1e-14)
 
 
-def test_heights_are_the_same_in_any_company() -> None:
-    """A point's height depends on no other point: strips, grids and orders are out of the question."""
-    torus = Torus((1.0, 1.0), (150, 150), 0.2)
-    x = np.random.default_rng(4).uniform(0, 1, 150)
-    all_of_them = torus.field(falling, 1, x, x)
-    some = torus.field(falling, 1, x[100:40:-7], x[3:90:11])
-    np.testing.assert_allclose(some, all_of_them[100:40:-7, 3:90:11], rtol=0, atol=1e-15)
-
-
 def test_noise_of_waves_is_not_the_noise_of_lattices() -> None:
     assert waves.STREAM != STREAM
     ours, other = (white_noise(1, range(64), range(64), stream) for stream in (waves.STREAM, STREAM))
