@@ -38,9 +38,7 @@ def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) 
         found = fit_line(values, weights, prior, Bias(sizes, 0.7, 0.0))
         alone = fit_line(values - 0.7 * sizes, weights, prior)
         assert found.value == pytest.approx(alone.value, rel=1e-12)
-        assert found.half_width == pytest.approx(
-            alone.half_width, rel=2e-4
-        )  # as bounds are sought
+        assert found.half_width == pytest.approx(alone.half_width, rel=2e-4)  # as bounds are sought
 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])

@@ -16,18 +16,6 @@ from refimpl.driver.options import Options
 SCENE = rf.read_scene("table1-rough")
 
 
-@pytest.mark.parametrize("accuracy", [0.0, 1.0, -0.02, 1.5, math.nan, math.inf])
-def test_an_accuracy_that_is_no_share_is_refused(accuracy: float) -> None:
-    with pytest.raises(rf.InputError, match="a relative accuracy between 0 and 1") as refused:
-        Options(scene=SCENE, accuracy=accuracy)
-    assert refused.value.field == "accuracy"
-
-
-@pytest.mark.parametrize("accuracy", [1e-12, 0.999])
-def test_any_share_is_an_accuracy(accuracy: float) -> None:
-    assert Options(scene=SCENE, accuracy=accuracy).accuracy == accuracy
-
-
 BALL, SOFT = rf.Body(rf.Material(200e9, 0.3), rf.Sphere(0.1)), rf.Material(3e9, 0.4, hardness=0.2e9)
 HARD = rf.Scene(BALL, rf.Body(SOFT, rf.Flat()), rf.Friction(1e6, 0.05), 2.0, size=(1e-3, 0.8e-3))
 
@@ -40,6 +28,13 @@ def asked(**given: Any) -> Options:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
+        *(
+            (
+                {"grid": None, "accuracy": share},
+                f"accuracy = {share}: expected a relative accuracy between 0 and",
+            )
+            for share in (-0.02, 1.5, math.nan, math.inf)
+        ),
         ({"method": "fem"}, "method = 'fem': expected one of dense, fft, paper"),
         (
             {"method": "paper", "scene": replace(HARD, upper=HARD.lower, periodic=True)},

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import replace
 
@@ -20,21 +19,6 @@ SCENE = rf.Scene(
     load=2.0,
     side=1e-3,
 )
-
-
-def test_seconds_to_expect_follow_from_the_last_grid_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The cost of a refinement is the sum over its grids."""
-    kept: list[tuple[int, float]] = []
-    record = refined.Allowance.record
-
-    def recorded(self: refined.Allowance, grid: rf.Grid, seconds: float) -> None:
-        kept.append((grid.elements, seconds))
-        record(self, grid, seconds)
-
-    monkeypatch.setattr(refined.Allowance, "record", recorded)
-    found = rf.solve(SCENE, accuracy=0.02, max_grid=96)
-    assert [elements for elements, _ in kept][:2] == [32**2, 64**2]
-    assert math.fsum(seconds for _, seconds in kept) == pytest.approx(found.cost.seconds)
 
 
 @pytest.mark.parametrize(("open_", "last"), [(True, 96), (False, 256)])

@@ -10,7 +10,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.identification import Row, identify
-from refimpl.identification.ensemble import draws, mean_response, redrawn, scatter, working_variances
+from refimpl.identification.ensemble import draws, mean_response, scatter, working_variances
 from refimpl.identification.fit import linear_fit, profile_of, shares
 from refimpl.identification.forward import Forward, Response
 from refimpl.identification.varying_profile import VaryingProfile
@@ -24,9 +24,7 @@ def test_the_scatter_is_the_variance_of_another_draw_about_the_mean() -> None:
     found = scatter([[_linear(mu, (mu, 0.0)) for mu in (1.0, 2.0, 3.0)]])
     assert found.degrees == 2
     for tau, factor in ((1.0, 1.0), (2.0, 4.0)):
-        assert found.variance(np.eye(1), np.array([tau, 1.0])) == pytest.approx(
-            np.full((1, 1), factor * 4 / 3)
-        )
+        assert found.variance(np.eye(1), np.array([tau, 1.0]))[0, 0] == pytest.approx(factor * 4 / 3)
 
 
 def test_the_relative_scatter_that_weighs_rows_falls_with_the_root_of_the_load() -> None:
@@ -36,7 +34,9 @@ def test_the_relative_scatter_that_weighs_rows_falls_with_the_root_of_the_load()
     assert found == pytest.approx([2.0**2 / 6, 10.0**2 / 18])
 
 
-@pytest.mark.parametrize(("count", "correlation"), [(4, 0.5), (4, 3.0), (8, 1.5)])
+@pytest.mark.parametrize(
+    ("count", "correlation"), [(4, 3.0), pytest.param(8, 1.5, marks=pytest.mark.nightly)]
+)
 def test_intervals_from_few_draws_cover(count: int, correlation: float) -> None:
     """Areas that scatter as ``P^(-0.6)``, with any correlation in ln P: 95 % cover.
 
@@ -89,15 +89,6 @@ def test_tolerances_of_an_ensemble_are_means_over_its_draws() -> None:
     drawn = draws(forward, scene, theta, 3, {name: 0.3})
     assert len({one.inputs[name] for one in drawn}) == 3
     assert mean_response(drawn).inputs[name] == pytest.approx(np.mean([one.inputs[name] for one in drawn]))
-
-
-def test_realisations_differ_and_maps_stay() -> None:
-    scene = read_scene("table1-rough")
-    first, again, other = redrawn(scene, 0), redrawn(scene, 1), redrawn(scene, 2)
-    assert first is scene
-    heights = [one.lower.surface for one in (first, again, other)]
-    assert isinstance(heights[1], rf.GaussianRoughness)
-    assert len({one.seed for one in heights if isinstance(one, rf.GaussianRoughness)}) == 3
 
 
 def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws() -> None:

@@ -17,7 +17,6 @@ from refimpl.identification.fit import linear_fit, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
 from refimpl.identification.profile import Profile
-from refimpl.identification.remarks import _model
 from refimpl.identification.result import Identification
 
 MADE: dict[str, Any] = {
@@ -93,15 +92,3 @@ def test_an_interval_that_reaches_zero_is_cut(away: tuple[float, float], bounded
 def test_rows_far_above_and_far_below_are_outliers() -> None:
     made: Any = SimpleNamespace(deleted=(0.5, -4.0, 2.9, 3.1))
     assert Identification.outliers.fget(made) == (1, 3)  # type: ignore[attr-defined]
-
-
-@pytest.mark.parametrize(("u_mu", "wide"), [(0.0025, 2), (0.0026, 1), (0.0052, 0)])
-def test_rows_whose_error_bar_exceeds_their_uncertainty_are_counted(u_mu: float, wide: int) -> None:
-    """Half-widths of hypot(3, 4) and hypot(6, 8) thousandths are 1.96 times 0.00255 and 0.0051."""
-    parts = ({"numerical": 3e-3, "contact_edge": 4e-3}, {"numerical": 6e-3, "contact_edge": 8e-3})
-    responses = [response(**part, plastic=0.0) for part in parts]
-    made: Any = SimpleNamespace(
-        fitted=SimpleNamespace(responses=responses), rows=[SimpleNamespace(u_mu=u_mu)] * 2
-    )
-    said = f"error bars of the model exceed the data's uncertainty in {wide} rows: take a finer grid"
-    assert list(_model(made)) == ([said] if wide else [])
