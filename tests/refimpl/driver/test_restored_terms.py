@@ -57,15 +57,3 @@ def test_a_cap_that_pressures_reach_costs_both_solves(monkeypatch: pytest.Monkey
     found = rf.solve(scene, 16)
     assert found.max_pressure == capped.max_pressure == 0.3e9
     assert found.cost.point_logs == elastic.cost.point_logs + capped.cost.point_logs
-
-
-@pytest.mark.parametrize(
-    ("grid", "allowed"), [((16, 16), True), ((8, 16), False), ((16, 8), False), ((20, 32), True)]
-)
-def test_a_start_is_finer_along_no_axis(grid: tuple[int, int], allowed: bool) -> None:
-    start = rf.solve(SCENE, (16, 16))
-    if allowed:
-        Options(scene=SCENE, grid=grid, start=start)
-    else:
-        with pytest.raises(rf.InputError, match="start"):
-            Options(scene=SCENE, grid=grid, start=start)

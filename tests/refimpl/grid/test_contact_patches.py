@@ -36,11 +36,3 @@ def test_patches_are_those_that_a_walk_finds(share: float, periodic: bool) -> No
     for _ in range(30):
         contact = rng.random((9, 12)) < share
         assert sorted(patch_sizes(contact, periodic=periodic).tolist()) == walked(contact, periodic)
-
-
-def test_a_shift_changes_no_patch_of_a_periodic_contact() -> None:
-    contact = np.random.default_rng(4).random((16, 16)) < 0.2
-    found = sorted(patch_sizes(contact, periodic=True))
-    for shift in ((3, 0), (0, 11), (7, 5)):
-        assert sorted(patch_sizes(np.roll(contact, shift, (0, 1)), periodic=True)) == found
-    assert patch_sizes(contact & False, periodic=True).size == 0

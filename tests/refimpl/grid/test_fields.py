@@ -90,16 +90,3 @@ def test_resampling_is_linear_interpolation_along_either_axis(
     assert found.shape == new
     assert found.flags.c_contiguous
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
-
-
-@pytest.mark.parametrize("shape", [(1, 1), (2, 5), (3, 3)])
-def test_a_single_element_has_its_own_value_everywhere(shape: tuple[int, int]) -> None:
-    np.testing.assert_array_equal(resampled(np.array([[3.0]]), shape), np.full(shape, 3.0))
-
-
-def test_the_mean_is_kept_by_halving_either_axis_or_both() -> None:
-    values = np.random.default_rng(9).normal(size=(6, 8))
-    for shape in ((3, 8), (6, 4), (3, 4)):
-        assert resampled(values, shape).mean() == pytest.approx(values.mean(), rel=1e-13)
-    four = resampled(values, (3, 4))[1, 2]
-    assert four == pytest.approx(values[2:4, 4:6].mean(), rel=1e-14)

@@ -83,14 +83,6 @@ def test_the_gradient_of_a_wave_is_that_of_central_differences() -> None:
         np.testing.assert_allclose(found[1 - axis], 0, atol=1e-15)
 
 
-def test_the_gradient_on_a_window_of_a_free_grid() -> None:
-    z = np.random.default_rng(2).normal(size=FREE.shape)
-    window = Window(1, 6, 0, 3)
-    whole, part = FREE.gradient(z), FREE.gradient(z[window.slices])
-    for axis, inside in ((0, np.s_[1:-1, :]), (1, np.s_[:, :-1])):
-        np.testing.assert_array_equal(part[axis][inside], whole[axis][window.slices][inside])
-
-
 def marked(*elements: tuple[int, int]) -> np.ndarray:
     found = np.zeros(FREE.shape, dtype=bool)
     for element in elements:
@@ -115,15 +107,6 @@ def marked(*elements: tuple[int, int]) -> np.ndarray:
 )
 def test_faces_by_hand(contact: np.ndarray, free: int, periodic: int) -> None:
     assert (FREE.faces(contact), PERIODIC.faces(contact)) == (free, periodic)
-
-
-@pytest.mark.parametrize("grid", [FREE, PERIODIC])
-def test_faces_go_with_turns_and_moves(grid: Grid) -> None:
-    contact = np.random.default_rng(6).random((7, 4)) < 0.4
-    turned = Grid((4, 7), (2.0, 1.4), grid.periodic)
-    assert turned.faces(contact.T) == grid.faces(contact) == grid.faces(contact[::-1, ::-1])
-    if grid.periodic:
-        assert grid.faces(np.roll(contact, (3, 1), (0, 1))) == grid.faces(contact)
 
 
 def test_elements_on_the_border() -> None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
 from refimpl.errors import InputError
-from refimpl.kernels import normal_integral, normal_table, tables, tangential_integral, tangential_table
+from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
 from refimpl.kernels.quadrature import (
     NEAR,
     ORDERS,
@@ -37,14 +34,6 @@ def test_other_seeds(kernel, exact):
     assert max(errors) <= kernels.TOLERANCE
 
 
-@pytest.mark.parametrize("length", [1e-12, 1e-9, 1.0, 1e12])
-def test_any_unit_of_length(length):
-    x, y = np.array([0.0, 0.3, 0.5, 2.0, 7.5, 1e6]), np.array([0.1, 0.5, 3.1, 0.0, 2e4, 1e6])
-    for kernel in (normal_integral, tangential_integral):
-        scaled = kernel(x * length, y * length, 2 * length, length)
-        np.testing.assert_allclose(scaled, kernel(x, y, 2.0, 1.0) * length, rtol=SAME)
-
-
 def test_textbook_form_fails_beside_the_axis_too():
     """Odd in x, so it cancels as x -> 0: eps / 1e-12 of it is wrong, and ours is not."""
     x, y = 1e-12, 0.3
@@ -70,9 +59,7 @@ def test_broadcasts_and_returns_float64():
         assert kernel(np.empty((0, 3)), 0.0, 1, 1).shape == (0, 3)
 
 
-@pytest.mark.parametrize(
-    ("n", "m"), [(1, 1), (2, 5), (3, 3), (3, 4), (40, 17), (17, 40), (99, 99), (300, 7), (7, 300)]
-)
+@pytest.mark.parametrize(("n", "m"), [(1, 1), (2, 5), (3, 4), (17, 40), (99, 99), (300, 7)])
 @pytest.mark.parametrize("aspect", [1.0, 0.3, 50.0])
 def test_tables_are_the_integrals_on_the_grid(n, m, aspect):
     dx, dy = 0.7e-6, 0.7e-6 * aspect
@@ -153,48 +140,3 @@ def test_refuses_counts(table, count):
 def test_refuses_shapes_that_do_not_go_together():
     with pytest.raises(InputError, match=r"^y = \(2,\): expected a shape that goes with that of x, \(3,\)"):
         normal_integral([0.0, 1.0, 2.0], [0.0, 1.0], 1.0, 1.0)
-
-
-def test_takes_edges_of_any_width():
-    expected = normal_integral(1.0, 1.0, 2.0, 2.0)
-    for edge in (np.array(2.0), np.float32(2.0), Fraction(2), 2):
-        assert normal_integral(1.0, 1.0, edge, edge) == expected
-
-
-def test_the_first_offset_that_is_refused_is_named():
-    with pytest.raises(InputError) as refused:
-        normal_integral([0.0, np.inf, -np.inf], 0.0, 1.0, 1.0)
-    assert refused.value.value == np.inf
-
-
-@pytest.mark.parametrize("known", [3, 47, 64, 107, 108])
-def test_known_values_are_not_computed_again(known: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By whole slabs: a slab that ends beyond the known part starts where it starts in any table."""
-    slabs: list[tuple[int, int]] = []
-    across = tables.across
-
-    def recorded(
-        inner: object, outer: np.ndarray, other: np.ndarray, edge: float, *rest: object
-    ) -> np.ndarray:
-        slabs.append((round(outer.min() / edge), round(outer.max() / edge)))
-        return across(inner, outer, other, edge, *rest)
-
-    monkeypatch.setattr(tables, "across", recorded)
-    first = normal_table(known, known, 1.0, 1.5)
-    slabs.clear()
-    whole = normal_table(108, 108, 1.0, 1.5)
-    every = slabs.copy()
-    slabs.clear()
-    assert np.array_equal(normal_table(108, 108, 1.0, 1.5, known=first), whole)
-    assert slabs == [slab for slab in every if slab[1] >= known]
-
-
-@pytest.mark.parametrize("table", [normal_table, tangential_table])
-@pytest.mark.parametrize("steps", [(1, 40), (3, 4, 5, 9), (40, 41, 150), (7, 300)])
-def test_a_grown_table_is_the_same_to_the_last_bit(
-    table: Callable[..., np.ndarray], steps: tuple[int, ...]
-) -> None:
-    grown = None
-    for n in steps:
-        grown = table(n, n, 1.0, known=grown)
-    assert np.array_equal(grown, table(steps[-1], steps[-1], 1.0))

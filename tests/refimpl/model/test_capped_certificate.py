@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -56,13 +57,19 @@ def test_an_excess_over_the_hardness_counts_as_negative_pressure_does(solution: 
     assert certified(solution, solution.pressure).certificate.largest < 1e-11
 
 
-def test_the_approach_of_a_state_by_hand() -> None:
-    """Weighted by what is between the bounds; else the middle of 2 at H and 5 without load; else 2."""
-    v = np.array([[1.0, 2.0, 5.0]])
-    assert approach_from(np.array([[1.0, 3.0, 4.0]]), v, 4.0) == pytest.approx((1 + 6) / 4, rel=1e-15)
-    assert approach_from(np.array([[4.0, 4.0, 0.0]]), v, 4.0) == 3.5
-    assert approach_from(np.array([[4.0, 4.0]]), v[:, :2], 4.0) == 2.0
-    assert approach_from(np.array([[0.0, 0.0]]), v[:, :2], 4.0) == 1.0
+@pytest.mark.parametrize(
+    ("pressure", "cap", "approach"),
+    [
+        ([3.0, 1.0, 0.0, 0.0], math.inf, (3 * 5 + 4) / 4),  # the mean weighted by pressure
+        ([9.0, 1.0, 2.0, 0.0], 9.0, (4 + 2 * 6) / 3),  # of the free elements alone
+        ([9.0, 9.0, 0.0, 0.0], 9.0, 5.5),  # the middle between 5, the most at the cap, and 6, the least free
+        ([9.0, 9.0, 9.0, 9.0], 9.0, 8.0),  # nothing free: the most at the cap
+        ([0.0, 0.0, 0.0, 0.0], 9.0, 4.0),  # no pressure: the least
+    ],
+)
+def test_the_approach_of_a_state(pressure: list[float], cap: float, approach: float) -> None:
+    v = np.array([[5.0, 4.0, 6.0, 8.0]])
+    assert approach_from(np.array([pressure]), v, cap) == pytest.approx(approach, rel=1e-15)
 
 
 def test_any_approach_between_capped_and_unloaded_elements_is_the_states() -> None:

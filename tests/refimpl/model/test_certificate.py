@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.model import certificate as module
 from refimpl.model.certificate import Certificate, State, certify, relative_gap
-from refimpl.model.forces import Forces, resultants
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import Counter, FFTInfluence
@@ -159,36 +156,6 @@ def test_at_an_approach_only_contact_has_a_load_error(factor: float) -> None:
     certificate = judged(pressure, 0 * pressure, approach=SOLVED.approach).certificate
     assert certificate.load_error == 0
     assert certificate.penetration > 0.1
-
-
-@pytest.mark.parametrize(
-    ("pressed", "sheared", "shape"),
-    [((3, 4), None, (1, 1)), ((3, 4), (6, 2), (4, 3)), (None, (6, 2), (1, 1)), (None, None, (M, M))],
-)
-def test_sums_look_no_further_than_tractions_reach(
-    pressed: tuple[int, int] | None,
-    sheared: tuple[int, int] | None,
-    shape: tuple[int, int],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """What they cost is of the box around pressures and tractions, whatever these are in pascals."""
-    seen: list[tuple[int, ...]] = []
-
-    def recorded(pressure: np.ndarray, *others: Any) -> Forces:
-        seen.append(pressure.shape)
-        return resultants(pressure, *others)
-
-    monkeypatch.setattr(module, "resultants", recorded)
-    for size in (1.0, 2.0):
-        pressure, traction = np.zeros((2, M, M))
-        if pressed:
-            pressure[pressed] = size
-        if sheared:
-            traction[sheared] = -size
-        found = judged(pressure, traction).certificate
-        assert found.law_violations == (pressed is not None) + (sheared is not None)
-        assert found.negative_pressure == 0
-    assert seen == [shape, shape]
 
 
 @pytest.mark.parametrize("slope_correction", [False, True])

@@ -55,3 +55,15 @@ def test_shares_and_ratios_of_a_pair() -> None:
 def test_the_whole_range_of_nu_is_allowed(nu: float, compliance: float) -> None:
     """(1 - nu^2) / (pi E): 0.001999, 1 and 3/4 of 1 / pi per GPa."""
     assert Material(E=1e9, nu=nu).normal_compliance == pytest.approx(compliance, rel=1e-5, abs=0)
+
+
+def test_the_softer_body_is_the_one_of_less_hardness() -> None:
+    hard, soft, none = (Material(E=2e9, nu=0.25, hardness=H) for H in (90e6, 50e6, None))
+    for lower, upper, expected in (
+        (hard, soft, (50e6, -1.0)),
+        (soft, hard, (50e6, 1.0)),
+        (hard, none, (90e6, 1.0)),
+        (none, none, (None, 0.0)),
+    ):
+        pair = Pair(lower=lower, upper=upper)
+        assert (pair.softer_hardness, pair.softer_sign) == expected

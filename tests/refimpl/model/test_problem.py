@@ -12,7 +12,7 @@ from refimpl.grid import Grid, Window
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.forces import resultants
 from refimpl.model.materials import Pair
-from refimpl.model.problem import Problem, Terms, no_elements
+from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.scene.discretise import discretise
@@ -44,16 +44,6 @@ def operator() -> DenseInfluence:
     return DenseInfluence(GRID, SCENE.sliding_direction)
 
 
-def test_the_gap_touches_and_heights_are_recovered() -> None:
-    problem = problem_with()
-    lower, upper = SCENE.heights(GRID)
-    assert problem.gap.min() == 0
-    np.testing.assert_allclose(problem.gap, upper - lower - (upper - lower).min(), atol=1e-21)
-    z_lower, z_upper = problem.heights
-    np.testing.assert_allclose(z_lower, lower, atol=1e-21)
-    np.testing.assert_allclose(z_upper - z_lower, problem.gap, atol=1e-21)
-
-
 def test_displacements_are_of_pressure_and_shear() -> None:
     """Of the tractions as printed, and of facet tractions along and across the sliding direction."""
     A = operator()
@@ -64,13 +54,6 @@ def test_displacements_are_of_pressure_and_shear() -> None:
         expected = problem.elasticity.body_displacements(problem.elasticity.normal(A, down), down, shear)
         np.testing.assert_array_equal(problem.displacements(A, F, 0.2 * F, SLOPES), expected)
         assert np.abs(problem.elasticity.gap_by_shear(shear)).max() > 1e-3 * np.abs(expected).max()
-
-
-def test_known_normal_displacements_are_used() -> None:
-    problem, A, flat = problem_with(), operator(), Slopes.flat(GRID.shape)
-    plain = problem.displacements(A, F, 0.2 * F, flat)
-    again = problem.displacements(A, F, 0.2 * F, flat, normal=problem.elasticity.normal(A, F))
-    np.testing.assert_array_equal(again, plain)
 
 
 def test_known_normal_displacements_are_not_those_of_facets() -> None:
@@ -184,8 +167,3 @@ def test_other_terms_are_those_of_the_elasticity_too() -> None:
         assert other.terms == terms
         assert (other.elasticity.coupled, other.elasticity.tilted) == enters
         assert other.gap is problem.gap
-
-
-def test_a_mask_without_elements() -> None:
-    assert no_elements(problem_with()).shape == GRID.shape
-    assert not no_elements(problem_with()).any()

@@ -54,17 +54,13 @@ def continued(contact: Mask, values: Array) -> Array:
     return found
 
 
-def as_given(residual: Array) -> Array:
-    return residual
-
-
 def energy_of(values: Array, precondition: Callable[[Array], Array]) -> float:
     return float(np.vdot(values, precondition(values)))
 
 
 @pytest.mark.parametrize(
     ("shape", "share"),
-    [(SHAPE, 0.1), (SHAPE, 0.3), (SHAPE, 0.8), (AMPLE, 0.3), ((127, 126), 0.3), ((3, 5333), 0.3)],
+    [(SHAPE, 0.1), (SHAPE, 0.8), (AMPLE, 0.3), ((3, 5333), 0.3)],
 )
 def test_beyond_the_contact_stands_the_mean_of_neighbours(shape: tuple[int, int], share: float) -> None:
     contact = patches(shape, share)
@@ -83,39 +79,6 @@ def test_beyond_the_contact_stands_the_mean_of_neighbours(shape: tuple[int, int]
     assert np.vdot(values, found) == pytest.approx(energy_of(e, spectral(shape)), rel=1e-12)
 
 
-@pytest.mark.parametrize("shape", [SHAPE, AMPLE])
-def test_an_element_near_the_edge_may_be_asked_by_nobody(shape: tuple[int, int]) -> None:
-    """Two elements away along both axes: within a square's reach, and no neighbour."""
-    contact = np.ones(shape, dtype=bool)
-    contact[3, 3] = False
-    values = contact * np.random.default_rng(5).normal(size=shape)
-    found = ExtendedPreconditioner(as_given, contact)(values)
-    expected = values.copy()
-    expected[contact] += (continued_matrix_column(contact) * continued(contact, values)[3, 3])[contact]
-    np.testing.assert_allclose(found[contact], expected[contact], rtol=1e-13)
-    assert found[5, 5] == values[5, 5]
-
-
-def continued_matrix_column(contact: Mask) -> Array:
-    """What each element counts for in the continuation to (3, 3), one by one."""
-    found = np.zeros(contact.shape)
-    for x, y in np.ndindex(7, 7):
-        alone = np.zeros(contact.shape)
-        alone[x, y] = contact[x, y]
-        found[x, y] = continued(contact, alone)[3, 3]
-    return found
-
-
-def test_what_has_come_into_contact_goes_on_with_its_own_residual() -> None:
-    first = patches()
-    later = first | patches(seed=6)
-    values = later * np.random.default_rng(7).normal(size=SHAPE)
-    e = continued(first, values)
-    np.testing.assert_array_equal(e[later], values[later])
-    found = ExtendedPreconditioner(spectral(), first)(values)
-    assert np.vdot(values, found) == pytest.approx(energy_of(e, spectral()), rel=1e-12)
-
-
 @pytest.mark.parametrize(
     "later", [patches(), patches() | patches(seed=6), patches() & patches(seed=8), ~patches()]
 )
@@ -124,19 +87,6 @@ def test_it_is_symmetric_and_positive_on_any_set(later: Mask) -> None:
     x, y = later * np.random.default_rng(9).normal(size=(2, *SHAPE))
     assert np.vdot(x, precondition(y)) == pytest.approx(np.vdot(y, precondition(x)), rel=1e-10)
     assert np.vdot(x, precondition(x)) > 0
-
-
-@pytest.mark.parametrize("contact", [np.ones(SHAPE, dtype=bool), np.zeros(SHAPE, dtype=bool)])
-def test_where_there_is_no_edge_nothing_is_continued(contact: Mask) -> None:
-    values = np.random.default_rng(10).normal(size=SHAPE)
-    np.testing.assert_array_equal(ExtendedPreconditioner(as_given, contact)(values), values)
-
-
-def test_the_argument_stays_as_it_is() -> None:
-    values = patches() * np.random.default_rng(11).normal(size=SHAPE)
-    before = values.copy()
-    ExtendedPreconditioner(spectral(), patches())(values)
-    np.testing.assert_array_equal(values, before)
 
 
 def spread(contact: Mask, grid: Grid, precondition: Callable[[Array], Array]) -> float:
@@ -150,8 +100,7 @@ def spread(contact: Mask, grid: Grid, precondition: Callable[[Array], Array]) ->
     return float(values[-1] / values[0])
 
 
-@pytest.mark.parametrize("share", [0.1, 0.3, 0.6, 0.8])
-@pytest.mark.parametrize(("aspect", "most"), [(1.0, 1.4), (0.5, 1.5), (5.0, 1.9)])
+@pytest.mark.parametrize(("aspect", "most", "share"), [(1.0, 1.4, 0.1), (1.0, 1.4, 0.8), (5.0, 1.9, 0.3)])
 def test_the_spectrum_on_patches_is_narrower(aspect: float, most: float, share: float) -> None:
     """Condition numbers on square elements: 1.22 to 1.37, of a mask 1.7 to 2.4. On elements five times as
     wide as long they are 1.6 to 1.8, of a mask 2.9 to 3.7."""
@@ -180,12 +129,11 @@ def steps(M: int) -> int:
     return rf.solve(SCENE, grid=M, oblique=False).cost.iterations[f"CG at {M} x {M}"]
 
 
-@pytest.mark.parametrize("M", [128, 256])
-def test_it_saves_a_fifth_of_the_steps_on_a_rough_surface(M: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Measured: 11 instead of 14 at 128 and at 256 elements a side."""
-    after = steps(M)
+def test_it_saves_a_fifth_of_the_steps_on_a_rough_surface(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Measured: 11 instead of 14 on 128 elements a side."""
+    after = steps(128)
     monkeypatch.setattr(nested_solver, "extended", lambda precondition, contact: precondition)
-    assert after <= 0.8 * steps(M)
+    assert after <= 0.8 * steps(128)
 
 
 def test_small_windows_do_without() -> None:

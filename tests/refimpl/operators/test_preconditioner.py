@@ -14,7 +14,6 @@ from refimpl.solution.energy_norm import SMALLEST_SYMBOL, smallest_symbol
 from verification.exact.dense_influence import DenseInfluence
 
 COMPLIANCE = 1e-11
-GRIDS = [Grid.square(1e-3, 10), Grid((10, 10), (1e-3, 3e-3)), Grid((14, 7), (1e-3, 1e-4))]
 
 
 def on(
@@ -45,8 +44,8 @@ def test_the_preconditioner_is_symmetric_and_positive(shape: tuple[int, int], dy
     assert np.linalg.eigvalsh(found).min() > 0
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 7, 16, 45, 130])
-@pytest.mark.parametrize("m", [1, 2, 5, 16, 81, 300])
+@pytest.mark.parametrize("n", [1, 7, 130])
+@pytest.mark.parametrize("m", [1, 2, 81])
 def test_symbols_are_positive_on_every_window(n: int, m: int) -> None:
     """The infinite lattice's least is 1.824, `SMALLEST_SYMBOL`; a window sees less of its kernel: 1.820."""
     symbol = on(n, m, 0.5).symbol / 0.5
@@ -54,8 +53,8 @@ def test_symbols_are_positive_on_every_window(n: int, m: int) -> None:
     assert symbol.min() >= SMALLEST_SYMBOL - 0.005
 
 
-@pytest.mark.parametrize("aspect", [0.1, 0.4, 2.5, 10.0])
-@pytest.mark.parametrize("shape", [(1, 1), (7, 5), (45, 16), (1, 81), (130, 2), (2, 130)])
+@pytest.mark.parametrize("aspect", [0.1, 2.5])
+@pytest.mark.parametrize("shape", [(7, 5), (1, 81), (2, 130)])
 def test_symbols_of_oblong_elements_are_positive(shape: tuple[int, int], aspect: float) -> None:
     """At least 0.7889 of the infinite lattice's least symbol, of which long windows two elements wide lack
     most (measured for 1 to 200 elements an axis and aspects of 0.02 to 50)."""
@@ -77,16 +76,6 @@ def test_the_symbol_is_the_periodic_sum_of_the_kernel(aspect: float) -> None:
             assert operator.symbol[k, q] == pytest.approx(0.5 * np.sum(kernel * wave), rel=1e-12)
 
 
-@pytest.mark.parametrize("grid", GRIDS, ids=str)
-def test_the_preconditioner_clusters_the_spectrum(grid: Grid) -> None:
-    """What it is there for: the condition number of a hundred elements falls by half at least."""
-    A = COMPLIANCE * DenseInfluence(grid, 0.0).normal_matrix
-    inverse = matrix(spectral(window_influence(grid, 0.0)), *grid.shape)
-    values = np.sort(np.linalg.eigvals(inverse @ A).real)
-    assert values[0] > 0
-    assert values[-1] / values[0] < 0.5 * np.linalg.cond(A)
-
-
 @pytest.mark.parametrize("aspect", [1.0, 2.0])
 def test_the_spectrum_on_a_disc_lies_between_one_and_about_two(aspect: float) -> None:
     """What the first length rests on; a circle as short as the window costs some per cent below one."""
@@ -104,7 +93,7 @@ def test_the_spectrum_on_a_disc_lies_between_one_and_about_two(aspect: float) ->
     assert values[-1] < 2.2
 
 
-@pytest.mark.parametrize(("n", "m"), [(5, 5), (12, 12), (5, 9), (12, 3)])
+@pytest.mark.parametrize(("n", "m"), [(5, 5), (12, 3)])
 def test_the_mean_has_half_of_the_longest_waves_stiffness(n: int, m: int) -> None:
     """Of a periodic scene: q = pi over the longer side."""
     operator = periodic(n, m, 0.5, 0.4)
@@ -132,15 +121,6 @@ def test_periodic_it_inverts_the_half_space_on_waves(k: int, m: int, shape: tupl
     q = 2 * np.pi * np.array([k, m]) / grid.lengths
     wave = np.cos(q[0] * grid.x[:, None] + q[1] * grid.y[None, :] + 0.3)
     np.testing.assert_allclose(precondition(wave), np.hypot(*q) / (6 * np.pi) * wave, atol=1e-14)
-
-
-def test_long_waves_see_the_half_space() -> None:
-    """``2 pi / q``, but for what a window does not see of its kernel."""
-    n, spacing = 64, 0.5
-    symbol = on(n, n, spacing).symbol
-    for k, m in ((2, 0), (0, 2), (3, 4), (8, 5)):
-        q = 2 * np.pi * np.hypot(k, m) / (n * spacing)
-        assert symbol[k, m] == pytest.approx(2 * np.pi / q, rel=0.12)
 
 
 def test_a_preconditioners_cost_is_of_half_the_padded_lengths() -> None:

@@ -125,10 +125,3 @@ def test_without_ducc0_it_is_scipys(monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(transforms.best_installed(), SciPy | Ducc)
     monkeypatch.setattr(transforms, "import_module", missing)
     assert isinstance(transforms.best_installed(), SciPy)
-
-
-def test_a_second_thread_starts_where_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("OMP_NUM_THREADS", "3")
-    monkeypatch.setattr(transforms.fourier, "worthwhile", 1000)
-    assert transforms.threads(999) == 1
-    assert transforms.threads(1000) == transforms.threads(2000) == 3

@@ -112,16 +112,6 @@ def test_gap_and_mean_surface_are_those_of_the_heights_at_first_contact(grid: Gr
     np.testing.assert_allclose(problem.mean_surface, (lower + upper + raised) / 2, rtol=0, atol=1e-20)
 
 
-def test_without_slope_terms_shear_moves_both_bodies_by_what_they_are() -> None:
-    """Nothing feels the common surface then: a tilt that is left out costs no accuracy, a coupling would."""
-    grid = SCENE.grid(8)
-    for coupled in (False, True):
-        small = discretise(SCENE, grid, Terms(coupled=coupled, oblique=False, tilted=not coupled))
-        assert (small.elasticity.coupled, small.elasticity.tilted) == (coupled, coupled)
-    tilted = discretise(SCENE, grid, Terms(coupled=False))
-    assert (tilted.elasticity.coupled, tilted.elasticity.tilted) == (False, True)
-
-
 # --- approach and datum ---
 
 

@@ -68,11 +68,6 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "complex heights": ("heights", lambda: rf.Body(STEEL, np.zeros((8, 8), dtype=complex))),
     "array too small to resample": ("lower.surface[0].heights", lambda: rf.solve(on(np.zeros((3, 3))), 8)),
     "roughness in metres": ("lower.surface", lambda: rf.solve(on(METRES_OF_ROUGHNESS), 8)),
-    "zero grid": ("grid", lambda: rf.solve(SCENE, 0)),
-    "negative grid": ("grid", lambda: rf.solve(SCENE, -8)),
-    "fractional grid": ("grid", lambda: rf.solve(SCENE, 8.5)),
-    "grid as truth value": ("grid", lambda: rf.solve(SCENE, True)),
-    "no grid": ("grid", lambda: rf.solve(SCENE)),
     "unknown method": ("method", lambda: rf.solve(SCENE, 8, method="magic")),
     "tolerance of zero": ("tolerance", lambda: rf.solve(SCENE, 8, tolerance=0.0)),
     "tolerance NaN": ("tolerance", lambda: rf.solve(SCENE, 8, tolerance=math.nan)),
@@ -126,8 +121,6 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "scene file of no name": ("scene", lambda: rf.read_scene(None)),
     "text of no scene": ("scene", lambda: rf.scene_to_toml("hertz")),
     "side of a grid as text": ("side", lambda: rf.Grid.square("1", 8)),
-    "dense grid beyond memory": ("grid", lambda: rf.solve(SCENE, 4096, method="dense")),
-    "fft grid beyond memory": ("grid", lambda: rf.solve(SCENE, 10_000_000)),
 }
 
 
@@ -241,9 +234,8 @@ def test_a_bad_scene_file_is_refused(name: str, tmp_path: Path) -> None:
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("size", [1e-30, 1e30])
-@pytest.mark.parametrize("modulus", [1e-30, 1e30])
-@pytest.mark.parametrize("strain", [1e-29, 1e-4, 1e2])
+@pytest.mark.parametrize(("size", "modulus"), [(1e-30, 1e-30), (1e-30, 1e30), (1e30, 1e30)])
+@pytest.mark.parametrize("strain", [1e-29, 1e2])
 @pytest.mark.parametrize("method", ["fft", "dense"])
 def test_sizes_at_the_ends_of_what_is_allowed(
     size: float, modulus: float, strain: float, method: Any

@@ -23,31 +23,6 @@ def measured(path: Path, shape: tuple[int, int]) -> rf.Body:
     return rf.Body(STEEL, rf.MeasuredSurface(path, unit="um", pixel_size=1e-5))
 
 
-def test_the_domain_is_what_all_measured_surfaces_cover(tmp_path: Path) -> None:
-    """0.3 x 0.1 mm and 0.2 x 0.2 mm: 0.2 x 0.1 mm."""
-    upper, lower = (measured(tmp_path / f"{n}.npy", shape) for n, shape in (("a", (30, 10)), ("b", (20, 20))))
-    scene = rf.Scene(upper, lower, rf.Friction(), 1.0)
-    assert scene.lengths == pytest.approx((2e-4, 1e-4))
-    # the lower one moves by 20 um along y, which leaves 160 um of its 200, and of the upper's 100 all
-    moved = rf.Scene(upper, lower, rf.Friction(), 1.0, sliding_offset=4e-5, sliding_direction=math.pi / 2)
-    assert moved.lengths == pytest.approx((2e-4, 1e-4))
-    far = rf.Scene(upper, lower, rf.Friction(), 1.0, sliding_offset=4e-5, sliding_direction=0.0)
-    assert far.lengths == pytest.approx((1.2e-4, 1e-4))
-
-
-def test_the_lower_surface_moves_along_the_sliding_direction() -> None:
-    """By 0.3 mm at 30 degrees: the ball's lowest point is at x + 0.26, y + 0.15 mm."""
-    lower = rf.Body(STEEL, rf.Sphere(-0.1))
-    scene = rf.Scene(
-        rf.Body(STEEL, rf.Flat()), lower, rf.Friction(), 1.0, 2e-3,
-        sliding_direction=math.pi / 6, sliding_offset=3e-4,
-    )  # fmt: skip
-    z, _ = scene.heights(Grid.square(2e-3, 200))
-    top = np.unravel_index(np.argmax(z), z.shape)
-    centre = [(k + 0.5) * 1e-5 - 1e-3 for k in top]
-    assert centre == pytest.approx([-3e-4 * math.cos(math.pi / 6), -3e-4 * 0.5], abs=0.51e-5)
-
-
 def test_the_roughness_that_is_resolved_worst_counts() -> None:
     """Elements per length over those required: not the fewest elements."""
     gaussian = rf.GaussianRoughness(1e-6, 6e-5, seed=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,8 +66,3 @@ def test_a_scenes_grid_has_its_side_and_its_kind() -> None:
     for count in (0, -1, 8.0, "8", True):
         with pytest.raises(rf.InputError, match="grid"):
             SCENE.grid(count)  # type: ignore[arg-type]  # the point of the test
-
-
-def test_a_scene_is_frozen() -> None:
-    with pytest.raises(FrozenInstanceError):
-        SCENE.load = 1.0  # type: ignore[misc]  # the point of the test
