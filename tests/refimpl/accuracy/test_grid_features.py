@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.grid_features import GridFeatures, slope_sampling_error
 from refimpl.accuracy.peak import NO_PEAK, deepest, highest
 from refimpl.driver.reference import solve_reference
@@ -20,9 +19,7 @@ from refimpl.model.certificate import State
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
-from refimpl.solvers.production.nested_solver import solve_fft
 from verification.coverage.scenes import random_scene
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
@@ -126,46 +123,6 @@ def assert_same(one: GridFeatures, other: GridFeatures) -> None:
         assert vars(getattr(other, name)) == pytest.approx(vars(getattr(one, name)), rel=1e-7), name
     for name in set(one.numbers) - {"binormal_force"}:
         assert other.numbers[name] == pytest.approx(one.numbers[name], rel=1e-7), name
-
-
-@pytest.mark.parametrize("lengths", [(1.0, 0.6), pytest.param((0.7, 0.9), marks=pytest.mark.nightly)])
-def test_error_bars_on_rectangles_hold_against_hertz(lengths: tuple[float, float]) -> None:
-    """A ball on elements that are square or not, alone and after coarser grids."""
-    radius, load, side = 0.14, 70.0, 1.61e-3
-    ball = replace(
-        BALL,
-        upper=rf.Body(STEEL, rf.Sphere(radius)),
-        lower=rf.Body(STEEL, rf.Flat()),
-        friction=rf.Friction(tau=15e6, beta=0.1),
-        load=load,
-    )
-    modulus = ball.materials.reduced_modulus
-    a = (3 * load * radius / (4 * modulus)) ** (1 / 3)
-    area = math.pi * a**2
-    hertz = {
-        "contact_area": area,
-        "max_pressure": 1.5 * load / area,
-        "approach": a**2 / radius,
-        "friction_coefficient": 0.1 + 15e6 * area / load,
-    }
-    shares: dict[str, list[float]] = {name: [] for name in hertz}
-    for across in (0.55, 0.8, 1.0, 1.3):
-        features = []
-        for M in (32, 64, 128):
-            shape = M, round(across * M * lengths[1] / lengths[0])
-            grid = Grid(shape, (side * lengths[0], side * lengths[1]))
-            problem = discretise(ball, grid).with_terms(replace(discretise(ball, grid).terms, oblique=False))
-            state = solve_fft(problem, 1e-8, Counter())[1]
-            features.append(GridFeatures.of(problem, state))
-        for results in (features[:1], features[1:2], features):
-            for name, estimate in estimates(results).items():
-                if name in hertz:
-                    value = results[-1].numbers[name]
-                    shares[name].append(abs(value - hertz[name]) / estimate.error_bound(value))
-    for name, found in shares.items():
-        assert len(found) == 12
-        assert max(found) <= 1, (name, found)
-        assert np.median(found) > 0.2, name  # no longer than need be
 
 
 def sampling_error(pressure: Array, slopes: Slopes, *, periodic: bool = False) -> float:

@@ -141,14 +141,6 @@ def test_points_of_data_between_elements(M: int, points: float | None) -> None:
     assert (warned and warned.number) == points
 
 
-def test_elements_per_contact_radius() -> None:
-    s = rf.solve(replace(SMOOTH, load=0.05), 64)
-    warned = named(s)[Limit.RADIUS]
-    assert warned.number == pytest.approx(math.sqrt(s.contact.sum() / math.pi))
-    assert warned.number < warned.allowed == 3
-    assert Limit.RADIUS not in named(rf.solve(SMOOTH, 32))
-
-
 def test_an_alternating_contact_edge_under_tau() -> None:
     scene = replace(
         rough(0.504e-6, rf.Material(2.5e9, 0.38)),

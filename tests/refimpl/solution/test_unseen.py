@@ -82,17 +82,6 @@ def test_roughness_by_formula_beside_the_data_makes_them_matter_less() -> None:
     assert data_error(scene, Grid((8, 4), LENGTHS, True)) == pytest.approx(0.02626, abs=6e-6)
 
 
-def test_several_maps_are_seen_at_the_pitch_of_each() -> None:
-    """Across: 8 points a wave, b = a / 2, on elements d = 2 p = 1 q: at its pitch q and on the grid
-    2 / 4 sin^2(22.5) = 0.07322, above 2 / 16 sin^2(45) = 0.0625. 1 - sqrt(0.36612 / 0.37770) = 0.01546 on the
-    grid, 1 - sqrt(0.35539 / 0.37770) = 0.02998 of the octave above.
-    """
-    across = Wave(1.5e-6, wavelength=4e-3, axis=1, data=0.5e-3)
-    lengths = (4e-3, 4e-3)
-    scene = waves(across, MEASURED)
-    assert data_error(scene, Grid((8, 8), lengths, True)) == pytest.approx(0.01546 + 1.5 * 0.02998, abs=2e-5)
-
-
 @pytest.mark.parametrize(
     "lower", [rf.Sphere(0.2), Wave(3e-6, wavelength=1e-3), Wave(0.0, wavelength=4e-3, data=0.25e-3)]
 )
@@ -105,13 +94,6 @@ def test_a_balls_slope_is_no_roughness_beside_the_data() -> None:
     assert data_error(waves(rf.Sphere(0.2), MEASURED), Grid((8, 4), LENGTHS, True)) == pytest.approx(
         0.04804, abs=6e-6
     )
-
-
-def test_a_map_of_two_points_has_no_octave_above() -> None:
-    """All of its gradient may be between the points: 1.5 of the area."""
-    two = Wave(3e-6, wavelength=8e-3, data=2e-3)
-    scene = waves(rf.Flat(), two, periodic=False)
-    assert data_error(scene, Grid((8, 4), LENGTHS, False)) == pytest.approx(1.5)
 
 
 GRID = Grid((8, 4), LENGTHS, False)

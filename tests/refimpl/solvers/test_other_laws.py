@@ -1,7 +1,8 @@
-"""Another friction law through the same solvers: shear that a strength of the surface limits."""
+"""Another friction law and another elasticity through the same solvers: limited shear, a thin soft layer."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from refimpl.driver.reference import solve_reference
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.certificate import State, certify
+from refimpl.model.elasticity import Elasticity, Influence, MatrixOperator, WindowOperator
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
@@ -172,3 +174,97 @@ def test_the_papers_scheme_solves_it_too() -> None:
     # pressure steps end at 1e-10 of the pressure; 100 of them for what steepest descent still had to go
     assert np.abs(paper.pressure - fft.pressure).max() <= 1e-8 * fft.pressure.max()
     assert np.array_equal(paper.excluded, fft.excluded)
+
+
+@dataclass(frozen=True)
+class Layered(Elasticity):
+    """Half-spaces, the lower one under a layer that is compressed by ``layer`` (m/Pa) times the pressure."""
+
+    layer: float = 0.0
+
+    def normal(self, operator: Influence, pressure: Array) -> Array:
+        """Return ``a f`` with the layer (m)."""
+        return super().normal(operator, pressure) + self.layer * pressure
+
+    def normal_with_shear(self, operator: WindowOperator, slope: float) -> Callable[[Array], Array]:
+        """Return ``f -> a f + slope c f`` with the layer (m)."""
+        of_bodies = super().normal_with_shear(operator, slope)
+        return lambda pressure: of_bodies(pressure) + self.layer * pressure
+
+    def body_displacements(
+        self, normal: Array, pressure: Array, shear_product: Array | None
+    ) -> tuple[Array, Array]:
+        """Return ``(u_lower, u_upper)``: the layer's share is the lower body's alone (m)."""
+        of_layer = self.layer * pressure
+        lower, upper = super().body_displacements(normal - of_layer, pressure, shear_product)
+        return lower + of_layer, upper
+
+    def normal_matrix(self, operator: MatrixOperator) -> Array:
+        """Return ``a`` with the layer on the diagonal (m/Pa)."""
+        of_bodies = super().normal_matrix(operator)
+        return of_bodies + self.layer * np.eye(len(of_bodies))
+
+    def symbol(self, coefficients: Array) -> Array:
+        """Return the transform of ``a`` with the layer (m/Pa)."""
+        return super().symbol(coefficients) + self.layer
+
+    def mean_compliance(self, grid: Grid) -> float:
+        """Return the displacement by unit mean pressure with the layer (m/Pa)."""
+        return super().mean_compliance(grid) + self.layer
+
+    def element_compliance(self, grid: Grid) -> float:
+        """Return ``a`` at the grid's highest frequency with the layer (m/Pa)."""
+        return super().element_compliance(grid) + self.layer
+
+
+LAYER = 0.2 * Elasticity(PAIR).element_compliance(SQUARE)
+
+
+def layered(case: str, layer: float) -> Problem:
+    """The case's problem with the paper's law and a layer of that compliance (m/Pa)."""
+    scene, _, terms, _ = CASES[case]
+    problem = replace(problem_with(case, scene.friction), elasticity=Layered(PAIR, layer=layer))
+    return problem.with_terms(terms)
+
+
+@on_cases
+def test_the_certificate_of_either_operator_holds(case: str) -> None:
+    """For a state that the layer has changed."""
+    problem = layered(case, LAYER)
+    fft, state = by_fft(problem)
+    assert state.certificate.satisfies(TOLERANCE)
+    assert state.certificate.law_violations == np.count_nonzero(fft.excluded & state.contact)
+    operator = DenseInfluence(problem.grid, problem.direction)
+    judged = certify(problem, operator, fft.pressure, fft.traction, fft.slopes)
+    assert judged.certificate.satisfies(1.01 * TOLERANCE)
+    bare, _ = by_fft(problem_with(case, SMOOTH.friction))
+    assert np.abs(bare.pressure - fft.pressure).max() > 0.005 * fft.pressure.max()
+
+
+def winkler(problem: Problem, layer: float) -> Array:
+    """Pressures ``(d - h) / layer`` where positive, at the approach or at the d that bears the load (Pa)."""
+    gap = problem.gap
+    if problem.approach is None:
+        assert problem.load is not None
+        total = problem.load / problem.grid.element_area * layer
+        lowest = np.sort(gap, axis=None)
+        counts = np.arange(1, lowest.size + 1)
+        depths = (total + np.cumsum(lowest)) / counts
+        deepest = np.flatnonzero(depths > lowest)[-1]
+        return np.maximum(depths[deepest] - gap, 0.0) / layer
+    return np.maximum(problem.approach - gap, 0.0) / layer
+
+
+@pytest.mark.parametrize("case", ["level", "rough, at an approach", "periodic"])
+def test_on_a_very_soft_layer_each_element_presses_for_itself(case: str) -> None:
+    """Half-spaces displace by ``a f``, a share of 1e-6 of what the layer does."""
+    given = problem_with(case, SMOOTH.friction)
+    soft = 1e6 * given.elasticity.mean_compliance(given.grid)
+    problem = replace(layered(case, soft), friction=rf.Friction())
+    problem = problem.with_terms(Terms(oblique=False))  # under such displacements slopes would not be small
+    expected = winkler(problem, soft)
+    if problem.approach is not None:
+        assert np.count_nonzero(expected) > 20
+    found, state = by_fft(problem)
+    assert np.abs(found.pressure - expected).max() <= 3e-6 * expected.max()
+    assert state.certificate.satisfies(TOLERANCE)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Shape
+from refimpl.grid import Array, Mask, Shape
 from refimpl.model.certificate import State
-from refimpl.model.problem import Terms
+from refimpl.model.problem import Problem, Terms
 from refimpl.model.state import SolverResult, Status
 from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
-from refimpl.solvers.paper import Trace, solve_paper
+from refimpl.solvers import paper as module
+from refimpl.solvers.paper import Trace, _Scheme, solve_paper
+from refimpl.solvers.tau_active_set import FixedSet, GradualSet
 
 
 def run(
@@ -121,3 +125,118 @@ def test_the_smallest_grids(M: int) -> None:
     hertz = rf.read_scene("hertz")
     dense, paper = (rf.solve(hertz, M, method=m, tolerance=1e-9) for m in ("dense", "paper"))
     assert difference(paper.pressure, dense.pressure) <= 1e-8
+
+
+def hertz(M: int = 8, friction: rf.Friction | None = None) -> Problem:
+    scene = rf.read_scene("hertz")
+    scene = scene if friction is None else replace(scene, friction=friction)
+    return discretise(scene, scene.grid(M), Terms(oblique=False))
+
+
+def scheme(M: int = 8, friction: rf.Friction | None = None) -> _Scheme:
+    return _Scheme(hertz(M, friction), 1e-9, Counter(), None)
+
+
+class Press:
+    """Stands for iteration one: a normal force as a function of the approach, and what was asked."""
+
+    def __init__(self, force: Callable[[float], float]) -> None:
+        self.force, self.asked = force, list[float]()
+
+    def __call__(self, approach: float, active: Mask | None) -> float:
+        self.asked.append(approach)
+        return self.force(approach)
+
+
+def asked(monkeypatch: pytest.MonkeyPatch, start: float, force: Callable[[float], float]) -> list[float]:
+    """The approaches that iteration two tries; the force is in units of the load."""
+    one = scheme()
+    load = one.problem.load
+    assert load is not None
+    press = Press(lambda approach: load * force(approach))
+    monkeypatch.setattr(one, "normal_force", press)
+    assert one.balance(start, None) == press.asked[-1]
+    assert one.settled
+    return press.asked
+
+
+def test_tau_is_where_the_active_set_says() -> None:
+    """On the coarser grids the gradual one: on contact, and in shares up to a clearance beside it."""
+    one = scheme(friction=rf.Friction(tau=1e6, beta=0.0))
+    one.pressure[2:5, 3] = 1e7, 1e-3, 0.0
+    v = one._apply(one.pressure) + one.problem.gap
+    reach = 2 * float(v[4, 3] - v.min() + 1e-9)
+    approach = float(v[4, 3]) - reach / 4
+    _, held = one._update(approach, GradualSet(reach))
+    assert held[2:4, 3] == pytest.approx(1e6)
+    assert held[4, 3] == pytest.approx(0.75e6)
+    given = np.eye(8, dtype=bool)
+    assert np.array_equal(one._update(0.0, FixedSet(given))[1], 1e6 * given)
+
+
+def test_a_contact_that_never_settles_is_given_up_after_sixty_passes() -> None:
+    one = scheme(4)
+    one.tolerance = 0.0
+    one.normal_force(4e-6, FixedSet(one.problem.gap < 0))
+    assert one.trace.passes == 60
+    assert not one.settled
+
+
+def test_approaches_stay_within_their_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A late and steep force: secants and growth would leave the bracket, so that it is halved."""
+
+    def force(approach: float) -> float:
+        return max(0.0, 1000 * (approach - 3.0))
+
+    low, high, halved = 0.0, math.inf, 0
+    found = asked(monkeypatch, 1.0, force)
+    for approach in found:
+        assert low < approach < high
+        halved += approach == 0.5 * (low + high)
+        low, high = (approach, high) if force(approach) < 1 else (low, approach)
+    assert halved >= 2
+    assert found[-1] == pytest.approx(3.001, rel=1e-9)
+
+
+def test_the_unit_of_pressure_changes_no_bit() -> None:
+    """Powers of two scale without rounding, so every decision must be the same."""
+
+    def scene(unit: float) -> rf.Scene:
+        return rf.Scene(
+            upper=rf.Body(rf.Material(200e9 * unit, 0.3), rf.Sphere(0.14)),
+            lower=rf.Body(rf.Material(2.5e9 * unit, 0.3), rf.GaussianRoughness(0.2e-6, 200e-6, seed=3)),
+            friction=rf.Friction(15e6 * unit, 0.08),
+            load=20.0 * unit,
+            side=1.61e-3,
+        )
+
+    one, other = (rf.solve(scene(unit), 16, method="paper") for unit in (1.0, 2.0**-40))
+    assert one.status is other.status
+    assert one.cost.iterations == other.cost.iterations
+    assert np.array_equal(other.pressure, 2.0**-40 * one.pressure)
+
+
+@pytest.mark.parametrize("limit", ["_STEPS", "_PASSES", "_APPROACHES", "_BUDGET"])
+def test_a_loop_that_meets_its_limit_says_so(limit: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the certificate makes of the state that it left."""
+    monkeypatch.setattr(module, limit, 1)
+    result, _, _ = module.solve_paper(hertz(friction=rf.Friction(beta=0.1)), 1e-9, Counter())
+    assert result.status is Status.ITERATION_LIMIT
+
+
+def test_a_spent_budget_ends_every_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limits of nested loops do not multiply. The mean pressure is the modulus here."""
+    z = np.random.default_rng(1).normal(size=(16, 16))
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(1.0, 0.0), z * 0.25 / np.ptp(z)),
+        lower=rf.Body(rf.Material(4e3, 0.5), rf.Flat()),
+        friction=rf.Friction(0.1, 0.4),
+        load=1.0,
+        side=1.0,
+        sliding_direction=0.3,
+    )
+    monkeypatch.setattr(module, "_BUDGET", 500)
+    found = rf.solve(scene, grid=16, method="paper")
+    assert found.status is Status.ITERATION_LIMIT
+    taken = found.cost.iterations
+    assert 500 <= taken["periodic"] + taken["correction"] + taken["passes"] < 500 + 3

@@ -11,11 +11,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import refimpl as rf
-from refimpl.grid import Window
 from refimpl.operators.fft import Counter
 from refimpl.solvers.production.nested_solver import solve_fft
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import FAINT, level_solver, problem_of
 from verification.coverage import scenes as study
 
@@ -50,18 +48,6 @@ def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
     assert np.array_equal(result.excluded, everywhere.excluded)
     assert np.abs(result.pressure - everywhere.pressure).max() <= 1e-6 * everywhere.pressure.max()
     assert state.certificate.satisfies(1e-8)
-
-
-@pytest.mark.parametrize(("margin", "too_small"), [(0, True), (12, False)])
-def test_a_state_that_meets_the_windows_edge_ends_the_loop(margin: int, too_small: bool) -> None:
-    problem = problem_of(FAINT, 40)
-    first = level_solver(problem)
-    first.solve(1e-8, FixedSet(np.zeros((40, 40), dtype=bool)))
-    solver = level_solver(problem, Window.around(first.contact, margin))
-    result = solver.result(1e-8)
-    assert solver.window.shape < (40, 40)
-    assert solver.window_too_small is too_small
-    assert (result.status is rf.Status.CYCLED) is not too_small
 
 
 def random_scene(seed: int) -> rf.Scene:
@@ -128,16 +114,6 @@ def test_solves_that_end_early_do_not_change_the_sequence(
     assert np.array_equal(short.traction > 0, long.traction > 0)
     assert np.abs(short.pressure - long.pressure).max() <= 1e-6 * long.pressure.max()
     assert quick.cg_iterations <= thorough.cg_iterations
-
-
-def test_tau_that_moves_nothing_costs_nothing() -> None:
-    """The first state is the last one; its solve once ended too early."""
-    terms = {"coupled": False, "oblique": False}
-    still, rubbed = (
-        rf.solve(replace(random_scene(3), friction=rf.Friction(tau, 0.0)), 48, **terms) for tau in (0.0, 1e7)
-    )
-    assert np.abs(still.pressure - rubbed.pressure).max() <= 1e-14 * still.max_pressure
-    assert still.cost.applications == rubbed.cost.applications
 
 
 def test_a_scene_whose_edge_moves_far_ends_after_few_solves() -> None:

@@ -163,20 +163,6 @@ def test_the_likely_capped_elements_are_those_that_a_quarter_step_takes_to_the_c
     assert not likely_capped(pressure, misfit, contact, problem_of(BALL, 4)).any()
 
 
-@pytest.mark.parametrize("shift", [-3e-6, 0.0, 2e-5])
-def test_an_approach_that_is_not_known_keeps_the_load(shift: float) -> None:
-    """Wherever heights are counted from: the step's pressures add up to those it started from."""
-    given = problem((16, 16))
-    stiffness = 0.5 / (2 * given.pair.normal_compliance * SIDE / 16)
-    rng = np.random.default_rng(5)
-    pressure = np.maximum(rng.normal(size=(16, 16)), 0) * 1e7
-    v = shift + np.where(pressure > 0, 0.0, 2e-6) + rng.normal(size=(16, 16)) * 1e-7
-    contact, approach = likely_contact(pressure, v, None, given)
-    stepped = np.maximum(pressure + stiffness * (approach - v), 0)
-    np.testing.assert_array_equal(contact, stepped > 0)
-    assert stepped.sum() == pytest.approx(pressure.sum(), rel=1e-12)
-
-
 @pytest.mark.parametrize("loaded", [True, False])
 def test_sharpening_by_hand(loaded: bool) -> None:
     contact = np.array([[True, True], [True, False]])

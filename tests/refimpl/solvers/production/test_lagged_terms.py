@@ -1,20 +1,23 @@
-"""What CG inverts and what lags: shares of the coupling, products saved, mixtures, limits of the target."""
+"""One grid of the production solver: what CG inverts and what lags, windows, and how a solve ends."""
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array
+from refimpl.grid import Array, Window
+from refimpl.model.certificate import certify
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import Apply
-from refimpl.solvers.production import lagged_terms
+from refimpl.solvers.production import constants, lagged_terms
 from refimpl.solvers.production.lagged_terms import (
     LaggedTerms,
     couples_weakly,
@@ -22,7 +25,7 @@ from refimpl.solvers.production.lagged_terms import (
     pressure_compliance,
 )
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.tau_active_set import FixedSet
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, FixedSet
 from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, problem_of
 from verification.exact.dense_influence import DenseInfluence
 
@@ -124,36 +127,6 @@ def test_what_is_inverted_and_what_lags_add_up_to_the_same(
     assert np.array_equal(lagged.traction, traction)
 
 
-def test_tau_is_applied_once_for_an_active_set_and_a_pressure_once_for_a_step() -> None:
-    """Between CG's steps a pressure is only scaled to the load, and its product with it, to rounding."""
-    problem = turned(0.2, 1e6, oblique=True)
-    lagged, cg, counter = lagging(problem, pressed(7))
-    last = None
-    for seed, step, factor, products in (
-        (1, False, 1.0, 2),
-        (1, False, 1.1, 2),
-        (2, False, 0.7, 3),
-        (2, True, 1.0, 4),
-        (1, False, 1.0, 5),
-    ):
-        if seed != last:
-            lagged.active, last = FixedSet(pressed(seed) > 0), seed
-        if step:
-            lagged.iterate()
-        if factor != 1:
-            total = factor * float(cg.pressure.sum())
-            cg.set_problem(problem.gap, np.ones((M, M)), target=total, approach=None)
-        lagged.update()
-        assert counter.tally["shear"] == products
-        fresh, other, _ = lagging(problem, cg.pressure)
-        fresh.active = lagged.active
-        fresh.update()
-        found, expected = displacement(problem, lagged, cg), displacement(problem, fresh, other)
-        bound = ROUNDING * np.abs(expected).max()
-        assert np.abs(found - expected).max() <= bound + 1e-15 * problem.gap.max()
-        assert np.abs(lagged.slopes.tan_x - fresh.slopes.tan_x).max() <= bound / problem.grid.element_size
-
-
 def test_without_tau_nothing_is_applied_for_it() -> None:
     lagged, _, counter = lagging(turned(0.2, oblique=True), pressed(7))
     lagged.active = FixedSet(pressed(1) > 0)
@@ -208,21 +181,6 @@ def test_the_weakest_coupling_lags_beside_slopes(oblique: bool, strength: float,
     assert couples_weakly(problem_of(coupled(strength), 4, oblique=oblique)) is not lags
 
 
-class Problems:
-    """What CG is set to: ``b = K h + shear``, K and the target of each call."""
-
-    def __init__(self, cg: ProjectedCG, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.b, self.K, self.targets = list[Array](), list[Array](), list[float | None]()
-        self._set = cg.set_problem
-        monkeypatch.setattr(cg, "set_problem", self)
-
-    def __call__(self, b: Array, K: Array, *, target: float | None, approach: float | None) -> None:
-        self.b.append(b)
-        self.K.append(K)
-        self.targets.append(target)
-        self._set(b, K, target=target, approach=approach)
-
-
 @pytest.mark.parametrize("inside", [True, False])
 def test_outdated_slopes_of_facets_count_where_there_is_contact(inside: bool) -> None:
     solver = level_solver(problem_of(BALL, 16, oblique=True, slope_correction=True))
@@ -232,18 +190,6 @@ def test_outdated_slopes_of_facets_count_where_there_is_contact(inside: bool) ->
     slopes = solver.lagged.slopes
     solver.lagged.slopes = Slopes(slopes.tan_x + 1e-3 * where, slopes.tan_y)
     assert (solver.lagged.update() >= 0.999e-3) is inside
-
-
-def test_a_load_that_shear_on_slopes_exceeds_leaves_some_contact(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A thousandth of the load, more or less: enough to go on from, and too little to balance."""
-    problem = problem_of(replace(BALL, friction=rf.Friction(tau=1e9, beta=0.0)), 8, oblique=True)
-    downhill = -0.5 * problem.grid.x[:, None] * np.ones((8, 8))  # tau takes from the load
-    solver = level_solver(replace(problem, mean_surface=downhill))
-    given = Problems(solver.cg, monkeypatch)
-    solver.lagged.active = FixedSet(np.ones((8, 8), dtype=bool))
-    assert solver.lagged.update() > 1
-    assert given.targets[0] is not None
-    assert 1e-4 <= given.targets[0] * problem.grid.element_area / BALL.load <= 1e-2
 
 
 @pytest.mark.parametrize("oblique", [False, True])
@@ -258,3 +204,84 @@ def test_coupling_that_cg_inverts_ends_in_the_same_state_for_less(
     assert together.status is apart.status is rf.Status.CONVERGED
     assert np.abs(together.pressure - apart.pressure).max() <= 1e-6 * apart.max_pressure
     assert together.cost.point_logs <= 0.8 * apart.cost.point_logs
+
+
+def test_how_a_solve_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The residual counts before the limit; what ends by neither has stagnated."""
+    problem = problem_of(BALL, 16)
+    solver = level_solver(problem)
+    assert solver.result(1e-8).status is rf.Status.CONVERGED
+    monkeypatch.setattr(constants, "CG_LIMIT", solver.cg_iterations)
+    assert level_solver(problem).result(1e-8).status is rf.Status.CONVERGED
+    assert level_solver(problem).result(1e-8).iterations == {"CG at 16 x 16": solver.cg_iterations}
+    monkeypatch.setattr(constants, "CG_LIMIT", solver.cg_iterations - 1)
+    assert level_solver(problem).result(1e-8).status is rf.Status.ITERATION_LIMIT
+    stagnating = level_solver(problem_of(coupled(8.0), 16))  # far beyond what materials have
+    monkeypatch.setattr(constants, "CG_LIMIT", 10**6)
+    assert stagnating.result(1e-8).status is rf.Status.STAGNATED
+
+
+@pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=0.0, beta=0.1), rf.Friction(tau=1.0)])
+def test_without_tau_there_is_one_solve(friction: rf.Friction, monkeypatch: pytest.MonkeyPatch) -> None:
+    solver = level_solver(problem_of(replace(BALL, friction=friction), 8))
+    solves: list[ContactTest | None] = []
+    solve = solver.solve
+
+    def recorded(tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
+        solves.append(enough)
+        return solve(tolerance, active, enough)
+
+    monkeypatch.setattr(solver, "solve", recorded)
+    assert solver.result(1e-8).status is rf.Status.CONVERGED
+    if friction.tau == 0:
+        assert solves == [None]
+    else:
+        assert all(enough is not None for enough in solves)
+        assert len(solves) > 1
+
+
+@pytest.mark.parametrize(
+    ("place", "too_small"), [((0, 3), True), ((2, 7), True), ((1, 1), False), ((2, 6), False)]
+)
+def test_shear_off_the_contact_must_keep_off_the_edge_as_well(
+    place: tuple[int, int], too_small: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the set of tau is behind the contact, elements that no longer press are sheared still."""
+    pressure = np.zeros((4, 8))
+    pressure[1:3, 2:6] = 1.0
+    problem = problem_of(coupled(0.3, tau=1e6), 16)
+    solver = level_solver(problem, Window(4, 8, 4, 12), pressure=pressure)
+    traction = np.zeros((4, 8))
+    monkeypatch.setattr(type(solver.lagged), "traction", property(lambda lagged: traction))
+    assert not solver.window_too_small
+    traction[place] = 2e5
+    assert solver.window_too_small is too_small
+
+
+@pytest.mark.parametrize("slope_correction", [False, True])
+def test_the_residual_is_what_the_certificate_finds(slope_correction: bool) -> None:
+    """Also of facet tractions, at the slopes of the update before: these are returned with the state.
+
+    The last update scales the pressure to the load, by less than a thousandth here.
+    """
+    steep = replace(BALL, upper=replace(BALL.upper, surface=rf.Sphere(radius=4e-3)), load=50.0)
+    problem = problem_of(steep, 32, oblique=True, slope_correction=slope_correction)
+    solver = level_solver(problem)
+    result = solver.result(1e-4)
+    operator = window_influence(problem.grid, problem.direction)
+    state = certify(problem, operator, result.pressure, result.traction, result.slopes)
+    assert result.status is rf.Status.CONVERGED
+    assert state.certificate.largest == pytest.approx(solver.residual, rel=1e-3)
+
+
+def test_a_deleted_solver_is_gone_at_once() -> None:
+    """No cycle of references keeps a level's arrays until the garbage is collected."""
+    gc.disable()
+    try:
+        solver = level_solver(problem_of(BALL, 16))
+        solver.solve(1e-3, FixedSet(np.zeros((16, 16), dtype=bool)))
+        gone = weakref.ref(solver.cg)
+        del solver
+        assert gone() is None
+    finally:
+        gc.enable()
