@@ -1,15 +1,18 @@
-"""Refinement of a scene: seconds kept of each grid, and where a forecast ends."""
+"""Refinement of a scene: forecasts, interrupts, and terms that a solved contact shows to matter."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 import refimpl as rf
 from refimpl.driver import refined
 from refimpl.driver.options import Options
+from refimpl.planning import terms
+from refimpl.planning.term_effects import Effect
 from refimpl.scene.discretise import Discretiser
 
 SCENE = rf.Scene(
@@ -60,23 +63,41 @@ def test_an_interrupt_has_the_last_finished_grid_with_its_own_bars() -> None:
     assert re.fullmatch(rf"64 x 52 elements next: about \S+ s, {memory:.2g} GB", shown[-1])
 
 
-@pytest.mark.parametrize(("bound", "enough", "last"), [(0.01, None, 128), (0.2, 384, 384), (0.2, None, 1024)])
-def test_a_forecast_of_a_slender_scene(
-    monkeypatch: pytest.MonkeyPatch, bound: float, enough: int | None, last: int
+STIFF = replace(SCENE, lower=rf.Body(rf.Material(200e9, 0.31), rf.Flat()), load=20.0)
+
+
+@pytest.mark.parametrize(("share", "restored"), [(0.6, True), (0.4, False)])
+def test_the_sum_of_all_effects_is_held_to_the_budget(
+    monkeypatch: pytest.MonkeyPatch, share: float, restored: bool
 ) -> None:
-    """A side of 6 : 1 doubles the numbers of elements along it; bars that are met need no more grids."""
-    asked: list[tuple[int, ...]] = []
+    """Two effects of 0.6 of the budget each exceed it together; the larger one's term comes back."""
+    plan = Options(scene=STIFF, accuracy=0.05).plan()
+    assert set(plan.neglected) == {"coupled", "oblique"}
 
-    def predicted(*given: tuple[int, ...]) -> int | None:
-        asked.append(given[3])
-        return enough
+    def effects(names: tuple[str, ...], *_: Any) -> dict[str, Effect]:
+        sizes = {"coupled": share, "oblique": share + 0.01}
+        return {name: Effect(sizes.get(name, 0.0) * plan.budget, 0.0) for name in names}
 
-    monkeypatch.setattr(refined, "GRID_SIZES", (64, 80, 512))
-    monkeypatch.setattr(refined, "relative_bound", lambda *_: bound)
-    monkeypatch.setattr(refined, "predicted_size", predicted)
-    scene = replace(SCENE, side=None, size=(3e-3, 0.5e-3), load=0.1)
-    options, discretiser = Options(scene=scene, accuracy=0.05), Discretiser(scene, None)
-    found = refined.forecast(options, options.plan(discretiser), discretiser)
-    assert [max(grid.shape) for grid in (*found.solved, found.grid)] == [64, 128, last]
-    assert asked == ([] if bound < 0.05 else [[160, 1024]])
-    assert found.refusal == ("1024 elements a side do not suffice" if last == 1024 else "")
+    monkeypatch.setattr(refined, "effects_in", effects)
+    found = rf.solve(STIFF, accuracy=0.05)
+    assert found.plan.includes("oblique") is restored
+    assert not found.plan.includes("coupled")
+
+
+def test_what_a_named_warning_states_is_no_note_as_well() -> None:
+    rough = rf.Body(STIFF.lower.material, rf.GaussianRoughness(1e-8, 1e-4, seed=3))
+    found = rf.solve(replace(STIFF, lower=rough), 20)
+    assert sum("correlation length" in str(w) for w in found.warnings) == 1
+
+
+def test_a_cap_that_pressures_reach_costs_both_solves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The plan expects no more than the mean pressure, 0.22 GPa; the peak, 0.33 GPa, reaches 0.3 GPa."""
+    monkeypatch.setattr(terms, "_PEAK_OVER_MEAN", 1.0)
+    soft = rf.Body(rf.Material(200e9, 0.31, hardness=0.3e9), rf.Flat())
+    scene = replace(STIFF, lower=soft, load=150.0)
+    elastic, capped = (rf.solve(scene, 16, plastic=given) for given in (False, True))
+    assert elastic.max_pressure > 0.3e9
+    assert not Options(scene=scene, grid=16).plan().includes("plastic")
+    found = rf.solve(scene, 16)
+    assert found.max_pressure == capped.max_pressure == 0.3e9
+    assert found.cost.point_logs == elastic.cost.point_logs + capped.cost.point_logs

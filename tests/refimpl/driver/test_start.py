@@ -87,12 +87,6 @@ def test_a_contact_that_grows_to_its_windows_edge_has_slopes_there() -> None:
     same_pressure(found, afresh, sample)
 
 
-def test_no_grid_up_to_the_starts_is_solved_again() -> None:
-    start = rf.solve(ROUGH, 64)
-    assert set(rf.solve(ROUGH, 128, start=start).cost.iterations) == {"CG at 128 x 128"}
-    assert set(rf.solve(ROUGH, 192, start=start).cost.iterations) == {"CG at 96 x 96", "CG at 192 x 192"}
-
-
 @pytest.mark.parametrize("approach", [5e-6, 3e-6])
 def test_a_start_may_have_another_load_or_approach(approach: float) -> None:
     start = rf.solve(ROUGH, 48)

@@ -80,20 +80,6 @@ def test_shear_that_moves_nothing_that_enters_is_not_computed(terms: Terms) -> N
     assert counter.tally == {"normal": 1, "normal kernel": 1}
 
 
-@pytest.mark.parametrize(("terms", "products"), [(Terms(), 0), (CORRECTED, 2)])
-def test_only_tractions_that_are_not_zero_are_applied(terms: Terms, products: int) -> None:
-    """Without friction nothing shears flat elements; on facets the pressure itself does."""
-    counter = Counter()
-    problem_with(terms).displacements(FFTInfluence(GRID, 0.7, counter=counter), F, 0 * F, SLOPES)
-    assert counter.tally.get("shear", 0) == products
-
-
-def test_facet_tractions_close_the_gap_by_their_shear_whatever_is_coupled() -> None:
-    apart, together = (problem_with(Terms(coupled=c, slope_correction=True)) for c in (False, True))
-    found = apart.displacements(operator(), F, 0.2 * F, SLOPES)
-    np.testing.assert_array_equal(found, together.displacements(operator(), F, 0.2 * F, SLOPES))
-
-
 def test_facet_tractions_enter_with_the_slope_correction() -> None:
     problem, A = problem_with(CORRECTED), operator()
     r = 0.2 * F
@@ -104,13 +90,6 @@ def test_facet_tractions_enter_with_the_slope_correction() -> None:
     lower, _ = problem.displacements(A, F, r, SLOPES)
     shear = A.shear(along) + A.shear_across(across)
     np.testing.assert_allclose(lower, SOFT.normal_compliance * A.normal(down) + SOFT.shear_compliance * shear)
-
-
-def test_as_printed_tractions_are_f_and_r() -> None:
-    down, along, across = problem_with().tractions(F, 0.2 * F, SLOPES)
-    assert down is F
-    assert across is None
-    np.testing.assert_array_equal(along, 0.2 * F)
 
 
 def test_slopes_are_of_the_mean_of_both_deformed_surfaces() -> None:

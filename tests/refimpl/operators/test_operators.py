@@ -118,16 +118,6 @@ def test_sign_and_axes_of_the_shear(operator: type[DenseInfluence] | type[FFTInf
     np.testing.assert_allclose(operator(grid, math.pi / 2).shear(source), ahead.T, atol=1e-15)
 
 
-def test_homogeneity_in_length() -> None:
-    """Integrals are of degree one in length."""
-    grid = Grid((9, 6), (1.0, 2.0))
-    small, large = (
-        FFTInfluence(replace(grid, lengths=(unit, 2 * unit)), 0.7).shear(traction(grid))
-        for unit in (1.0, 2.0**12)
-    )
-    assert np.array_equal(large, 2.0**12 * small)
-
-
 @on_grids
 @of_kinds
 def test_periodic_fft_is_the_periodic_matrix(kind: str, grid: Grid) -> None:
@@ -246,12 +236,3 @@ def test_a_little_more_padding_for_an_even_kernel(M, source, target, points, nor
     dense, whole = DenseInfluence(Grid.square(1.0, M), 0.3), source.spread(field, (M, M))
     for one, other in zip(found, (dense.normal(whole), dense.shear(whole)), strict=True):
         np.testing.assert_allclose(one, other[target.slices], atol=1e-14 * np.abs(other).max())
-
-
-def test_periodic_applications_count_their_points():
-    counter = Counter()
-    operator = PeriodicInfluence(Grid((8, 4), (1.0, 1.0), periodic=True), 0.7, counter=counter)
-    for kind in KINDS:
-        getattr(operator, kind)(np.zeros((8, 4)))
-    assert counter.tally == {"normal": 1, "shear": 2}
-    assert counter.point_logs == 3 * 32 * 5

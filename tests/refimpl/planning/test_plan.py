@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.driver.options import Options
 from refimpl.grid import Grid
 from refimpl.planning import plan, term_effects, terms
 from refimpl.planning.expected_contact import expected_contact, solved_contact
@@ -146,21 +145,6 @@ def test_memory_is_that_of_all_elements_and_a_refusal_names_the_longer_side(
         with pytest.raises(rf.InputError, match=r"grid = 97: .* GB") as refused:
             refuse(Grid((24, 97), (1e-3, 4e-3)))
         assert refused.value.field == "grid"
-
-
-@pytest.mark.parametrize("method", ["fft", "dense"])
-def test_the_grid_that_decides_the_terms_need_not_fit_into_memory(
-    method: plan.Method, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """With an accuracy only its heights are sampled; each grid that is solved is checked."""
-    room = plan.estimated_memory(method, SMOOTH.grid(64 if method == "fft" else 32))
-    monkeypatch.setattr(plan, "free_memory", lambda: room)
-    chosen = Options(scene=SMOOTH, accuracy=0.1, method=method).plan()
-    assert chosen.decided_on == 256**2
-    assert chosen.memory > room
-    assert chosen.on(SMOOTH.grid(32)).memory <= room
-    with pytest.raises(rf.InputError, match="GB"):
-        Options(scene=SMOOTH, grid=256 if method == "fft" else 64, method=method).plan()
 
 
 def test_shear_tilts_the_common_surface_of_twins() -> None:

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.peak import NO_PEAK
 from refimpl.grid import Array, Grid
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import Discretiser, discretise
-from refimpl.surfaces import SurfaceWarning
 
 SCENE = rf.read_scene("table1-smooth")
 FLAT = Terms(coupled=False, oblique=False, tilted=False)
@@ -36,17 +34,6 @@ class Counted(rf.Sphere):
 
     def cautions(self, grid: Grid) -> tuple[str, ...]:
         return ("counted by hand",)
-
-
-@dataclass(frozen=True)
-class Noting(rf.Sphere):
-    """A ball that notes the grid."""
-
-    radius: float = 0.14
-    kind: ClassVar[str] = "noting"
-
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
-        return (f"on {grid.shape[0]}",)
 
 
 def counted() -> tuple[rf.Scene, list[int]]:
@@ -79,15 +66,6 @@ def test_a_discretisers_problem_is_that_of_discretise_and_is_not_kept(grid: Grid
         assert np.array_equal(problem.gap, expected.gap)
         assert np.array_equal(problem.mean_surface, expected.mean_surface)
     assert discretiser.problem(grid, FLAT).gap is not whole.gap
-
-
-def test_notes_are_kept_once_each_and_not_shown(recwarn: pytest.WarningsRecorder) -> None:
-    scene, _ = counted()
-    twice = replace(scene, lower=rf.Body(scene.lower.material, Counted()))
-    discretiser = Discretiser(twice, None)
-    discretiser.with_all_terms(scene.grid(8))
-    assert discretiser.notes == ("counted by hand",)
-    assert not [warning for warning in recwarn if warning.category is SurfaceWarning]
 
 
 def test_heights_of_a_scene_are_its_own() -> None:
@@ -149,15 +127,6 @@ def test_a_periodic_solution_reports_its_approach_from_mean_planes(method: str) 
     assert apart.status is rf.Status.NO_CONTACT
 
 
-def test_error_bars_of_a_periodic_approach_do_not_hang_on_first_contact() -> None:
-    """The residual scales with the approach from first contact; the one from mean planes may be zero."""
-    found = rf.solve(PLANES, 16)
-    assert found.features.first_contact == NO_PEAK
-    assert found.features.numbers["approach"] == found.approach
-    expected = found.certificate.largest * (found.approach + found.problem.datum)
-    assert found.uncertainty["approach"]["iteration"] == pytest.approx(expected, rel=1e-6, abs=0)
-
-
 def test_the_least_approach_of_mean_planes_is_ten_units_in_the_last_place_of_their_gap() -> None:
     heights = np.zeros((4, 4))
     heights[0, 0] = 1.6e-5  # the mean gap, 15 / 16 of it, is 1.5e-5 m: doubles there are 1.7e-21 m apart
@@ -167,14 +136,6 @@ def test_the_least_approach_of_mean_planes_is_ten_units_in_the_last_place_of_the
     with pytest.raises(rf.InputError, match=r"at least 1\.7e-20 m below 0"):
         discretise(scene, grid, approach=-1.6e-20)
     assert discretise(scene, grid, approach=-1.8e-20).approach is not None
-
-
-def test_notes_are_of_the_last_grid() -> None:
-    scene, _ = counted()
-    asked = Discretiser(replace(scene, upper=rf.Body(scene.upper.material, Noting())), None)
-    for M in (8, 16):
-        asked.problem(scene.grid(M), FLAT)
-        assert asked.notes == (f"on {M}",)
 
 
 @pytest.mark.parametrize("size", [(2e-3, 1e-3), (1e-3, 2e-3)])

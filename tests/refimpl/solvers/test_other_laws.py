@@ -13,7 +13,7 @@ from refimpl.driver.reference import solve_reference
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.certificate import State, certify
-from refimpl.model.elasticity import Elasticity, Influence, MatrixOperator, WindowOperator
+from refimpl.model.elasticity import Elasticity, Influence, WindowOperator
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
@@ -198,11 +198,6 @@ class Layered(Elasticity):
         of_layer = self.layer * pressure
         lower, upper = super().body_displacements(normal - of_layer, pressure, shear_product)
         return lower + of_layer, upper
-
-    def normal_matrix(self, operator: MatrixOperator) -> Array:
-        """Return ``a`` with the layer on the diagonal (m/Pa)."""
-        of_bodies = super().normal_matrix(operator)
-        return of_bodies + self.layer * np.eye(len(of_bodies))
 
     def symbol(self, coefficients: Array) -> Array:
         """Return the transform of ``a`` with the layer (m/Pa)."""

@@ -1,7 +1,8 @@
-"""The random field of Eq. (9): its sum, its invariances, its statistics."""
+"""The random field of Eq. (9), isotropic and with a lay: its sum, its invariances, its statistics."""
 
 from __future__ import annotations
 
+import itertools
 import math
 import warnings
 from dataclasses import replace
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 
 from refimpl.errors import InputError
-from refimpl.grid import Grid
+from refimpl.grid import Array, Grid
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning
 from refimpl.surfaces.statistics import kurtosis, skewness
 from refimpl.surfaces.white_noise import white_noise
@@ -163,3 +164,155 @@ def test_what_a_grid_cannot_hold_is_refused(
 def test_a_whole_period_and_a_side_of_one_length_are_held() -> None:
     assert np.isfinite(unit(length=SIDE).heights(PERIODIC)).all()
     assert np.isfinite(unit(length=SIDE, normalise=True).heights(GRID)).all()
+
+
+SETTINGS = [
+    ((2.0, 1.0), 0.0),
+    ((3.0, 1.0), 0.6),
+    ((1.0, 2.5), -1.1),
+    ((4.0, 1.0), math.pi / 2),
+    ((1.3, 1.0), 2.5),
+]
+
+
+def equation_9(x: Array, y: Array, lengths: tuple[float, float], lay: float) -> Array:
+    """Eq. (9) at lags (x, y), written out."""
+    along, across = x * math.cos(lay) + y * math.sin(lay), y * math.cos(lay) - x * math.sin(lay)
+    return np.asarray(np.exp(-2.3 * ((along / lengths[0]) ** 2 + (across / lengths[1]) ** 2)))
+
+
+@pytest.mark.parametrize(("lengths", "lay"), SETTINGS)
+def test_covariance_is_equation_9(lengths: tuple[float, float], lay: float) -> None:
+    """The exact covariance of the sum at 60 points of any position, from the weights of its noise."""
+    surface = GaussianRoughness(1.0, lengths, seed=0, lay=lay)
+    x, y = np.random.default_rng(5).uniform(0, 4, (2, 60))
+    _, shear, _ = surface.ellipse.sheared
+    _, smooth_x = surface._lattice.smoothing(x + shear * y, 0)
+    _, smooth_y = surface._lattice.smoothing(y, 1)
+    ours = (smooth_x @ smooth_x.T).toarray() * (smooth_y @ smooth_y.T).toarray()
+    exact = equation_9(np.subtract.outer(x, x), np.subtract.outer(y, y), lengths, lay)
+    # 35 terms an axis round by a few eps each, and sheared positions by eps |x + s y| / a times 9.2 r / a
+    np.testing.assert_allclose(ours, exact, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(surface.autocorrelation(x, y), equation_9(x, y, lengths, lay), rtol=1e-13)
+
+
+def test_heights_are_the_plain_double_sum() -> None:
+    """Over a wider rectangle of nodes, in the coordinates along and across the lay's quadratic form."""
+    surface, lay, (lx, ly) = GaussianRoughness(2.0, (1.7, 0.8), seed=9, lay=0.7), 0.7, (1.7, 0.8)
+    grid, offset = Grid((3, 4), (3.0, 2.0)), (-4.7, 1.3)
+    c, s = math.cos(lay), math.sin(lay)
+    A, B, C = (c / lx) ** 2 + (s / ly) ** 2, c * s * (lx**-2 - ly**-2), (s / lx) ** 2 + (c / ly) ** 2
+    a, b = A**-0.5, (C - B * B / A) ** -0.5
+    x, y = grid.x[:, None] + offset[0], grid.y[None, :] + offset[1]
+    X = x + B / A * y
+    m, n = np.arange(-90, 60), np.arange(-60, 90)
+    w = white_noise(9, range(-90, 60), range(-60, 90))
+    kx = np.exp(-4.6 * (X[..., None] / a - m / 6) ** 2)
+    ky = np.exp(-4.6 * (y[..., None] / b - n / 6) ** 2)
+    expected = 2.0 / 6 * math.sqrt(9.2 / math.pi) * np.einsum("ijm,ijn,mn->ij", kx, ky, w)
+    np.testing.assert_allclose(surface.sample(grid, offset), expected, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize(("lengths", "lay"), SETTINGS[1:3])
+def test_periodic_covariance_is_the_periodic_sum(lengths: tuple[float, float], lay: float) -> None:
+    grid = Grid((16, 16), (7.0, 5.0), periodic=True)
+    surface = GaussianRoughness(1.0, lengths, seed=1, lay=lay)
+    torus = surface._torus(grid)
+    k, across = (np.arange(-n, n + 1.0) for n in torus.waves)
+    qx, qy = torus.wave_vectors(k, across)
+    power = surface._amplitude(qx, qy) ** 2
+
+    def images(x: float, y: float) -> float:
+        shifts = itertools.product(range(-6, 7), repeat=2)
+        lags = np.array([(x + 7.0 * p, y + 5.0 * q) for p, q in shifts])
+        return float(equation_9(lags[:, 0], lags[:, 1], lengths, lay).sum())
+
+    for x, y in ((0.3, 0.0), (0.0, -0.7), (1.1, 0.4), (3.5, 2.5)):
+        ours = float((power * np.cos(qx * x + qy * y)).sum() / power.sum())
+        # waves of up to (2K + 1)(2L + 1) = 1e5 add up: rounding of their phases and of the sum
+        assert ours == pytest.approx(images(x, y) / images(0.0, 0.0), rel=0, abs=1e-13)
+
+
+@pytest.mark.parametrize("lay", [0.0, 0.6, 2.0])
+@pytest.mark.parametrize("periodic", [False, True])
+def test_one_surface_on_every_grid_and_at_every_offset(lay: float, periodic: bool) -> None:
+    surface, lengths = GaussianRoughness(1.0, (3e-4, 1e-4), seed=7, lay=lay), (1.61e-3, 1.2e-3)
+    coarse, middle, fine = (surface.sample(Grid((M, M), lengths, periodic)) for M in (63, 189, 567))
+    np.testing.assert_allclose(middle[1::3, 1::3], coarse, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(fine[4::9, 4::9], coarse, rtol=0, atol=1e-12)
+    grid = Grid((63, 63), lengths, periodic)
+    slid = surface.sample(grid, (5 * grid.spacings[0], -9 * grid.spacings[1]))
+    np.testing.assert_allclose(slid[:-5, 9:], coarse[5:, :-9], rtol=0, atol=1e-12)
+    if periodic:
+        again = surface.sample(grid, (3 * lengths[0], -lengths[1]))
+        np.testing.assert_allclose(again, coarse, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("lay", [0.0, 0.3, math.pi / 2])
+def test_equal_lengths_are_the_isotropic_surface_to_the_last_bit(lay: float) -> None:
+    for periodic in (False, True):
+        grid = Grid((40, 31), (1.0, 0.8), periodic)
+        one = GaussianRoughness(0.5, 0.1, seed=3).sample(grid)
+        np.testing.assert_array_equal(GaussianRoughness(0.5, (0.1, 0.1), seed=3, lay=lay).sample(grid), one)
+
+
+def test_a_lay_of_a_quarter_turn_exchanges_the_lengths() -> None:
+    grid = Grid((40, 31), (1.0, 0.8))
+    for turn in (math.pi / 2, -math.pi / 2, math.pi):
+        lengths = (0.3, 0.1) if turn == math.pi else (0.1, 0.3)
+        turned = GaussianRoughness(1.0, (0.3, 0.1), 3, lay=turn).sample(grid)
+        np.testing.assert_allclose(
+            turned, GaussianRoughness(1.0, lengths, 3).sample(grid), rtol=0, atol=1e-12
+        )
+
+
+@pytest.mark.parametrize(("lengths", "lay"), SETTINGS)
+def test_slopes_are_the_curvature_of_equation_9(lengths: tuple[float, float], lay: float) -> None:
+    surface, step = GaussianRoughness(3.0, lengths, seed=1, lay=lay), 1e-4
+    far = [np.array([step, 0.0]), np.array([0.0, step])]
+    drop = [2 * (9.0 - float(surface.autocorrelation(x[:1], x[1:])[0])) / step**2 for x in far]
+    assert surface.rms_slope == pytest.approx(math.sqrt(drop[0]), rel=1e-6)
+    assert surface.rms_gradient == pytest.approx(math.sqrt(sum(drop)), rel=1e-6)
+
+
+def test_levels_of_the_autocorrelation() -> None:
+    """Lengths at another level than 0.1 are those of the same Eq. (9)."""
+    grid = Grid((40, 31), (1.0, 0.8))
+    paper = GaussianRoughness(1.0, 0.1, 3)
+    for level, factor in ((0.2, 0.836), (1 / math.e, 0.659)):
+        length = 0.1 * math.sqrt(math.log(1 / level) / math.log(10))
+        assert length == pytest.approx(0.1 * factor, rel=5e-4)
+        same = GaussianRoughness(1.0, length, 3, acf_level=level)
+        np.testing.assert_allclose(same.sample(grid), paper.sample(grid), rtol=0, atol=1e-12)
+        assert same.rms_slope == pytest.approx(paper.rms_slope, rel=1e-14)
+    pair = GaussianRoughness(1.0, (0.2, 0.1), 3, acf_level=0.5).ellipse
+    assert pair.along / pair.across == pytest.approx(2.0)
+    assert pair.across == pytest.approx(0.1 * math.sqrt(math.log(10) / math.log(2)))
+
+
+def test_both_lengths_are_said() -> None:
+    said = GaussianRoughness(1.0, (0.3, 0.1), 3, lay=math.pi / 6, acf_level=0.2).describe(
+        Grid.square(1.0, 64)
+    )
+    lengths = "correlation lengths 0.3 m along and 0.1 m across (autocorrelation 0.2), lay 30 degrees"
+    assert said == (f"Gaussian roughness of seed 3: rms 1 m in the ensemble, {lengths}",)
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"correlation_length": (1.0,)}, "correlation_length"),
+        ({"correlation_length": (1.0, -1.0)}, "correlation_length"),
+        ({"correlation_length": ("a", 1.0)}, "correlation_length"),
+        ({"correlation_length": (1.0, math.nan)}, "correlation_length"),
+        ({"acf_level": 0.0}, "acf_level"),
+        ({"acf_level": 1.0}, "acf_level"),
+        ({"acf_level": math.nan}, "acf_level"),
+        ({"acf_level": "a"}, "acf_level"),
+        ({"lay": math.inf}, "lay"),
+        ({"seed": 2**63}, "seed"),
+    ],
+)
+def test_bad_parameters_are_refused(changes: dict[str, Any], field: str) -> None:
+    with pytest.raises(InputError, match=field):
+        GaussianRoughness(**{"rms": 1.0, "correlation_length": 1.0, "seed": 2**63 - 1} | changes)

@@ -211,16 +211,3 @@ def test_fits_of_a_lay_and_of_self_affine_maps_are_surfaces_too() -> None:
 def test_fits_that_cannot_be(kind: str, z: np.ndarray) -> None:
     with pytest.raises(rf.InputError, match="fit"):
         fit_roughness(z, PIXEL, kind)
-
-
-def test_the_spectrum_has_its_slope_between_2_pi_correlation_lengths_and_four_pixels(tmp_path: Path) -> None:
-    z = _drawn(SHAPE, PIXEL, _self_affine_psd(FRACTAL), 1e-6, np.random.default_rng(8))
-    np.save(tmp_path / "map.npy", z)
-    found = rf.inspect(tmp_path / "map.npy", unit="m", pixel_size=PIXEL, level="mean")
-    q, C = found.spectrum.q, found.spectrum.C
-    longest = 2 * math.pi * found.parameters["le_across"]
-    used = (q > 2 * math.pi / longest) & (q < 2 * math.pi / 6e-6)  # pixels of 1 and 1.5 um
-    expected = np.polyfit(np.log(q[used]), np.log(C[used]), 1, w=q[used] ** -0.5)[0]
-    assert found.parameters["psd_slope"] == pytest.approx(expected, rel=1e-9)
-    shorter = q > 2 * math.pi * 2 * math.pi / longest
-    assert 0 < np.count_nonzero(used & ~shorter) < np.count_nonzero(used)

@@ -12,7 +12,7 @@ import pytest
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import MeasuredSurface
-from refimpl.surfaces.detrending import Curved, fit_form
+from refimpl.surfaces.detrending import fit_form
 from refimpl.surfaces.preparation import gaussian_filter, prepare
 from refimpl.surfaces.reading import Reading
 from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd
@@ -120,13 +120,6 @@ def test_a_rough_border_goes_on_at_the_other_end_of_a_map_that_repeats() -> None
     assert np.isnan(found[[0, 20], 12]).tolist() == [False, True]
 
 
-def test_an_edge_is_no_outlier() -> None:
-    z = np.where(np.arange(40)[:, None] > 20, 1e-6, 0.0) + 1e-9 * np.random.default_rng(0).normal(
-        size=(40, 30)
-    )
-    assert np.isfinite(prepare(reading_of(z), outliers=6).heights).all()
-
-
 # --- filters ---
 
 
@@ -182,16 +175,6 @@ def test_a_scene_takes_the_filtered_map(tmp_path: Path) -> None:
     assert all(word in told for word in ("outliers", "below 6e-06", "above 4e-05"))
     table = surface.to_dict()
     assert (table["low_pass"], table["high_pass"], table["outliers"]) == (6e-6, 40e-6, 9)
-
-
-@pytest.mark.parametrize("axis", [None, 0.0, 0.6, -1.9])
-def test_slopes_of_a_curved_fit_are_those_of_its_values(axis: float | None) -> None:
-    """Per pixel at the centre, by central differences; pixels twice as long along y."""
-    curved = Curved((3e-6, 0.02, -0.05, -40.0), axis, (3.0, 4.0), (1e-6, 2e-6))
-    ends = np.array([-0.5, 0.5])
-    along_x = np.diff(curved(3.0 + ends, np.array([4.0]))[:, 0])
-    along_y = np.diff(curved(np.array([3.0]), 4.0 + ends)[0])
-    assert curved.slopes == pytest.approx((along_x[0], along_y[0]), rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from refimpl.surfaces import (
     as_surface,
     surface_from_dict,
 )
-from refimpl.surfaces.bicubic import resample, resample_periodic
+from refimpl.surfaces.bicubic import resample_periodic
 
 GRID = Grid.square(2e-3, 16)
 EPS = np.finfo(float).eps
@@ -105,16 +105,6 @@ def resampled_quietly(array: np.ndarray, grid: Grid, pixel: tuple[float, float] 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SurfaceWarning)
         return ArraySurface(array, pixel).heights(grid)
-
-
-def test_the_end_piece_goes_on() -> None:
-    # one cubic is one piece: as exact half a point outside as far outside
-    cubic = np.arange(6.0)[:, None] ** 3 + np.arange(5.0) ** 2
-    x, y = np.array([-0.5, 2.5, 5.5]), np.array([-0.5, 4.5])
-    np.testing.assert_allclose(resample(cubic, x, y), x[:, None] ** 3 + y**2, rtol=0, atol=1e-12)
-    for x, y in ((np.array([-40.0]), np.array([-33.0, -30.0])), (np.array([45.0]), np.array([37.0]))):
-        # over six points an extrapolation by forty amplifies rounding by 40^3
-        np.testing.assert_allclose(resample(cubic, x, y), x[:, None] ** 3 + y**2, rtol=40**3 * 8 * EPS)
 
 
 def test_periodic_resampling_wraps_and_keeps_the_data() -> None:
@@ -206,6 +196,9 @@ def test_bad_radii_are_refused(radius: object) -> None:
         Sphere(radius)  # type: ignore[arg-type]  # the point of the test
 
 
+SELF_AFFINE = {
+    "kind": "self_affine", "hurst": 0.8, "roll_off": 2e-4, "long_cut": 5e-4, "short_cut": 2e-5, "seed": 1
+}  # fmt: skip
 SURFACES: list[Surface] = [
     Flat(),
     Sphere(-0.2),
@@ -271,6 +264,11 @@ def test_relative_paths_start_at_the_folder() -> None:
             {"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": 1, "normalise": 1},
             "normalise",
         ),
+        (SELF_AFFINE | {"colour": 1}, "surface.colour"),
+        (SELF_AFFINE | {"given": "rms"}, "surface.given"),
+        (SELF_AFFINE | {"rms": 1e-6, "rms_gradient": 0.1}, "surface.rms, rms_gradient = 'both'"),
+        (SELF_AFFINE, "surface.rms, rms_gradient = 'neither'"),
+        (SELF_AFFINE | {"rms": 1e-6, "hurst": 1.5}, "surface.hurst = 1.5"),
         ({"kind": "sum", "terms": []}, "surface.terms"),
         ({"kind": "sum", "parts": []}, "surface.parts"),
         ("sphere", "surface = 'sphere'"),
