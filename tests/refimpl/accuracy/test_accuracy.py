@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.iteration_error import iteration_parts, merged
+from refimpl.accuracy.iteration_error import iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.solution.cost import total_cost
 from refimpl.solution.solution import REPORTED
@@ -24,13 +24,7 @@ STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 
 def sliding_ball(rms: float, seed: int, load: float = 70.0) -> rf.Scene:
     rough = rf.GaussianRoughness(rms=rms, correlation_length=200e-6, seed=seed)
-    return rf.Scene(
-        upper=rf.Body(STEEL, rf.Sphere(radius=0.14)),
-        lower=rf.Body(COPPER, rough),
-        friction=rf.Friction(tau=15e6, beta=0.08),
-        load=load,
-        side=1.61e-3,
-    )
+    return replace(rf.read_scene("table1-smooth"), lower=rf.Body(COPPER, rough), load=load)
 
 
 HERTZ = rf.read_scene("hertz")
@@ -147,11 +141,6 @@ def test_a_sum_over_slopes_that_cancels_is_no_better_known_than_its_terms() -> N
     for name in ("friction_coefficient", "friction_force"):
         missed = abs(getattr(loose, name) - getattr(tight, name))
         assert 0.01 * abs(getattr(loose, name)) < missed < loose.uncertainty[name]["iteration"]
-
-
-def test_parts_are_merged_by_number_and_name() -> None:
-    first, second = {"A": {"x": 1.0, "y": 2.0}}, {"A": {"y": 3.0}, "B": {"x": 4.0}}
-    assert merged(first, second) == {"A": {"x": 1.0, "y": 3.0}, "B": {"x": 4.0}}
 
 
 def test_slopes_do_not_make_elements_outside_contact_marginal() -> None:

@@ -20,7 +20,6 @@ from refimpl.model.forces import EDGE_SHARE
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.scene.discretise import discretise
-from verification.coverage.scenes import random_scene
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 BALL = rf.Scene(
@@ -167,11 +166,3 @@ def test_slope_sampling_error_is_what_elements_one_by_one_add_up_to(
     )
     found = sampling_error(pressure, Slopes(*tans), periodic=periodic)
     assert found == pytest.approx(math.sqrt(squares / 12) / pressure.sum())
-
-
-def test_a_grids_result_keeps_what_the_solution_states_beside_its_discretisation() -> None:
-    found = rf.solve(random_scene(2047).scene, 64)
-    assert found.status is rf.Status.CYCLED
-    kept = found.features.parts["friction_coefficient"]
-    assert set(kept) == {"iteration", "active set"}
-    assert kept["active set"] == found.uncertainty["friction_coefficient"]["active set"]

@@ -161,13 +161,6 @@ def test_a_parabola_of_waves_has_no_bias() -> None:
     assert found.half_width == pytest.approx(unbiased.half_width)
 
 
-def test_a_parabola_of_unforeseen_bias_is_learnt_from_the_grids() -> None:
-    size = PEAK_BIAS + 3 * PEAK_BIAS_SPREAD
-    grids = [peaked(M, 1 + size * (16 / M) ** 2, (16 / M) ** 2) for M in (32, 64, 128, 256)]
-    assumed = grids[-1].peak.height - PEAK_BIAS * grids[-1].peak.curvature_drop
-    assert abs(estimates(grids)["max_pressure"].value - 1) < abs(assumed - 1)
-
-
 @pytest.mark.parametrize(
     ("non_parabolicity", "more"), [(0.0, 1.0), (0.5, (4 / 3) ** 4), (0.9, 0.19**-4), (1.0, math.inf)]
 )

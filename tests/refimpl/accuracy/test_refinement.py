@@ -51,21 +51,6 @@ def test_a_peaks_bar_is_predicted_to_fall_as_the_square(accuracy: float) -> None
     assert estimates(opened)["max_pressure"].orders == (2.0, 2.0)
 
 
-@pytest.mark.parametrize(("falls", "expected"), [(4.0, 480), (2.0, 480), (2**0.5, 896), (1.0, 2048)])
-def test_it_is_predicted_to_fall_as_on_the_last_two_grids_but_no_faster(falls: float, expected: int) -> None:
-    """From 3 % of the peak on 256 elements a side to 1.63 %; if it did not, as far as may be predicted."""
-
-    def refined(coarse: float) -> list[GridFeatures]:
-        parts = [{"max_pressure": {"active set": part * PEAK}} for part in (0.0, 0.0, coarse, 0.03)]
-        several = zip((*FIRST_GRIDS, 128, 256), parts, strict=True)
-        return [replace(made_up(M), parts=own) for M, own in several]
-
-    sizes = [32 * k for k in range(9, 65)]
-    assert next_grid(refined(0.03 * falls), 0.0163 / 0.95, "max_pressure", sizes) == expected
-    assert next_grid(refined(0.0), 0.0163 / 0.95, "max_pressure", sizes) == 480
-    assert next_grid(refined(0.01), 0.0305 / 0.95, "max_pressure", sizes) == sizes[0]  # nor is it to grow
-
-
 def test_a_zero_that_is_exact_has_no_bar() -> None:
     opened = [made_up(M) for M in FIRST_GRIDS]
     assert relative_bound(opened, "binormal_force") == 0.0

@@ -12,13 +12,7 @@ import refimpl as rf
 from refimpl.solvers.production import constants
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
-SMOOTH = rf.Scene(
-    upper=rf.Body(STEEL, rf.Sphere(0.14)),
-    lower=rf.Body(COPPER, rf.Flat()),
-    friction=rf.Friction(15e6, 0.08),
-    load=70.0,
-    side=1.61e-3,
-)
+SMOOTH = rf.read_scene("table1-smooth")
 METHODS = pytest.mark.parametrize("method", ["dense", "fft"])
 
 

@@ -10,9 +10,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.identification import Row, identify
-from refimpl.identification.ensemble import draws, mean_response, scatter, working_variances
+from refimpl.identification.ensemble import mean_response, scatter, working_variances
 from refimpl.identification.fit import linear_fit, profile_of, shares
-from refimpl.identification.forward import Forward, Response
+from refimpl.identification.forward import Response
 from refimpl.identification.varying_profile import VaryingProfile
 from refimpl.scene.scene_file import read_scene
 
@@ -81,14 +81,6 @@ def test_an_end_judged_by_its_own_scatter() -> None:
         profile = VaryingProfile(np.ones(2), 1e-8 * np.eye(2), estimated, 1e9, np.ones(2))
         low = 1 / (1 + 1.959964 * s)
         assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((low, high), rel=1e-4)
-
-
-def test_tolerances_of_an_ensemble_are_means_over_its_draws() -> None:
-    scene = read_scene("table1-rough")
-    forward, theta, name = Forward(32), np.array([15e6, 0.08]), "lower.surface[0].rms"
-    drawn = draws(forward, scene, theta, 3, {name: 0.3})
-    assert len({one.inputs[name] for one in drawn}) == 3
-    assert mean_response(drawn).inputs[name] == pytest.approx(np.mean([one.inputs[name] for one in drawn]))
 
 
 def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws() -> None:

@@ -78,22 +78,6 @@ def test_tables_of_square_elements():
     assert (tangential_table(40, 30, 0.1)[1:] > 0).all()
 
 
-@pytest.mark.parametrize("order", [2, 5, 9])
-@pytest.mark.parametrize("q", [6.0, 20.0, 1e4])
-def test_the_bound_is_the_series_it_sums(order, q):
-    """Even Chebyshev coefficients from 2n on, each at most ``2 max|f| rho^-k``, missed by ``32/15``."""
-    kappa = order / (order + 1)
-    rho = kappa * q + np.sqrt(kappa * q - 1) * np.sqrt(kappa * q + 1)
-    largest, least = (1 + kappa) / (1 - kappa) ** 2, (1 - 1 / q) / (1 + 1 / q) ** 2
-    series = sum(2 * largest * rho ** -(2.0 * (order + k)) * 32 / 15 for k in range(40))
-    assert relative_error_bound(order, q) == pytest.approx(series / (2 * least), rel=1e-12)
-
-
-def test_no_bound_where_the_ellipse_shrinks_to_the_segment():
-    assert relative_error_bound(2, 1.5) == np.inf
-    assert relative_error_bound(2, 1.6) < np.inf
-
-
 @pytest.mark.parametrize("order", [order for order in ORDERS if reach(order) > NEAR])
 def test_reach_is_where_the_bound_meets_the_truncation(order):
     assert relative_error_bound(order, reach(order)) <= TRUNCATION

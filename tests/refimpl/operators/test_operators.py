@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Array, Grid, Window
-from refimpl.kernels import normal_integral, tangential_integral
+from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
 from refimpl.operators.influence import whole_grid_influence, window_influence
+from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.periodic import PeriodicInfluence
 from verification.exact.dense_influence import DenseInfluence
 
@@ -209,30 +210,40 @@ def test_counter_counts():
     assert counter.point_logs == 3 * 64 * 6 + 2 * 8 * 3 + 16 * 4
 
 
-@pytest.mark.parametrize(
-    ("M", "source", "target", "points", "normal", "shear"),
-    [
-        # -8 to 8 on 18, and -3 to 8: 12 hold them, 16 hold 8 as well, a third more points, which is worth it
-        (9, Window(0, 9, 0, 4), Window.full((9, 9)), 18 * 16, 8, 2),
-        # the same with -7 to 3, from a target that does not begin at 0: what is odd has nothing opposite 0
-        (9, Window(5, 9, 0, 9), Window(1, 9, 0, 9), 18 * 16, 8, 4),
-        # -9 to 9 on 20, and -6 to 9: 16 hold them, 18 hold 9 as well, an eighth more
-        (10, Window(0, 10, 0, 7), Window.full((10, 10)), 20 * 18, 8, 2),
-        # -9 to 9 on 20, and -2 to 9: 12 hold them, 18 would be a half more
-        (10, Window(0, 10, 0, 3), Window.full((10, 10)), 20 * 12, 2, 2),
-    ],
-)
-def test_a_little_more_padding_for_an_even_kernel(M, source, target, points, normal, shear):
-    counter = Counter()
-    operator = FFTInfluence(Grid.square(1.0, M), 0.3, source=source, target=target, counter=counter)
-    field = np.random.default_rng(5).random(source.shape)
-    found = operator.normal(field), operator.shear(field)
-    assert counter.point_logs == pytest.approx(
-        2 * points * math.log2(points)
-        + points // normal * math.log2(points // normal)
-        + points // shear * math.log2(points // shear),
-        rel=1e-15,
-    )
-    dense, whole = DenseInfluence(Grid.square(1.0, M), 0.3), source.spread(field, (M, M))
-    for one, other in zip(found, (dense.normal(whole), dense.shear(whole)), strict=True):
-        np.testing.assert_allclose(one, other[target.slices], atol=1e-14 * np.abs(other).max())
+INTEGRALS = {"normal": normal_integral, "tangential": tangential_integral}
+ACCURACY = 1e-13
+"""Relative, of either value: what `refimpl.kernels` promises."""
+
+of_integrals = pytest.mark.parametrize("kind", INTEGRALS)
+
+
+@of_integrals
+@pytest.mark.parametrize("aspect", [1.0, 0.1, 1.7])
+@pytest.mark.parametrize("shape", [(1, 1), (90, 70), (3, 150), (150, 3)])
+def test_values_are_the_integrals_at_random_offsets(kind: str, aspect: float, shape: tuple[int, int]) -> None:
+    random = np.random.default_rng(6)
+    i, j = (random.integers(0, n, 200) for n in shape)
+    found = unit_table(kind, shape, aspect)
+    assert found.shape == shape
+    exact = INTEGRALS[kind](i.astype(float), aspect * j, 1.0, aspect)
+    np.testing.assert_allclose(found[i, j], exact, rtol=2 * ACCURACY)
+
+
+@of_integrals
+@pytest.mark.parametrize("aspect", [1.0, 0.37])
+def test_signed_offsets_have_the_kernels_parity(kind: str, aspect: float) -> None:
+    rows, columns = np.array([-2, -1, 0, 1, 2, 9]), np.array([0, 1, -3])
+    found = signed_table(kind, rows, columns, aspect)
+    exact = INTEGRALS[kind](rows[:, None].astype(float), aspect * columns, 1.0, aspect)
+    np.testing.assert_allclose(found, exact, rtol=2 * ACCURACY)
+    sign = -1 if kind == "tangential" else 1
+    assert np.array_equal(found[:2], sign * found[[4, 3]])
+
+
+@of_integrals
+@pytest.mark.parametrize("aspect", [1.0, 0.53, 2.9])
+def test_a_table_grows_without_a_change_of_any_bit(kind: str, aspect: float) -> None:
+    """Whatever shapes were asked for before, also where one axis grows and the other does not."""
+    table = normal_table if kind == "normal" else tangential_table
+    for shape in ((5, 5), (9, 40), (30, 30), (12, 90), (70, 60), (2, 3), (200, 9)):
+        assert np.array_equal(unit_table(kind, shape, aspect), table(*shape, 1.0, aspect))

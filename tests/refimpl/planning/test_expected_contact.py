@@ -131,17 +131,6 @@ def test_the_fewest_of_the_lowest_elements_that_carry_the_load_touch(grid: Grid,
         assert (found.elements == grid.elements) == (share > 1 or found.elements == grid.elements)
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_of_equally_low_elements_the_first_in_the_grids_order_touch(seed: int) -> None:
-    """Slopes of a rough mean surface tell which elements are in contact."""
-    random = np.random.default_rng(seed)
-    shape = (int(random.integers(3, 8)), int(random.integers(3, 8)))
-    gap = random.integers(0, 4, shape) * 1e-6
-    problem = posed(Grid(shape, (1e-3, 1e-3)), gap, mean_surface=random.normal(0, 1e-6, shape))
-    load = random.uniform(0.05, 1.0) * carried_in_order(problem)[1][-1]
-    assert_described(replace(problem, load=float(load)))
-
-
 def test_without_any_slope_all_elements_share_the_load() -> None:
     level = posed(BALL.grid(3), np.zeros((3, 3)))
     assert expected_contact(level).elements == 9

@@ -18,13 +18,7 @@ from refimpl.scene.discretise import discretise
 from refimpl.solution.solution import REPORTED
 
 STEEL, COPPER, RUBBER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(10e6, 0.5)
-SMOOTH = rf.Scene(
-    upper=rf.Body(STEEL, rf.Sphere(0.14)),
-    lower=rf.Body(COPPER, rf.Flat()),
-    friction=rf.Friction(15e6, 0.08),
-    load=70.0,
-    side=1.61e-3,
-)
+SMOOTH = rf.read_scene("table1-smooth")
 ROUGH = replace(SMOOTH, lower=rf.Body(COPPER, rf.GaussianRoughness(0.5e-6, 104e-6, seed=2)))
 INCOMPRESSIBLE = replace(
     SMOOTH, upper=rf.Body(RUBBER, rf.Sphere(0.14)), lower=rf.Body(rf.Material(1e6, 0.5), rf.Flat()), load=1e-3

@@ -11,7 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array, Grid
 from refimpl.model.problem import Terms
-from refimpl.scene.discretise import Discretiser, discretise
+from refimpl.scene.discretise import discretise
 
 SCENE = rf.read_scene("table1-smooth")
 FLAT = Terms(coupled=False, oblique=False, tilted=False)
@@ -53,19 +53,6 @@ def test_a_refinement_samples_each_grid_once_and_the_one_that_decides() -> None:
     rf.solve(scene, accuracy=0.03)
     assert sampled[0] == 256
     assert len(set(sampled)) == len(sampled)
-
-
-@pytest.mark.parametrize("grid", [SCENE.grid(24), RECTANGLE, replace(RECTANGLE, periodic=True)], ids=str)
-def test_a_discretisers_problem_is_that_of_discretise_and_is_not_kept(grid: Grid) -> None:
-    discretiser, expected = Discretiser(SCENE, None), discretise(SCENE, grid, FLAT)
-    whole = discretiser.with_all_terms(grid)
-    assert whole.terms == Terms()
-    for problem in (discretiser.problem(grid, FLAT), discretiser.problem(grid, FLAT)):
-        assert (problem.grid, problem.terms, problem.datum) == (grid, FLAT, expected.datum)
-        assert problem.elasticity == expected.elasticity
-        assert np.array_equal(problem.gap, expected.gap)
-        assert np.array_equal(problem.mean_surface, expected.mean_surface)
-    assert discretiser.problem(grid, FLAT).gap is not whole.gap
 
 
 def test_heights_of_a_scene_are_its_own() -> None:

@@ -16,13 +16,7 @@ import refimpl as rf
 from refimpl.planning import plan
 
 STEEL = rf.Material(200e9, 0.3)
-SCENE = rf.Scene(
-    upper=rf.Body(STEEL, rf.Sphere(0.14)),
-    lower=rf.Body(rf.Material(118e9, 0.3), rf.Flat()),
-    friction=rf.Friction(15e6, 0.08),
-    load=70.0,
-    side=1.61e-3,
-)
+SCENE = rf.read_scene("table1-smooth")
 TOML = rf.scene_to_toml(SCENE)
 METRES_OF_ROUGHNESS = np.random.default_rng(1).normal(0, 0.5, (8, 8))
 

@@ -20,7 +20,6 @@ from refimpl.scene.discretise import discretise
 from refimpl.sensitivities import half_space
 from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error
 from refimpl.sensitivities.surface_verdict import (
-    _evidence,
     pressed_on_a_flat,
     surface_verdict,
 )
@@ -85,16 +84,6 @@ def test_bodies_beyond_the_table_and_without_error(
     upper, lower = (inclined(angle, 0.7) for angle in degrees)
     problem = discretise(scene(upper, lower, of_upper=bodies[0], of_lower=bodies[1]), rf.Grid(ELEMENTS, SIZE))
     assert local_error(problem) == pytest.approx(np.full(ELEMENTS, expected))
-
-
-def test_between_the_nodes_of_the_table_the_error_is_almost_linear() -> None:
-    """Half a degree apart: at 10.2 degrees, by two fifths of the half degree's difference."""
-    at = {}
-    for degrees in (10.0, 10.2, 10.5):
-        flat = scene(rf.Flat(), inclined(degrees, 0.7))
-        (at[degrees],) = set(np.round(local_error(discretise(flat, rf.Grid(ELEMENTS, SIZE))).ravel(), 12))
-    assert 0 < at[10.0] < at[10.2] < at[10.5]
-    assert at[10.2] - at[10.0] == pytest.approx(0.4 * (at[10.5] - at[10.0]), rel=1e-6)
 
 
 def rough() -> rf.Scene:
@@ -278,13 +267,3 @@ def test_a_gentle_surface_keeps_the_half_space() -> None:
     assert verdict.share_above == 0.0
     assert verdict.advice.startswith("keep the half-space")
     assert "finer grid" not in verdict.evidence
-
-
-@pytest.mark.parametrize(("short", "said"), [(0.09, False), (0.15, True)])
-def test_the_evidence_names_short_waves_from_a_tenth_of_the_mean_square_slope_on(
-    short: float, said: bool
-) -> None:
-    upper, lower = rf.Body(RIGID, rf.Sphere(5.0)), rf.Body(COPPER, rf.Flat())
-    found = _evidence(rf.solve(rf.Scene(upper, lower, rf.Friction(), load=1e4, side=1.0), 16), short)
-    assert "rests on 56 plane contacts and 6 pairs" in found
-    assert ("15% of the mean square slope is at wavelengths below ten elements" in found) is said

@@ -142,17 +142,6 @@ def test_bounds_of_a_state_with_a_hardness_are_sharp(tau: float) -> None:
         assert true <= bounds.energy <= 5 * true  # measured 1.06 to 2.96
 
 
-def test_surfaces_apart_leave_the_rounding_of_their_distance() -> None:
-    """Half a metre on each of nine elements."""
-    nothing = np.zeros((3, 3))
-    problem = posed(nothing, approach=-0.5)
-    bounds = proven_bounds(problem, nothing, nothing, Slopes.flat((3, 3)))
-    noise, floor = 4 * np.finfo(float).eps * 0.5 * 3, EnergyNorm(problem, np.ones((3, 3))).floor
-    expected = noise**2 / floor * problem.grid.element_area
-    assert bounds.energy == pytest.approx(expected, rel=1e-12, abs=0)
-    assert bounds.out_of_contact.all()
-
-
 @pytest.mark.parametrize(("apart", "sure"), [(10, False), (45, False), (100, True)])
 def test_surfaces_closer_than_rounding_are_not_surely_apart(apart: int, sure: bool) -> None:
     """A metre of gap against an approach of a metre, but for so many last digits."""

@@ -30,12 +30,8 @@ STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
 HARD_STEEL = rf.Material(200e9, 0.30, hardness=7e9)
 SOFT_COPPER = rf.Material(118e9, 0.30, hardness=800e6)
 BALL = rf.Sphere(0.14)
-SMOOTH = rf.Scene(
-    upper=rf.Body(HARD_STEEL, BALL),
-    lower=rf.Body(SOFT_COPPER, rf.Flat()),
-    friction=rf.Friction(15e6, 0.08),
-    load=70.0,
-    side=1.61e-3,
+SMOOTH = replace(
+    rf.read_scene("table1-smooth"), upper=rf.Body(HARD_STEEL, BALL), lower=rf.Body(SOFT_COPPER, rf.Flat())
 )
 
 

@@ -32,14 +32,6 @@ def quietly(surface: GaussianRoughness, grid: Grid, offset: tuple[float, float] 
         return surface.heights(grid, offset)
 
 
-@pytest.mark.parametrize("per_length", [4.0, 6.0, 0.7])
-def test_covariance_is_equation_9_wherever_the_points_lie(per_length: float) -> None:
-    x = np.arange(0.0, 4.0, 1.0 / per_length) + 0.013
-    _, smooth = unit(length=1.0).smoothing(x)
-    exact = np.exp(-2.3 * (x[:, None] - x[None, :]) ** 2)
-    np.testing.assert_allclose((smooth @ smooth.T).toarray(), exact, rtol=0, atol=3e-15)
-
-
 def test_equation_9_falls_to_a_tenth_at_its_length_and_bends_by_the_rms_slope() -> None:
     surface = GaussianRoughness(3.0, 2.0, seed=1)
     # in units of l = 2: exp(-2.3 (r / l)^2) by powers of exp(-2.3) = 0.100259

@@ -14,7 +14,6 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import MeasuredSurface, SurfaceWarning
 from refimpl.surfaces.areal_parameters import Spectrum
-from refimpl.surfaces.crop import Crop
 from refimpl.surfaces.detrending import DEGREES, fit
 from refimpl.surfaces.missing_points import MAX_ELIMINATED, fill
 from refimpl.surfaces.readers import read
@@ -104,17 +103,6 @@ def test_finer_than_measured_warns(tmp_path: Path) -> None:
             surface.heights(Grid.square(M * DY, M))  # the pixel itself, up to rounding
 
 
-def test_points_on_the_windows_edge_lie_in_it(tmp_path: Path) -> None:
-    np.save(tmp_path / "a.npy", np.zeros((9, 9)))
-    surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0)
-    for side, count in ((9.0, 9), (8.0, 9), (7.9, 7), (6.0, 7)):  # an edge runs half a side from the middle
-        window = Crop(surface.reading, (side, side))
-        assert [s.stop - s.start for s in window.points] == [count, count]
-    window = Crop(surface.reading, (7.9, 6.0), (-0.4, 1.0))
-    assert window.points == (slice(0, 8), slice(2, 9))
-    assert window.size == 56
-
-
 # --- gaps ---
 
 
@@ -199,20 +187,6 @@ def test_level_is_fitted_in_the_window_only(tmp_path: Path, grid: Grid) -> None:
     assert abs(slope_y) < 1e-12
     assert level.endswith("m after")
     assert float(level.split()[-3]) < 1e-20
-
-
-def test_a_forms_slopes_are_those_at_its_middle() -> None:
-    # z = x^2 + 5 x y - 3 y about the middle (2, 7): dz/dx = 2 * 2 + 5 * 7 = 39, dz/dy = 5 * 2 - 3 = 7
-    x, y = np.arange(0.0, 5.0), np.arange(4.0, 11.0)
-    z = x[:, None] ** 2 + 5 * x[:, None] * y - 3 * y
-    form = fit(x, y, z, 2)
-    assert form.slopes == pytest.approx((39.0, 7.0), rel=1e-12)
-    for axis, at in enumerate((x, y)):  # the form's own coordinates run from -1 to 1 over the points
-        ends = (at[[0, -1]] - form.centre[axis]) / form.scale[axis]
-        np.testing.assert_allclose(ends, [-1.0, 1.0], rtol=0, atol=1e-15)
-    assert fit(x, y, 39 * x[:, None] + 7 * y, 1).slopes == pytest.approx((39.0, 7.0), rel=1e-12)
-    for degree in (-1, 0):
-        assert fit(x, y, z, degree).slopes == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("level", list(DEGREES))

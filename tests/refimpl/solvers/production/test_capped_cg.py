@@ -72,26 +72,6 @@ def test_pressures_are_filled_up_to_the_load_and_no_farther_than_the_cap() -> No
     assert not math.isinf(full.max())
 
 
-@pytest.mark.parametrize(
-    ("before", "change", "longest"),
-    [([2.0, 3.0], [1.0, 0.25], 2.0), ([2.0, 1.0], [-0.5, 0.5], 4.0), ([2.0, 1.0], [0.5, -0.1], 4.0)],
-)
-def test_a_step_ends_at_the_nearer_bound(before: list[float], change: list[float], longest: float) -> None:
-    """The cap is 4: 2 to 4 by ones; 2 to 0 by halves; 2 to 4 by halves, before 1 is 0 by tenths."""
-    cg = capped_cg([1.0, 1.0], [0.0, 0.0], approach=1.0)
-    assert cg._longest_step(np.array(before), np.array(change)) == longest
-    assert cg._within_bounds(np.array([0.0, 4.0]))
-    assert not cg._within_bounds(np.array([1.0, 4.1]))
-    assert not cg._within_bounds(np.array([-0.1, 1.0]))
-
-
-def test_load_beyond_the_room_below_the_cap_brings_in_the_next_element() -> None:
-    """3.9 has room for 0.1 of the missing 1; the next, at v = 2, has room for 4: both take 1 / 4.1 of it."""
-    cg = capped_cg([3.9, 0.0, 0.0], [0.0, 2.0, 5.0], approach=None)
-    cg._bear(1.0)
-    np.testing.assert_allclose(cg.pressure, [[3.9 + 0.1 / 4.1, 4 / 4.1, 0.0]], rtol=1e-12)
-
-
 def test_load_that_no_element_can_bear_is_a_residual() -> None:
     """Eight of ten, and both elements as deep as the approach: a fifth is missing, nothing else."""
     cg = capped_cg([4.0, 4.0], [1.0, 1.0], approach=None)
@@ -99,28 +79,3 @@ def test_load_that_no_element_can_bear_is_a_residual() -> None:
     gap, penetration = cg.residuals()
     assert gap == pytest.approx(0.2, rel=1e-12)
     assert penetration == 0.0
-
-
-def test_at_an_approach_the_mean_of_the_free_elements_is_a_residual_as_well() -> None:
-    """At d = 3 v = 2.5 at the cap, and 3.2 and 2.9 on free pressures of 1 and 2: their mean is d. With 3.2 on
-    both it is 0.2 more: the work is that times all pressure."""
-    balanced = capped_cg([4.0, 1.0, 2.0], [-1.5, 2.2, 0.9], approach=3.0)
-    assert balanced.residuals()[0] == pytest.approx((0.2 + 2 * 0.1) / 10.5, rel=1e-12)
-    off = capped_cg([4.0, 1.0, 2.0], [-1.5, 2.2, 1.2], approach=3.0)
-    assert off.residuals()[0] == pytest.approx(0.2 * 7 / 10.5, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("approach", "gap", "pressure"),
-    [(None, [0.0, 2.0, 3.0], [4.0, 28 / 11, 16 / 11]), (5.0, [0.5, 3.0, 4.5], [4.0, 2.0, 0.5])],
-)
-def test_an_exact_step_ends_at_the_cap(
-    approach: float | None, gap: list[float], pressure: list[float]
-) -> None:
-    """d - h is beyond it: under 8, d = 13/3; at the cap of 4 the others bear 4, 12/11 of 7/3 and 4/3."""
-    cg = capped_cg([8 / 3] * 3, gap, approach=approach)
-    cg._trusted = False  # no trial
-    cg.iterate()
-    np.testing.assert_allclose(cg.pressure, [pressure], rtol=1e-12)
-    np.testing.assert_allclose(cg.normal_displacement, [pressure], rtol=1e-12)
-    assert cg.capped.tolist() == [[True, False, False]]

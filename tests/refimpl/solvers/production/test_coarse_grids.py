@@ -14,13 +14,10 @@ from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.coarse_grids import (
     coarsened,
-    likely_capped,
-    likely_contact,
     nested_problems,
     sharpened,
     winkler_pressure,
 )
-from tests.refimpl.solvers.production.levels import BALL, problem_of
 
 SIDE = 2.0**-9
 
@@ -118,68 +115,6 @@ def test_it_is_as_deep_as_the_load_requires(load: float) -> None:
     depth = given.gap[winkler_pressure(given) == 0].min()
     assert load <= borne(given, depth)
     assert all(borne(given, shallower) < load for shallower in given.gap[given.gap < depth])
-
-
-def test_at_an_approach_it_is_a_foundation_as_stiff_as_the_domain() -> None:
-    given = problem((16, 16), approach=1e-6)
-    expected = np.maximum(1e-6 - given.gap, 0) / (given.pair.normal_compliance * SIDE)
-    np.testing.assert_allclose(winkler_pressure(given), expected, rtol=1e-15)
-
-
-def test_a_load_that_the_lowest_elements_bear_starts_on_them() -> None:
-    heights = np.zeros((4, 4))
-    heights[1, 2] = heights[3, 0] = 1e-6
-    pressure = winkler_pressure(problem((4, 4), heights=heights))
-    assert np.flatnonzero(pressure).tolist() == [6, 12]
-    assert pressure[1, 2] == pressure[3, 0] == pytest.approx(0.5 * 3.0 / (SIDE / 4) ** 2, rel=1e-14)
-
-
-def test_the_likely_contact_is_that_of_a_damped_jacobi_step() -> None:
-    """Half of the misfit over ``a`` at the grid's highest frequency, 2 compliance spacing."""
-    given = problem((4, 4))
-    stiffness = 1 / (2 * given.pair.normal_compliance * SIDE / 4)
-    approach, pressure = 1e-6, np.full((4, 4), 1e6)
-    limit = approach + 1e6 / (0.5 * stiffness)
-    v = np.full((4, 4), limit * (1 - 1e-9))
-    v[1, 2] = limit * (1 + 1e-9)
-    expected = np.ones((4, 4), dtype=bool)
-    expected[1, 2] = False
-    found, used = likely_contact(pressure, v, approach, given)
-    np.testing.assert_array_equal(found, expected)
-    assert used == approach
-    assert not likely_contact(np.zeros((4, 4)), np.full((4, 4), approach), approach, given)[0].any()
-
-
-def test_the_likely_capped_elements_are_those_that_a_quarter_step_takes_to_the_cap() -> None:
-    """A quarter of the misfit over the compliance of an element, 2 compliance spacing; in contact alone."""
-    hard = replace(BALL, lower=rf.Body(replace(BALL.lower.material, hardness=2e6), rf.Flat()))
-    given = problem_of(hard, 4, plastic=True)
-    stiffness = 0.25 / (2 * given.pair.normal_compliance * hard.side / 4)
-    pressure = np.array([[1.5e6, 1.5e6, 2.1e6, 1.9e6]])
-    misfit = np.array([[0.501e6, 0.499e6, -0.2e6, 0.3e6]]) / stiffness
-    contact = np.array([[True, True, True, False]])
-    found = likely_capped(pressure, misfit, contact, given)
-    np.testing.assert_array_equal(found, [[True, False, False, False]])
-    assert not likely_capped(pressure, misfit, contact, problem_of(BALL, 4)).any()
-
-
-@pytest.mark.parametrize("loaded", [True, False])
-def test_sharpening_by_hand(loaded: bool) -> None:
-    contact = np.array([[True, True], [True, False]])
-    pressure, misfit = np.array([[5.0, 1.0], [3.0, 7.0]]), np.array([[4.0, -10.0], [3.0, 100.0]])
-    corner = np.array([[1.0, 0.0], [0.0, 0.0]])
-    found = sharpened(
-        pressure=pressure,
-        misfit=misfit,
-        contact=contact,
-        precondition=lambda r: 2 * r + r.sum() * corner,
-        loaded=loaded,
-    )
-    mean = -1.0 if loaded else 0.0  # of 4, -10 and 3: the load is kept before elements are cut at zero
-    residual = np.array([[4.0, -10.0], [3.0, 0.0]]) - mean * contact  # of which a loaded sum is zero
-    step = 0.7 * (2 * residual + residual.sum() * corner)
-    np.testing.assert_allclose(found, np.maximum((pressure + step) * contact, 0), rtol=1e-14)
-    assert found[0, 1] == found[1, 1] == 0
 
 
 @pytest.mark.filterwarnings("error")

@@ -37,13 +37,6 @@ def test_lists_up_to_a_share_of_the_window(count: int, shape: tuple[int, int]) -
     assert on.gather(FIELD).shape == on.gather_view(FIELD).shape == shape
 
 
-def test_what_is_kept_is_no_view() -> None:
-    for count in (3, 40):
-        kept = ContactVectors(contact(count)).gather(FIELD)
-        kept[:] = 9.0
-        assert not np.any(FIELD == 9)
-
-
 @pytest.mark.parametrize("name", ["table1-rough", "rough-planes"])
 def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """To rounding: measured 5e-15 of the largest pressure."""

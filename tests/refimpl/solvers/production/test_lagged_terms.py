@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Window
+from refimpl.grid import Array
 from refimpl.model.certificate import certify
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
@@ -25,7 +25,7 @@ from refimpl.solvers.production.lagged_terms import (
     pressure_compliance,
 )
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, FixedSet
+from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, problem_of
 from verification.exact.dense_influence import DenseInfluence
 
@@ -144,28 +144,6 @@ def test_without_pressure_nothing_is_sheared() -> None:
         assert np.isfinite(lagged.slopes.tan_x).all()
 
 
-@pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=1.0), rf.Friction(beta=0.1)])
-@pytest.mark.parametrize("coupled", [False, True])
-@pytest.mark.parametrize("oblique", [False, True])
-@pytest.mark.parametrize("slope_correction", [False, True])
-def test_slopes_and_facet_tractions_lag(
-    friction: rf.Friction, coupled: bool, oblique: bool, slope_correction: bool
-) -> None:
-    """Tau does not on a fixed set; shares of it do, where shear closes the gap."""
-    problem = problem_of(
-        replace(BALL, friction=friction),
-        4,
-        oblique=oblique,
-        coupled=coupled,
-        slope_correction=slope_correction,
-    )
-    lagged = level_solver(problem).lagged
-    shared = friction.tau > 0 and coupled
-    assert lagged.has_lag is (oblique or slope_correction or shared)
-    lagged.active = FixedSet(np.ones((4, 4), dtype=bool))
-    assert lagged.has_lag is (oblique or slope_correction)
-
-
 @pytest.mark.parametrize("tau", [0.0, 1e6])
 @pytest.mark.parametrize(("strength", "lags"), [(0.29, False), (0.31, True)])
 def test_strong_coupling_lags(strength: float, lags: bool, tau: float) -> None:
@@ -219,43 +197,6 @@ def test_how_a_solve_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     stagnating = level_solver(problem_of(coupled(8.0), 16))  # far beyond what materials have
     monkeypatch.setattr(constants, "CG_LIMIT", 10**6)
     assert stagnating.result(1e-8).status is rf.Status.STAGNATED
-
-
-@pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=0.0, beta=0.1), rf.Friction(tau=1.0)])
-def test_without_tau_there_is_one_solve(friction: rf.Friction, monkeypatch: pytest.MonkeyPatch) -> None:
-    solver = level_solver(problem_of(replace(BALL, friction=friction), 8))
-    solves: list[ContactTest | None] = []
-    solve = solver.solve
-
-    def recorded(tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
-        solves.append(enough)
-        return solve(tolerance, active, enough)
-
-    monkeypatch.setattr(solver, "solve", recorded)
-    assert solver.result(1e-8).status is rf.Status.CONVERGED
-    if friction.tau == 0:
-        assert solves == [None]
-    else:
-        assert all(enough is not None for enough in solves)
-        assert len(solves) > 1
-
-
-@pytest.mark.parametrize(
-    ("place", "too_small"), [((0, 3), True), ((2, 7), True), ((1, 1), False), ((2, 6), False)]
-)
-def test_shear_off_the_contact_must_keep_off_the_edge_as_well(
-    place: tuple[int, int], too_small: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Where the set of tau is behind the contact, elements that no longer press are sheared still."""
-    pressure = np.zeros((4, 8))
-    pressure[1:3, 2:6] = 1.0
-    problem = problem_of(coupled(0.3, tau=1e6), 16)
-    solver = level_solver(problem, Window(4, 8, 4, 12), pressure=pressure)
-    traction = np.zeros((4, 8))
-    monkeypatch.setattr(type(solver.lagged), "traction", property(lambda lagged: traction))
-    assert not solver.window_too_small
-    traction[place] = 2e5
-    assert solver.window_too_small is too_small
 
 
 @pytest.mark.parametrize("slope_correction", [False, True])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Mask, Window
+from refimpl.grid import Mask, Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
@@ -127,22 +127,6 @@ def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) ->
         assert not np.any(before.mask((80, 80)) & ~after.mask((80, 80)))
 
 
-def test_a_guess_for_a_finer_grid_has_the_plastic_core_at_the_cap() -> None:
-    """The step that sharpens the guess leaves it out: there the misfit is indentation, and no error."""
-    peak = rf.solve(BALL, 64, oblique=False).max_pressure
-    lower = rf.Body(replace(BALL.lower.material, hardness=0.6 * peak), rf.Flat())
-    hard = replace(BALL, lower=lower, load=2.0)
-    coarse, fine = (problem_of(hard, M, plastic=True) for M in (32, 64))
-    solver = level_solver(coarse)
-    solver.solve(1e-6, first_set(coarse))
-    guess = nested_solver.from_guess(fine, solver.initial_guess(), Counter())
-    full = guess.full(guess.cg.pressure) >= 0.6 * peak * (1 - 1e-9)
-    result, _ = solve_fft(fine, 1e-8, Counter())
-    expected = result.pressure >= 0.6 * peak
-    assert expected.sum() > 100
-    assert np.count_nonzero(full != expected) <= 0.05 * expected.sum()
-
-
 STEEP = rf.Scene(
     upper=rf.Body(rf.Material(50e9, 0.2), rf.Sphere(2.4e-3) + rf.GaussianRoughness(3.3e-6, 51e-6, seed=4344)),
     lower=rf.Body(rf.Material(2.8e9, 0.24), rf.GaussianRoughness(3.3e-6, 74e-6, seed=4345)),
@@ -208,19 +192,6 @@ def test_steps_are_reported_of_every_grid_and_the_finest_has_few_left() -> None:
     # measured: 7, and 12 where the coarser grids are not solved
     assert result.iterations["CG at 128 x 128"] <= 9
     assert max(result.iterations.values()) <= 9  # and no coarse grid is solved to the end
-
-
-def test_a_guess_without_any_pressure_is_replaced_by_a_foundation(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Contact is likely there, but the coarse grid pressed elsewhere: there is nothing to start from."""
-    coarse, fine = solved(problem_of(BALL, 16), 1e-3), problem_of(BALL, 32)
-
-    def nothing(pressure: Array, *others: object, **options: object) -> Array:
-        return np.zeros_like(pressure)
-
-    monkeypatch.setattr(nested_solver, "sharpened", nothing)
-    found = continued(coarse, fine)
-    assert found.window == fine.grid.window
-    assert found.cg.pressure.sum() * fine.grid.element_area == pytest.approx(BALL.load, rel=1e-12)
 
 
 @pytest.mark.parametrize("approach", [None, 1e-6])
