@@ -17,7 +17,6 @@ from refimpl.accuracy.discretisation_error import (
 )
 from refimpl.accuracy.iteration_error import active_set_parts, iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS, relative_bound, tolerance_for, uncertainty
-from refimpl.grid import Grid
 from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.certificate import Certificate, State
 from refimpl.model.forces import EDGE_SHARE, Forces
@@ -61,16 +60,6 @@ def test_slopes_that_change_within_elements_leave_mu_open() -> None:
     assert alone.half_width > 12.7 * 0.02  # Student's t with one degree of freedom
     settling = [sloped(0.1 + u, M, u) for u, M in ((0.08, 32), (0.02, 64), (0.0003, 512))]
     assert estimates(settling)["friction_coefficient"].error_bound(0.1003) < 2e-3
-
-
-def test_single_elements_leave_an_area_open_down_to_nothing() -> None:
-    area = 12 * (SIDE / 64) ** 2
-    numbers = {**made_up(64).numbers, "contact_area": area}
-    single = replace(made_up(64), edge=4 * EDGE_SHARE * area, numbers=numbers)
-    assert area < estimates([single])["contact_area"].error_bound(area) < 1.3 * area
-    many = replace(single, numbers={**numbers, "contact_area": 1e4 * area}, edge=4e4 * EDGE_SHARE * area)
-    assert 1e4 * area < estimates([many])["contact_area"].error_bound(1e4 * area) < 1.3e4 * area
-    assert estimates([many])["contact_area"].half_width == pytest.approx(0.4e4 * area, rel=0.02)
 
 
 def test_the_finest_grids_slip_turns_area_into_friction() -> None:
@@ -176,11 +165,6 @@ def test_twins_no_tau_and_no_coupling_displace_nothing(
 ) -> None:
     found = rf.solve(ball(lower, tau), grid=32, coupled=coupled)
     assert found.features.shear_to_normal_ratio == 0.0
-
-
-def test_a_state_without_contact_has_no_depth() -> None:
-    apart = rf.solve(ball(SOFT), grid=16, approach=-1e-6)
-    assert apart.features.depth == apart.features.shear_to_normal_ratio == 0.0
 
 
 def test_tau_on_the_edge_widens_the_approach_under_a_load_alone() -> None:
@@ -295,16 +279,6 @@ def test_the_plastic_area_is_uncertain_by_elements_that_may_yield_or_not() -> No
     found = iteration_parts(problem, state)
     assert found["plastic_area"]["iteration"] == pytest.approx(3 * DA)
     assert found["max_pressure"]["iteration"] == 0
-
-
-def test_of_oblong_elements_the_edge_is_known_less_well() -> None:
-    """On 1 : 4 its spread is hypot(0.07, 0.09 ln 4) = 0.143 of the excess, twice that of squares."""
-    square = made_up(64)
-    oblong = replace(square, grid=Grid((32, 128), square.grid.lengths))
-    assert oblong.grid.aspect == 0.25
-    by_edge = replace(square, edge=50 * square.edge), replace(oblong, edge=50 * oblong.edge)
-    short, long = (estimates([one])["contact_area"].half_width for one in by_edge)
-    assert 1.4 < long / short < 2.05
 
 
 @pytest.mark.parametrize(("accuracy", "tolerance"), [(0.5, 1e-5), (1e-3, 1e-6), (1e-5, 1e-8), (1e-9, 1e-8)])

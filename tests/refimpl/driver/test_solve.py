@@ -119,25 +119,6 @@ def test_a_tolerance_below_rounding_is_not_claimed() -> None:
     assert s.certificate.largest < 1e-11
 
 
-@METHODS
-def test_a_cycle_of_tau_is_named_and_its_reach_reported(method: str) -> None:
-    soft, hard = rf.Material(2.5e9, 0.38), STEEL
-    scene = replace(
-        SMOOTH,
-        upper=rf.Body(hard, rf.Sphere(0.14)),
-        lower=rf.Body(soft, rf.GaussianRoughness(0.504e-6, 104e-6, seed=2)),
-        friction=rf.Friction(60e6, 0.3),
-        load=30.0,
-    )
-    s = rf.solve(scene, 23, method=method, tolerance=1e-11)
-    assert s.status is rf.Status.CYCLED
-    assert s.certificate.satisfies(1e-11)
-    assert s.certificate.law_violations == np.count_nonzero(s.excluded & s.contact) > 0
-    np.testing.assert_allclose(s.traction[s.excluded], 0.3 * s.pressure[s.excluded])
-    assert s.uncertainty["friction_coefficient"]["active set"] > 0
-    assert s.uncertainty["contact_area"]["active set"] >= 0
-
-
 @pytest.mark.parametrize("pressure", [30.0, 100.0])
 def test_slopes_that_run_off_end_with_a_status(pressure: float) -> None:
     """Mean pressures of many E*: no division by a vanished cosine, no bars on numbers without meaning."""

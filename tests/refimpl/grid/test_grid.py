@@ -207,12 +207,6 @@ def test_short_products_are_blas_and_long_ones_are_summed_by_row() -> None:
         assert [inner(a, b) for a, b in fields] == (whole if one else by_row)
 
 
-@pytest.mark.parametrize("shape", [(1, 10_001), (10_001, 1), (3, 20_000)])
-def test_products_of_long_strips(shape: tuple[int, int]) -> None:
-    a, b = np.random.default_rng(3).standard_normal((2, *shape))
-    assert inner(a, b) == pytest.approx(float(np.sum(a * b)), abs=1e-12 * float(np.sum(np.abs(a * b))))
-
-
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("turned", [False, True])
 def test_differences_are_numpys_to_the_last_bit(shape: tuple[int, int], turned: bool) -> None:

@@ -181,11 +181,6 @@ def test_beyond_the_slopes_that_were_judged_the_advice_is_finite_elements(
     assert "finite elements" in said
 
 
-def test_a_number_that_is_zero_has_no_relative_error(shallow: None) -> None:
-    without: Any = SimpleNamespace(**{**vars(SOLVED), "friction_coefficient": 0.0})
-    assert advice(made_up(-0.03, 0.008, 0.001), without).startswith("keep the half-space")
-
-
 COPPER, STEEL = rf.Material(118e9, 0.3), rf.Material(200e9, 0.3)
 
 

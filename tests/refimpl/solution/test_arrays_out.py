@@ -69,13 +69,6 @@ def test_a_patch_across_a_period_has_its_centre_at_the_border() -> None:
     assert patch.y == pytest.approx(4.5)
 
 
-def test_patches_add_up_to_the_solution(yielded: rf.Solution) -> None:
-    found = yielded.patches()
-    assert math.fsum(patch.area for patch in found) == pytest.approx(yielded.contact_area, rel=1e-12)
-    plastic = math.fsum(patch.area * patch.plastic_share for patch in found)
-    assert plastic == pytest.approx(yielded.plastic_area, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("periodic", "labels"), [(False, [[1, 0, 2], [0, 0, 2]]), (True, [[1, 0, 1], [0, 0, 1]])]
 )

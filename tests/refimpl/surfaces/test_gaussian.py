@@ -32,24 +32,6 @@ def quietly(surface: GaussianRoughness, grid: Grid, offset: tuple[float, float] 
         return surface.heights(grid, offset)
 
 
-def test_equation_9_falls_to_a_tenth_at_its_length_and_bends_by_the_rms_slope() -> None:
-    surface = GaussianRoughness(3.0, 2.0, seed=1)
-    # in units of l = 2: exp(-2.3 (r / l)^2) by powers of exp(-2.3) = 0.100259
-    tenth = 0.10025884372280375
-    expected = 9 * np.array([1.0, tenth, tenth**4, tenth**0.25])
-    np.testing.assert_allclose(surface.autocorrelation(np.array([0.0, 2.0, -4.0, 1.0])), expected, rtol=1e-14)
-    # slopes between points a step apart have the mean square 2 (R(0) - R(step)) / step^2 -> -R''(0)
-    step = 1e-4
-    near = surface.autocorrelation(np.array([0.0, step]))
-    assert surface.rms_slope == pytest.approx(math.sqrt(2 * (near[0] - near[1])) / step, rel=1e-6)
-
-
-def test_rms_and_length_only_scale() -> None:
-    z = unit(7).heights(GRID)
-    np.testing.assert_array_equal(GaussianRoughness(4.0, LENGTH, 7).heights(GRID), 4.0 * z)
-    np.testing.assert_allclose(unit(7, 2 * LENGTH).heights(Grid.square(2 * SIDE, 64)), z, rtol=0, atol=1e-13)
-
-
 def test_deterministic_and_pinned() -> None:
     """The stream is part of the interface: a scene file must mean the same surface in every version."""
     corner = white_noise(1, range(-1, 1), range(-1, 1))
@@ -280,14 +262,6 @@ def test_levels_of_the_autocorrelation() -> None:
     pair = GaussianRoughness(1.0, (0.2, 0.1), 3, acf_level=0.5).ellipse
     assert pair.along / pair.across == pytest.approx(2.0)
     assert pair.across == pytest.approx(0.1 * math.sqrt(math.log(10) / math.log(2)))
-
-
-def test_both_lengths_are_said() -> None:
-    said = GaussianRoughness(1.0, (0.3, 0.1), 3, lay=math.pi / 6, acf_level=0.2).describe(
-        Grid.square(1.0, 64)
-    )
-    lengths = "correlation lengths 0.3 m along and 0.1 m across (autocorrelation 0.2), lay 30 degrees"
-    assert said == (f"Gaussian roughness of seed 3: rms 1 m in the ensemble, {lengths}",)
 
 
 @pytest.mark.parametrize(

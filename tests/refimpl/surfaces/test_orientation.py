@@ -11,7 +11,6 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
-from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceWarning
 
 DX, DY, NX, NY = 2e-6, 1e-6, 12, 20  # the area is 24 x 20 um
@@ -83,16 +82,6 @@ def test_a_bad_way_up_is_refused(tmp_path: Path) -> None:
         rf.InputError, match=r"at most the measured 6e-06 x 6e-06 m of map\.npy about the centre"
     ):
         written(tmp_path, centre=(3e-6, 3e-6)).heights(GRID)
-
-
-def test_tables_keep_the_way_up(tmp_path: Path) -> None:
-    surface = written(
-        tmp_path, replica=True, mirror="y", rotate_deg=270, turn_over=False, centre=(1e-5, 1.1e-5)
-    )
-    table = surface.to_dict()
-    assert table["centre"] == [1e-5, 1.1e-5]
-    assert surface_from_dict(table) == surface
-    assert "turn_over" not in written(tmp_path).to_dict()  # left to the body that it lies on
 
 
 def body(modulus: float, surface: object) -> rf.Body:

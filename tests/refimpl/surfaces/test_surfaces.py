@@ -206,7 +206,7 @@ SURFACES: list[Surface] = [
     MeasuredSurface(
         Path("/data/a.csv"), unit="um", pixel_size=(1e-6, 2e-6), level="paraboloid", missing="refuse"
     ),
-    MeasuredSurface("/data/b.x3p"),
+    MeasuredSurface("/b.x3p", replica=True, mirror="y", rotate_deg=270, turn_over=False, centre=(1e-5, 2e-5)),
     Sphere(1.0) + GaussianRoughness(1e-6, 1e-4, 5),
 ]
 
