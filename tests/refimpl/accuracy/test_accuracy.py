@@ -1,4 +1,4 @@
-"""accuracy=: the bar is met, it holds the error against a far finer grid, and its parts are what they say."""
+"""accuracy= and error bars: the bar is met, holds the error, and its parts are what they say."""
 
 from __future__ import annotations
 

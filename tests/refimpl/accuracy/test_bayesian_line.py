@@ -1,4 +1,4 @@
-"""Limits of numbers that fall in line: bars of their spread; and the digits that a bar leaves."""
+"""Limits of numbers that fall in line with bars of their spread, and the digits that a bar leaves."""
 
 from __future__ import annotations
 

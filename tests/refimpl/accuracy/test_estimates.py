@@ -1,4 +1,4 @@
-"""Estimates from a sequence of grids, on numbers made up to have a known limit."""
+"""Estimates from sequences of grids and parts of error bars, on results made up to have known values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Features of states on squares and rectangles, free and periodic: by their definitions, turned and moved."""
+"""Features of states by their definitions, turned and moved; numbers at an approach beside Hertz."""
 
 from __future__ import annotations
 

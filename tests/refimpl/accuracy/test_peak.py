@@ -1,4 +1,4 @@
-"""Summits of fields: exact on parabolas, on any grid, and open where elements stand alone."""
+"""Summits of fields, exact on parabolas and open where elements stand alone, and the bars that follow."""
 
 from __future__ import annotations
 

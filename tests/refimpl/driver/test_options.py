@@ -1,4 +1,4 @@
-"""Options of a solve and limits of a refinement: what they refuse, what they take by default."""
+"""Options of a solve, limits and interrupts of a refinement, terms that a solved contact restores."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Identification against known friction, closed forms of the likelihood, numbers by hand, refusals."""
+"""Identification against known friction, likelihoods in closed form, realisations, refusals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The certificate sees each kind of wrong state, from the returned arrays alone."""
+"""The certificate sees each kind of wrong state, elastic or capped, from the returned arrays alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The discrete problem: gap, tractions that enter, displacements, slopes, load weights, windows."""
+"""The discrete problem: tractions that enter, displacements, slopes, load weights, forces, areas."""
 
 from __future__ import annotations
 

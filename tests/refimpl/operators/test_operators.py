@@ -1,4 +1,4 @@
-"""Influence operators against sums over pairs of elements, and against each other, on rectangles."""
+"""Influence operators and tables of their kernels against sums over pairs of elements, on rectangles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which terms enter, decided before a solve: exact zeros, negligible and requested terms, and their cost."""
+"""Which terms enter, decided before a solve, and what memory is free for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scene: frame, datum, sliding offset, numbers of any width, the roughness that a grid must resolve."""
+"""The scene: frame, datum, offsets, numbers of any width, resolution, and the problem posed on a grid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Budgets after V&V 20: what each part is, how parts add, and tolerances in a scene's file."""
+"""Budgets after V&V 20: what each part is, how parts add, by solutions and by made-up derivatives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The answer at a contact set that stays: how many products it takes, and what starts it."""
+"""The answer at a contact set that stays, and the motion of its edge."""
 
 from __future__ import annotations
 

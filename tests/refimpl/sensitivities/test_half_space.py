@@ -1,4 +1,4 @@
-"""The half-space's error: local errors from the table, three parts of each number, and what to do."""
+"""The half-space's error: local errors from the table, parts of each number, advice, one's own surface."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Derivatives against finite differences of full solves, exact similarity laws and Hertz's exponents."""
+"""Derivatives against finite differences, similarity laws and Hertz; roughness; what has none."""
 
 from __future__ import annotations
 

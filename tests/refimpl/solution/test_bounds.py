@@ -1,4 +1,4 @@
-"""Proven bounds: least eigenvalue and its proof, dual norms, states of every kind, and where none exists."""
+"""Proven bounds: states of every kind, numbers by hand on few elements, and where no bound exists."""
 
 from __future__ import annotations
 

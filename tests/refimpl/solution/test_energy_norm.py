@@ -1,4 +1,4 @@
-"""The energy norm of proven bounds: its least eigenvalue, its dual, its rounding."""
+"""The energy norm of proven bounds: its least eigenvalue on any elements, its dual, its rounding."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The shipped table of coefficient errors against its closed first-order part and its symmetries."""
+"""The shipped tables of coefficient errors, in plane and in space: closed parts, symmetries, refusals."""
 
 from __future__ import annotations
 

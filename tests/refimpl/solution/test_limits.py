@@ -1,4 +1,4 @@
-"""Named warnings: for each limit a scene that leaves it, with its number, and one that does not."""
+"""Named warnings: for each limit a scene that leaves it and one that does not; notes; ends of options."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sets of tau on given states, and the rule's loop on a solver that plays contact sets."""
+"""Sets of tau on given states, the rule's loop on played contact sets, and on scenes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Roughness parameters against analytic values and SurfaceTopography; fits of random roughness."""
+"""Roughness parameters and statistics against analytic values and surfalize; fits of random roughness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measured surfaces' heights: window, gaps, level. All files are written here."""
+"""Measured surfaces' heights: window, gaps, level, values by hand. All files are written here."""
 
 from __future__ import annotations
 

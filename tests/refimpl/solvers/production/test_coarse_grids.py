@@ -1,4 +1,4 @@
-"""Nested grids: shapes, means of four, Winkler pressures, likely contact, sharpened guesses."""
+"""Nested grids: shapes, means of four, Winkler pressures, sharpened guesses."""
 
 from __future__ import annotations
 

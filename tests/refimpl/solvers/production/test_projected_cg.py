@@ -1,4 +1,4 @@
-"""Projected CG against principal pivoting on the same matrices, and single steps by hand."""
+"""Projected CG, free and capped: against principal pivoting, by hand, on lists and on windows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Another friction law and another elasticity through the same solvers: limited shear, a thin soft layer."""
+"""Problems that scenes do not pose: another friction law, a soft layer, strips and rows of elements."""
 
 from __future__ import annotations
 
