@@ -181,7 +181,7 @@ def test_beyond_the_slopes_that_were_judged_the_advice_is_finite_elements(
     assert "finite elements" in said
 
 
-COPPER, STEEL = rf.Material(118e9, 0.3), rf.Material(200e9, 0.3)
+COPPER = rf.Material(118e9, 0.3)
 
 
 def problem(grid: Grid, lower: np.ndarray, pair: Pair) -> Problem:

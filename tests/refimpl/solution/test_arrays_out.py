@@ -26,11 +26,6 @@ def rough() -> rf.Solution:
 
 
 @pytest.fixture(scope="module")
-def yielded() -> rf.Solution:
-    return rf.solve(rf.read_scene("metal-polymer"), grid=32)
-
-
-@pytest.fixture(scope="module")
 def oblong() -> rf.Solution:
     lower = rf.Body(rf.Material(2e9, 0.35), rf.GaussianRoughness(2e-6, 6e-4, seed=4))
     upper = rf.Body(rf.Material(7e9, 0.2, hardness=2e9), rf.Sphere(0.05))

@@ -139,24 +139,6 @@ def test_a_law_without_a_jump_is_limited_too(case: str) -> None:
     assert fft.traction.max() == law.r_max
 
 
-class Linear(LimitedShear):
-    """``r = tau + beta f`` of any sign."""
-
-    is_linear = True
-
-
-def test_shear_of_either_sign_lags_where_coupling_is_strong() -> None:
-    """A shear that CG does not invert must be updated."""
-    law = Linear(jump=0.0, slope=-0.5 / abs(PAIR.coupling_ratio), r_max=np.inf)
-    problem = problem_with("level", law)
-    found, state = by_fft(problem)
-    assert state.certificate.satisfies(TOLERANCE)
-    operator = DenseInfluence(problem.grid, problem.direction)
-    judged = certify(problem, operator, found.pressure, found.traction, found.slopes)
-    assert judged.certificate.satisfies(1.1 * TOLERANCE)
-    assert judged.certificate.law_violations == 0
-
-
 def test_a_limit_of_tau_is_shear_of_tau_whatever_beta_is() -> None:
     """``min(tau + beta f, tau) = tau``: the part ``beta f`` that solvers invert must cancel."""
     tau = SMOOTH.friction.tau

@@ -217,26 +217,6 @@ def test_any_map_from_sets_to_contacts_ends_in_a_set_within_its_contact(drawn: t
     assert np.array_equal(found.excluded, contact & ~last)
 
 
-def test_a_contact_edge_that_cannot_keep_tau_is_reported() -> None:
-    """One element is in contact without tau, and out of it with tau."""
-    smooth = rf.read_scene("table1-smooth")
-    ball = rf.GaussianRoughness(0.084e-6, 104e-6, seed=2021, normalise=True)
-    flat = rf.GaussianRoughness(0.2e-6, 104e-6, seed=2022, normalise=True)
-    scene = replace(
-        smooth,
-        upper=rf.Body(smooth.upper.material, smooth.upper.surface + ball),
-        lower=rf.Body(smooth.lower.material, flat),
-    )
-    s = rf.solve(scene, 128)
-    assert s.status is rf.Status.CYCLED
-    assert s.certificate.largest <= s.tolerance
-    assert s.uncertainty["friction_coefficient"]["active set"] < 1e-3 * s.friction_coefficient
-    of_mu, of_force = (s.uncertainty[f"friction_{name}"]["active set"] for name in ("coefficient", "force"))
-    assert of_force == pytest.approx(of_mu * scene.load)
-    of_area, corrected = (s.uncertainty[n]["active set"] for n in ("contact_area", "contact_area_corrected"))
-    assert of_area == corrected > 0
-
-
 @pytest.mark.parametrize("oblique", [False, True])
 def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
     """Also where shares of tau beside the contact meet a window's edge."""

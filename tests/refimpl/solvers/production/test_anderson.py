@@ -134,12 +134,3 @@ def test_mixed_updates_drop_their_history_after_ten_and_stagnate_after_thirty() 
     assert control.stagnated
     assert [len({id(m) for m in mixings[i : i + 10]}) for i in (0, 10, 20)] == [1, 1, 1]
     assert len({id(m) for m in mixings}) == 3
-
-
-def test_progress_renews_patience() -> None:
-    control = begun(needs_mixing=True)
-    mixing = control.mixing
-    for k in range(1, 60):
-        control.record(0.9 if k % 9 else 0.4**k, 0.0)
-    assert not control.stagnated
-    assert control.mixing is mixing

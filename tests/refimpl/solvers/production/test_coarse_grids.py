@@ -15,7 +15,6 @@ from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.coarse_grids import (
     coarsened,
     nested_problems,
-    sharpened,
     winkler_pressure,
 )
 
@@ -115,16 +114,3 @@ def test_it_is_as_deep_as_the_load_requires(load: float) -> None:
     depth = given.gap[winkler_pressure(given) == 0].min()
     assert load <= borne(given, depth)
     assert all(borne(given, shallower) < load for shallower in given.gap[given.gap < depth])
-
-
-@pytest.mark.filterwarnings("error")
-def test_sharpening_without_contact_presses_nowhere_and_divides_by_no_count() -> None:
-    nothing = np.zeros((2, 2))
-    found = sharpened(
-        pressure=nothing,
-        misfit=np.array([[4.0, -10.0], [3.0, 7.0]]),
-        contact=nothing > 0,
-        precondition=np.negative,
-        loaded=True,
-    )
-    np.testing.assert_array_equal(found, nothing)

@@ -159,17 +159,6 @@ def test_the_weakest_coupling_lags_beside_slopes(oblique: bool, strength: float,
     assert couples_weakly(problem_of(coupled(strength), 4, oblique=oblique)) is not lags
 
 
-@pytest.mark.parametrize("inside", [True, False])
-def test_outdated_slopes_of_facets_count_where_there_is_contact(inside: bool) -> None:
-    solver = level_solver(problem_of(BALL, 16, oblique=True, slope_correction=True))
-    assert solver.solve(1e-8, FixedSet(solver.problem.gap < 0))
-    where = solver.contact == inside
-    assert 1 < np.count_nonzero(where) < 16**2
-    slopes = solver.lagged.slopes
-    solver.lagged.slopes = Slopes(slopes.tan_x + 1e-3 * where, slopes.tan_y)
-    assert (solver.lagged.update() >= 0.999e-3) is inside
-
-
 @pytest.mark.parametrize("oblique", [False, True])
 def test_coupling_that_cg_inverts_ends_in_the_same_state_for_less(
     oblique: bool, monkeypatch: pytest.MonkeyPatch
