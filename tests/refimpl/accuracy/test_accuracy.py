@@ -76,7 +76,7 @@ def test_the_area_counts_on_request_and_without_friction(scene: rf.Scene, quanti
     [
         ({}, "grid"),
         ({"grid": 64, "accuracy": 0.1}, "grid"),
-        ({"grid": 32, "max_grid": 64}, "accuracy"),
+        ({"grid": 32, "max_grid": 64}, "max_grid"),
         ({"accuracy": 0.0}, "accuracy"),
         ({"accuracy": 1.0}, "accuracy"),
         ({"accuracy": 0.1, "quantity": "F"}, "quantity"),

@@ -175,6 +175,7 @@ def solved(scene: str, library: str, threads: int) -> Array:
     return np.frombuffer(done.stdout)
 
 
+@pytest.mark.nightly
 def test_threads_change_no_bit_of_scipy_and_the_last_ones_of_ducc0() -> None:
     one, two = (solved("table1-rough", "SciPy", threads) for threads in (1, 2))
     assert np.array_equal(one, two)

@@ -229,8 +229,7 @@ def test_a_bad_scene_file_is_refused(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("size", "modulus"), [(1e-30, 1e-30), (1e-30, 1e30), (1e30, 1e30)])
-@pytest.mark.parametrize("strain", [1e-29, 1e2])
-@pytest.mark.parametrize("method", ["fft", "dense"])
+@pytest.mark.parametrize(("strain", "method"), [(1e-29, "fft"), (1e2, "fft"), (1e-29, "dense")])
 def test_sizes_at_the_ends_of_what_is_allowed(
     size: float, modulus: float, strain: float, method: Any
 ) -> None:

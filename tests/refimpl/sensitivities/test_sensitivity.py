@@ -154,8 +154,8 @@ def test_periodic_scenes_have_no_derivative_by_length() -> None:
 
 
 def test_parameters_are_read_and_changed_by_name() -> None:
-    scene, fractal = sliding(tau=1e6), rf.SelfAffineRoughness(0.8, 8e-4, 1.6e-3, 2e-4, rms=2e-6, seed=3)
-    for given in (scene, replace(scene, lower=rf.Body(POLYMER, fractal))):
+    scene = sliding(tau=1e6)
+    for given in (scene, replace(scene, lower=rf.Body(POLYMER, FRACTAL))):
         for name, value in parameters(given).items():
             other = value + 4.0 if name.endswith(".seed") else 0.95 * value
             changed = parameters(with_parameter(given, name, other))

@@ -259,7 +259,7 @@ SCENE = rf.Scene(
     sliding_direction=0.7,
 )
 GRIDS = {
-    "coarser grids": Grid((64, 40), (1.6e-3, 1.2e-3)),
+    "coarser grids": Grid((48, 32), (1.6e-3, 1.2e-3)),
     "strip": Grid((60, 5), (1.6e-3, 2e-4)),
     "row": Grid((24, 1), (1.6e-3, 1e-4)),
     "two columns": Grid((2, 30), (1e-4, 1.6e-3)),
