@@ -78,6 +78,7 @@ def test_the_area_counts_on_request_and_without_friction(scene: rf.Scene, quanti
         ({"grid": 64, "accuracy": 0.1}, "grid"),
         ({"grid": 32, "max_grid": 64}, "max_grid"),
         ({"accuracy": 0.0}, "accuracy"),
+        ({"accuracy": math.nan}, "accuracy"),
         ({"accuracy": 1.0}, "accuracy"),
         ({"accuracy": 0.1, "quantity": "F"}, "quantity"),
         ({"accuracy": 0.1, "max_grid": 0}, "max_grid"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import time
 from dataclasses import replace
@@ -29,13 +28,6 @@ def asked(**given: Any) -> Options:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        *(
-            (
-                {"grid": None, "accuracy": share},
-                f"accuracy = {share}: expected a relative accuracy between 0 and",
-            )
-            for share in (-0.02, 1.5, math.nan, math.inf)
-        ),
         ({"method": "fem"}, "method = 'fem': expected one of dense, fft, paper"),
         (
             {"method": "paper", "scene": replace(HARD, upper=HARD.lower, periodic=True)},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -101,12 +100,6 @@ def test_arrays_have_no_toml() -> None:
     body = rf.Body(scene.upper.material, np.zeros((4, 4)))
     with pytest.raises(rf.InputError, match="TOML"):
         rf.scene_to_toml(rf.Scene(body, body, rf.Friction(), 1.0, 1.0))
-
-
-@pytest.mark.parametrize("plastic", [True, False, None])
-def test_whether_pressures_are_capped_is_kept(plastic: bool | None) -> None:
-    scene = replace(rf.read_scene("hertz"), plastic=plastic)
-    assert scene_from_dict(scene_to_dict(scene), Path()).plastic is plastic
 
 
 @pytest.mark.parametrize("key", ["E", "nu"])

@@ -304,21 +304,6 @@ def test_without_a_hardness_the_note_states_the_load_over_the_contact() -> None:
     assert largest == pytest.approx(s.max_pressure / 1e6, rel=1e-3)
 
 
-@pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
-@pytest.mark.parametrize("bodies", [("lower", "upper"), ("upper", "lower")])
-def test_points_of_the_finer_data_count(bodies: tuple[str, str]) -> None:
-    """Elements of 0.25 mm over pixels of 0.1 mm on one body and of 0.2 mm on the other: 2.5 points."""
-    fine, coarse = bodies
-    surfaces = {
-        fine: rf.Body(SOFT, rf.ArraySurface(np.zeros((40, 40)), pixel=(1e-4, 1e-4))),
-        coarse: rf.Body(HARD, rf.ArraySurface(np.zeros((20, 20)), pixel=(2e-4, 2e-4)) + rf.Sphere(
-            0.05 if coarse == "upper" else -0.05
-        )),
-    }  # fmt: skip
-    s = rf.solve(replace(SCENE, **surfaces), 16)
-    assert warned(s, Limit.DATA).number == pytest.approx(2.5)
-
-
 def test_notes_of_the_surfaces_stay_where_a_refinement_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plan, "free_memory", lambda: plan.estimated_memory("fft", SCENE.grid(64)))
     heights = rf.Body(SOFT, 1e-7 * np.random.default_rng(1).normal(size=(12, 12)))

@@ -230,16 +230,6 @@ def test_equal_lengths_are_the_isotropic_surface_to_the_last_bit(lay: float) -> 
         np.testing.assert_array_equal(GaussianRoughness(0.5, (0.1, 0.1), seed=3, lay=lay).sample(grid), one)
 
 
-def test_a_lay_of_a_quarter_turn_exchanges_the_lengths() -> None:
-    grid = Grid((40, 31), (1.0, 0.8))
-    for turn in (math.pi / 2, -math.pi / 2, math.pi):
-        lengths = (0.3, 0.1) if turn == math.pi else (0.1, 0.3)
-        turned = GaussianRoughness(1.0, (0.3, 0.1), 3, lay=turn).sample(grid)
-        np.testing.assert_allclose(
-            turned, GaussianRoughness(1.0, lengths, 3).sample(grid), rtol=0, atol=1e-12
-        )
-
-
 @pytest.mark.parametrize(("lengths", "lay"), SETTINGS)
 def test_slopes_are_the_curvature_of_equation_9(lengths: tuple[float, float], lay: float) -> None:
     surface, step = GaussianRoughness(3.0, lengths, seed=1, lay=lay), 1e-4

@@ -238,11 +238,6 @@ def test_autocorrelation_is_the_plain_sum_over_pairs() -> None:
         np.testing.assert_allclose(stats.autocorrelation(z, axis), expected, rtol=0, atol=1e-13)
 
 
-def test_flat_heights_have_no_correlation_length() -> None:
-    assert np.isnan(stats.autocorrelation(np.zeros((4, 4)), 0)).all()
-    assert stats.correlation_length(np.zeros((4, 4)), 1.0) is None
-
-
 def test_correlation_length_of_a_step_by_hand() -> None:
     """Heights 1, 1, -1, -1 along y: correlations 1, 1/3, -1, -1 there, and 1, 1, 1, 1 along x."""
     z = np.tile([1.0, 1.0, -1.0, -1.0], (4, 1))
