@@ -1,62 +1,49 @@
-"""accuracy=: the bar is met, it holds the error against a far finer grid, and its parts are what they say."""
+"""accuracy= and error bars: the bar is met, holds the error, and its parts are what they say."""
 
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.iteration_error import iteration_parts, merged
+from refimpl.accuracy.iteration_error import iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS
-from refimpl.model.certificate import Certificate
-from refimpl.model.forces import Forces
 from refimpl.solution.cost import total_cost
 from refimpl.solution.solution import REPORTED
 from tests.refimpl.states import state_of
+from verification.coverage.class_scenes import Wave
+from verification.exact.westergaard import Wave as Exact
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 
 
 def sliding_ball(rms: float, seed: int, load: float = 70.0) -> rf.Scene:
     rough = rf.GaussianRoughness(rms=rms, correlation_length=200e-6, seed=seed)
-    return rf.Scene(
-        upper=rf.Body(STEEL, rf.Sphere(radius=0.14)),
-        lower=rf.Body(COPPER, rough),
-        friction=rf.Friction(tau=15e6, beta=0.08),
-        load=load,
-        side=1.61e-3,
-    )
+    return replace(rf.read_scene("table1-smooth"), lower=rf.Body(COPPER, rough), load=load)
 
 
-def bar(solution: rf.Solution, name: str) -> float:
-    return sum(solution.uncertainty[name].values())
+HERTZ = rf.read_scene("hertz")
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+def bar(s: rf.Solution, name: str) -> float:
+    """Sum of a number's parts."""
+    return math.fsum(s.uncertainty[name].values())
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.nightly)])
 def test_the_bar_is_met_and_holds_the_error(seed: int) -> None:
     scene = sliding_ball(0.3e-6, seed)
     found = rf.solve(scene, accuracy=0.05)
     assert found.status in (rf.Status.CONVERGED, rf.Status.CYCLED)
     assert bar(found, "friction_coefficient") <= 0.05 * found.friction_coefficient
-    finer = rf.solve(
-        scene, grid=2 * found.grid.shape[0], tolerance=1e-6
-    )  # its own error is part of the check
+    # the finer grid's own error is part of the check
+    finer = rf.solve(scene, grid=2 * found.grid.shape[0], tolerance=1e-6)
     for name in ("friction_coefficient", "contact_area", "max_pressure"):
         assert abs(getattr(found, name) - getattr(finer, name)) <= bar(found, name), name
-
-
-def test_a_tighter_accuracy_takes_a_finer_grid() -> None:
-    scene = sliding_ball(0.3e-6, 1)
-    rough = rf.solve(scene, accuracy=0.1)
-    begun = time.perf_counter()
-    fine = rf.solve(scene, accuracy=0.02)
-    assert 0 < fine.cost.seconds <= time.perf_counter() - begun
-    assert rough.grid.shape[0] < fine.grid.shape[0]
-    assert set(rough.cost.iterations) < set(fine.cost.iterations)
 
 
 def test_the_cost_is_that_of_all_grids() -> None:
@@ -78,27 +65,29 @@ def test_the_cost_is_that_of_all_grids() -> None:
     assert found.cost.point_logs == pytest.approx(expected.point_logs)
 
 
-def test_another_quantity_can_be_asked_for() -> None:
-    found = rf.solve(sliding_ball(0.3e-6, 1), accuracy=0.2, quantity="contact_area")
-    assert bar(found, "contact_area") <= 0.2 * found.contact_area
-
-
-def test_without_friction_the_area_counts() -> None:
-    found = rf.solve(rf.read_scene("hertz"), accuracy=0.02)
-    assert bar(found, "contact_area") <= 0.02 * found.contact_area
-
-
-@pytest.mark.parametrize("arguments", [{}, {"grid": 64, "accuracy": 0.1}])
-def test_grid_or_accuracy_and_not_both(arguments: dict[str, float]) -> None:
-    with pytest.raises(rf.InputError, match="grid"):
-        rf.solve(sliding_ball(0.3e-6, 1), **arguments)
+@pytest.mark.parametrize(("scene", "quantity"), [(sliding_ball(0.3e-6, 1), "contact_area"), (HERTZ, None)])
+def test_the_area_counts_on_request_and_without_friction(scene: rf.Scene, quantity: str | None) -> None:
+    found = rf.solve(scene, accuracy=0.05, quantity=quantity)  # type: ignore[arg-type]  # one of the quantities
+    assert bar(found, "contact_area") <= 0.05 * found.contact_area
 
 
 @pytest.mark.parametrize(
-    "arguments", [{"accuracy": 0.0}, {"accuracy": 1.0}, {"accuracy": 2}, {"accuracy": 0.1, "quantity": "F"}]
+    ("arguments", "field"),
+    [
+        ({}, "grid"),
+        ({"grid": 64, "accuracy": 0.1}, "grid"),
+        ({"grid": 32, "max_grid": 64}, "max_grid"),
+        ({"accuracy": 0.0}, "accuracy"),
+        ({"accuracy": math.nan}, "accuracy"),
+        ({"accuracy": 1.0}, "accuracy"),
+        ({"accuracy": 0.1, "quantity": "F"}, "quantity"),
+        ({"accuracy": 0.1, "max_grid": 0}, "max_grid"),
+        ({"accuracy": 0.1, "max_seconds": -1.0}, "max_seconds"),
+        ({"accuracy": 0.1, "max_memory": 0.0}, "max_memory"),
+    ],
 )
-def test_bad_accuracies_are_refused(arguments: dict[str, object]) -> None:
-    with pytest.raises(rf.InputError):
+def test_bad_accuracies_are_refused(arguments: dict[str, Any], field: str) -> None:
+    with pytest.raises(rf.InputError, match=f"^{field} = "):
         rf.solve(sliding_ball(0.3e-6, 1), **arguments)
 
 
@@ -131,37 +120,6 @@ def test_a_looser_certificate_has_a_larger_iteration_part() -> None:
         assert missed <= parts[name]["iteration"] + 1e-8 * abs(getattr(tight, name)), name
 
 
-@pytest.mark.parametrize("pull", [1.0, -1.0])
-def test_elements_within_ten_residuals_of_changing_sides_make_the_areas_part(pull: float) -> None:
-    """Of pressures those below a hundredth of the peak, of clearances those below one of the approach."""
-    solved = rf.solve(sliding_ball(0.3e-6, 1), grid=16)
-    pressure, clearance = np.zeros((16, 16)), np.full((16, 16), 1.0)
-    pressure[0, :6] = 1e6, 0.0101e6, 0.0099e6, 0.0096e6, 1.0, 0.5e6
-    clearance[0] = 0.0
-    clearance[0, 6:] = 1.0
-    clearance[1, :5] = np.array([0.0, 0.0096, 0.0099, 0.0101, 0.5]) * solved.approach
-    force = 3.0 * pull
-    state = replace(
-        state_of(solved),
-        pressure=pressure,
-        v=clearance + solved.approach,
-        certificate=Certificate(1e-3, 0.0, 0.0, 0.0, 0.0, law_violations=0),
-        forces=Forces(normal=force, friction=-2.0, binormal=0.1),
-    )
-    area = 6 * solved.grid.element_area
-    parts = iteration_parts(solved.problem, state)
-    assert parts["contact_area"]["iteration"] == pytest.approx(area)
-    assert parts["contact_area_corrected"]["iteration"] == pytest.approx(area)
-    assert parts["normal_force"]["iteration"] == parts["binormal_force"]["iteration"] == pytest.approx(3e-3)
-    assert parts["approach"]["iteration"] == pytest.approx(1e-3 * solved.approach)
-    tau, slope = solved.friction.jump, math.sqrt(state.slopes.mean_square(pressure))
-    friction = 2.0 + slope * abs(force)  # both may cancel
-    assert parts["friction_force"]["iteration"] == pytest.approx(1e-3 * friction + tau * area)
-    share = 1e-3 * (abs(state.friction_coefficient) + slope)
-    by_area = tau * area / force if force > 0 else 0.0
-    assert parts["friction_coefficient"]["iteration"] == pytest.approx(share + by_area)
-
-
 def test_a_sum_over_slopes_that_cancels_is_no_better_known_than_its_terms() -> None:
     """Without friction F is slopes alone, a vector's component: there is a direction in which it is zero."""
     scene = replace(sliding_ball(0.3e-6, 1), friction=rf.Friction())
@@ -175,22 +133,121 @@ def test_a_sum_over_slopes_that_cancels_is_no_better_known_than_its_terms() -> N
         assert 0.01 * abs(getattr(loose, name)) < missed < loose.uncertainty[name]["iteration"]
 
 
-def test_parts_are_merged_by_number_and_name() -> None:
-    first, second = {"A": {"x": 1.0, "y": 2.0}}, {"A": {"y": 3.0}, "B": {"x": 4.0}}
-    assert merged(first, second) == {"A": {"x": 1.0, "y": 3.0}, "B": {"x": 4.0}}
+SIDE = 1e-3
+MODULUS = 1 / ((1 - 0.3**2) * (1 / 118e9 + 1 / 200e9))  # Pa, E*
+AMPLITUDE = 0.2e-6
 
 
-def test_slopes_do_not_make_elements_outside_contact_marginal() -> None:
-    # on slopes Eq. (6) leaves surfaces u (1 / K - 1) apart: clearance counts, not separation
-    ball = rf.Scene(
-        upper=rf.Body(STEEL, rf.Sphere(radius=2e-3)),
-        lower=rf.Body(COPPER, rf.Flat()),
-        friction=rf.Friction(beta=0.1),
-        load=500.0,
-        side=1.6e-3,
-    )
-    found = rf.solve(ball, grid=64, tolerance=1e-6)
-    assert found.slope_error.rms_gradient > 0.03
-    assert abs(found.clearance[found.contact]).max() <= 1e-5 * found.approach
-    assert found.separation[found.contact].min() < -1e-3 * found.approach
-    assert found.uncertainty["contact_area"]["iteration"] <= 4 * found.grid.element_area
+@pytest.mark.parametrize(("axis", "share"), [(0, 0.2), (1, 0.5)])
+def test_bars_of_grooves_hold_the_exact_numbers(axis: int, share: float) -> None:
+    """Westergaard's strips at eight places within an element: A, corrected A, mu and the approach."""
+    flattening = math.pi * MODULUS * AMPLITUDE / SIDE
+    mean = flattening * math.sin(math.pi * share / 2) ** 2
+    exact = Exact(mean_pressure=mean, amplitude=AMPLITUDE, wavelength=SIDE, modulus=MODULUS)
+    tau, area = 0.1 * mean / share, exact.contact_fraction * SIDE**2
+    for place in range(8):
+        wave = Wave(AMPLITUDE, 1, 2 * math.pi * (0.13 + place / 8 / 64), axis)
+        scene = rf.Scene(
+            rf.Body(STEEL, rf.Flat()), rf.Body(COPPER, wave), rf.Friction(tau=tau, beta=0.08),
+            mean * SIDE**2, SIDE, periodic=True,
+        )  # fmt: skip
+        s = rf.solve(scene, 64, oblique=False)
+        for name, number in {
+            "contact_area": area,
+            "contact_area_corrected": area,
+            "friction_coefficient": tau * area / scene.load + 0.08,
+            "approach": exact.approach - AMPLITUDE,
+        }.items():
+            assert abs(getattr(s, name) - number) <= bar(s, name), (place, name)
+
+
+@pytest.mark.parametrize("grid", [64, pytest.param(128, marks=pytest.mark.nightly)])
+def test_bars_hold_where_a_lay_is_along_the_grid(grid: int) -> None:
+    """Under a ball, against four times the elements: in five of six surfaces at least."""
+    held = 0
+    for seed in range(6):
+        lay = rf.GaussianRoughness(0.5e-6, (500e-6, 60e-6), seed=seed, lay=math.pi / 2)
+        ball, friction = rf.Body(STEEL, rf.Sphere(0.14)), rf.Friction(tau=15e6, beta=0.08)
+        scene = rf.Scene(ball, rf.Body(COPPER, lay), friction, 70.0, 1.6e-3)
+        coarse, fine = rf.solve(scene, grid), rf.solve(scene, 4 * grid)
+        names = ("contact_area", "friction_coefficient")
+        held += all(abs(getattr(coarse, n) - getattr(fine, n)) <= bar(coarse, n) for n in names)
+    assert held >= 5
+
+
+def rough_map(points: int) -> np.ndarray:
+    """Heights (m) with waves down to two points."""
+    rng = np.random.default_rng(4)
+    q = np.hypot(np.fft.fftfreq(points)[:, None], np.fft.rfftfreq(points)[None, :]) * points
+    shape = np.maximum(q, 4.0) ** -1.8 * (q > 0)
+    z = np.fft.irfft2(np.fft.rfft2(rng.normal(size=(points, points))) * shape, s=(points, points))
+    return np.asarray(0.4e-6 * z / z.std())
+
+
+MAP = rf.Scene(
+    rf.Body(STEEL, rf.Sphere(0.02)),
+    rf.Body(COPPER, rough_map(96)),
+    rf.Friction(tau=50e6, beta=0.05),
+    5.0,
+    2e-4,
+)
+
+
+@pytest.mark.filterwarnings("ignore::refimpl.surfaces.surface.SurfaceWarning")
+def test_an_accuracy_does_not_end_above_the_pitch_of_the_data() -> None:
+    """Bars have a part for the data, which no grid shortens: the refinement says so and ends."""
+    s = rf.solve(MAP, accuracy=0.003, quantity="contact_area")
+    assert s.status is rf.Status.ACCURACY_NOT_REACHED
+    assert s.uncertainty["contact_area"]["data"] > 0.003 * s.contact_area
+    assert max(s.grid.shape) <= 4 * 96
+    assert any("points of the data" in line for line in s.warnings)
+
+
+def test_limits_of_a_refinement_end_it_with_the_best_grid_within_them() -> None:
+    s = rf.solve(MAP, accuracy=1e-4, max_grid=96)
+    assert s.status is rf.Status.ACCURACY_NOT_REACHED
+    assert s.certified
+    assert max(s.grid.shape) <= 96
+
+
+def test_contact_that_fills_the_window_has_no_error_bar() -> None:
+    """Hertz's radius is 165 um, half of the domain 50 um: both stand in the warning."""
+    radius = 165e-6
+    load = 4 * MODULUS * radius**3 / (3 * 0.05)
+    friction = rf.Friction(tau=1e6, beta=0.08)
+    full = rf.Scene(rf.Body(STEEL, rf.Sphere(0.05)), rf.Body(COPPER, rf.Flat()), friction, load, 1e-4)
+    s = rf.solve(full, 32)
+    for name in ("contact_area", "friction_coefficient", "approach"):
+        assert math.isinf(bar(s, name))
+    assert any("0.000165 m" in line and "5e-05 m" in line for line in s.warnings)
+    refined = rf.solve(full, accuracy=0.01)
+    assert refined.status is rf.Status.ACCURACY_NOT_REACHED
+    assert max(refined.grid.shape) == 64
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"lower": rf.Body(rf.Material(E=200.0, nu=0.3), rf.Flat()), "load": 1e-3}, "did you mean GPa"),
+        ({"friction": rf.Friction(tau=15e9, beta=0.08)}, "did you mean MPa"),
+    ],
+)
+def test_inputs_that_are_seldom_meant_get_a_note_with_help(change: dict[str, object], said: str) -> None:
+    """Every note with its limits: `test_plausibility`."""
+    tau, ball = rf.Friction(tau=15e6, beta=0.08), rf.Body(STEEL, rf.Sphere(0.14))
+    usual = rf.Scene(ball, rf.Body(COPPER, rf.Flat()), tau, 70.0, 1.6e-3)
+    assert not any(said in line for line in rf.solve(usual, 16).warnings)
+    assert any(said in line for line in rf.solve(replace(usual, **change), 16, plastic=False).warnings)
+
+
+def test_the_gap_is_nowhere_negative_beyond_the_penetration() -> None:
+    """On slopes the surfaces' own distance is; with a cap the indentation is added."""
+    steep = rf.GaussianRoughness(2e-6, 60e-6, seed=3)
+    for hardness in (None, 0.8e9):
+        body = rf.Body(rf.Material(E=118e9, nu=0.3, hardness=hardness), steep)
+        scene = rf.Scene(rf.Body(STEEL, rf.Sphere(0.05)), body, rf.Friction(tau=15e6, beta=0.08), 20.0, 1e-3)
+        s = rf.solve(scene, 64)
+        allowed = (s.certificate.penetration + 1e-12) * s.approach
+        assert s.gap.min() >= -allowed
+        assert np.abs(s.gap[s.contact]).max() <= 1e-6 * s.approach
+        assert s.separation.min() < -1e-4 * s.approach

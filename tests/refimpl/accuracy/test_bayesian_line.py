@@ -1,14 +1,18 @@
-"""Limits of numbers that fall in line: bars of their spread, factors that are known more or less."""
+"""Limits of numbers that fall in line with bars of their spread, and the digits that a bar leaves."""
 
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy import optimize, stats
 
 from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, fit_line
+from refimpl.accuracy.digits import bar_of, digits_of, usable, verdict
 from refimpl.accuracy.discretisation_error import AREA, EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.grid import Array
 
@@ -38,35 +42,13 @@ def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) 
         found = fit_line(values, weights, prior, Bias(sizes, 0.7, 0.0))
         alone = fit_line(values - 0.7 * sizes, weights, prior)
         assert found.value == pytest.approx(alone.value, rel=1e-12)
-        assert found.half_width == pytest.approx(
-            alone.half_width, rel=2e-4
-        )  # as closely as bounds are sought
+        assert found.half_width == pytest.approx(alone.half_width, rel=2e-4)  # as bounds are sought
 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
 def test_bars_of_extreme_spreads(spread: float) -> None:
     assert Estimate(2.0, spread).error_bound(3.0) == (math.inf if math.isinf(spread) else 1.0)
     assert Estimate(2.0, spread).error_bound(2.0) == pytest.approx(spread)
-
-
-def draws(count: int, grids: int) -> tuple[Array, Array, Array]:
-    """Numbers from the model itself with q = 0, their weights and edges, in the unit of the scatter."""
-    rng = np.random.default_rng(7)
-    weights = 2.0 ** (1.5 * np.arange(grids)[::-1])
-    edge = 5 * 2.0 ** np.arange(grids)[::-1]
-    size = rng.normal(EDGE_SIZE, EDGE_SIZE_SPREAD, count)
-    sigma = AREA.scatter * np.sqrt(AREA.weight / rng.chisquare(AREA.weight, count))
-    noise = rng.standard_normal((count, grids)) * weights * sigma[:, None]
-    return size[:, None] * edge + noise, weights, edge
-
-
-@pytest.mark.parametrize("grids", [1, 2, 4])
-def test_bounds_hold_for_95_in_100_draws_from_the_model(grids: int) -> None:
-    values, weights, edge = draws(800, grids)
-    bias = Bias(edge, EDGE_SIZE, EDGE_SIZE_SPREAD)
-    found = [fit_line(row, weights, AREA, bias) for row in values]
-    share = np.mean([abs(estimate.value) <= estimate.half_width for estimate in found])
-    assert abs(share - 0.95) < 0.03  # 3.9 standard errors of 800 draws
 
 
 def integrated(values: Array, weights: Array, prior: Prior, bias: Bias) -> tuple[float, float]:
@@ -101,10 +83,8 @@ def test_nine_nodes_do_for_the_factors_integral() -> None:
         scatter = prior.scatter * weights * draw.standard_normal(len(spacing))
         bias = Bias(sizes, EDGE_SIZE, EDGE_SIZE_SPREAD)
         values = 1 + sizes * draw.normal(EDGE_SIZE, EDGE_SIZE_SPREAD) + scatter
-        found, (value, bound) = (
-            fit_line(values, weights, prior, bias),
-            integrated(values, weights, prior, bias),
-        )
+        found = fit_line(values, weights, prior, bias)
+        value, bound = integrated(values, weights, prior, bias)
         off.append((abs(found.value - value) / bound, abs(found.half_width / bound - 1)))
     assert np.all(np.quantile(off, 0.9, axis=0) < (5e-5, 0.02))
     assert np.max(off) < 0.15
@@ -120,16 +100,52 @@ def test_bounds_know_no_unit(power: int) -> None:
     assert other == (unit * one.value, unit * one.half_width, one.orders)
 
 
-def test_zeros_are_exact() -> None:
-    assert fit_line(np.zeros(3), np.ones(3), Prior(0.1, 2.0)) == Estimate(0.0, 0.0)
-
-
 def test_a_wider_scatter_widens_the_spread_and_a_single_grid_has_its_prior() -> None:
     calm, wild = np.array([1.0, 1.0, 1.0]), np.array([1.3, 0.9, 1.0])
     weights, prior = np.array([8.0, 2.8, 1.0]), Prior(0.01, 2.0)
     assert fit_line(wild, weights, prior).half_width > 2 * fit_line(calm, weights, prior).half_width
     alone = fit_line(np.array([3.0]), np.ones(1), prior)
     assert alone.value == 3.0
-    assert alone.half_width == pytest.approx(
-        4.303 * 0.01, rel=1e-3
-    )  # Student's t with two degrees of freedom
+    assert alone.half_width == pytest.approx(4.303 * 0.01, rel=1e-3)  # Student's t, two degrees of freedom
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "printed", "bar"),
+    [
+        (0.112913, 0.2, "0.11", "+- 0.2"),  # the three numbers once printed with six digits
+        (222802.0, 3e7, "220000", "+- 3e+07"),
+        (5.84, 3.0, "6", "+- 3"),
+        (0.0992525, 0.00104, "0.0993", "+- 0.0010"),
+        (0.9996, 0.02, "1.00", "+- 0.02"),
+        (1.61e-7, 3e-9, "1.61e-07", "+- 3e-09"),
+        (-0.5567, 0.01, "-0.557", "+- 0.010"),
+        (0.0, 0.003, "0", "+- 0.003"),
+        (1234567.0, 0.0, "1.23457e+06", ""),
+    ],
+)
+def test_a_number_has_the_digits_that_its_bar_leaves(
+    value: float, error: float, printed: str, bar: str
+) -> None:
+    assert (digits_of(value, error), bar_of(error)) == (printed, bar)
+
+
+@pytest.mark.parametrize(("error", "named"), [(0.0, ""), (0.5, ""), (0.51, "(not usable)")])
+def test_half_of_the_value_is_the_largest_usable_bar(error: float, named: str) -> None:
+    assert verdict(error, -1.0) == named
+    assert usable(error, 1.0) is not bool(named)
+
+
+@given(st.floats(1e-12, 1e12), st.floats(1e-7, 0.999))
+def test_rounding_is_within_half_a_digit_of_the_bar(value: float, share: float) -> None:
+    """The first digit of a bar is 2 or more, or there are two: the bar is off by a fourth, the value by
+    another of it; six digits of the value are enough for any bar.
+    """
+    error = value * share
+    assert abs(float(digits_of(value, error)) - value) <= max(0.2565 * error, 5.001e-6 * value)
+    assert abs(float(bar_of(error)[3:]) - error) <= 0.2565 * error
+
+
+@given(st.floats(1e-9, 1e9), st.floats(1.0, 1e6))
+def test_a_number_without_a_meaning_has_two_digits(value: float, share: float) -> None:
+    digits = digits_of(value, value * share).partition("e")[0].replace(".", "").strip("0")
+    assert re.fullmatch(r"\d{1,2}", digits)

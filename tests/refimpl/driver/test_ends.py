@@ -1,4 +1,4 @@
-"""Solves that end: scenes of random searches that crashed, never came back, or were refused by a hair."""
+"""Solves at the ends: full contact, flat planes, scenes that crashed, never came back or ran off."""
 
 from __future__ import annotations
 
@@ -6,17 +6,126 @@ import sys
 import threading
 import warnings
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import refimpl as rf
-from refimpl.driver import on_grid, refined
-from refimpl.model.problem import Problem
-from refimpl.operators.fft import Counter
-from refimpl.solvers.production.nested_solver import solve_fft
+from refimpl.planning.plan import Method
+
+SIDE, M = 1e-3, 12
+STEEL = rf.Material(200e9, 0.3)
+
+
+def wavy(nominal: float, amplitude: float = 1e-6) -> tuple[rf.Scene, np.ndarray, float]:
+    """A wavy plane under a mean pressure, its exact full-contact pressure, and the wave's part of it (Pa).
+
+    The gap ``A (1 - cos q x)`` is flattened by ``E* q A / 2 cos q x`` (Westergaard 1939).
+    """
+    x = (np.arange(M) + 0.5) / M
+    wave = np.cos(2 * np.pi * x)[:, None] * np.ones(M)
+    modulus = STEEL.plane_strain_modulus / 2
+    part = modulus * (2 * np.pi / SIDE) * amplitude / 2
+    scene = rf.Scene(
+        upper=rf.Body(STEEL, -amplitude * wave),
+        lower=rf.Body(STEEL, rf.Flat()),
+        friction=rf.Friction(),
+        load=nominal * SIDE**2,
+        side=SIDE,
+        periodic=True,
+    )
+    return scene, nominal + part * wave, part
+
+
+@pytest.mark.parametrize("method", ["dense", "fft"])
+@pytest.mark.parametrize("excess", [1.01, 1.5, 20.0])
+def test_full_contact_is_westergaards(method: str, excess: float) -> None:
+    _, _, part = wavy(1.0)
+    scene, exact, _ = wavy(excess * part)
+    solution = rf.solve(scene, M, method=method, oblique=False, tolerance=1e-11)
+    assert solution.status is rf.Status.CONVERGED
+    # rounding of the mean pressure, which is up to twenty times the wave's
+    assert np.abs(solution.pressure - exact).max() <= 1e-12 * exact.max()
+    assert abs(solution.approach) <= 1e-11 * 1e-6
+
+
+@pytest.mark.parametrize("share", [0.3, 0.9, 0.96])  # the lowest centre lies at cos(165 deg) = -0.966
+def test_both_solvers_agree_up_to_full_contact(share: float) -> None:
+    _, _, part = wavy(1.0)
+    scene, _, _ = wavy(share * part)
+    dense, fft = (rf.solve(scene, M, method=m, oblique=False, tolerance=1e-12) for m in ("dense", "fft"))
+    assert np.array_equal(dense.contact, fft.contact)
+    assert np.abs(dense.pressure - fft.pressure).max() <= 1e-11 * dense.max_pressure
+    back = rf.solve(scene, M, method="dense", oblique=False, approach=dense.approach)
+    assert np.abs(dense.pressure - back.pressure).max() <= 1e-9 * dense.max_pressure
+
+
+POLYMER = rf.Material(3e9, 0.4)
+
+
+def planes(friction: rf.Friction, load: float, side: float) -> rf.Scene:
+    """Flat periodic planes; the pressure is the load over the area."""
+    return rf.Scene(
+        upper=rf.Body(STEEL, rf.Flat()), lower=rf.Body(POLYMER, rf.Flat()), friction=friction, load=load,
+        side=side, periodic=True,
+    )  # fmt: skip
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.sampled_from(["fft", "dense"]), st.integers(1, 12), st.floats(-9, 3), st.floats(-6, 1), st.booleans()
+)
+def test_flat_periodic_planes_converge_on_every_grid(
+    method: Method, M: int, load: float, side: float, rubs: bool
+) -> None:
+    """All displacements are rounding there, and a gap over an energy would be rounding over rounding."""
+    pressure = 10**load / (10**side) ** 2
+    friction = rf.Friction(min(0.1 * pressure, 1e7), 0.3) if rubs else rf.Friction()
+    scene = planes(friction, 10**load, 10**side)
+    if pressure > 1e9:
+        scene = replace(scene, load=1e9 * scene.side**2)
+    solution = rf.solve(scene, M, method=method)
+    assert solution.status is rf.Status.CONVERGED
+    np.testing.assert_allclose(solution.pressure, scene.load / scene.side**2, rtol=1e-12)
+
+
+ROUGH = rf.read_scene("rough-planes")
+
+
+@pytest.mark.parametrize(("method", "approach"), [("fft", -5e-324), ("dense", -5e-324), ("fft", -1e-21)])
+def test_an_approach_without_digits_beside_the_mean_gap_is_refused(approach: float, method: Method) -> None:
+    with pytest.raises(rf.InputError, match="approach"):
+        rf.solve(ROUGH, 16, method=method, approach=approach)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(-25, -5))
+def test_no_approach_divides_by_zero(exponent: float) -> None:
+    """Of any size: refused, ended with a status, or solved."""
+    try:
+        solution = rf.solve(ROUGH, 8, approach=-(10.0**exponent))
+    except rf.InputError:
+        assert exponent < -19
+        return
+    assert solution.certificate.satisfies(1e-8) or solution.status is rf.Status.STAGNATED
+
+
+def test_heights_beyond_the_side_are_told_the_way_out() -> None:
+    """Dimensionless set-ups: heights by s with moduli over s have the same pressures without slope terms."""
+    z = np.random.default_rng(4).standard_normal((8, 8))
+
+    def scene(s: float) -> rf.Scene:
+        upper, lower = (rf.Body(rf.Material(E / s, 0.3), h) for E, h in ((1.0, rf.Flat()), (2.0, s * z)))
+        return rf.Scene(upper=upper, lower=lower, friction=rf.Friction(0.1, 0.2), load=0.3, side=1.0)
+
+    with pytest.raises(rf.InputError, match=r"times s .* same pressures"):
+        rf.solve(scene(1.0), 8, oblique=False)
+    ways_out = [rf.solve(scene(s), 8, oblique=False) for s in (0.01, 0.1)]
+    np.testing.assert_allclose(ways_out[0].pressure, ways_out[1].pressure, atol=1e-7)
+    assert 0 < ways_out[0].contact.sum() < 64
+
 
 RIGID = rf.Material(E=1e100, nu=0.3)
 
@@ -33,7 +142,7 @@ def test_contact_where_the_coarser_grid_had_none() -> None:
     assert np.allclose(found.pressure, afresh.pressure, rtol=0, atol=1e-7 * afresh.max_pressure)
 
 
-@pytest.mark.parametrize("tau", [1e11, 1e12, 1e14])
+@pytest.mark.parametrize("tau", [1e11, 1e14])
 def test_tau_beyond_all_pressures_ends_with_a_status(tau: float) -> None:
     scene = rf.Scene(
         upper=rf.Body(rf.Material(200e9, 0.3), rf.Sphere(radius=0.05)),
@@ -60,7 +169,7 @@ def test_beta_beyond_all_sense_ends_with_a_status() -> None:
     assert not rf.solve(scene, grid=11, approach=0.75, oblique=False).converged
 
 
-@pytest.mark.parametrize(("seed", "M"), [(13, 16), (170, 16), (170, 24), (458, 16)])
+@pytest.mark.parametrize(("seed", "M"), [(13, 16), (170, 24)])
 def test_what_the_loop_accepts_the_certificate_does(seed: int, M: int) -> None:
     """Shear and cosines are held for a pressure that is then scaled to the load, by 1e-8 or so."""
     draw = np.random.default_rng(seed)
@@ -78,23 +187,6 @@ def test_what_the_loop_accepts_the_certificate_does(seed: int, M: int) -> None:
         sliding_direction=draw.uniform(0, 6),
     )
     assert rf.solve(scene, M, oblique=True).status is rf.Status.CONVERGED
-
-
-def test_a_restored_term_costs_what_its_solve_cost(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The solve that showed that the term matters is part of the price."""
-    spent: list[float] = []
-
-    def counted(problem: Problem, tolerance: float, counter: Counter, *others: Any) -> Any:
-        found = solve_fft(problem, tolerance, counter, *others)
-        spent.append(counter.point_logs)
-        return found
-
-    monkeypatch.setattr(on_grid, "solve_fft", counted)
-    changes = iter([{"oblique": SimpleNamespace(larger=1.0)}, *[{}] * 20])
-    monkeypatch.setattr(refined, "effects_in", lambda *args: next(changes))
-    found = rf.solve(rf.read_scene("table1-rough"), accuracy=0.2)
-    assert found.cost.point_logs == pytest.approx(sum(spent), rel=1e-12)
-    assert len(spent) == 3  # the first two grids, the first of them twice
 
 
 def test_threads_do_not_mix_the_notes_of_surfaces() -> None:
@@ -129,9 +221,3 @@ def test_threads_do_not_mix_the_notes_of_surfaces() -> None:
     assert list(warnings.filters) == before
     for k, lines in found.items():
         assert sum("finer than the array" in line for line in lines) == k % 2
-
-
-def test_heights_of_a_scene_come_with_warnings() -> None:
-    scene = replace(rf.read_scene("table1-smooth"), lower=rf.Body(rf.Material(1e9, 0.3), np.zeros((8, 8))))
-    with pytest.warns(rf.SurfaceWarning, match="finer"):
-        scene.heights(scene.grid(16))

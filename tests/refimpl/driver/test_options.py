@@ -1,32 +1,20 @@
-"""Options of a solve: what they refuse, and what they take by default."""
+"""Options of a solve, limits and interrupts of a refinement, terms that a solved contact restores."""
 
 from __future__ import annotations
 
-import math
 import re
+import time
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
 import refimpl as rf
-from refimpl.driver.limits import Limits
+from refimpl.driver import refined
+from refimpl.driver.limits import Allowance, Limits
 from refimpl.driver.options import Options
-
-SCENE = rf.read_scene("table1-rough")
-
-
-@pytest.mark.parametrize("accuracy", [0.0, 1.0, -0.02, 1.5, math.nan, math.inf])
-def test_an_accuracy_that_is_no_share_is_refused(accuracy: float) -> None:
-    with pytest.raises(rf.InputError, match="a relative accuracy between 0 and 1") as refused:
-        Options(scene=SCENE, accuracy=accuracy)
-    assert refused.value.field == "accuracy"
-
-
-@pytest.mark.parametrize("accuracy", [1e-12, 0.999])
-def test_any_share_is_an_accuracy(accuracy: float) -> None:
-    assert Options(scene=SCENE, accuracy=accuracy).accuracy == accuracy
-
+from refimpl.planning import terms
+from refimpl.planning.term_effects import Effect
 
 BALL, SOFT = rf.Body(rf.Material(200e9, 0.3), rf.Sphere(0.1)), rf.Material(3e9, 0.4, hardness=0.2e9)
 HARD = rf.Scene(BALL, rf.Body(SOFT, rf.Flat()), rf.Friction(1e6, 0.05), 2.0, size=(1e-3, 0.8e-3))
@@ -66,3 +54,120 @@ def test_tolerances_and_quantities_by_default() -> None:
 def test_seconds_that_the_opening_grids_exceed_are_refused_by_name() -> None:
     with pytest.raises(rf.InputError, match=r"grid = 64: .*max_seconds = 1e-09"):
         rf.solve(HARD, accuracy=0.1, max_seconds=1e-9)
+
+
+GRID = rf.Grid((10, 20), (1e-3, 2e-3))
+
+
+@pytest.mark.parametrize(
+    ("limits", "refusal"),
+    [
+        (Limits(max_grid=20, max_memory=2.5e9, max_seconds=1e-9), None),
+        (Limits(max_grid=19), "grid = 20: .*max_grid = 19"),
+        (Limits(max_memory=2.49e9), r"estimated 2.5 GB are at most 2.49 GB"),
+    ],
+)
+def test_the_longer_side_and_the_memory_count_and_no_seconds_before_any_grid(
+    limits: Limits, refusal: str | None
+) -> None:
+    if refusal is None:
+        Allowance(limits).check(GRID, memory=2.5e9)
+        return
+    with pytest.raises(rf.InputError, match=refusal):
+        Allowance(limits).check(GRID, memory=2.5e9)
+
+
+def test_seconds_grow_as_a_transform_does_and_by_a_third_more() -> None:
+    """From 200 elements to 800: 4 times as many, ln 800 / ln 200 = 1.26165, 1.3 for iterations: 6.56057."""
+    allowance = Allowance(Limits())
+    fine = rf.Grid((20, 40), (1e-3, 2e-3))
+    assert allowance.expected_seconds(fine) == 0
+    allowance.record(fine, 5.0)
+    allowance.record(GRID, 3.0)  # the last one counts
+    assert allowance.expected_seconds(fine) == pytest.approx(3 * 6.56057, rel=1e-6)
+
+
+def test_one_element_says_something_too() -> None:
+    """A grid of one element counts as two: ln 1 is zero. 100 elements of 1.3 * 50 * ln 100 / ln 2."""
+    allowance = Allowance(Limits())
+    allowance.record(rf.Grid((1, 1), (1e-3, 1e-3)), 2.0)
+    expected = 2 * 50 * 6.643856 * 1.3
+    assert allowance.expected_seconds(rf.Grid((10, 10), (1e-3, 1e-3))) == pytest.approx(expected)
+
+
+def test_seconds_spent_and_to_expect_are_within_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """19.68 s to be expected: after 10 s they fit into 29.7 s, and not into 29.6 s."""
+    monkeypatch.setattr(time, "perf_counter", lambda: 100.0)
+    fine = rf.Grid((20, 40), (1e-3, 2e-3))
+    enough, short = (Allowance(Limits(max_seconds=most)) for most in (29.7, 29.6))
+    for allowance in (enough, short):
+        allowance.record(GRID, 3.0)
+    monkeypatch.setattr(time, "perf_counter", lambda: 110.0)
+    enough.check(fine, memory=1.0)
+    with pytest.raises(rf.InputError, match=r"19.7 s to be expected, after 10 s"):
+        short.check(fine, memory=1.0)
+
+
+SCENE = rf.Scene(
+    upper=rf.Body(rf.Material(200e9, 0.3), rf.Sphere(0.1)),
+    lower=rf.Body(rf.Material(3e9, 0.4), rf.Flat()),
+    friction=rf.Friction(tau=1e6, beta=0.05),
+    load=2.0,
+    side=1e-3,
+)
+
+
+def test_an_interrupt_has_the_last_finished_grid_with_its_own_bars() -> None:
+    shown: list[str] = []
+
+    def progress(line: str) -> None:
+        shown.append(line)
+        if stop in line:
+            raise KeyboardInterrupt
+
+    for stop in ("32 x", "next"):
+        shown.clear()
+        with pytest.raises(KeyboardInterrupt) as caught:
+            rf.solve(replace(SCENE, side=None, size=(1e-3, 0.8e-3)), accuracy=1e-4, progress=progress)
+        assert len(caught.value.args) == (stop == "next")
+    (found,) = caught.value.args
+    assert (found.grid.shape, found.status) == ((32, 26), rf.Status.ACCURACY_NOT_REACHED)
+    assert found.warnings[-1] == "interrupted: the finest grid that was finished"
+    assert found.error("contact_area") > 0
+    assert shown[-2] == f"32 x 26 elements, {sum(found.cost.applications.values())} transforms"
+    memory = found.plan.on(rf.Grid((64, 52), (1e-3, 0.8e-3))).memory / 1e9
+    assert re.fullmatch(rf"64 x 52 elements next: about \S+ s, {memory:.2g} GB", shown[-1])
+
+
+STIFF = replace(SCENE, lower=rf.Body(rf.Material(200e9, 0.31), rf.Flat()), load=20.0)
+
+
+@pytest.mark.parametrize(("share", "restored"), [(0.6, True), (0.4, False)])
+def test_the_sum_of_all_effects_is_held_to_the_budget(
+    monkeypatch: pytest.MonkeyPatch, share: float, restored: bool
+) -> None:
+    """Two effects of 0.6 of the budget each exceed it together; the larger one's term comes back."""
+    plan = Options(scene=STIFF, accuracy=0.05).plan()
+    assert set(plan.neglected) == {"coupled", "oblique"}
+
+    def effects(names: tuple[str, ...], *_: Any) -> dict[str, Effect]:
+        sizes = {"coupled": share, "oblique": share + 0.01}
+        return {name: Effect(sizes.get(name, 0.0) * plan.budget, 0.0) for name in names}
+
+    monkeypatch.setattr(refined, "effects_in", effects)
+    found = rf.solve(STIFF, accuracy=0.05)
+    assert found.plan.includes("oblique") is restored
+    assert not found.plan.includes("coupled")
+
+
+def test_a_cap_that_pressures_reach_costs_both_solves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The plan expects no more than the mean pressure, 0.22 GPa; the peak, 0.33 GPa, reaches 0.3 GPa."""
+    monkeypatch.setattr(terms, "_PEAK_OVER_MEAN", 1.0)
+    soft = rf.Body(rf.Material(200e9, 0.31, hardness=0.3e9), rf.Flat())
+    scene = replace(STIFF, lower=soft, load=150.0)
+    elastic, capped = (rf.solve(scene, 16, plastic=given) for given in (False, True))
+    assert elastic.max_pressure > 0.3e9
+    assert not Options(scene=scene, grid=16).plan().includes("plastic")
+    found = rf.solve(scene, 16)
+    assert found.max_pressure == capped.max_pressure == 0.3e9
+    assert found.cost.point_logs == elastic.cost.point_logs + capped.cost.point_logs

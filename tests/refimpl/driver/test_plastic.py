@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.bounds.proven_bounds import NO_BOUND_PLASTIC, proven_bounds
 from refimpl.driver.options import Options
-from refimpl.model.problem import Terms
+from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.parameters import with_parameter
 from refimpl.sensitivities.budget import budget
+from refimpl.solution.bounds import NO_BOUND_PLASTIC
 from refimpl.solution.limits import Limit, ModelWarning
 
 H = 0.8e9
@@ -49,32 +49,9 @@ def test_the_hardness_decides() -> None:
     assert capped.status is rf.Status.CONVERGED
 
 
-def test_what_the_estimate_misses_the_elastic_solution_restores() -> None:
-    """A hardness that the highest pressure alone exceeds; the estimate is made blind to it."""
-    elastic = rf.solve(ROUGH, 32, plastic=False)
-    scene = hard(0.99 * elastic.max_pressure)
-    options = Options(scene=scene, grid=32)
-    expected = options.plan().contact.mean_pressure
-    assert 3 * expected < 0.99 * elastic.max_pressure or options.plan().includes("plastic")
-    blind = hard(4 * expected) if 4 * expected < elastic.max_pressure else scene
-    s = rf.solve(blind, 32)
-    assert s.max_pressure == blind.lower.material.hardness
-    assert s.plastic_area > 0
-
-
-def test_restored_cap_costs_both_solves(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_restored_in_a_refinement(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("refimpl.planning.terms._PEAK_OVER_MEAN", 0.0)
-    s = rf.solve(ROUGH, 32)
-    at_once = rf.solve(ROUGH, 32, plastic=True)
-    assert "restored" in s.plan.term("plastic").reason
-    assert np.array_equal(s.pressure, at_once.pressure)
-    assert s.cost.point_logs > at_once.cost.point_logs
-
-
-@pytest.mark.parametrize("accuracy", [0.02])
-def test_restored_in_a_refinement(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("refimpl.planning.terms._PEAK_OVER_MEAN", 0.0)
-    s = rf.solve(ROUGH, accuracy=accuracy)
+    s = rf.solve(ROUGH, accuracy=0.02)
     assert s.plan.includes("plastic")
     assert s.max_pressure == H
 
@@ -113,7 +90,7 @@ def test_indentation_is_where_pressures_are_capped() -> None:
     assert np.count_nonzero(at_cap) * s.grid.element_area == pytest.approx(s.plastic_area)
     assert not s.plastic_indentation[~at_cap].any()
     assert s.plastic_indentation[at_cap].min() >= 0
-    K = s.slopes.cosine_product
+    K = s.slopes.obliqueness
     # with the indentation the bodies fit: v - approach + w_p / K vanishes where pressures are capped
     assert np.abs(s.clearance + s.plastic_indentation / K)[at_cap].max() < 1e-12
 
@@ -167,7 +144,7 @@ def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:
     assert "plastic" not in rf.scene_to_toml(ROUGH)
     with pytest.raises(rf.InputError, match="plastic"):
         replace(ROUGH, plastic=1)
-    assert Options(scene=off, grid=8, requested=Terms()).requested.plastic is False
+    assert Options(scene=off, grid=8, requested=RequestedTerms()).requested.plastic is False
 
 
 def test_bounds_of_capped_states() -> None:
@@ -180,8 +157,7 @@ def test_bounds_of_capped_states() -> None:
     assert rf.solve(hard(close), 24, oblique=False, plastic=True).bounds.unproven == NO_BOUND_PLASTIC
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-11])
-@pytest.mark.parametrize("by", ["load", "approach"])
+@pytest.mark.parametrize(("tolerance", "by"), [(1e-3, "approach"), (1e-6, "load"), (1e-11, "load")])
 def test_bounds_of_capped_states_hold(tolerance: float, by: str) -> None:
     """Against the dense solution, at any tolerance; they shrink with it, and mark what yields for certain."""
     scene = replace(ROUGH, friction=rf.Friction(0.0, 0.3))
@@ -195,9 +171,8 @@ def test_bounds_of_capped_states_hold(tolerance: float, by: str) -> None:
     assert off <= bounds.pressure + rounding * H
     assert bounds.pressure <= 10 * np.sqrt(tolerance) * H
     assert abs(found.approach - exact.approach) <= bounds.approach + rounding * exact.approach
-    assert (
-        abs(found.friction_coefficient - exact.friction_coefficient) <= bounds.friction_coefficient + rounding
-    )
+    off = abs(found.friction_coefficient - exact.friction_coefficient)
+    assert off <= bounds.friction_coefficient + rounding
     assert np.all(exact.pressure[bounds.plastic] == H)
     assert np.all(exact.pressure[bounds.in_contact] > 0)
     assert np.all(exact.pressure[bounds.out_of_contact] == 0)
@@ -205,22 +180,6 @@ def test_bounds_of_capped_states_hold(tolerance: float, by: str) -> None:
     if tolerance < 1e-9:
         assert np.count_nonzero(bounds.plastic) == np.count_nonzero(exact.pressure >= H)
         assert np.count_nonzero(bounds.in_contact) == np.count_nonzero(exact.contact)
-
-
-def test_bounds_of_a_wrong_capped_state_are_wide() -> None:
-    """Pressure that an eighth of the elements at the hardness hand on to free ones."""
-    scene = replace(ROUGH, friction=rf.Friction())
-    exact = rf.solve(scene, 16, oblique=False, tolerance=1e-12)
-    pressure, H = exact.pressure.copy(), exact.problem.cap
-    at_cap = np.flatnonzero(pressure.ravel() >= H)
-    moved = at_cap[::8]
-    pressure.ravel()[moved] = 0.9 * H
-    between = (pressure > 0) & (pressure < 0.8 * H)
-    pressure[between] += (exact.pressure.sum() - pressure.sum()) / between.sum()
-    assert pressure.max() <= H
-    bounds = proven_bounds(exact.problem, pressure, exact.traction, exact.slopes)
-    assert np.abs(pressure - exact.pressure).max() <= bounds.pressure
-    assert not bounds.plastic.ravel()[moved].any()
 
 
 def test_model_form_of_an_elastic_solution_beyond_the_hardness() -> None:
@@ -252,12 +211,6 @@ def test_sensitivities_of_a_capped_solution() -> None:
         for number in ("friction_coefficient", "binormal_force"):
             difference = (getattr(high, number) - getattr(low, number)) / (2 * step * value)
             assert d.derivatives[number][name] == pytest.approx(difference, rel=2e-3), (name, number)
-
-
-def test_no_derivatives_without_elastic_contact() -> None:
-    scene = replace(FLATS, load=H * 1e-6)
-    with pytest.raises(rf.InputError, match="elastic contact"):
-        rf.sensitivity(scene, rf.solve(scene, 8, oblique=False))
 
 
 def test_at_an_approach_the_scenes_load_limits_nothing() -> None:

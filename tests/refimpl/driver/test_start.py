@@ -15,19 +15,15 @@ from tests.refimpl.solvers.production.levels import BALL
 from verification.properties import Sample, samples
 from verification.properties.states import same_pressure
 
+POLYMER = rf.Material(E=2.5e9, nu=0.2)
 ROUGH = replace(
     BALL,
-    lower=rf.Body(
-        rf.Material(E=2.5e9, nu=0.2), rf.GaussianRoughness(rms=2e-6, correlation_length=2e-4, seed=5)
-    ),
+    lower=rf.Body(POLYMER, rf.GaussianRoughness(rms=2e-6, correlation_length=2e-4, seed=5)),
     friction=rf.Friction(tau=1e6, beta=0.1),
 )
 WAVY = replace(
     ROUGH,
-    lower=rf.Body(
-        rf.Material(E=2.5e9, nu=0.2),
-        rf.GaussianRoughness(rms=1e-6, correlation_length=2e-4, seed=5),
-    ),
+    lower=rf.Body(POLYMER, rf.GaussianRoughness(rms=1e-6, correlation_length=2e-4, seed=5)),
     upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Flat()),
     periodic=True,
 )
@@ -37,7 +33,6 @@ WAVY = replace(
     ("scene", "grid", "finer"),
     [
         (ROUGH, 32, 64),
-        (ROUGH, 64, 96),
         (ROUGH, 48, 127),
         (ROUGH, 65, 65),
         (WAVY, 32, 64),
@@ -56,7 +51,7 @@ def test_the_answer_is_the_same_for_hardly_more_transforms(scene: rf.Scene, grid
 
 
 @given(samples(), st.sampled_from([0.3, 1.0, 2.5]))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_whatever_a_solve_starts_from(sample: Sample, share: float) -> None:
     """The samples of the invariants, from their own answer and from that to another load."""
     other = replace(sample.scene, load=share * sample.scene.load)
@@ -92,12 +87,6 @@ def test_a_contact_that_grows_to_its_windows_edge_has_slopes_there() -> None:
     same_pressure(found, afresh, sample)
 
 
-def test_no_grid_up_to_the_starts_is_solved_again() -> None:
-    start = rf.solve(ROUGH, 64)
-    assert set(rf.solve(ROUGH, 128, start=start).cost.iterations) == {"CG at 128 x 128"}
-    assert set(rf.solve(ROUGH, 192, start=start).cost.iterations) == {"CG at 96 x 96", "CG at 192 x 192"}
-
-
 @pytest.mark.parametrize("approach", [5e-6, 3e-6])
 def test_a_start_may_have_another_load_or_approach(approach: float) -> None:
     start = rf.solve(ROUGH, 48)
@@ -116,19 +105,14 @@ def test_a_start_may_have_another_load_or_approach(approach: float) -> None:
         ({"grid": 16}, {"grid": 16, "method": "dense"}, "method fft"),
         ({"grid": 16}, {"accuracy": 0.1}, "method fft on a grid"),
         ({"grid": 16, "tolerance": 1e-17}, {"grid": 32}, "certificate holds"),
+        ({"grid": 16}, {"grid": 16, "scene": replace(ROUGH, side=3e-3)}, "3e-03|0.003"),
     ],
 )
 def test_what_is_no_start_is_refused(start: dict[str, float], asked: dict[str, object], said: str) -> None:
     found = rf.solve(ROUGH, **start)
     with pytest.raises(rf.InputError, match=said) as caught:
-        rf.solve(ROUGH, **asked, start=found)
+        rf.solve(**{"scene": ROUGH} | asked, start=found)
     assert caught.value.field == "start"
-
-
-def test_another_side_is_no_start() -> None:
-    found = rf.solve(ROUGH, 16)
-    with pytest.raises(rf.InputError, match="start"):
-        rf.solve(replace(ROUGH, side=3e-3), 16, start=found)
 
 
 def test_an_accuracy_climbs_from_answer_to_answer() -> None:

@@ -1,24 +1,14 @@
-"""Influence integrals: the accuracy cases, other points than theirs, tables, and refused input."""
+"""Influence integrals: accuracy, tables, refused input, and properties that hold whatever the formula."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from fractions import Fraction
-
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from refimpl.errors import InputError
-from refimpl.kernels import normal_integral, normal_table, tables, tangential_integral, tangential_table
-from refimpl.kernels.quadrature import (
-    NEAR,
-    ORDERS,
-    TRUNCATION,
-    order_for,
-    reach,
-    relative_error_bound,
-    shells,
-)
+from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
 from verification.cases.kernels import kernels
 from verification.exact import kernel_reference as reference
 from verification.exact.kernel_points import random_points
@@ -37,23 +27,6 @@ def test_other_seeds(kernel, exact):
     assert max(errors) <= kernels.TOLERANCE
 
 
-@pytest.mark.parametrize("length", [1e-12, 1e-9, 1.0, 1e12])
-def test_any_unit_of_length(length):
-    x, y = np.array([0.0, 0.3, 0.5, 2.0, 7.5, 1e6]), np.array([0.1, 0.5, 3.1, 0.0, 2e4, 1e6])
-    for kernel in (normal_integral, tangential_integral):
-        scaled = kernel(x * length, y * length, 2 * length, length)
-        np.testing.assert_allclose(scaled, kernel(x, y, 2.0, 1.0) * length, rtol=SAME)
-
-
-def test_textbook_form_fails_beside_the_axis_too():
-    """Odd in x, so it cancels as x -> 0: eps / 1e-12 of it is wrong, and ours is not."""
-    x, y = 1e-12, 0.3
-    exact = reference.tangential(x, y, 1.0, 1.0)
-    printed = reference.textbook_tangential(np.array(x), np.array(y), 1.0, 1.0)
-    assert reference.relative_error(float(printed), exact) > 1e-6
-    assert reference.relative_error(float(tangential_integral(x, y, 1.0, 1.0)), exact) <= kernels.TOLERANCE
-
-
 def test_exactly_zero_on_the_axis():
     y = np.array([0.0, 0.2, 0.5, 0.7, 2.9, 3.0, 1e3, 1e6])
     assert not tangential_integral(0.0, y, 1.0, 1.0).any()
@@ -70,9 +43,7 @@ def test_broadcasts_and_returns_float64():
         assert kernel(np.empty((0, 3)), 0.0, 1, 1).shape == (0, 3)
 
 
-@pytest.mark.parametrize(
-    ("n", "m"), [(1, 1), (2, 5), (3, 3), (3, 4), (40, 17), (17, 40), (99, 99), (300, 7), (7, 300)]
-)
+@pytest.mark.parametrize(("n", "m"), [(1, 1), (2, 5), (3, 4), (17, 40), (99, 99), (300, 7)])
 @pytest.mark.parametrize("aspect", [1.0, 0.3, 50.0])
 def test_tables_are_the_integrals_on_the_grid(n, m, aspect):
     dx, dy = 0.7e-6, 0.7e-6 * aspect
@@ -87,38 +58,6 @@ def test_tables_of_square_elements():
     np.testing.assert_array_equal(table, normal_table(200, 130, 0.1, 0.1))
     np.testing.assert_allclose(table, normal_table(200, 130, 0.1, 0.1 * (1 + 2**-52)), rtol=SAME)
     assert (tangential_table(40, 30, 0.1)[1:] > 0).all()
-
-
-@pytest.mark.parametrize("order", [2, 5, 9])
-@pytest.mark.parametrize("q", [6.0, 20.0, 1e4])
-def test_the_bound_is_the_series_it_sums(order, q):
-    """Even Chebyshev coefficients from 2n on, each at most ``2 max|f| rho^-k``, missed by ``32/15``."""
-    kappa = order / (order + 1)
-    rho = kappa * q + np.sqrt(kappa * q - 1) * np.sqrt(kappa * q + 1)
-    largest, least = (1 + kappa) / (1 - kappa) ** 2, (1 - 1 / q) / (1 + 1 / q) ** 2
-    series = sum(2 * largest * rho ** -(2.0 * (order + k)) * 32 / 15 for k in range(40))
-    assert relative_error_bound(order, q) == pytest.approx(series / (2 * least), rel=1e-12)
-
-
-def test_no_bound_where_the_ellipse_shrinks_to_the_segment():
-    assert relative_error_bound(2, 1.5) == np.inf
-    assert relative_error_bound(2, 1.6) < np.inf
-
-
-@pytest.mark.parametrize("order", [order for order in ORDERS if reach(order) > NEAR])
-def test_reach_is_where_the_bound_meets_the_truncation(order):
-    assert relative_error_bound(order, reach(order)) <= TRUNCATION
-    assert relative_error_bound(order, reach(order) * (1 - 2e-9)) > TRUNCATION
-
-
-def test_orders_follow_the_bound():
-    assert reach(max(ORDERS)) == NEAR
-    for start, _, order in shells():
-        assert relative_error_bound(order, start) <= TRUNCATION
-        if order > min(ORDERS):
-            assert relative_error_bound(order - 1, start) > TRUNCATION
-    assert order_for(NEAR) == max(ORDERS)
-    assert order_for(1e9) == min(ORDERS)
 
 
 @pytest.mark.parametrize("kernel", [normal_integral, tangential_integral])
@@ -155,46 +94,85 @@ def test_refuses_shapes_that_do_not_go_together():
         normal_integral([0.0, 1.0, 2.0], [0.0, 1.0], 1.0, 1.0)
 
 
-def test_takes_edges_of_any_width():
-    expected = normal_integral(1.0, 1.0, 2.0, 2.0)
-    for edge in (np.array(2.0), np.float32(2.0), Fraction(2), 2):
-        assert normal_integral(1.0, 1.0, edge, edge) == expected
+ROUNDING = 1e-14
+"""Relative, of one evaluation: the tolerance of the kernel cases."""
+
+KERNELS = pytest.mark.parametrize("kernel", [normal_integral, tangential_integral])
+aspects = st.floats(-3, 3).map(lambda power: 10.0**power)
+offsets = st.one_of(
+    st.floats(0, 4).map(lambda x: x if x > 1e-200 else 0.0),  # scaled results stay normal numbers
+    st.floats(0, 6).map(lambda power: 10.0**power),
+    st.integers(0, 10).map(lambda k: k / 2),
+)
+dyadics = st.one_of(st.integers(0, 256), st.integers(0, 64 * 10**6)).map(lambda k: k / 64)
 
 
-def test_the_first_offset_that_is_refused_is_named():
-    with pytest.raises(InputError) as refused:
-        normal_integral([0.0, np.inf, -np.inf], 0.0, 1.0, 1.0)
-    assert refused.value.value == np.inf
+@KERNELS
+@given(offsets, offsets, aspects)
+def test_parity(kernel, x, y, dy):
+    """Even in y; in x even for the normal kernel, odd for the tangential one; exactly so."""
+    value = kernel(x, y * dy, 1.0, dy)
+    assert kernel(x, -y * dy, 1.0, dy) == value
+    assert kernel(-x, y * dy, 1.0, dy) == (value if kernel is normal_integral else -value)
 
 
-@pytest.mark.parametrize("known", [3, 47, 64, 107, 108])
-def test_known_values_are_not_computed_again(known: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By whole slabs: a slab that ends beyond the known part starts where it starts in any table."""
-    slabs: list[tuple[int, int]] = []
-    across = tables.across
-
-    def recorded(
-        inner: object, outer: np.ndarray, other: np.ndarray, edge: float, *rest: object
-    ) -> np.ndarray:
-        slabs.append((round(outer.min() / edge), round(outer.max() / edge)))
-        return across(inner, outer, other, edge, *rest)
-
-    monkeypatch.setattr(tables, "across", recorded)
-    first = normal_table(known, known, 1.0, 1.5)
-    slabs.clear()
-    whole = normal_table(108, 108, 1.0, 1.5)
-    every = slabs.copy()
-    slabs.clear()
-    assert np.array_equal(normal_table(108, 108, 1.0, 1.5, known=first), whole)
-    assert slabs == [slab for slab in every if slab[1] >= known]
+@given(offsets, offsets, aspects)
+def test_transposition(x, y, dy):
+    """The normal kernel does not know which axis is x."""
+    np.testing.assert_allclose(
+        normal_integral(x, y * dy, 1.0, dy), normal_integral(y * dy, x, dy, 1.0), rtol=2 * ROUNDING
+    )
 
 
-@pytest.mark.parametrize("table", [normal_table, tangential_table])
-@pytest.mark.parametrize("steps", [(1, 40), (3, 4, 5, 9), (40, 41, 150), (7, 300)])
-def test_a_grown_table_is_the_same_to_the_last_bit(
-    table: Callable[..., np.ndarray], steps: tuple[int, ...]
-) -> None:
-    grown = None
-    for n in steps:
-        grown = table(n, n, 1.0, known=grown)
-    assert np.array_equal(grown, table(steps[-1], steps[-1], 1.0))
+@KERNELS
+@given(offsets, offsets, aspects, st.integers(-40, 40))
+def test_homogeneity(kernel, x, y, dy, power):
+    """Degree 1 in all lengths; exactly for powers of two."""
+    factor = 2.0**power
+    assert kernel(factor * x, factor * y * dy, factor, factor * dy) == factor * kernel(x, y * dy, 1.0, dy)
+
+
+@KERNELS
+@given(dyadics, dyadics, st.integers(-10, 10), st.sampled_from(["x", "y"]))
+def test_additivity(kernel, x, y, power, cut):
+    """The element's integral is that of its two halves, which may differ in sign: errors scale with both.
+
+    Offsets and edges are dyadic, so that the halves' own offsets are exact.
+    """
+    dy = 2.0**power
+    y *= dy
+    if cut == "x":
+        halves = kernel(np.array([x - 0.25, x + 0.25]), y, 0.5, dy)
+    else:
+        halves = kernel(x, np.array([y - 0.25 * dy, y + 0.25 * dy]), 1.0, 0.5 * dy)
+    assert abs(kernel(x, y, 1.0, dy) - halves.sum()) <= 2 * ROUNDING * np.abs(halves).sum()
+
+
+@given(st.floats(2, 6), st.floats(0, np.pi / 2), aspects)
+def test_far_field(power, angle, dy):
+    """A point load: dx dy / rho and dx dy s / rho^2, up to the second moments of the element.
+
+    Those are dx^2/12 and dy^2/12, the second derivatives of 1/rho and of s/rho^2 at most 2/rho^3: together
+    (diagonal/rho)^2 / 12 of dx dy / rho; the fourth moments, 1e-4 of that, are in the doubling.
+    """
+    diagonal = np.hypot(1.0, dy)
+    rho = 10.0**power * diagonal
+    x, y = rho * np.cos(angle), rho * np.sin(angle)
+    tolerance = dy / rho * ((diagonal / rho) ** 2 / 6 + ROUNDING)
+    np.testing.assert_allclose(normal_integral(x, y, 1.0, dy), dy / rho, rtol=0, atol=tolerance)
+    np.testing.assert_allclose(tangential_integral(x, y, 1.0, dy), dy * x / rho**2, rtol=0, atol=tolerance)
+
+
+@given(offsets, offsets, aspects)
+def test_positive_and_largest_at_the_centre(x, y, dy):
+    """1/rho is positive; moving the field point off the centre along either axis only lowers the integral."""
+    value = normal_integral(x, y * dy, 1.0, dy)
+    assert 0 < value <= normal_integral(x, 0.0, 1.0, dy) * (1 + 2 * ROUNDING)
+    assert value <= normal_integral(0.0, 0.0, 1.0, dy) * (1 + 2 * ROUNDING)
+
+
+@given(offsets, offsets, aspects)
+def test_tangential_is_below_normal(x, y, dy):
+    """s/rho^2 <= 1/rho everywhere, so |I[s/rho^2]| <= I[1/rho]."""
+    bound = normal_integral(x, y * dy, 1.0, dy) * (1 + 2 * ROUNDING)
+    assert abs(tangential_integral(x, y * dy, 1.0, dy)) <= bound

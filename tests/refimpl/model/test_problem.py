@@ -1,8 +1,10 @@
-"""The discrete problem: gap, tractions that enter, displacements, slopes, load weights, windows."""
+"""The discrete problem: tractions that enter, displacements, slopes, load weights, forces, areas."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -10,11 +12,17 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Grid, Window
 from refimpl.model.elasticity import Elasticity
-from refimpl.model.forces import resultants
+from refimpl.model.forces import (
+    contact_area,
+    facet_resultants,
+    friction_coefficient,
+    perimeter_corrected_area,
+    plasticity_index,
+    resultants,
+)
 from refimpl.model.materials import Pair
-from refimpl.model.problem import Problem, Terms, no_elements
+from refimpl.model.problem import Problem, Terms
 from refimpl.model.slopes import Slopes
-from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.scene.discretise import discretise
 from verification.exact.dense_influence import DenseInfluence
 
@@ -44,16 +52,6 @@ def operator() -> DenseInfluence:
     return DenseInfluence(GRID, SCENE.sliding_direction)
 
 
-def test_the_gap_touches_and_heights_are_recovered() -> None:
-    problem = problem_with()
-    lower, upper = SCENE.heights(GRID)
-    assert problem.gap.min() == 0
-    np.testing.assert_allclose(problem.gap, upper - lower - (upper - lower).min(), atol=1e-21)
-    z_lower, z_upper = problem.heights
-    np.testing.assert_allclose(z_lower, lower, atol=1e-21)
-    np.testing.assert_allclose(z_upper - z_lower, problem.gap, atol=1e-21)
-
-
 def test_displacements_are_of_pressure_and_shear() -> None:
     """Of the tractions as printed, and of facet tractions along and across the sliding direction."""
     A = operator()
@@ -66,49 +64,12 @@ def test_displacements_are_of_pressure_and_shear() -> None:
         assert np.abs(problem.elasticity.gap_by_shear(shear)).max() > 1e-3 * np.abs(expected).max()
 
 
-def test_known_normal_displacements_are_used() -> None:
-    problem, A, flat = problem_with(), operator(), Slopes.flat(GRID.shape)
-    plain = problem.displacements(A, F, 0.2 * F, flat)
-    again = problem.displacements(A, F, 0.2 * F, flat, normal=problem.elasticity.normal(A, F))
-    np.testing.assert_array_equal(again, plain)
-
-
 def test_known_normal_displacements_are_not_those_of_facets() -> None:
     """With the slope correction what presses down is not the pressure."""
     problem, A = problem_with(CORRECTED), operator()
     plain = problem.displacements(A, F, 0.2 * F, SLOPES)
     again = problem.displacements(A, F, 0.2 * F, SLOPES, normal=problem.elasticity.normal(A, F))
     np.testing.assert_array_equal(again, plain)
-
-
-@pytest.mark.parametrize(
-    "terms",
-    [Terms(coupled=False, oblique=False), Terms(coupled=False, tilted=False)],
-    ids=["level", "oblique"],
-)
-def test_shear_that_moves_nothing_that_enters_is_not_computed(terms: Terms) -> None:
-    counter = Counter()
-    lower, upper = problem_with(terms).displacements(
-        FFTInfluence(GRID, 0.7, counter=counter), pressure=F, traction=0.2 * F, slopes=SLOPES
-    )
-    normal = operator().normal(F)
-    np.testing.assert_allclose(lower, SOFT.normal_compliance * normal, rtol=1e-12)
-    np.testing.assert_allclose(upper, HARD.normal_compliance * normal, rtol=1e-12)
-    assert counter.tally == {"normal": 1, "normal kernel": 1}
-
-
-@pytest.mark.parametrize(("terms", "products"), [(Terms(), 0), (CORRECTED, 2)])
-def test_only_tractions_that_are_not_zero_are_applied(terms: Terms, products: int) -> None:
-    """Without friction nothing shears flat elements; on facets the pressure itself does."""
-    counter = Counter()
-    problem_with(terms).displacements(FFTInfluence(GRID, 0.7, counter=counter), F, 0 * F, SLOPES)
-    assert counter.tally.get("shear", 0) == products
-
-
-def test_facet_tractions_close_the_gap_by_their_shear_whatever_is_coupled() -> None:
-    apart, together = (problem_with(Terms(coupled=c, slope_correction=True)) for c in (False, True))
-    found = apart.displacements(operator(), F, 0.2 * F, SLOPES)
-    np.testing.assert_array_equal(found, together.displacements(operator(), F, 0.2 * F, SLOPES))
 
 
 def test_facet_tractions_enter_with_the_slope_correction() -> None:
@@ -121,13 +82,6 @@ def test_facet_tractions_enter_with_the_slope_correction() -> None:
     lower, _ = problem.displacements(A, F, r, SLOPES)
     shear = A.shear(along) + A.shear_across(across)
     np.testing.assert_allclose(lower, SOFT.normal_compliance * A.normal(down) + SOFT.shear_compliance * shear)
-
-
-def test_as_printed_tractions_are_f_and_r() -> None:
-    down, along, across = problem_with().tractions(F, 0.2 * F, SLOPES)
-    assert down is F
-    assert across is None
-    np.testing.assert_array_equal(along, 0.2 * F)
 
 
 def test_slopes_are_of_the_mean_of_both_deformed_surfaces() -> None:
@@ -186,6 +140,175 @@ def test_other_terms_are_those_of_the_elasticity_too() -> None:
         assert other.gap is problem.gap
 
 
-def test_a_mask_without_elements() -> None:
-    assert no_elements(problem_with()).shape == GRID.shape
-    assert not no_elements(problem_with()).any()
+OBLONG = Grid((9, 6), (2.25, 3.0))
+DX = OBLONG.spacings[0]
+X = OBLONG.x[:, None] * np.ones(OBLONG.shape)
+Y = OBLONG.y[None, :] * np.ones(OBLONG.shape)
+
+
+def test_central_differences_are_exact_on_quadratics_inside() -> None:
+    slopes = Slopes.of_surface(heights=3 * X**2 + X * Y - 2 * Y, grid=OBLONG, direction=0.0)
+    inside = (slice(1, -1), slice(1, -1))
+    np.testing.assert_allclose(slopes.tan_x[inside], (6 * X + Y)[inside], atol=1e-13)
+    np.testing.assert_allclose(slopes.tan_y[inside], (X - 2)[inside], atol=1e-13)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.0, -3.0])
+def test_directions_of_a_plane(angle: float) -> None:
+    """Uphill along sliding is positive; theta_y looks 90 degrees anticlockwise."""
+    slopes = Slopes.of_surface(0.3 * X - 0.2 * Y, OBLONG, angle)
+    cos, sin = math.cos(angle), math.sin(angle)
+    np.testing.assert_allclose(slopes.tan_x, 0.3 * cos - 0.2 * sin, atol=1e-15)
+    np.testing.assert_allclose(slopes.tan_y, -0.3 * sin - 0.2 * cos, atol=1e-15)
+
+
+def test_periodic_differences_wrap() -> None:
+    grid = Grid(OBLONG.shape, OBLONG.lengths, periodic=True)
+    q = 2 * np.pi / grid.lengths[0]
+    slopes = Slopes.of_surface(np.sin(q * X), grid, 0.0)
+    np.testing.assert_allclose(slopes.tan_x, np.sin(q * DX) / DX * np.cos(q * X), atol=1e-14)
+    np.testing.assert_allclose(slopes.tan_y, 0, atol=1e-15)
+
+
+def test_two_periodic_elements_have_no_slope() -> None:
+    """Either is its neighbour's neighbour on both sides; on a free grid, one is above the other."""
+    step = np.array([[0.0], [1.0]])
+    periodic, free = (
+        Slopes.of_surface(step, Grid((2, 1), (2.0, 1.0), periodic), 0.0).tan_x for periodic in (True, False)
+    )
+    assert periodic.tolist() == [[0.0], [0.0]]
+    assert free.tolist() == [[1.0], [1.0]]
+
+
+def test_the_mean_square_is_weighted() -> None:
+    slopes = Slopes(np.array([[0.3, 0.0]]), np.array([[0.4, 0.1]]))
+    assert slopes.mean_square(np.array([[3.0, 1.0]])) == pytest.approx((3 * 0.25 + 0.01) / 4, rel=1e-14)
+    assert slopes.mean_square(np.zeros((1, 2))) == 0
+    assert Slopes.flat((1, 2)).mean_square(np.ones((1, 2))) == 0
+
+
+def test_cosines_and_sines_are_those_of_the_angles() -> None:
+    slopes = Slopes(np.array([-2.0, 0.0, 0.1]), np.array([0.5, -1e-9, 3.0]))
+    theta_x, theta_y = np.arctan(slopes.tan_x), np.arctan(slopes.tan_y)
+    np.testing.assert_allclose(slopes.cos_x, np.cos(theta_x), rtol=1e-15)
+    np.testing.assert_allclose(slopes.sin_x, np.sin(theta_x), rtol=1e-15)
+    np.testing.assert_allclose(slopes.cos_y, np.cos(theta_y), rtol=1e-15)
+    np.testing.assert_allclose(slopes.sin_y, np.sin(theta_y), rtol=1e-15)
+    np.testing.assert_allclose(slopes.obliqueness, np.cos(theta_x) * np.cos(theta_y), rtol=1e-15)
+
+
+def test_distance_looks_only_where_asked() -> None:
+    one, two = Slopes(np.zeros(3), np.zeros(3)), Slopes(np.array([0.0, 9.0, 0.2]), np.array([0.1, 9.0, 0.0]))
+    assert one.distance(two, np.array([True, False, True])) == 0.2
+    assert one.distance(two, np.array([False, False, False])) == 0
+    assert one.distance(one, np.array([True, True, True])) == 0
+    everywhere, flat = np.array([True, True, True]), Slopes.flat((3,))
+    assert flat.distance(two, everywhere) == two.distance(flat, everywhere) == 9
+    assert flat.distance(flat, everywhere) == 0
+
+
+def test_slopes_of_a_window_are_zero_elsewhere() -> None:
+    tilted = Slopes(np.ones((2, 2)), np.full((2, 2), 2.0))
+    whole = tilted.spread(Window(1, 3, 0, 2), Grid((4, 3), (1.0, 1.0)))
+    assert whole.tan_x.sum() == 4
+    assert np.all(whole.tan_y[1:3, :2] == 2)
+    assert np.all(whole.cos_x[0] == 1)
+
+
+TRIPLES = ((3, 4, 5), (5, 12, 13), (8, 15, 17), (7, 24, 25), (-3, 4, 5), (-20, 21, 29), (0, 1, 1))
+"""Opposite, adjacent, hypotenuse: angles whose cosine, sine and tangent are rational."""
+
+
+def rational_state(M=6, seed=3):
+    """Pressures, tractions (integers) and slope triangles for every element."""
+    random = np.random.default_rng(seed)
+    f = random.integers(0, 1000, (M, M))
+    r = random.integers(-500, 500, (M, M))
+    at = random.integers(0, len(TRIPLES), (2, M, M))
+    return f, r, at
+
+
+def slopes_of(at):
+    tangents = np.array([opposite / adjacent for opposite, adjacent, _ in TRIPLES])
+    return Slopes(tangents[at[0]], tangents[at[1]])
+
+
+def exact_sums(f, r, at, facet):
+    total = [Fraction(0), Fraction(0), Fraction(0)]
+    for index in np.ndindex(f.shape):
+        (ox, ax, hx), (oy, ay, hy) = TRIPLES[at[0][index]], TRIPLES[at[1][index]]
+        sin_x, cos_x, sin_y, cos_y = Fraction(ox, hx), Fraction(ax, hx), Fraction(oy, hy), Fraction(ay, hy)
+        p, q = int(f[index]), int(r[index])
+        if facet:
+            terms = (p - q * sin_x / cos_x, q + p * sin_x / cos_x, p * sin_y / cos_y)
+        else:
+            down = p * cos_x - q * sin_x
+            terms = (down * cos_y, (p * sin_x + q * cos_x) * cos_y, down * sin_y)
+        total = [sum_ + term for sum_, term in zip(total, terms, strict=True)]
+    return [float(t) for t in total]
+
+
+@pytest.mark.parametrize("facet", [False, True])
+@pytest.mark.parametrize("seed", range(2))
+def test_sums_are_the_exact_rational_ones(seed, facet):
+    """Eqs (2), (3), Q and the facets' own; 36 terms of a few eps each, of at most 2000."""
+    f, r, at = rational_state(seed=seed)
+    function = facet_resultants if facet else resultants
+    found = function(f.astype(float), r.astype(float), slopes_of(at), 0.5)
+    exact = 0.5 * np.array(exact_sums(f, r, at, facet))
+    np.testing.assert_allclose(found, exact, rtol=0, atol=36 * 2000 * 4e-16)
+
+
+def test_one_inclined_facet():
+    """Pressure on a plane that rises at 3:4 along sliding: friction by geometry alone."""
+    slopes = Slopes(np.array([[0.75]]), np.array([[0.0]]))
+    found = resultants(np.array([[10.0]]), np.array([[0.0]]), slopes, 2.0)
+    assert found == pytest.approx((16.0, 12.0, 0.0), rel=1e-15)
+    # a traction uphill lifts: it takes from N
+    assert resultants(np.array([[0.0]]), np.array([[10.0]]), slopes, 2.0) == pytest.approx((-12.0, 16.0, 0.0))
+
+
+FACE = (math.pi - 1 + math.log(2)) / 24
+"""Area over that of an element that each face of the contact's edge counts too much."""
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_areas_of_hand_counted_sets(periodic: bool) -> None:
+    grid = Grid((4, 3), (2.0, 1.2), periodic)  # dA = 0.2
+    contact = np.zeros((4, 3), dtype=bool)
+    assert contact_area(contact, grid) == perimeter_corrected_area(contact, grid) == 0
+    contact[1, 1] = True
+    assert contact_area(contact, grid) == pytest.approx(0.2, rel=1e-15)
+    assert perimeter_corrected_area(contact, grid) == pytest.approx(0.2 * (1 - 4 * FACE), rel=1e-15)
+    contact[2, 1] = True
+    assert perimeter_corrected_area(contact, grid) == pytest.approx(0.2 * (2 - 6 * FACE), rel=1e-15)
+    everything = np.ones((4, 3), dtype=bool)  # its border is straight, and known
+    assert perimeter_corrected_area(everything, grid) == contact_area(everything, grid)
+    column = np.arange(3) == np.zeros((4, 1))
+    faces = 8 if periodic else 4
+    assert perimeter_corrected_area(column, grid) == pytest.approx(0.2 * (4 - faces * FACE), rel=1e-15)
+
+
+@pytest.mark.parametrize(("M", "N"), [(400, 400), (300, 450)])
+def test_what_the_correction_subtracts_of_a_disc(M: int, N: int) -> None:
+    """Whatever its position, a disc of radius r has 4 r / dy faces along x and 4 r / dx along y; 1 % is the
+    grid's."""
+    radius, grid = 0.37, Grid((M, N), (1.0, 1.0))
+    dx, dy = grid.spacings
+    shifts = (np.arange(8) + 0.5) / 8 - 0.5
+    excess = []
+    for s in shifts:
+        for t in shifts:
+            inside = np.hypot(grid.x[:, None] - 0.5 - s * dx, grid.y[None, :] - 0.5 - t * dy) < radius
+            taken = contact_area(inside, grid) - perimeter_corrected_area(inside, grid)
+            excess.append(taken / (4 * radius * (dx + dy)))
+    assert np.mean(excess) == pytest.approx(FACE, rel=0.01)
+
+
+def test_the_friction_coefficient_is_the_force_over_the_load() -> None:
+    assert friction_coefficient(7.0, 70.0) == pytest.approx(0.1, rel=1e-15)
+    assert math.isnan(friction_coefficient(0.0, 0.0))
+
+
+def test_the_plasticity_index_is_eq_12() -> None:
+    assert plasticity_index(1e11, 1e9, 1e-6, 1e-4) == pytest.approx(2.2)

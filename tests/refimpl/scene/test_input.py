@@ -16,13 +16,7 @@ import refimpl as rf
 from refimpl.planning import plan
 
 STEEL = rf.Material(200e9, 0.3)
-SCENE = rf.Scene(
-    upper=rf.Body(STEEL, rf.Sphere(0.14)),
-    lower=rf.Body(rf.Material(118e9, 0.3), rf.Flat()),
-    friction=rf.Friction(15e6, 0.08),
-    load=70.0,
-    side=1.61e-3,
-)
+SCENE = rf.read_scene("table1-smooth")
 TOML = rf.scene_to_toml(SCENE)
 METRES_OF_ROUGHNESS = np.random.default_rng(1).normal(0, 0.5, (8, 8))
 
@@ -68,11 +62,6 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "complex heights": ("heights", lambda: rf.Body(STEEL, np.zeros((8, 8), dtype=complex))),
     "array too small to resample": ("lower.surface[0].heights", lambda: rf.solve(on(np.zeros((3, 3))), 8)),
     "roughness in metres": ("lower.surface", lambda: rf.solve(on(METRES_OF_ROUGHNESS), 8)),
-    "zero grid": ("grid", lambda: rf.solve(SCENE, 0)),
-    "negative grid": ("grid", lambda: rf.solve(SCENE, -8)),
-    "fractional grid": ("grid", lambda: rf.solve(SCENE, 8.5)),
-    "grid as truth value": ("grid", lambda: rf.solve(SCENE, True)),
-    "no grid": ("grid", lambda: rf.solve(SCENE)),
     "unknown method": ("method", lambda: rf.solve(SCENE, 8, method="magic")),
     "tolerance of zero": ("tolerance", lambda: rf.solve(SCENE, 8, tolerance=0.0)),
     "tolerance NaN": ("tolerance", lambda: rf.solve(SCENE, 8, tolerance=math.nan)),
@@ -126,8 +115,6 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "scene file of no name": ("scene", lambda: rf.read_scene(None)),
     "text of no scene": ("scene", lambda: rf.scene_to_toml("hertz")),
     "side of a grid as text": ("side", lambda: rf.Grid.square("1", 8)),
-    "dense grid beyond memory": ("grid", lambda: rf.solve(SCENE, 4096, method="dense")),
-    "fft grid beyond memory": ("grid", lambda: rf.solve(SCENE, 10_000_000)),
 }
 
 
@@ -144,7 +131,9 @@ def test_refused_by_one_line_that_names_the_field(name: str) -> None:
 @pytest.mark.parametrize(
     ("method", "grid", "reason"), [("dense", 3000, "4096 elements"), ("fft", 3_000_000, r"estimated .* GB")]
 )
-def test_a_grid_out_of_reach_is_refused_before_anything_is_allocated(method: str, grid: int, reason: str) -> None:
+def test_a_grid_out_of_reach_is_refused_before_anything_is_allocated(
+    method: str, grid: int, reason: str
+) -> None:
     """One field of that grid would take 72 MB, or 72 TB; the refusal takes less than one."""
     tracemalloc.start()
     try:
@@ -239,10 +228,8 @@ def test_a_bad_scene_file_is_refused(name: str, tmp_path: Path) -> None:
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("size", [1e-30, 1e30])
-@pytest.mark.parametrize("modulus", [1e-30, 1e30])
-@pytest.mark.parametrize("strain", [1e-29, 1e-4, 1e2])
-@pytest.mark.parametrize("method", ["fft", "dense"])
+@pytest.mark.parametrize(("size", "modulus"), [(1e-30, 1e-30), (1e-30, 1e30), (1e30, 1e30)])
+@pytest.mark.parametrize(("strain", "method"), [(1e-29, "fft"), (1e2, "fft"), (1e-29, "dense")])
 def test_sizes_at_the_ends_of_what_is_allowed(
     size: float, modulus: float, strain: float, method: Any
 ) -> None:

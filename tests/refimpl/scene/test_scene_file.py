@@ -1,16 +1,20 @@
-"""TOML in and out; the scenes that ship."""
+"""TOML in and out, the scenes that ship, and keys that are deep, long, or hold what a terminal obeys."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 import refimpl as rf
+from refimpl.errors import InputError, printable
 from refimpl.model.friction import is_frictionless
 from refimpl.scene.scene_file import scene_from_dict, scene_to_dict
+from verification.sweep.study_file import read_study
 
 SPEC_EXAMPLE = """
 load = 70.0            # N
@@ -98,12 +102,6 @@ def test_arrays_have_no_toml() -> None:
         rf.scene_to_toml(rf.Scene(body, body, rf.Friction(), 1.0, 1.0))
 
 
-@pytest.mark.parametrize("plastic", [True, False, None])
-def test_whether_pressures_are_capped_is_kept(plastic: bool | None) -> None:
-    scene = replace(rf.read_scene("hertz"), plastic=plastic)
-    assert scene_from_dict(scene_to_dict(scene), Path()).plastic is plastic
-
-
 @pytest.mark.parametrize("key", ["E", "nu"])
 def test_a_number_that_a_material_lacks_is_named_in_full(key: str) -> None:
     table = scene_to_dict(rf.read_scene("hertz"))
@@ -111,3 +109,55 @@ def test_a_number_that_a_material_lacks_is_named_in_full(key: str) -> None:
     with pytest.raises(rf.InputError) as refused:
         scene_from_dict(table, Path())
     assert refused.value.field == f"lower.material.{key}"
+
+
+SCENE = rf.scene_to_toml(rf.read_scene("hertz"))
+READERS = [rf.read_scene, read_study]
+
+
+@pytest.mark.parametrize("read", READERS)
+@pytest.mark.parametrize(
+    ("parts", "form", "part"),
+    [
+        (40, "{} = 1\n", "a"),
+        (1500, "[{}]\n", '"a.b"'),
+        (20_000, "[[{}]]\n", "'a'"),
+        (20_000, "x = {{ {} = 1 }}\n", "a"),
+    ],
+)
+def test_dotted_keys_of_many_parts_are_refused_at_once(
+    read: object, parts: int, form: str, part: str, tmp_path: Path
+) -> None:
+    (tmp_path / "s.toml").write_text(form.format(" . ".join([part] * parts)))
+    begun = time.process_time()
+    with pytest.raises(InputError, match="dotted keys"):
+        read(tmp_path / "s.toml")  # type: ignore[operator]  # one of READERS
+    assert time.process_time() - begun < 1.0
+
+
+def test_paths_with_many_dots_are_no_keys(tmp_path: Path) -> None:
+    (tmp_path / "s.toml").write_text("# " + "../" * 100 + "\n" + SCENE)
+    rf.read_scene(tmp_path / "s.toml")
+
+
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(key=st.text(st.characters(codec="utf-8", exclude_characters='"\\'), min_size=1, max_size=20))
+def test_no_key_reaches_a_terminal_unescaped(key: str, tmp_path: Path) -> None:
+    escaped = "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in key)
+    (tmp_path / "s.toml").write_text(f'"x{escaped}" = 1\n{SCENE}', encoding="utf-8")
+    with pytest.raises(InputError) as refused:
+        rf.read_scene(tmp_path / "s.toml")
+    assert str(refused.value).isprintable()
+
+
+def test_tables_in_tables_are_shown_without_recursion() -> None:
+    value: dict[str, object] = {}
+    for _ in range(100_000):
+        value = {"a": value}
+    assert "tables in tables" in str(InputError("scene.a", value, "no such key"))
+
+
+@given(st.text())
+def test_printable_texts_stay_and_all_others_become_so(text: str) -> None:
+    assert printable(text).isprintable()
+    assert printable(text) == text or not text.isprintable()

@@ -1,7 +1,8 @@
-"""The answer at a contact set that stays: how many products it takes, and what starts it."""
+"""The answer at a contact set that stays, and the motion of its edge."""
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -9,16 +10,17 @@ import pytest
 
 import refimpl as rf
 from refimpl.driver.reference import solve_reference
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array, Grid, Mask
 from refimpl.scene.discretise import discretise
+from refimpl.sensitivities.edge_motion import EdgeMotion
 from refimpl.sensitivities.fixed_contact import FixedContact
 from tests.refimpl.sensitivities.test_sensitivity import sliding
 
 M = 48
 
 
-def fixed_contact(scene: rf.Scene, oblique: bool | None = None) -> FixedContact:
-    s = rf.solve(scene, M, oblique=oblique)
+def fixed_contact(scene: rf.Scene) -> FixedContact:
+    s = rf.solve(scene, M)
     return FixedContact(s.problem, s.pressure, s.contact & ~s.excluded, s.slopes)
 
 
@@ -27,8 +29,7 @@ def change(fixed: FixedContact) -> Array:
     return np.append(np.zeros(np.count_nonzero(fixed.contact)), -1.0)
 
 
-@pytest.mark.parametrize("periodic", [False, True])
-@pytest.mark.parametrize("tau", [0.0, 2e6])
+@pytest.mark.parametrize(("tau", "periodic"), [(0.0, True), (2e6, False)])
 def test_an_answer_takes_a_dozen_products(
     tau: float, periodic: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -47,72 +48,11 @@ def test_an_answer_takes_a_dozen_products(
     assert len(applied) <= 12
 
 
-@pytest.mark.parametrize("periodic", [False, True])
-def test_the_plain_inverse_carries_the_load_exactly(periodic: bool) -> None:
-    fixed = fixed_contact(sliding(periodic=periodic))
-    load = fixed.problem.load
-    assert load is not None
-    x = np.append(np.random.default_rng(1).normal(size=np.count_nonzero(fixed.contact)), 0.3)
-    found = fixed.plain_inverse(x)
-    carried = fixed.peak * found[:-1].sum() * fixed.problem.grid.element_area
-    assert carried == pytest.approx(0.3 * load, rel=1e-10)
-
-
-def test_without_friction_and_slopes_it_is_nearly_the_inverse() -> None:
-    """Within the spectrum of the preconditioner, 0.93 to 1.34."""
-    scene = replace(sliding(), friction=rf.Friction())
-    fixed = fixed_contact(scene, oblique=False)
-    size = np.count_nonzero(fixed.contact)
-    rows = np.array([fixed.plain_inverse(fixed.jacobian(x)) for x in np.eye(size + 1)])
-    values = np.linalg.eigvals(rows)
-    assert np.abs(values.imag).max() < 1e-3
-    assert values.real.min() > 0.9
-    assert values.real.max() < 1.5
-
-
-def test_at_an_approach_the_force_found_is_the_scale() -> None:
-    s = rf.solve(sliding(), M, approach=rf.solve(sliding(), M).approach)
-    fixed = FixedContact(s.problem, s.pressure, s.contact, s.slopes)
-    assert fixed.problem.load is None
-    found = fixed.plain_inverse(change(fixed))
-    assert found[:-1].sum() * fixed.peak == pytest.approx(-s.pressure.sum(), rel=1e-10)
-
-
-def test_the_window_is_the_contact_and_its_neighbours() -> None:
-    """Products are of the contact's size, not of the domain's."""
-    s = rf.solve(sliding(), M)
-    fixed = FixedContact(s.problem, 1e-9 * s.pressure, s.contact, s.slopes)  # of nothing beside a pascal
-    contact = np.argwhere(s.contact)
-    (first_row, first_column), (last_row, last_column) = contact.min(axis=0), contact.max(axis=0)
-    rows, columns = fixed.window.slices
-    assert (rows.start, rows.stop) == (first_row - 2, last_row + 3)
-    assert (columns.start, columns.stop) == (first_column - 2, last_column + 3)
-    assert fixed.contact.shape == fixed.operator.source.shape
-
-
 def test_no_change_has_no_answer_and_leaves_nothing() -> None:
     fixed = fixed_contact(sliding())
     found = fixed.response(0 * change(fixed))
     assert not found.pressure.any()
     assert (found.approach, found.residual) == (0.0, 0.0)
-
-
-@pytest.mark.parametrize("oblique", [True, False])
-def test_a_solved_state_misses_nothing(oblique: bool) -> None:
-    """Neither Eq. (6) on the set, by approaches, nor the load, by loads."""
-    fixed = fixed_contact(sliding(), oblique)
-    missed = fixed.residual(fixed.problem, fixed.pressure, fixed.approach)
-    assert np.abs(missed).max() < 1e-5
-    more = fixed.residual(replace(fixed.problem, load=16.0), fixed.pressure, fixed.approach)
-    assert more[-1] == pytest.approx(0.25, abs=1e-5)
-
-
-@pytest.mark.parametrize("product", ["jacobian", "plain_inverse"])
-def test_products_take_the_columns_that_operators_hand_on(product: str) -> None:
-    fixed = fixed_contact(sliding())
-    x = np.random.default_rng(2).normal(size=np.count_nonzero(fixed.contact) + 1)
-    apply = getattr(fixed, product)
-    assert np.array_equal(apply(x[:, None]), apply(x))
 
 
 @pytest.mark.parametrize(
@@ -136,3 +76,59 @@ def test_the_answer_to_the_load_is_that_of_two_solves_on_rectangles_as_well(grid
     assert found.approach == pytest.approx((high.approach - low.approach) / (2 * step), rel=2e-4)
     forces = fixed.forces(fixed.problem, fixed.pressure, fixed.approach)
     assert forces == pytest.approx(base.forces, rel=1e-10)
+
+
+def with_contact(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedContact:
+    """A fixed contact with another set and other pressures."""
+    s = rf.solve(replace(rf.read_scene("table1-rough"), periodic=periodic), 16)
+    fixed = copy(FixedContact(s.problem, s.pressure, s.contact, s.slopes))
+    fixed.contact, fixed.pressure = contact, np.where(contact, pressure, 0.0)
+    return fixed
+
+
+def hertz_disc(x: float = 0.0, y: float = 0.0) -> tuple[Array, Array]:
+    """Squared distances from a point over the squared radius, 15.2 elements; Hertz's pressure there."""
+    i, j = np.indices((41, 37))
+    inside = ((i - 20 - x) ** 2 + (j - 18 - y) ** 2) / 15.2**2
+    return inside, np.sqrt(np.maximum(1 - inside, 0.0))
+
+
+def test_the_edge_of_a_disc_moves_as_its_pressure_says() -> None:
+    """d sqrt(1 - (x/a)^2 - (y/b)^2) by both axes for the load, then by one alone: half the area's growth."""
+    inside, pressure = hertz_disc()
+    contact = inside < 1
+    slope = np.divide(1, pressure, where=contact, out=np.zeros_like(pressure)) / 15.2
+    edge = EdgeMotion(with_contact(contact, pressure), (2 * np.pi * 15.2, 3.0), slope * inside)
+    along = slope * ((np.indices(inside.shape)[0] - 20) / 15.2) ** 2
+    growth, scatter = edge.derivative(along)
+    assert growth == pytest.approx(np.pi * 15.2, rel=0.03)
+    assert scatter == pytest.approx(1.5, rel=0.2)  # half the load's, and what 9 x 9 elements find otherwise
+    assert edge.derivative(pressure) == pytest.approx((0.0, 0.0), abs=1e-10)  # as they are, only more
+    assert edge.derivative(slope * inside) == pytest.approx((2 * np.pi * 15.2, 3.0))
+
+
+def test_an_edge_moves_alike_wherever_a_periodic_square_begins() -> None:
+    inside, pressure = hertz_disc()
+    inside, pressure = inside[:37], pressure[:37]
+    moved = np.where(inside < 1, np.random.default_rng(3).random(inside.shape), 0.0)
+    found = []
+    for shift in (0, 9, 20):
+        contact, level, change = (np.roll(a, (shift, -shift), (0, 1)) for a in (inside < 1, pressure, moved))
+        fixed = with_contact(contact, level, periodic=True)
+        found.append(EdgeMotion(fixed, (5.0, 0.1), contact / np.maximum(level, 0.1)).derivative(change))
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+    assert found[2] == pytest.approx(found[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_the_edge_is_where_a_neighbour_is_open(periodic: bool) -> None:
+    """Outside a free square all is open; a periodic one has neighbours all round."""
+    contact = np.ones((5, 5), dtype=bool)
+    contact[0, 2] = False
+    expected = (
+        ["xx.xx", "x.x.x", "x...x", "x...x", "xxxxx"]
+        if not periodic
+        else [".x.x.", "..x..", *["....."] * 2, "..x.."]
+    )
+    edge = EdgeMotion(with_contact(contact, np.ones((5, 5)), periodic=periodic), (1.0, 0.0), np.ones((5, 5)))
+    assert ["".join(".x"[mark] for mark in row) for row in edge.elements.astype(int)] == expected

@@ -1,10 +1,9 @@
-"""The half-space's error: local errors from the table, three parts of each number, and what to do."""
+"""The half-space's error: local errors from the table, parts of each number, advice, one's own surface."""
 
 from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from importlib import resources
 from types import SimpleNamespace
 from typing import Any
@@ -13,18 +12,25 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.half_space.influence_error import coefficient_error
-from refimpl.half_space.local_error import local_error
+from refimpl.grid import Array, Grid
+from refimpl.model.elasticity import Elasticity
+from refimpl.model.materials import Pair
+from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
 from refimpl.sensitivities import half_space
 from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error
+from refimpl.sensitivities.surface_verdict import (
+    pressed_on_a_flat,
+    surface_verdict,
+)
+from refimpl.solution.influence_error import coefficient_error
+from refimpl.solution.influence_error_3d import element_error
+from refimpl.solution.local_error import local_error, share_above, short_wave_share
 
 SIZE, ELEMENTS = (3e-3, 2e-3), (9, 6)
-SOFT, STIFF = (
-    rf.Material(E=3e9, nu=0.3),
-    rf.Material(E=45e9, nu=0.0),
-)  # compliances 0.91 / 3 and 1 / 45: 91 to 20/3
+# compliances 0.91 / 3 and 1 / 45: 91 to 20/3
+SOFT, STIFF = rf.Material(E=3e9, nu=0.3), rf.Material(E=45e9, nu=0.0)
+RIGID, AUXETIC = rf.Material(E=math.inf, nu=0.3), rf.Material(E=3e9, nu=-0.2)
 NUMBERS = (
     "approach",
     "normal_force",
@@ -63,35 +69,21 @@ def test_each_body_counts_by_its_slope_and_its_share_of_the_compliance() -> None
     assert local_error(problem) == pytest.approx(np.full(ELEMENTS, expected), rel=1e-4)
 
 
-def test_between_the_nodes_of_the_table_the_error_is_almost_linear() -> None:
-    """Half a degree apart: at 10.2 degrees, by two fifths of the half degree's difference."""
-    at = {}
-    for degrees in (10.0, 10.2, 10.5):
-        flat = scene(rf.Flat(), inclined(degrees, 0.7))
-        (at[degrees],) = set(np.round(local_error(discretise(flat, rf.Grid(ELEMENTS, SIZE))).ravel(), 12))
-    assert 0 < at[10.0] < at[10.2] < at[10.5]
-    assert at[10.2] - at[10.0] == pytest.approx(0.4 * (at[10.5] - at[10.0]), rel=1e-6)
-
-
-def test_beyond_the_table_nothing_is_known_and_a_rigid_body_has_no_error() -> None:
-    rigid = rf.Material(E=math.inf, nu=0.3)
-    steep = scene(inclined(31.0, 0.7), rf.Flat())
-    assert np.isinf(local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE)))).all()
-    steep = scene(inclined(31.0, 0.7), inclined(10.0, 0.7), of_upper=rigid)
-    expected = largest_in_the_table(10.0, 0.3)
-    assert local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE))) == pytest.approx(
-        np.full(ELEMENTS, expected)
-    )
-
-
-def test_an_auxetic_body_has_the_errors_of_strips() -> None:
-    """The table of square elements has no negative ratio of Poisson."""
-    auxetic = rf.Material(E=3e9, nu=-0.2)
-    steep = scene(rf.Flat(), inclined(10.0, 0.7), of_upper=rf.Material(E=math.inf, nu=0.3), of_lower=auxetic)
-    expected = coefficient_error(math.radians(10.0), auxetic)
-    assert local_error(discretise(steep, rf.Grid(ELEMENTS, SIZE))) == pytest.approx(
-        np.full(ELEMENTS, expected)
-    )
+@pytest.mark.parametrize(
+    ("degrees", "bodies", "expected"),
+    [
+        ((31.0, 0.0), (STIFF, SOFT), math.inf),  # beyond the table
+        ((31.0, 10.0), (RIGID, SOFT), largest_in_the_table(10.0, 0.3)),
+        # the table of square elements has no negative ratio of Poisson: strips
+        ((0.0, 10.0), (RIGID, AUXETIC), coefficient_error(math.radians(10.0), AUXETIC)),
+    ],
+)
+def test_bodies_beyond_the_table_and_without_error(
+    degrees: tuple[float, float], bodies: tuple[rf.Material, rf.Material], expected: float
+) -> None:
+    upper, lower = (inclined(angle, 0.7) for angle in degrees)
+    problem = discretise(scene(upper, lower, of_upper=bodies[0], of_lower=bodies[1]), rf.Grid(ELEMENTS, SIZE))
+    assert local_error(problem) == pytest.approx(np.full(ELEMENTS, expected))
 
 
 def rough() -> rf.Scene:
@@ -150,11 +142,6 @@ def shallow(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(half_space, "steepness", lambda problem, contact: math.tan(math.radians(10)) ** 2)
 
 
-def test_the_stated_error_is_the_sum_of_the_parts_sizes() -> None:
-    assert made_up(-0.03, 0.02, 0.006).stated("contact_area") == pytest.approx(0.056)
-    assert made_up(-0.03, 0.02, 0.006).stated("approach") == pytest.approx(0.0056)
-
-
 @pytest.mark.parametrize(
     ("parts", "says"),
     [
@@ -194,16 +181,84 @@ def test_beyond_the_slopes_that_were_judged_the_advice_is_finite_elements(
     assert "finite elements" in said
 
 
-def test_a_number_that_is_zero_has_no_relative_error(shallow: None) -> None:
-    without: Any = SimpleNamespace(**{**vars(SOLVED), "friction_coefficient": 0.0})
-    assert advice(made_up(-0.03, 0.008, 0.001), without).startswith("keep the half-space")
+COPPER = rf.Material(118e9, 0.3)
 
 
-def test_a_slid_scene_recedes_where_it_stands() -> None:
-    rough = rf.GaussianRoughness(2e-6, 8e-4, seed=3)
-    slid = replace(scene(rf.Sphere(0.1), rough), sliding_offset=1.3e-3)
-    solution = rf.solve(slid, (24, 16))
-    found = half_space_error(slid, solution)
-    z_lower, z_upper = solution.problem.heights
-    gap = z_upper - z_lower + found.gap_change
-    assert found.corrected.problem.gap == pytest.approx(gap - gap.min(), abs=1e-12 * np.ptp(gap))
+def problem(grid: Grid, lower: np.ndarray, pair: Pair) -> Problem:
+    gap = -lower - (-lower).min()
+    return Problem(grid, gap, lower + gap / 2, Elasticity(pair), rf.Friction(), 0.0, Terms(), 1.0, None)
+
+
+def test_surfaces_that_are_constant_along_an_axis_have_the_errors_of_strips() -> None:
+    grid = Grid.square(1.0, 16)
+    height = np.repeat(math.tan(math.radians(10.0)) * grid.x[:, None], 16, axis=1)
+    found = local_error(problem(grid, height, Pair(COPPER, RIGID)))
+    assert found == pytest.approx(coefficient_error(math.radians(10.0), COPPER), rel=1e-9)
+    assert found[0, 0] < element_error(math.radians(10.0), COPPER).in_line
+
+
+def test_the_share_of_the_area_is_counted() -> None:
+    grid = Grid.square(1.0, 16)
+    # 8 degrees on the right half; central differences leave a quarter of it at column 7, 3/4 at column 8
+    height = math.tan(math.radians(8.0)) * np.maximum(grid.x - 0.5, 0.0)[:, None] + 0 * grid.y[None, :]
+    height[0, 0] += 1e-15  # not constant along y
+    found = local_error(problem(grid, height, Pair(COPPER, RIGID)))
+    assert share_above(found, 0.02) == 8 / 16  # 6 degrees: 3.8 %, 2 degrees: 1.3 %
+    assert share_above(np.full((2, 2), math.inf), 0.02) == 1.0
+    with pytest.raises(rf.InputError):
+        share_above(found, 0.0)
+
+
+def test_two_waves_share_by_the_square_of_their_slopes() -> None:
+    grid = Grid((64, 64), (1.0, 1.0), periodic=True)
+    x, y = grid.x[:, None], grid.y[None, :]
+    # amplitudes 4 and 1 at 4 and 8 waves: slopes 16 to 8, squares 4 to 1
+    height = 4 * np.cos(8 * math.pi * x) + np.cos(16 * math.pi * y)
+    assert short_wave_share(problem(grid, height, Pair(COPPER, RIGID))) == pytest.approx(0.2, rel=1e-9)
+
+
+def crossed_waves(rms: float = 0.05) -> rf.ArraySurface:
+    x = (np.arange(32) + 0.5) / 32
+    height = rms * (np.cos(2 * math.pi * x)[:, None] * np.cos(4 * math.pi * x)[None, :])
+    return rf.ArraySurface(height, pixel=1 / 32)
+
+
+def test_a_surface_alone_is_pressed_by_a_twentieth_of_its_rms_gradient() -> None:
+    """Slopes of 0.1 and -0.2 on 1 x 2 m: the gradient is sqrt(0.05). E* of one body: 118 / (1 - 0.16) GPa."""
+    x, y = (np.arange(8) + 0.5) / 8, (np.arange(16) + 0.5) / 8
+    plane, law = rf.ArraySurface(0.1 * x[:, None] - 0.2 * y[None, :], pixel=1 / 8), rf.Friction(3e6, 0.2)
+    scene = pressed_on_a_flat(plane, rf.Material(118e9, 0.4), grid=16, friction=law)
+    assert scene.load == pytest.approx(0.05 * 118e9 / 0.84 * math.sqrt(0.05) * 2, rel=1e-9)
+    assert (scene.friction, scene.upper.material) == (law, rf.Material(math.inf, 0.4))
+    assert pressed_on_a_flat(plane, COPPER, grid=16, pressure=3e6).load == pytest.approx(6e6)
+
+
+@pytest.mark.parametrize("pressure", [None, -1.0, 0.0, math.inf])
+def test_a_flat_surface_or_no_pressure_is_refused(pressure: float | None) -> None:
+    surface = rf.ArraySurface(np.zeros((8, 8)), pixel=0.125) if pressure is None else crossed_waves()
+    with pytest.raises(rf.InputError):
+        pressed_on_a_flat(surface, COPPER, grid=8, pressure=pressure)
+
+
+def test_the_verdict_has_every_number_its_share_and_its_evidence() -> None:
+    scene = pressed_on_a_flat(crossed_waves(), COPPER, grid=32, friction=rf.Friction(beta=0.1))
+    verdict = surface_verdict(scene, 32)
+    assert verdict.local.shape == (32, 32)
+    assert verdict.share_above == float(np.mean(verdict.local > 0.02)) > 0.5
+    numbers = verdict.numbers()
+    for name in ("friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force"):
+        row = numbers[name]
+        parts = abs(row["corrected"] - row["value"]) + row["second_order"] + row["finite_strain"]
+        assert row["corrected"] == row["value"] + verdict.error.first_order[name]
+        assert row["stated"] == pytest.approx(parts)
+    # rms gradient of the crossed waves: 0.05 * 2 pi * sqrt(1 + 4) / 2 = 0.351, times sqrt 2: 26.4 degrees
+    assert verdict.evidence.startswith("slopes of 26 degrees")
+    assert "beyond 20 degrees" in verdict.evidence
+    assert verdict.advice.endswith("use finite elements")
+
+
+def test_a_gentle_surface_keeps_the_half_space() -> None:
+    verdict = surface_verdict(pressed_on_a_flat(crossed_waves(5e-4), COPPER, grid=32), 32)
+    assert verdict.share_above == 0.0
+    assert verdict.advice.startswith("keep the half-space")
+    assert "finer grid" not in verdict.evidence

@@ -15,7 +15,6 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.grid.contact_patches import patch_labels
 from refimpl.solution import display
 from refimpl.solution.arrays import UNITS, as_dataset, attributes_of, fields_of
 from refimpl.solution.patches import patches_of
@@ -24,11 +23,6 @@ from refimpl.solution.patches import patches_of
 @pytest.fixture(scope="module")
 def rough() -> rf.Solution:
     return rf.solve(rf.read_scene("table1-rough"), grid=48)
-
-
-@pytest.fixture(scope="module")
-def yielded() -> rf.Solution:
-    return rf.solve(rf.read_scene("metal-polymer"), grid=32)
 
 
 @pytest.fixture(scope="module")
@@ -70,23 +64,12 @@ def test_a_patch_across_a_period_has_its_centre_at_the_border() -> None:
     assert patch.y == pytest.approx(4.5)
 
 
-def test_labels_of_a_periodic_contact_are_numbered_without_holes() -> None:
-    contact = np.zeros((6, 6), dtype=bool)
-    contact[0, 1] = contact[2, 3] = contact[5, 1] = contact[4, 5] = True
-    assert np.unique(patch_labels(contact, periodic=True)).tolist() == [0, 1, 2, 3]
-    assert patch_labels(contact, periodic=True)[5, 1] == 1
-
-
-def test_patches_add_up_to_the_solution(yielded: rf.Solution) -> None:
-    found = yielded.patches()
-    assert math.fsum(patch.area for patch in found) == pytest.approx(yielded.contact_area, rel=1e-12)
-    plastic = math.fsum(patch.area * patch.plastic_share for patch in found)
-    assert plastic == pytest.approx(yielded.plastic_area, rel=1e-12)
-
-
-def test_every_field_is_the_solutions_of_that_name() -> None:
-    """No two of them are equal here; patches are labels of the contact."""
-    grid = rf.Grid((2, 3), (1e-3, 2e-3))
+@pytest.mark.parametrize(
+    ("periodic", "labels"), [(False, [[1, 0, 2], [0, 0, 2]]), (True, [[1, 0, 1], [0, 0, 1]])]
+)
+def test_every_field_is_the_solutions_of_that_name(periodic: bool, labels: list[list[int]]) -> None:
+    """No two of them are equal here; patches are labels of the contact, across a period as well."""
+    grid = rf.Grid((2, 3), (1e-3, 2e-3), periodic=periodic)
     contact = np.array([[True, False, True], [False, False, True]])
     made: Any = SimpleNamespace(grid=grid, contact=contact)
     names = {
@@ -96,7 +79,7 @@ def test_every_field_is_the_solutions_of_that_name() -> None:
     for k, name in enumerate(names):
         setattr(made, name, np.full(grid.shape, float(k)))
     found = fields_of(made)
-    assert found.pop("patch").values.tolist() == [[1, 0, 2], [0, 0, 2]]
+    assert found.pop("patch").values.tolist() == labels
     assert {name: field.unit for name, field in found.items()} == names
     assert [float(field.values[0, 0]) for field in found.values()] == list(range(10))
 
@@ -117,25 +100,6 @@ def test_without_xarray_the_extra_is_named(rough: rf.Solution, monkeypatch: pyte
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(InputError, match=r"\.\[arrays\]"):
         rough.to_xarray()
-
-
-def test_yield_has_its_row(yielded: rf.Solution, rough: rf.Solution) -> None:
-    assert ("plastic area" in str(yielded)) == bool(yielded.plastic_area)
-    assert "plastic area" not in str(rough)
-
-
-def test_patches_of_a_periodic_solution_go_on_across_its_border() -> None:
-    contact = np.array([[True, False], [False, False], [True, False]])
-    values = dict.fromkeys(
-        ("pressure", "traction", "gap", "surface_lower", "surface_upper", "theta_x", "theta_y",
-         "plastic_indentation", "plastic", "excluded"), np.zeros((3, 2)),
-    )  # fmt: skip
-    labels = {}
-    for periodic in (False, True):
-        grid = rf.Grid((3, 2), (3e-3, 2e-3), periodic=periodic)
-        made: Any = SimpleNamespace(grid=grid, contact=contact, **values)
-        labels[periodic] = fields_of(made)["patch"].values[:, 0].tolist()
-    assert labels == {False: [1, 0, 2], True: [1, 0, 1]}
 
 
 SHOWN = {  # value and error in SI, the unit there, and the row
@@ -192,12 +156,8 @@ def test_the_summary_of_an_oblong_solution(oblong: rf.Solution) -> None:
     assert s.error("contact_area_share") == pytest.approx(s.error("contact_area") / 4.8e-6)
     assert found["mean_gap"] == pytest.approx(s.gap.sum() / 24)
     assert found["mean_pressure"] == pytest.approx(s.pressure.sum() / touching)
-    assert (
-        found["cost"]["applications"]
-        == s.cost.applications
-        != s.cost.iterations
-        == found["cost"]["iterations"]
-    )
+    assert found["cost"]["applications"] == s.cost.applications
+    assert found["cost"]["iterations"] == s.cost.iterations
     shown = display.line(s), display.table(s), display.html(s)
     assert (repr(s), str(s), s._repr_html_()) == shown
     rows = [(term.label, term.included, term.reason) for term in s.plan.terms]

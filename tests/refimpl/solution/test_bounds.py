@@ -1,4 +1,4 @@
-"""Proven bounds: least eigenvalue and its proof, dual norms, states of every kind, and where none exists."""
+"""Proven bounds: states of every kind, numbers by hand on few elements, and where no bound exists."""
 
 from __future__ import annotations
 
@@ -9,15 +9,29 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.bounds.energy_norm import EnergyNorm
-from refimpl.bounds.proven_bounds import (
+from refimpl.model.slopes import Slopes
+from refimpl.solution.bounds import (
     NO_BOUND_CORRECTED,
     NO_BOUND_PERIODIC,
     NO_BOUND_STEEP,
+    UNPROVEN,
+    _Frozen,
+    _shear_row,
     proven_bounds,
 )
-from refimpl.model.slopes import Slopes
-from tests.refimpl.solution.frozen import POLYMER, SIDE, STEEL, M, assert_true, frozen_solution, scene
+from refimpl.solution.energy_norm import EnergyNorm
+from tests.refimpl.solution.frozen import (
+    POLYMER,
+    SIDE,
+    STEEL,
+    M,
+    assert_true,
+    frozen_solution,
+    posed,
+    scene,
+    widened,
+)
+from verification.exact.dense_influence import DenseInfluence
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -82,19 +96,6 @@ def test_bounds_of_a_converged_state_are_sharp_and_decide_every_element() -> Non
     assert bounds.normal_force == pytest.approx(abs(found.normal_force - 3.0), abs=1e-15)
 
 
-def test_bounds_cost_nothing_until_asked_for() -> None:
-    found = rf.solve(scene(0), M)
-    assert "bounds" not in vars(found)
-    assert found.bounds is found.bounds
-    assert found.bounds in {found.bounds}
-
-
-def test_surfaces_apart_are_exact() -> None:
-    bounds = rf.solve(scene(0), M, approach=-1e-6).bounds
-    assert bounds.energy <= 1e-30
-    assert bounds.out_of_contact.all()
-
-
 @pytest.mark.parametrize(
     ("options", "periodic", "why"),
     [
@@ -139,3 +140,54 @@ def test_bounds_of_a_state_with_a_hardness_are_sharp(tau: float) -> None:
         true = float(np.vdot(e, norm.apply(e))) * exact.grid.element_area
         bounds = proven_bounds(exact.problem, early.pressure, exact.traction, Slopes.flat((M, M)))
         assert true <= bounds.energy <= 5 * true  # measured 1.06 to 2.96
+
+
+@pytest.mark.parametrize(("apart", "sure"), [(10, False), (45, False), (100, True)])
+def test_surfaces_closer_than_rounding_are_not_surely_apart(apart: int, sure: bool) -> None:
+    """A metre of gap against an approach of a metre, but for so many last digits."""
+    nothing = np.zeros((3, 3))
+    problem = posed(nothing + 1.0, approach=1 - apart * float(np.finfo(float).eps))
+    bounds = proven_bounds(problem, nothing, nothing, Slopes.flat((3, 3)))
+    assert bounds.out_of_contact.all() == sure
+    assert bounds.out_of_contact.any() == sure
+
+
+def test_one_loaded_element_of_four_by_hand() -> None:
+    """Its diagonal neighbour is at w = 0 exactly and carries nothing: no contact, so it is not solved for."""
+    nothing = np.zeros((2, 2))
+    pressure = np.array([[1.0, 0.0], [0.0, 0.0]])
+    (a, b), (_, d) = EnergyNorm(posed(nothing, load=1.0), np.ones((2, 2))).apply(pressure)
+    problem = posed(nothing, approach=float(d))
+    norm, flat = EnergyNorm(problem, np.ones((2, 2))), Slopes.flat((2, 2))
+    u = np.add(*problem.displacements(norm.operator, pressure, nothing, flat))
+    problem = replace(problem, approach=float(u[1, 1]))
+    # w - a z off the element, with z = (a - d) / a on it
+    left = [d * (1 - b / a), d * (1 - b / a), d * (1 - d / a)]
+    residual = (a - d) / math.sqrt(a) + float(np.linalg.norm(left)) / math.sqrt(norm.floor)
+    bounds = proven_bounds(problem, pressure, nothing, flat)
+    assert bounds.energy == pytest.approx(residual**2 * problem.grid.element_area, rel=1e-9)
+
+
+def test_a_load_that_shear_carries_alone_fixes_no_contact() -> None:
+    """Eq. (2): shear that pulls up a slope takes more than the load off the pressures."""
+    problem = posed(np.zeros((3, 3)), load=0.1)
+    uphill = Slopes(np.full((3, 3), 0.5), np.zeros((3, 3)))
+    bounds = proven_bounds(problem, np.ones((3, 3)), np.full((3, 3), -1.0), uphill)
+    assert math.isinf(bounds.energy)
+    assert bounds.unproven == "the load does not fix the contact: " + UNPROVEN
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (2, 2), (5, 5), (4, 6), (5, 2)])
+def test_no_row_of_the_shear_is_longer_than_its_corners(shape: tuple[int, int]) -> None:
+    """Four corners meet every offset once, those along an axis twice: seen from a wide rectangle's centre."""
+    (n, m), zero = shape, np.zeros(shape)
+    problem, flat = posed(zero, load=1.0, beta=0.1), Slopes.flat(shape)
+    found = _shear_row(_Frozen(problem, EnergyNorm(problem, np.ones(shape)), zero, zero, flat))
+    wide = widened(problem.grid)
+    row = DenseInfluence(wide, problem.direction).shear_matrix[wide.elements // 2]
+    offsets = row.reshape(wide.shape) ** 2
+    met = offsets.sum() + offsets[n - 1].sum() + offsets[:, m - 1].sum()
+    strength = 0.1 * problem.pair.shear_compliance
+    assert found == pytest.approx(abs(strength) * math.sqrt(met), rel=1e-10)
+    rows = strength * DenseInfluence(problem.grid, problem.direction).shear_matrix
+    assert np.linalg.norm(rows, axis=1).max() <= found

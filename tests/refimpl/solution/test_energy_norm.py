@@ -1,4 +1,4 @@
-"""The energy norm of proven bounds: its least eigenvalue, its dual, its rounding."""
+"""The energy norm of proven bounds: its least eigenvalue on any elements, its dual, its rounding."""
 
 from __future__ import annotations
 
@@ -9,43 +9,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.bounds.energy_norm import _ROUNDING, SMALLEST_SYMBOL, EnergyNorm
-from refimpl.grid import Array
+from refimpl.grid import Grid
+from refimpl.kernels import normal_table
+from refimpl.solution.energy_norm import _ROUNDING, EnergyNorm, smallest_symbol
 from tests.refimpl.solution.frozen import M, posed, scene, widened
 from verification.exact.dense_influence import DenseInfluence
-
-
-def test_smallest_symbol_is_enclosed_from_below() -> None:
-    """2/sqrt(pi) times the integral of S(pi, t)^2: by Poisson's sum for small t, by error functions else."""
-
-    def S(t: mp.mpf) -> mp.mpf:
-        if t < 2:
-            k = [mp.pi * (2 * n + 1) for n in range(12)]
-            terms = [(-1) ** n * 4 / k[n] * mp.exp(-((k[n] / (2 * t)) ** 2)) for n in range(12)]
-            return mp.sqrt(mp.pi) / t * mp.fsum(terms)
-        ends = [mp.erf(t * (mp.mpf(j) + mp.mpf(1) / 2)) for j in range(13)]
-        B = [ends[0]] + [(ends[j] - ends[j - 1]) / 2 for j in range(1, 13)]
-        return mp.sqrt(mp.pi) / t * (B[0] + 2 * mp.fsum((-1) ** j * B[j] for j in range(1, 13)))
-
-    with mp.workdps(20):
-        assert abs(S(mp.mpf("1.9999999")) - S(mp.mpf("2.0000001"))) < 1e-6
-        finite = mp.quad(lambda t: S(t) ** 2, [0.05, 0.3, 0.6, 1, 2, 4, 8, 16])
-        value = 2 / mp.sqrt(mp.pi) * (finite + mp.pi / 16)  # erf is 1 to 20 digits beyond t = 16
-        assert 0 < value - mp.mpf(SMALLEST_SYMBOL) < 1e-10
-
-
-def test_the_claim_behind_the_smallest_symbol() -> None:
-    """S(theta, t) >= S(pi, t) >= 0, and A falls with s: sampled, as the proof says."""
-    theta = np.linspace(0, np.pi, 201)[1:, None]
-    k = theta + 2 * np.pi * np.arange(-60, 61)
-    sign = (-1.0) ** np.arange(-60, 61)
-    before = np.ones(len(theta))
-    for s in np.geomspace(1e-3, 3, 60):
-        A = np.sum(sign * 2 * np.sin(theta / 2) * np.exp(-(k**2) * s) / k, axis=1)
-        assert A.min() >= A[-1] - 1e-13
-        assert A[-1] >= -1e-13
-        assert np.max(A - before) <= 1e-13
-        before = A
 
 
 @pytest.mark.parametrize("periodic", [False, True])
@@ -75,22 +43,6 @@ def test_least_eigenvalue_and_dual_norm(
     assert exact <= norm.norm(e) <= (1 + 1e-9) * exact
 
 
-@pytest.mark.parametrize("n", [2, 4])
-@pytest.mark.parametrize("uneven", [0.0, 0.5])
-@pytest.mark.parametrize("m", [2, 4])
-def test_floor_of_a_periodic_rectangle_parts_the_mean_from_the_waves(n: int, m: int, uneven: float) -> None:
-    """Waves have the plain matrix's stiffness less what the lift takes, the mean half of the lift's."""
-    K = 0.3 + uneven * np.random.default_rng(n).random((n, m)) ** 2
-    problem = posed(np.zeros((n, m)), lengths=(1.7, 0.6 * m), load=1.0, periodic=True)
-    norm = EnergyNorm(problem, K)
-    mean = np.full(n * m, 1 / math.sqrt(n * m))
-    plain = problem.pair.normal_compliance * DenseInfluence(problem.grid, 0.0).normal_matrix
-    along, across = float(mean @ K.ravel()) ** 2, float(np.sum((K.ravel() - (mean @ K.ravel()) * mean) ** 2))
-    waves = float(np.linalg.eigvalsh(plain)[1]) - norm.lift * across
-    assert norm.floor == pytest.approx(min(waves, 0.5 * norm.lift * along))
-    assert norm.floor <= np.linalg.eigvalsh(plain + norm.lift * np.outer(K, K))[0]
-
-
 @pytest.mark.parametrize("periodic", [False, True])
 @pytest.mark.parametrize("shape", [(4, 4), (6, 3)])
 def test_rounding_is_of_the_sum_of_all_coefficients(shape: tuple[int, int], periodic: bool) -> None:
@@ -111,48 +63,6 @@ def test_rounding_is_of_the_sum_of_all_coefficients(shape: tuple[int, int], peri
     assert norm.rounding(one, other) == pytest.approx(_ROUNDING * worst * size, rel=1e-12, abs=0)
 
 
-def test_dual_norm_of_a_unit_impulse() -> None:
-    norm = EnergyNorm(posed(np.zeros((3, 3)), load=1.0), np.ones((3, 3)))
-    a = np.array([norm.apply(row.reshape(3, 3)).ravel() for row in np.eye(9)])
-    impulse = np.eye(9)[4].reshape(3, 3)
-    exact = math.sqrt(np.linalg.inv(a)[4, 4])
-    assert exact <= norm.dual_norm(impulse, np.ones((3, 3), dtype=bool)) <= 1.001 * exact
-
-
-def test_conjugate_gradients_stop_at_a_hundredth(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As soon as what is left counts for no more than that of the norm, and no sooner."""
-    norm = EnergyNorm(posed(np.zeros((7, 7)), load=1.0), np.ones((7, 7)))
-    right, where = np.random.default_rng(5).random((2, 7, 7))
-    inside = where > 0.3
-
-    def enough(z: Array, az: Array) -> bool:
-        left = float(np.linalg.norm((right - az)[inside]))
-        return left / math.sqrt(norm.floor) <= 0.01 * math.sqrt(float(np.vdot(z, az)))
-
-    found, states = norm.solve(right, inside), []
-    for iterations in range(8):
-        monkeypatch.setitem(EnergyNorm.solve.__globals__, "_ITERATIONS", iterations)
-        states.append(norm.solve(right, inside))
-    first = [enough(*state) for state in states].index(True)
-    assert first > 1
-    assert np.array_equal(states[first], found)
-    assert np.array_equal(states[-1], found)
-
-
-def test_dual_norm_allows_for_the_rounding_of_its_product(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It may turn the energy by its length times z, and lies across what is left at worst."""
-    norm, everywhere = (
-        EnergyNorm(posed(np.zeros((5, 5)), load=1.0), np.ones((5, 5))),
-        np.ones((5, 5), dtype=bool),
-    )
-    right = np.random.default_rng(5).random((5, 5))
-    z, _ = norm.solve(right, everywhere)
-    exact = norm.dual_norm(right, everywhere)
-    monkeypatch.setattr(norm, "rounding", lambda *_: 0.1)
-    least = exact**2 + 0.1 * float(np.linalg.norm(z)) + 0.1**2 / norm.floor
-    assert norm.dual_norm(right, everywhere) ** 2 >= least
-
-
 def test_an_indefinite_norm_has_no_dual() -> None:
     n = 4
     K = 2.0 * (np.indices((n, n)).sum(axis=0) % 2)
@@ -171,3 +81,58 @@ def test_dual_norm_is_a_bound_whatever_conjugate_gradients_return(monkeypatch: p
     for share in (0.0, 0.5, 1.5):
         monkeypatch.setattr(norm, "solve", lambda *_, share=share: (share * z, share * az))
         assert 0.99 * exact <= norm.dual_norm(right, where) < math.inf
+
+
+ASPECTS = [0.1, 0.5, 0.99, 1.0, 1.3, 3.0, 10.0]
+"""Of elements without end: ``sum (-1)^m 2 pi/|k| 2/k`` over ``k = (2 m + 1) pi``."""
+
+
+@pytest.mark.parametrize("aspect", ASPECTS)
+def test_no_grid_has_a_smaller_eigenvalue(aspect: float) -> None:
+    """They fall towards it as the grid grows: within 3 % on 20 elements an axis, square or not."""
+    dx, bound = 1e-3, smallest_symbol(aspect)
+    excess = []
+    for n, m in ((1, 1), (1, 30), (30, 1), (5, 60), (7, 7), (13, 11), (20, 20)):
+        matrix = DenseInfluence(Grid((n, m), (n * dx, m * dx * aspect)), 0.0).normal_matrix
+        excess.append(float(np.linalg.eigvalsh(matrix).min()) / (bound * dx) - 1)
+    assert min(excess) > 0
+    assert excess[-1] < 0.03
+
+
+@pytest.mark.parametrize(
+    ("aspect", "accuracy"), [*((a, 5e-10) for a in ASPECTS), (0.01, 1e-10), (300.0, 1e-4)]
+)
+def test_it_is_the_alternating_sum_of_the_coefficients(aspect: float, accuracy: float) -> None:
+    """Of 1000 offsets an axis, with the mean of the last partial sums: enough as long as these are many
+    lengths of an element's longer edge."""
+    table = normal_table(1000, 1000, 1.0, aspect)
+    weights = np.where(np.arange(1000) % 2, -2.0, 2.0)
+    weights[0], weights[-1] = 1.0, 0.5 * weights[-1]
+    assert smallest_symbol(aspect) == pytest.approx(float(weights @ table @ weights), rel=accuracy)
+
+
+@pytest.mark.parametrize(
+    ("aspect", "least", "most"), [(1.0, 0.0, 1e-10), (1.7, 0.9e-12, 1.1e-12), (1e3, 0.9e-12, 1.1e-12)]
+)
+def test_it_is_the_integral_to_many_digits(aspect: float, least: float, most: float) -> None:
+    """By other code: Poisson's sum for small t, tanh-sinh quadrature.
+
+    Below the integral by 1e-12 of its value; square elements have a constant of ten digits.
+    """
+
+    def alternating(t: mp.mpf) -> mp.mpf:
+        if t < 2:
+            waves = (
+                (-1) ** n / mp.mpf(2 * n + 1) * mp.exp(-(((n + 0.5) * mp.pi / t) ** 2)) for n in range(12)
+            )
+            return 4 / (mp.sqrt(mp.pi) * t) * mp.fsum(waves)
+        tails = ((-1) ** m * mp.erfc((m + mp.mpf(1) / 2) * t) for m in range(12))
+        return mp.sqrt(mp.pi) / t * (1 - 2 * mp.fsum(tails))
+
+    with mp.workdps(25):
+        a = mp.mpf(aspect)
+        total = mp.quad(
+            lambda t: alternating(t) * a * alternating(a * t), [0, 0.5, 1, 2, 4, 8, 16, 64, mp.inf]
+        )
+        exact = 2 / mp.sqrt(mp.pi) * total
+        assert least < (exact - mp.mpf(smallest_symbol(aspect))) / exact < most

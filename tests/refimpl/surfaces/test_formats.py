@@ -1,18 +1,25 @@
-"""Formats of instruments: an asymmetric map comes back, with orientation, pixel, unit and missing point."""
+"""Formats of instruments: an asymmetric map comes back from each, and faults that files had are met."""
 
 from __future__ import annotations
 
+import logging
+import warnings
+import zipfile
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
+import SurfaceTopography
 
 from refimpl.errors import InputError
-from refimpl.measured.readers import read
-from refimpl.measured.reading import ARRAY, IMAGE
+from refimpl.grid import Grid
+from refimpl.surfaces import MeasuredSurface, missing_points
+from refimpl.surfaces.readers import read
+from refimpl.surfaces.reading import ARRAY, IMAGE
 from tests.refimpl.surfaces import instrument_writers as write
-from tests.refimpl.surfaces.instrument_writers import MAP, MISSING, PIXEL, Writer
+from tests.refimpl.surfaces.instrument_writers import MAP, MISSING, NX, NY, PIXEL, Writer, sur_bytes
 
 BOTH = {"unit": "um", "pixel_size": PIXEL}
 COORDINATES = "coordinates as the file states them"
@@ -45,6 +52,11 @@ FORMATS = [
     ("map.al3d", write.write_al3d, {}, SINGLE, IMAGE),
 ]
 
+NOTES = {
+    "map.csv": ("separator ';', decimal comma", "a leading index column was dropped"),
+    "packed.sur": ("compressed SUR, unpacked here",),
+}
+
 
 @pytest.mark.parametrize(
     ("name", "writer", "given", "error", "orientation"), FORMATS, ids=[row[0] for row in FORMATS]
@@ -59,6 +71,7 @@ def test_a_format_comes_back(
     assert [tuple(at) for at in np.argwhere(np.isnan(reading.heights))] == [MISSING]
     np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-7)  # single precision
     assert reading.orientation == orientation
+    assert reading.notes == NOTES.get(name, ())
 
 
 @pytest.mark.parametrize(
@@ -114,3 +127,252 @@ def test_units_have_names_in_ascii(tmp_path: Path, unit: str, name: str, size: f
     np.save(tmp_path / "a.npy", np.ones((4, 5)))
     reading = read(tmp_path / "a.npy", unit=unit, pixel_size=PIXEL)
     assert (reading.unit, reading.heights[0, 0]) == (name, size)
+
+
+def same(heights: np.ndarray, error: float = 1e-20) -> None:
+    np.testing.assert_allclose(heights, MAP, rtol=0, atol=error)
+
+
+# --- text ---
+
+
+def test_a_header_that_says_nothing_makes_an_image_as_well(tmp_path: Path) -> None:
+    rows = "\n".join(" ".join(f"{v * 1e6:.6f}" for v in row) for row in MAP.T[::-1])
+    (tmp_path / "map.txt").write_text("exported by an unknown instrument\n" + rows)
+    same(read(tmp_path / "map.txt", unit="um", pixel_size=PIXEL).heights)
+    with pytest.raises(InputError, match=r"both: map\.txt does not state them"):
+        read(tmp_path / "map.txt")
+
+
+@pytest.mark.parametrize("name", ["map.xyz", "map.txt", "map.csv"])
+def test_the_pitch_of_points_is_their_own(tmp_path: Path, name: str) -> None:
+    write.write_xyz(tmp_path / name, MAP)
+    reading = read(tmp_path / name, unit="um")
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
+    overridden = read(tmp_path / name, unit="um", pixel_size=(1e-6, 1e-6))
+    assert overridden.notes == ("a pixel of 1e-06 x 1e-06 m is used; the file states 2e-06 x 3e-06 m",)
+    with pytest.raises(InputError, match="holds points x, y, z and states no unit"):
+        read(tmp_path / name)
+
+
+def test_a_missing_row_of_points_is_missing_points(tmp_path: Path) -> None:
+    i, j = np.nonzero(np.arange(NY) != 5 * np.ones((NX, 1)))
+    points = np.stack([i * 2.0, j * 3.0, (i - 2 * j) / 10], axis=1)
+    np.savetxt(tmp_path / "map.xyz", points)
+    heights = read(tmp_path / "map.xyz", unit="um").heights
+    assert heights.shape == (NX, NY)
+    assert np.isnan(heights[:, 5]).all()
+    assert np.isnan(heights).sum() == NX
+
+
+def test_points_off_a_grid_are_refused_with_a_number(tmp_path: Path) -> None:
+    points = np.random.default_rng(3).random((200, 3))
+    np.savetxt(tmp_path / "map.xyz", points)
+    with pytest.raises(InputError, match="points on a regular grid"):
+        read(tmp_path / "map.xyz", unit="um")
+    grid = np.array([(x, y, 1.0) for x in range(5) for y in range(5)])
+    grid[7, 0] += 0.3
+    np.savetxt(tmp_path / "map.xyz", grid)
+    with pytest.raises(InputError, match="of the pitch in x off it"):
+        read(tmp_path / "map.xyz", unit="um")
+    np.savetxt(tmp_path / "map.xyz", np.vstack([grid, grid])[:, :3] * [0, 1, 1])
+    with pytest.raises(InputError, match="a line scan: all points have one x"):
+        read(tmp_path / "map.xyz", unit="um")
+
+
+@pytest.mark.parametrize(
+    ("separator", "comma"), [(";", True), ("\t", True), (" ", True), (";", False), (",", False)]
+)
+def test_separators_and_decimal_commas(tmp_path: Path, separator: str, comma: bool) -> None:
+    z = np.where(np.isnan(MAP), 0.0, MAP)
+    rows = [separator.join(f"{v * 1e6:.5f}" for v in row) for row in z]
+    text = "\n".join(row.replace(".", ",") if comma else row for row in rows)
+    (tmp_path / "map.csv").write_text(text + "\n")
+    reading = read(tmp_path / "map.csv", unit="um", pixel_size=PIXEL)
+    np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("x;z\n" + "\n".join(f"{k};{k * k},5" for k in range(20)), "a line scan: 20 rows of 1 columns"),
+        ("\n".join(f"{k / 7} {k / 3}" for k in range(20)), "a map .a line scan: 20 rows of 2 columns"),
+        ("no numbers\nat all\n", "rows of numbers .*it begins with 'no numbers'"),
+        ("1 2 3 4 5\n1 2 3 4 5\n1 2 3\n", "rows of one length .row 3 of numbers has 3, the first 5"),
+    ],
+)
+def test_a_refusal_says_what_was_found(tmp_path: Path, content: str, said: str) -> None:
+    (tmp_path / "a.csv").write_text(content)
+    with pytest.raises(InputError, match=said):
+        read(tmp_path / "a.csv", unit="um", pixel_size=PIXEL)
+
+
+def test_fortrans_exponents_and_rows_counted_from_one(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("\n".join(f"{k}\t{k}.5D-1\t2.5d0\t3.5\t4.5" for k in (1, 2, 3, 4)))
+    assert read(tmp_path / "a.txt", "m", PIXEL).heights[1].tolist() == [0.25, 2.5, 3.5, 4.5]
+
+
+def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
+    blocks = ["\n".join(f"{i} {j} {i - 2 * j}" for j in range(6)) for i in range(5)]
+    (tmp_path / "map.xyz").write_text("\n\n".join(blocks) + "\n")
+    assert read(tmp_path / "map.xyz", unit="um").heights.shape == (5, 6)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.xyz"])
+def test_text_among_the_numbers_is_refused_and_after_them_is_not(tmp_path: Path, name: str) -> None:
+    rows = [f"{i} {j} {i * j}" if name == "a.xyz" else " ".join("12345") for i in range(5) for j in range(5)]
+    (tmp_path / name).write_text("\n".join([*rows, "end of data"]))
+    whole = read(tmp_path / name, unit="um", pixel_size=PIXEL).heights
+    assert whole.size == (25 if name == "a.xyz" else 125)
+    (tmp_path / name).write_text("\n".join([*rows[:7], "lost", *rows[7:]]))
+    with pytest.raises(InputError, match="after row 7 stands 'lost', then numbers"):
+        read(tmp_path / name, unit="um", pixel_size=PIXEL)
+
+
+def test_a_text_of_two_images_gives_either(tmp_path: Path) -> None:
+    write.write_txt(tmp_path / "one.txt", MAP)
+    one = (tmp_path / "one.txt").read_bytes().decode("latin-1")
+    write.write_txt(tmp_path / "one.txt", 2 * MAP)
+    other = (tmp_path / "one.txt").read_bytes().decode("latin-1").replace("Topography", "Retrace")
+    (tmp_path / "two.txt").write_text(one + other)
+    same(read(tmp_path / "two.txt").heights)
+    second = read(tmp_path / "two.txt", channel="Retrace")
+    same(second.heights / 2)
+    assert second.channels == ("Topography", "Retrace")
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8", "utf-8-sig", "utf-16"])
+def test_a_micro_sign_in_any_encoding(tmp_path: Path, encoding: str) -> None:
+    write.write_txt(tmp_path / "map.txt", MAP)
+    text = (tmp_path / "map.txt").read_bytes().decode("latin-1")
+    (tmp_path / "map.txt").write_bytes(text.encode(encoding))
+    reading = read(tmp_path / "map.txt")
+    same(reading.heights)
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
+
+
+# --- instruments ---
+
+
+def x3p_of(path: Path, folder: str = "", revision: str | None = None, backslash: bool = False) -> Path:
+    """An X3P file as other writers pack it."""
+    write.write_x3p(path, MAP)
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    main = members["main.xml"].decode()
+    if revision is not None:
+        main = main.replace("ISO5436 - 2000", revision)
+    if backslash:
+        main = main.replace("bindata/", "bindata\\")
+    members["main.xml"] = main.encode()
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(folder + name, content)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("folder", "revision", "backslash", "notes"),
+    [
+        ("", None, False, ()),
+        ("scan 7/", None, False, ("X3P with folder 'scan 7/' in the archive",)),
+        ("", "ISO 25178-72:2017", False, ("X3P with revision 'ISO 25178-72:2017'",)),
+        ("a/b/", "ISO5436-2", True, ("X3P with revision 'ISO5436-2', folder 'a/b/' in the archive",)),
+    ],
+)
+def test_x3p_of_other_writers(
+    tmp_path: Path, folder: str, revision: str | None, backslash: bool, notes: tuple[str, ...]
+) -> None:
+    reading = read(x3p_of(tmp_path / "map.x3p", folder, revision, backslash))
+    same(reading.heights)
+    assert reading.notes == notes
+
+
+@pytest.mark.parametrize("damage", ["cut", "lengths", "count"])
+def test_damaged_compressed_sur_gets_one_line(tmp_path: Path, damage: str) -> None:
+    whole = bytearray(sur_bytes(MAP, packed=True))
+    if damage == "cut":
+        whole = whole[:-40]
+    elif damage == "lengths":
+        whole[516:520] = b"\xff\xff\xff\x7f"
+    else:
+        whole[512:516] = b"\xff\xff\xff\x7f"
+    (tmp_path / "map.sur").write_bytes(whole)
+    with pytest.raises(InputError) as refused:
+        read(tmp_path / "map.sur")
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("unit", [b"\xb5m", b"\xe6m", b"um", b"\xc2\xb5m"])
+def test_sur_with_any_micro_sign(tmp_path: Path, unit: bytes) -> None:
+    (tmp_path / "map.sur").write_bytes(sur_bytes(MAP, unit))
+    reading = read(tmp_path / "map.sur")
+    same(reading.heights, 1e-12)
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-7)
+
+
+def channels(path: Path) -> Path:
+    with h5py.File(path, "w") as file:
+        file["first"], file["Second"] = np.zeros((6, 8)), np.nan_to_num(MAP)
+        file["line"] = np.zeros(9)
+    return path
+
+
+@pytest.mark.parametrize("channel", ["Second", "second", 0])
+def test_channels_are_chosen_by_name_or_number(tmp_path: Path, channel: str | int) -> None:
+    surface = MeasuredSurface(channels(tmp_path / "a.h5"), unit="m", pixel_size=PIXEL, channel=channel)
+    reading = surface.reading
+    assert reading.channel == ("Second" if channel != 0 or reading.channel == "Second" else "first")
+    assert set(reading.channels) == {"first", "Second"}
+    told = " ".join(surface.describe(Grid((8, 8), (8e-6, 12e-6))))
+    assert f"channel {reading.channel!r} was read; there are also" in told
+
+
+@pytest.mark.parametrize("channel", ["third", 7, -1])
+def test_a_channel_that_is_not_there_is_refused_with_those_that_are(
+    tmp_path: Path, channel: str | int
+) -> None:
+    with pytest.raises(InputError, match=r"a channel of a\.h5: .*'first'"):
+        read(channels(tmp_path / "a.h5"), "m", PIXEL, channel)
+
+
+def test_the_librarys_errors_carry_their_cause(tmp_path: Path) -> None:
+    (tmp_path / "a.opd").write_bytes(b"\x01\x00Directory" + bytes(60))
+    with pytest.raises(InputError) as refused:
+        read(tmp_path / "a.opd")
+    assert "opd: CorruptFile: " in str(refused.value)
+    assert "tried" not in str(refused.value)
+    (tmp_path / "a.bin").write_bytes(bytes(range(256)) * 20)
+    with pytest.raises(InputError, match=r"a file that can be read \(\w+: \w+: .+\)"):
+        read(tmp_path / "a.bin")
+
+
+def test_the_librarys_warnings_become_notes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    write.write_x3p(tmp_path / "map.x3p", MAP)
+    original = SurfaceTopography.open_topography
+
+    def noisy(*arguments: object, **options: object) -> object:
+        warnings.warn("the stage was tilted", stacklevel=1)
+        logging.getLogger("SurfaceTopography.IO").warning("on stderr")
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(SurfaceTopography, "open_topography", noisy)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        reading = read(tmp_path / "map.x3p")
+    assert reading.notes == ("SurfaceTopography: UserWarning: the stage was tilted",)
+    assert capfd.readouterr().err == ""
+
+
+# --- holes and levels ---
+
+
+def test_a_map_of_which_almost_all_is_missing_is_filled() -> None:
+    z = np.full((150, 150), np.nan)
+    z[:10, :10], z[149, 149] = 1.0, 2.0
+    filled = missing_points.fill(z, (1.0, 1.0))
+    assert np.isfinite(filled).all()
+    assert (filled >= 1.0).all()
+    assert (filled <= 2.0).all()

@@ -1,10 +1,10 @@
-"""Measured surfaces' heights: window, gaps, level. All files are written here."""
+"""Measured surfaces' heights: window, gaps, level, values by hand. All files are written here."""
 
 from __future__ import annotations
 
 import warnings
-from dataclasses import FrozenInstanceError
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +12,11 @@ from scipy.interpolate import RectBivariateSpline
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.measured import MeasuredSurface
-from refimpl.measured.crop import Crop
-from refimpl.measured.detrending import DEGREES, fit
-from refimpl.measured.missing_points import fill
-from refimpl.surfaces import SurfaceWarning
+from refimpl.surfaces import MeasuredSurface, SurfaceWarning
+from refimpl.surfaces.areal_parameters import Spectrum
+from refimpl.surfaces.detrending import DEGREES, fit
+from refimpl.surfaces.missing_points import MAX_ELIMINATED, fill
+from refimpl.surfaces.readers import read
 from tests.refimpl.surfaces.measured import (
     DX,
     DY,
@@ -42,25 +42,8 @@ RECTANGLES = [
 ]
 
 
-@pytest.mark.parametrize("offset", [(0.0, 0.0), (4e-7, -3.3e-6), (-5e-7, 3.75e-6)])
+@pytest.mark.parametrize("offset", [(0.0, 0.0), (4e-7, -3.3e-6), (-5e-7, 3.5e-6)])
 @pytest.mark.parametrize("grid", RECTANGLES, ids=str)
-def test_the_window_is_central_moves_and_is_exact_for_cubics(
-    tmp_path: Path, offset: tuple[float, float], grid: Grid
-) -> None:
-    def shape(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return np.asarray(
-            (x / 1e-5) ** 3 * 1e-7 + 2e-8 * (x / 1e-5) * (y / 1e-5) ** 2 - 3e-8 * (y / 1e-5) ** 3
-        )
-
-    surface = write_npy(tmp_path / "a.npy", shape(*points()))
-    expected = shape(*elements(grid, offset))
-    np.testing.assert_allclose(
-        quietly(surface, grid, offset), expected, rtol=0, atol=1e-13 * np.ptp(expected)
-    )
-
-
-@pytest.mark.parametrize("offset", [(0.0, 0.0), (4e-7, -3.3e-6)])
-@pytest.mark.parametrize("grid", RECTANGLES[1:3], ids=str)
 def test_heights_are_those_of_one_spline_through_all_points(
     tmp_path: Path, offset: tuple[float, float], grid: Grid
 ) -> None:
@@ -74,40 +57,39 @@ def test_heights_are_those_of_one_spline_through_all_points(
 def test_the_whole_measured_width_can_be_used(tmp_path: Path) -> None:
     x, y = points()
     surface, grid = write_npy(tmp_path / "a.npy", x**2 - x * y), Grid.square(NX * DX, 2 * NX)
-    for offset in (
-        (0.0, 0.0),
-        (0.0, 3.25e-6),
-        (0.0, -3.25e-6),
-    ):  # to either end of y, half a pixel past the points
+    for offset in ((0.0, 0.0), (0.0, 3.25e-6), (0.0, -3.25e-6)):  # to either end of y, half a pixel further
         x, y = elements(grid, offset)
         np.testing.assert_allclose(quietly(surface, grid, offset), x**2 - x * y, rtol=0, atol=1e-12 * 1e-10)
 
 
-def test_a_surface_that_is_too_small_is_refused_with_both_sizes(tmp_path: Path) -> None:
-    surface = write_npy(tmp_path / "a.npy", ROUGH)
-    with pytest.raises(InputError, match=r"side = 9.1e-06: expected at most the measured 9e-06 x 1.55e-05 m"):
-        surface.heights(Grid.square(9.1e-6, 16))
-    least = r"side = 8\.99e-07: expected at least 4 pixels of a\.npy, each 1\.5e-07 x 3\.1e-07 m"
-    with pytest.raises(InputError, match=least):
-        quietly(surface, Grid.square(8.99e-7, 16))  # 2.9 DY about a border between pixels: two points
-    assert quietly(surface, Grid.square(9.31e-7, 16)).shape == (
-        16,
-        16,
-    )  # just more than three pixels: four points
-    with pytest.raises(InputError, match=r"offset.*at most 5e-07 x 3.75e-06 m"):
-        surface.heights(Grid.square(SIDE, 16), (5.1e-7, 0.0))
-    for lengths, offending in (((9.1e-6, 1.5e-5), "9.1e-06"), ((8e-6, 1.56e-5), "1.56e-05")):
-        with pytest.raises(
-            InputError, match=f"side = {offending}: expected at most the measured 9e-06 x 1.55e-05 m"
-        ):
-            surface.heights(Grid((16, 16), lengths))
-    for lengths, offending in (((4.4e-7, 8e-6), "4.4e-07"), ((8e-6, 9.2e-7), "9.2e-07")):
-        with pytest.raises(InputError, match=f"side = {offending}: expected at least 4 pixels"):
-            surface.heights(Grid((16, 16), lengths))
-    with pytest.raises(InputError, match=r"offset.*at most 5e-07 x 7.75e-06 m"):
-        surface.heights(Grid((16, 2), (SIDE, 1e-12)), (0.0, 8e-6))
-    with pytest.raises(InputError, match=r"periodic = True: expected false: a\.npy does not repeat"):
-        surface.heights(Grid.square(SIDE, 16, periodic=True))
+MEASURED = r"side = {:g}: expected at most the measured 9e-06 x 1\.55e-05 m"
+LEAST = r"side = {:g}: expected at least 4 pixels of a\.npy, each 1\.5e-07 x 3\.1e-07 m"
+
+
+@pytest.mark.parametrize(
+    ("grid", "offset", "refusal"),
+    [
+        (Grid.square(9.1e-6, 16), (0.0, 0.0), MEASURED.format(9.1e-6)),
+        (Grid((16, 16), (9.1e-6, 1.5e-5)), (0.0, 0.0), MEASURED.format(9.1e-6)),
+        (Grid((16, 16), (8e-6, 1.56e-5)), (0.0, 0.0), MEASURED.format(1.56e-5)),
+        # 2.9 DY about a border between pixels: two points
+        (Grid.square(8.99e-7, 16), (0.0, 0.0), LEAST.format(8.99e-7)),
+        (Grid((16, 16), (4.4e-7, 8e-6)), (0.0, 0.0), LEAST.format(4.4e-7)),
+        (Grid((16, 16), (8e-6, 9.2e-7)), (0.0, 0.0), LEAST.format(9.2e-7)),
+        (Grid.square(SIDE, 16), (5.1e-7, 0.0), r"offset.*at most 5e-07 x 3\.75e-06 m"),
+        (Grid((16, 2), (SIDE, 1e-12)), (0.0, 8e-6), r"offset.*at most 5e-07 x 7\.75e-06 m"),
+        (
+            Grid.square(SIDE, 16, periodic=True),
+            (0.0, 0.0),
+            r"periodic = True: expected false: a\.npy does not",
+        ),
+    ],
+)
+def test_windows_that_a_map_cannot_fill_are_refused(
+    tmp_path: Path, grid: Grid, offset: tuple[float, float], refusal: str
+) -> None:
+    with pytest.raises(InputError, match=refusal):
+        quietly(write_npy(tmp_path / "a.npy", ROUGH), grid, offset)
 
 
 def test_finer_than_measured_warns(tmp_path: Path) -> None:
@@ -119,19 +101,6 @@ def test_finer_than_measured_warns(tmp_path: Path) -> None:
         surface.heights(Grid.square(SIDE, 25))  # 3.2e-7 m
         for M in range(4, 30):
             surface.heights(Grid.square(M * DY, M))  # the pixel itself, up to rounding
-
-
-def test_points_on_the_windows_edge_lie_in_it(tmp_path: Path) -> None:
-    np.save(tmp_path / "a.npy", np.zeros((9, 9)))
-    surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0)
-    for side, count in ((9.0, 9), (8.0, 9), (7.9, 7), (6.0, 7)):  # an edge runs half a side from the middle
-        window = Crop(surface.reading, (side, side))
-        assert [s.stop - s.start for s in window.points] == [count, count]
-    window = Crop(surface.reading, (7.9, 6.0), (-0.4, 1.0))
-    assert window.points == (slice(0, 8), slice(2, 9))
-    assert window.size == 56
-    with pytest.raises(FrozenInstanceError):
-        window.lengths = (9.0, 9.0)  # type: ignore[misc]  # the point of the test
 
 
 # --- gaps ---
@@ -175,42 +144,30 @@ def test_filled_heights_obey_the_maximum_principle() -> None:
     np.testing.assert_allclose(laplace[gaps], 0.0, atol=1e-13)
 
 
-def test_too_many_gaps_are_refused(tmp_path: Path) -> None:
-    z = ROUGH.copy()
-    z[10:14, 15:40] = np.nan
-    surface = write_npy(tmp_path / "a.npy", z)
-    grid = Grid.square(SIDE, 16)
-    with pytest.raises(InputError, match=r"92 of 1404 .*at most a fraction of 0.05"):
-        surface.heights(grid)
-    generous = MeasuredSurface(surface.path, unit="m", pixel_size=(DX, DY), max_missing=0.1)
-    assert np.all(np.isfinite(quietly(generous, grid)))
-    strict = MeasuredSurface(surface.path, unit="m", pixel_size=(DX, DY), missing="refuse", max_missing=0.1)
-    with pytest.raises(InputError, match="fraction of 0"):
-        strict.heights(grid)
-    z[:] = np.nan
-    with pytest.raises(InputError, match="1404 of 1404"):
-        write_npy(tmp_path / "b.npy", z).heights(grid)
-
-
-def test_the_fraction_that_may_be_missing_is_allowed_and_no_more(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("options", "allowed"),
+    [({"max_missing": 1 / 16}, None), ({"max_missing": 0.0624}, "0.0624"), ({"max_missing": 0.0}, "0"),
+     ({"max_missing": 0.1, "missing": "refuse"}, "0"), ({}, "0.05")],
+)  # fmt: skip
+def test_the_fraction_that_may_be_missing_is_allowed_and_no_more(
+    tmp_path: Path, options: dict[str, Any], allowed: str | None
+) -> None:
     z = np.zeros((8, 8))
     z[2, 1:5] = np.nan  # 4 of 64 points: a sixteenth
     np.save(tmp_path / "a.npy", z)
+    surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, **options)
+    if allowed is None:
+        np.testing.assert_allclose(quietly(surface, Grid.square(8.0, 8)), 0.0, rtol=0, atol=1e-15)
+        return
+    with pytest.raises(InputError) as refusal:
+        surface.heights(Grid.square(8.0, 8))
+    assert refusal.value.value == "4 of 64 points of the window in a.npy"
+    assert refusal.value.allowed == f"at most a fraction of {allowed}"
 
-    def surface(max_missing: float) -> MeasuredSurface:
-        return MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, max_missing=max_missing)
 
-    np.testing.assert_allclose(quietly(surface(1 / 16), Grid.square(8.0, 8)), 0.0, rtol=0, atol=1e-15)
-    for fraction, allowed in ((0.0, "0"), (0.0624, "0.0624")):
-        with pytest.raises(InputError) as refusal:
-            surface(fraction).heights(Grid.square(8.0, 8))
-        assert refusal.value.value == "4 of 64 points of the window in a.npy"
-        assert refusal.value.allowed == f"at most a fraction of {allowed}"
-    for refused in (-0.001, 1.0):
-        with pytest.raises(
-            InputError, match=f"max_missing = {refused}: expected a fraction, 0 <= max_missing"
-        ):
-            surface(refused)
+def test_a_map_of_missing_points_alone_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="1404 of 1404"):
+        write_npy(tmp_path / "b.npy", np.full((NX, NY), np.nan)).heights(Grid.square(SIDE, 16))
 
 
 # --- level ---
@@ -230,60 +187,6 @@ def test_level_is_fitted_in_the_window_only(tmp_path: Path, grid: Grid) -> None:
     assert abs(slope_y) < 1e-12
     assert level.endswith("m after")
     assert float(level.split()[-3]) < 1e-20
-
-
-def test_each_level_takes_off_its_terms_of_a_paraboloid(tmp_path: Path) -> None:
-    """On 5 x 5 points from -2 to 2 the squares' mean is 2, and the terms are orthogonal but for that.
-
-    So is the cubic (5 x^3 - 17 x) / 6, which every level leaves.
-    """
-    x, y = np.arange(-2.0, 3.0)[:, None], np.arange(-2.0, 3.0)[None, :]
-    cubic = np.array([-1.0, 2.0, 0.0, -2.0, 1.0])[:, None]
-    left = {
-        "none": 7 + 3 * x - y + x**2 + x * y + cubic,
-        "mean": 3 * x - y + (x**2 - 2) + x * y + cubic,
-        "plane": (x**2 - 2) + x * y + cubic,
-        "paraboloid": cubic + 0 * y,
-    }
-    np.save(tmp_path / "a.npy", left["none"])
-    assert set(left) == set(DEGREES)
-    for level, expected in left.items():
-        surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, level=level)
-        np.testing.assert_allclose(surface.heights(Grid.square(5.0, 5)), expected, rtol=0, atol=1e-13)
-
-
-def test_a_forms_slopes_are_those_at_its_middle() -> None:
-    # z = x^2 + 5 x y - 3 y about the middle (2, 7): dz/dx = 2 * 2 + 5 * 7 = 39, dz/dy = 5 * 2 - 3 = 7
-    x, y = np.arange(0.0, 5.0), np.arange(4.0, 11.0)
-    z = x[:, None] ** 2 + 5 * x[:, None] * y - 3 * y
-    form = fit(x, y, z, 2)
-    assert form.slopes == pytest.approx((39.0, 7.0), rel=1e-12)
-    for axis, at in enumerate((x, y)):  # the form's own coordinates run from -1 to 1 over the points
-        ends = (at[[0, -1]] - form.centre[axis]) / form.scale[axis]
-        np.testing.assert_allclose(ends, [-1.0, 1.0], rtol=0, atol=1e-15)
-    assert fit(x, y, 39 * x[:, None] + 7 * y, 1).slopes == pytest.approx((39.0, 7.0), rel=1e-12)
-    for degree in (-1, 0):
-        assert fit(x, y, z, degree).slopes == (0.0, 0.0)
-
-
-@pytest.mark.parametrize("degree", [1, 2])
-def test_as_many_points_as_terms_an_axis_are_enough(degree: int) -> None:
-    """On ``degree + 1`` points an axis what is of that degree is met, and no more is asked of them."""
-    x, y = np.arange(3.0, 4.0 + degree), np.arange(-1.0, degree)
-    z = (2 * x[:, None] - y - 1) ** degree
-    np.testing.assert_allclose(fit(x, y, z, degree)(x, y), z, rtol=0, atol=1e-13)
-
-
-@pytest.mark.parametrize("along", [0, 1])
-def test_the_central_window_of_a_long_strip_is_levelled_by_itself(tmp_path: Path, along: int) -> None:
-    """Far from both ends: 8 of 140 points, whose squares have a mean of 5.25 about their middle."""
-    at = np.arange(140) - 69.5
-    strip = np.broadcast_to(at[:, None] ** 2 if along == 0 else at**2, (140, 8) if along == 0 else (8, 140))
-    np.save(tmp_path / "a.npy", strip)
-    surface = MeasuredSurface(tmp_path / "a.npy", unit="m", pixel_size=1.0, level="mean")
-    expected = (np.arange(8) - 3.5) ** 2 - 5.25
-    found = np.moveaxis(surface.heights(Grid.square(8.0, 8)), along, -1)
-    np.testing.assert_allclose(found, np.tile(expected, (8, 1)), rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("level", list(DEGREES))
@@ -309,7 +212,64 @@ def test_texts_are_of_the_map_as_it_lies(tmp_path: Path) -> None:
     grid = Grid((8, 12), (4e-6, 1.2e-6))
     assert surface.pitch((1e-6, 1e-6)) == DX
     assert surface.on_upper_body().reading is surface.reading
-    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.notes(grid)[0]
+    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.cautions(grid)[0]
     assert (
         "the window of 4e-06 x 1.2e-06 m about (4e-06, 7e-06) m is used, 13 x 8" in surface.describe(grid)[1]
     )
+
+
+@pytest.mark.parametrize("suffix", ["npy", "txt", "csv"])
+def test_infinite_entries_of_a_file_are_missing(tmp_path: Path, suffix: str) -> None:
+    """Four rows along x, one entry infinite either way, one not a number."""
+    z = np.arange(24.0).reshape(4, 6) - 5
+    z[1, 2], z[2, 4], z[3, 5] = np.inf, -np.inf, np.nan
+    path = tmp_path / f"map.{suffix}"
+    if suffix == "npy":
+        np.save(path, z)
+    else:
+        np.savetxt(path, z, delimiter="," if suffix == "csv" else " ")
+    found = read(path, unit="um", pixel_size=(2e-6, 3e-6))
+    assert np.isnan(found.heights).sum() == 3
+    kept = np.isfinite(z)
+    assert np.allclose(found.heights[kept], z[kept] * 1e-6, rtol=1e-12, atol=0)
+
+
+def test_entries_that_a_line_lacks_at_its_end_are_missing(tmp_path: Path) -> None:
+    path = tmp_path / "map.txt"
+    path.write_text("1.5\t2.5\t3.5\t4.5\n5.5\t6.5\t7.5\n8.5\t9.5\t1.5\t2.5\n3.5\t4.5\t5.5\t6.5\n")
+    found = read(path, unit="m", pixel_size=(1.0, 1.0))
+    assert np.isnan(found.heights[1, 3])
+    assert np.isnan(found.heights).sum() == 1
+    assert found.heights[3].tolist() == [3.5, 4.5, 5.5, 6.5]
+
+
+def test_the_pitch_of_points_is_their_span_over_whole_steps(tmp_path: Path) -> None:
+    """Most steps are 2 or 3 % too long, the last is shorter: pitches 1 and 2."""
+    x, y = np.array([0, 1.02, 2.04, 3.06, 4]), np.array([0, 2.06, 4.12, 6])
+    points = [(a, b, 10 * i + j) for i, a in enumerate(x) for j, b in enumerate(y)]
+    path = tmp_path / "points.xyz"
+    np.savetxt(path, points)
+    found = read(path, unit="m")
+    assert found.pixel == pytest.approx((1.0, 2.0), rel=1e-12)
+    assert found.heights[3, 2] == 32
+
+
+@pytest.mark.parametrize("pixel", [(1.0, 1.0), (1.0, 3.0), (2.0, 0.5)])
+@pytest.mark.parametrize("size", [20, 70])
+def test_holes_are_filled_by_the_saddle_around_them(pixel: tuple[float, float], size: int) -> None:
+    """x^2 - y^2 + 0.3 x y is harmonic, discretely as well; small holes by elimination, large ones by CG."""
+    n = size + 10
+    x, y = pixel[0] * np.arange(n)[:, None], pixel[1] * np.arange(n)[None, :]
+    z = x**2 - y**2 + 0.3 * x * y + 7.0
+    holed = z.copy()
+    holed[4 : 4 + size, 5 : 5 + size] = np.nan
+    assert (size**2 > MAX_ELIMINATED) == (size == 70)
+    assert np.abs(fill(holed, pixel) - z).max() < 1e-7 * np.ptp(z)
+
+
+def test_missing_points_do_not_lower_the_spectrum() -> None:
+    """White noise of variance 4 on pixels of 2 x 3 m has C = 24 m^4, with a third of it missing."""
+    z = np.random.default_rng(4).normal(scale=2.0, size=(200, 200))
+    z[np.random.default_rng(5).uniform(size=z.shape) < 1 / 3] = np.nan
+    found = Spectrum.of(z, (2.0, 3.0))
+    assert np.average(found.C, weights=found.count) == pytest.approx(24.0, rel=0.03)

@@ -11,8 +11,6 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
-from refimpl.measured import MeasuredSurface
-from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.surface import SurfaceWarning
 
 DX, DY, NX, NY = 2e-6, 1e-6, 12, 20  # the area is 24 x 20 um
@@ -71,12 +69,6 @@ def test_every_way_up_is_the_function_of_the_turned_place(
     np.testing.assert_allclose(surface.heights(GRID, offset), expected, rtol=0, atol=1e-12 * np.ptp(expected))
 
 
-def test_the_offset_moves_the_surface_as_it_lies(tmp_path: Path) -> None:
-    surface = written(tmp_path, rotate_deg=90)
-    x, y = from_middle(GRID, (1e-6, 0.0))
-    np.testing.assert_allclose(surface.heights(GRID, (1e-6, 0.0)), height(y, -x), rtol=0, atol=1e-19)
-
-
 def test_a_bad_way_up_is_refused(tmp_path: Path) -> None:
     for name, value in (
         ("mirror", "z"), ("rotate_deg", 45), ("rotate_deg", True), ("turn_over", "yes"), ("replica", 1),
@@ -90,16 +82,6 @@ def test_a_bad_way_up_is_refused(tmp_path: Path) -> None:
         rf.InputError, match=r"at most the measured 6e-06 x 6e-06 m of map\.npy about the centre"
     ):
         written(tmp_path, centre=(3e-6, 3e-6)).heights(GRID)
-
-
-def test_tables_keep_the_way_up(tmp_path: Path) -> None:
-    surface = written(
-        tmp_path, replica=True, mirror="y", rotate_deg=270, turn_over=False, centre=(1e-5, 1.1e-5)
-    )
-    table = surface.to_dict()
-    assert table["centre"] == [1e-5, 1.1e-5]
-    assert surface_from_dict(table) == surface
-    assert "turn_over" not in written(tmp_path).to_dict()  # left to the body that it lies on
 
 
 def body(modulus: float, surface: object) -> rf.Body:
@@ -211,13 +193,3 @@ def test_maps_that_repeat(tmp_path: Path) -> None:
         rf.InputError, match=r"whole multiples of the 1\.6e-05 x 2\.4e-05 m with which wave\.npy"
     ):
         rf.solve(refused, 24)
-
-
-def test_text_below_words_is_an_image_whose_first_line_is_the_top(tmp_path: Path) -> None:
-    path, table = tmp_path / "map.txt", np.random.default_rng(1).integers(-9, 9, (4, 5))
-    lines = "\n".join(" ".join(map(str, line)) for line in table)
-    path.write_text(f"heights of a sample\n{lines}\n")
-    reading = MeasuredSurface(path, unit="m", pixel_size=1e-6).reading
-    assert reading.heights.tolist() == table.T[:, ::-1].tolist()  # x to the right, y up
-    path.write_text(f"{lines}\n")  # without words: an array, whose first index is x
-    assert MeasuredSurface(path, unit="m", pixel_size=1e-6).reading.heights.tolist() == table.tolist()

@@ -1,250 +1,176 @@
-"""One grid of the production solver: CG between updates of the lagged terms, patience, and how it ends."""
+"""One grid of the production solver: what CG inverts and what lags, windows, and how a solve ends."""
 
 from __future__ import annotations
 
 import gc
-import math
 import weakref
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Mask, Window
+from refimpl.grid import Array
 from refimpl.model.certificate import certify
+from refimpl.model.problem import Problem
+from refimpl.model.slopes import Slopes
+from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
-from refimpl.solvers.production import constants
-from refimpl.solvers.production.anderson import AndersonMixing
-from refimpl.solvers.production.level import LevelSolver
-from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, FixedSet
+from refimpl.operators.preconditioner import Apply
+from refimpl.solvers.production import constants, lagged_terms
+from refimpl.solvers.production.lagged_terms import (
+    LaggedTerms,
+    couples_weakly,
+    coupling_strength,
+    pressure_compliance,
+)
+from refimpl.solvers.production.projected_cg import ProjectedCG
+from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, problem_of
+from verification.exact.dense_influence import DenseInfluence
 
-NOTHING = FixedSet(np.zeros((4, 4), dtype=bool))
-
-
-class Falling:
-    """Stands for CG: a residual that each step multiplies by ``factor``; its contact is ``ends_at``.
-
-    The contact is certain after the first step.
-    """
-
-    def __init__(self, factor: float, ends_at: Mask | None = None) -> None:
-        self.factor, self.contact, self.residual = factor, ends_at, 1.0
-        self.steps = 0
-
-    @property
-    def pressure(self) -> Array:
-        return self.contact.astype(float)
-
-    def residuals(self) -> tuple[float, float]:
-        return 0.0, self.residual
-
-    def iterate(self) -> None:
-        self.steps += 1
-        self.residual *= self.factor
-
-    def contact_is_certain(self, stiffness: float) -> bool:
-        return self.steps > 0
+M = 12
+ROUNDING = 1e-14  # of the largest displacement: transforms of a few hundred points
 
 
-class Scripted:
-    """Stands for the lagged terms: each update's residual follows from the number of updates before it."""
-
-    diverged = False
-
-    def __init__(
-        self,
-        cg: Falling,
-        residual: Callable[[int], float],
-        *,
-        has_lag: bool = True,
-        at_mixing: float | None = None,
-    ) -> None:
-        self.cg, self.has_lag, self._residual, self._at_mixing = cg, has_lag, residual, at_mixing
-        self.active, self.updates = NOTHING, 0
-        self.mixings: list[AndersonMixing | None] = []
-
-    def update(self) -> float:
-        self.updates += 1
-        return self._residual(self.updates - 1)
-
-    def mix(self, mixing: AndersonMixing | None) -> None:
-        self.mixings.append(mixing)
-        if self._at_mixing is not None:
-            self.cg.residual = self._at_mixing
-
-    def iterate(self) -> None:
-        self.cg.iterate()
+def turned(
+    strength: float,
+    tau: float = 0.0,
+    *,
+    oblique: bool = False,
+    periodic: bool = False,
+    **terms: bool,
+) -> Problem:
+    """Sliding along no axis of the grid; at an approach, so that no pressure is scaled to a load."""
+    scene = replace(coupled(strength, tau), sliding_direction=0.7, periodic=periodic)
+    return problem_of(scene, M, oblique=oblique, approach=-1e-7 if periodic else 1e-6, **terms)
 
 
-def scripted(
-    cg: Falling, residual: Callable[[int], float], *, needs_mixing: bool = False, **options: float | None
-) -> tuple[LevelSolver, Scripted]:
-    """A solver of 4 x 4 elements with these stand-ins for CG and for the lagged terms."""
-    solver = level_solver(problem_of(coupled(0.4), 4), needs_mixing=needs_mixing)
-    lagged = Scripted(cg, residual, **options)  # type: ignore[arg-type]  # the point of stand-ins
-    solver.cg, solver.lagged = cg, lagged  # type: ignore[assignment]  # likewise
-    return solver, lagged
+def pressed(seed: int) -> Array:
+    pressure = np.random.default_rng(seed).random((M, M))
+    return np.where(pressure > 0.5, pressure * 1e6, 0.0)
 
 
-def listed(*residuals: float) -> Callable[[int], float]:
-    """Residuals one after the other, the last for good."""
-    return lambda k: residuals[min(k, len(residuals) - 1)]
+def compliance(problem: Problem) -> tuple[Apply, Counter]:
+    counter = Counter()
+    operator = window_influence(problem.grid, problem.direction, counter=counter)
+    return pressure_compliance(problem, operator), counter
+
+
+def lagging(problem: Problem, pressure: Array) -> tuple[LaggedTerms, ProjectedCG, Counter]:
+    """The lagged terms of a problem at a pressure; displacements are not preconditioned."""
+    counter = Counter()
+    operator = window_influence(problem.grid, problem.direction, counter=counter)
+    cg = ProjectedCG(pressure_compliance(problem, operator), np.copy, pressure)
+    return LaggedTerms(problem, operator, cg), cg, counter
+
+
+def displacement(problem: Problem, lagged: LaggedTerms, cg: ProjectedCG) -> Array:
+    """``u = (v - h) cos theta_x cos theta_y``: what CG inverts and what lags, together."""
+    return (cg.separation - problem.gap) * lagged.slopes.obliqueness
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("strength", [0.0, 0.1, 0.3, 0.5])
+def test_weak_coupling_is_applied_with_the_pressure(strength: float, periodic: bool) -> None:
+    problem = turned(strength, periodic=periodic)
+    apply, counter = compliance(problem)
+    dense, pressure = DenseInfluence(problem.grid, problem.direction), pressed(1)
+    weak = 0 < strength <= 0.3
+    expected = problem.elasticity.normal(dense, pressure)
+    if weak:
+        expected += problem.elasticity.gap_by_shear(dense.shear(problem.friction.slope * pressure))
+    assert coupling_strength(problem) == pytest.approx(strength, rel=1e-14)
+    assert couples_weakly(problem) is weak
+    assert np.abs(apply(pressure) - expected).max() <= ROUNDING * np.abs(expected).max()
+    assert sum(n for kind, n in counter.tally.items() if "kernel" not in kind) == 1
+
+
+@pytest.mark.parametrize(("slope_correction", "strength"), [(False, 0.0), (True, 2.5)])
+def test_neglected_coupling_has_no_strength(slope_correction: bool, strength: float) -> None:
+    """Facet tractions bring shear to the gap by themselves."""
+    apart = turned(2.5, oblique=True, coupled=False, slope_correction=slope_correction)
+    assert coupling_strength(apart) == pytest.approx(strength)
+
+
+def test_facet_tractions_are_no_multiple_of_the_pressure() -> None:
+    assert couples_weakly(turned(0.2, oblique=True))
+    assert not couples_weakly(turned(0.2, oblique=True, slope_correction=True))
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("oblique", [False, True])
+@pytest.mark.parametrize("tau", [0.0, 1e6])
+@pytest.mark.parametrize("weak", [0.3, 0.0])
+def test_what_is_inverted_and_what_lags_add_up_to_the_same(
+    weak: float, tau: float, oblique: bool, periodic: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To the displacement of Eq. (7) and to the slopes, however the shear is shared out."""
+    monkeypatch.setattr(lagged_terms, "WEAK_COUPLING", weak)
+    problem = turned(0.2, tau, oblique=oblique, periodic=periodic)
+    pressure, active = pressed(2), pressed(3) > 0
+    lagged, cg, _ = lagging(problem, pressure)
+    lagged.active = FixedSet(active)
+    lagged.update()
+    assert couples_weakly(problem) is (weak > 0)
+    dense = DenseInfluence(problem.grid, problem.direction)
+    traction = problem.friction.traction(pressure, active)
+    lower, upper = problem.displacements(dense, pressure, traction, Slopes.flat((M, M)))
+    expected = problem.slopes(lower, upper)
+    bound = ROUNDING * np.abs(lower + upper).max()
+    found = displacement(problem, lagged, cg)
+    # the gap, up to a hundred times the displacement, is added and subtracted again
+    assert np.abs(found - (lower + upper)).max() <= bound + 1e-15 * problem.gap.max()
+    # differences of displacements over two spacings
+    assert np.abs(lagged.slopes.tan_x - expected.tan_x).max() <= bound / problem.grid.element_size
+    assert np.abs(lagged.slopes.tan_y - expected.tan_y).max() <= bound / problem.grid.element_size
+    assert np.array_equal(lagged.traction, traction)
+
+
+def test_without_tau_nothing_is_applied_for_it() -> None:
+    lagged, _, counter = lagging(turned(0.2, oblique=True), pressed(7))
+    lagged.active = FixedSet(pressed(1) > 0)
+    lagged.update()
+    assert counter.tally["shear"] == 1
+
+
+def test_without_pressure_nothing_is_sheared() -> None:
+    problem = turned(0.2, 1e6, oblique=True)
+    lagged, cg, _ = lagging(problem, np.zeros((M, M)))
+    lagged.active = FixedSet(np.zeros((M, M), dtype=bool))
+    for _ in range(2):
+        lagged.update()
+        assert np.array_equal(displacement(problem, lagged, cg), np.zeros((M, M)))
+        assert np.isfinite(lagged.slopes.tan_x).all()
+
+
+@pytest.mark.parametrize("tau", [0.0, 1e6])
+@pytest.mark.parametrize(("strength", "lags"), [(0.29, False), (0.31, True)])
+def test_strong_coupling_lags(strength: float, lags: bool, tau: float) -> None:
+    lagged = level_solver(problem_of(coupled(strength, tau=tau), 4)).lagged
+    lagged.active = FixedSet(np.ones((4, 4), dtype=bool))
+    assert lagged.has_lag is lags
 
 
 @pytest.mark.parametrize(
-    ("factor", "limit", "steps", "stagnated"),
-    [
-        # slow, but a tenth less within the patience: down to 0.9 of the tolerance, the rest is for rounding
-        (0.99, 1000, math.ceil(math.log(0.9e-3) / math.log(0.99)), False),
-        (1.0, 1000, 5 * constants.CG_PATIENCE, True),  # five calls of CG without any progress
-        (0.99, 7, 7, True),
-    ],
+    ("oblique", "strength", "lags"), [(True, 0.019, True), (True, 0.021, False), (False, 0.019, False)]
 )
-def test_cg_continues_while_it_makes_progress(
-    factor: float, limit: int, steps: int, stagnated: bool, monkeypatch: pytest.MonkeyPatch
+def test_the_weakest_coupling_lags_beside_slopes(oblique: bool, strength: float, lags: bool) -> None:
+    assert couples_weakly(problem_of(coupled(strength), 4, oblique=oblique)) is not lags
+
+
+@pytest.mark.parametrize("oblique", [False, True])
+def test_coupling_that_cg_inverts_ends_in_the_same_state_for_less(
+    oblique: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(constants, "CG_LIMIT", limit)
-    cg = Falling(factor)
-    solver, _ = scripted(cg, lambda k: cg.residual, has_lag=False)
-    assert solver.solve(1e-3, NOTHING) is not stagnated
-    assert solver.cg_iterations == cg.steps == steps
-    assert solver.stagnated is stagnated
-
-
-def test_updates_that_contract_are_not_mixed() -> None:
-    solver, lagged = scripted(Falling(0.0), listed(1.0, 0.2, 0.04, 0.008, 1e-4))
-    assert solver.solve(1e-3, NOTHING)
-    assert not solver.needs_mixing
-    assert not solver.stagnated
-    assert lagged.updates == 5 + 1  # the last once more, of the pressure that has met the load
-
-
-def test_updates_of_strong_feedback_are_mixed_from_then_on() -> None:
-    solver, lagged = scripted(Falling(0.0), listed(1.0, 0.9, 0.8, 1e-4))
-    assert solver.solve(1e-3, NOTHING)
-    assert solver.needs_mixing
-    assert lagged.mixings[:2] == [None, None]
-    again = Scripted(Falling(0.0), listed(0.5, 1e-4))
-    solver.lagged = again  # type: ignore[assignment]  # a stand-in
-    assert solver.solve(1e-3, NOTHING)
-    assert again.mixings[0] is not None
-
-
-def test_updates_without_progress_are_given_up() -> None:
-    solver, lagged = scripted(Falling(0.0), listed(1.0))
-    assert not solver.solve(1e-3, NOTHING)
-    assert solver.stagnated
-    assert lagged.updates == 1 + 2 + 30  # two of strong feedback, and the patience
-
-
-def test_a_solve_takes_no_more_updates_than_its_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(constants, "UPDATE_LIMIT", 7)
-    solver, lagged = scripted(Falling(0.0), lambda k: 0.45**k)
-    assert not solver.solve(1e-12, NOTHING)
-    assert solver.stagnated
-    assert lagged.updates == 1 + 7
-
-
-def finely(monkeypatch: pytest.MonkeyPatch) -> float:
-    """A factor of CG's steps so close to one that its residual shows the goal; it has time to get there."""
-    monkeypatch.setattr(constants, "CG_PATIENCE", 10**6)
-    monkeypatch.setattr(constants, "CG_LIMIT", 10**7)
-    return 1 - 1e-4
-
-
-@pytest.mark.parametrize(("feedback", "next_share"), [(0.5, 0.1), (0.02, 0.02), (0.0, 1e-3), (-0.01, 1e-3)])
-def test_the_less_feedback_the_further_cg_goes_between_updates(
-    feedback: float, next_share: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """CG leaves a tenth at first, then as much as the last update fed back, a thousandth at least."""
-    monkeypatch.setattr(constants, "UPDATE_LIMIT", 2)
-    cg, left, residuals = Falling(finely(monkeypatch)), [1.0], [1.0]
-
-    def residual(update: int) -> float:
-        if update:
-            left.append(cg.residual)
-            cg.residual += feedback * residuals[-1]
-            residuals.append(cg.residual)
-        return cg.residual
-
-    solver, _ = scripted(cg, residual)
-    solver.solve(1e-12, NOTHING)
-    shares = [found / before for found, before in zip(left[1:], residuals, strict=False)]
-    assert shares == pytest.approx([0.1, next_share], rel=2e-4)
-
-
-@pytest.mark.parametrize(("has_lag", "share"), [(True, 0.3), (False, 0.9)])
-def test_cg_goes_no_further_than_the_tolerance_needs(
-    has_lag: bool, share: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The rest is for the lagged terms, or for rounding alone."""
-    cg = Falling(finely(monkeypatch))
-    solver, _ = scripted(cg, lambda k: cg.residual, has_lag=has_lag)
-    cg.residual = 2e-3
-    assert solver.solve(1e-3, NOTHING)
-    assert cg.residual == pytest.approx(share * 1e-3, rel=2e-4)
-
-
-@pytest.mark.parametrize(
-    ("residual", "left", "goal"), [(1e-2, 1e-3, 1e-4), (1e-3, 1e-2, 1e-4), (2e-8, 1e-8, 1e-9)]
-)
-def test_between_mixed_updates_cg_leaves_a_tenth_of_what_mixing_has_left(
-    residual: float, left: float, goal: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Without a step of CG an update would tell nothing new; a tenth of the tolerance is always enough."""
-    cg = Falling(finely(monkeypatch))
-    solver, lagged = scripted(cg, listed(residual, 0.0), needs_mixing=True, at_mixing=left)
-    assert solver.solve(1e-8, NOTHING)
-    assert lagged.mixings[0] is not None
-    assert cg.residual == pytest.approx(goal, rel=2e-4)
-
-
-@pytest.mark.parametrize("needs_mixing", [False, True])
-def test_cg_stops_where_the_contact_is_certain_and_enough_but_not_between_mixed_updates(
-    needs_mixing: bool,
-) -> None:
-    """A mixed state solves no problem of its own; after an update the contact is the state's."""
-    cg = Falling(0.5, ends_at=np.eye(4, dtype=bool))
-    solver, lagged = scripted(cg, listed(1.0, 0.1), needs_mixing=needs_mixing)
-    assert not solver.solve(1e-8, NOTHING, lambda contact: bool(contact.any()))
-    assert not solver.stagnated
-    assert (cg.steps, lagged.updates) == ((4 if needs_mixing else 1), 2)
-
-
-@pytest.mark.parametrize("enough", [None, lambda contact: False])
-def test_a_state_whose_contact_is_not_enough_is_solved_to_the_end(enough: ContactTest | None) -> None:
-    cg = Falling(0.5, ends_at=np.eye(4, dtype=bool))
-    solver, _ = scripted(cg, lambda k: cg.residual, has_lag=False)
-    assert solver.solve(1e-8, NOTHING, enough)
-
-
-@pytest.mark.parametrize(("share", "met"), [(0.985, True), (0.995, False)])
-def test_a_hundredth_of_the_tolerance_is_left_to_the_certificates_rounding(share: float, met: bool) -> None:
-    """At a tolerance of 1e-12 rounding is a thousandth of it."""
-    solver, _ = scripted(Falling(0.0), listed(share * 1e-12))
-    assert solver.solve(1e-12, NOTHING) is met
-
-
-@pytest.mark.parametrize("tolerance", np.geomspace(1e-3, 1e-8, 15))
-def test_without_lag_no_step_is_taken_below_the_tolerance(
-    tolerance: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """But for a tenth of it that is left to rounding."""
-    solver = level_solver(problem_of(replace(BALL, load=20.0), 64, coupled=False))
-    before: list[float] = []
-    iterate = solver.cg.iterate
-
-    def recorded() -> None:
-        before.append(max(solver.cg.residuals()))
-        iterate()
-
-    monkeypatch.setattr(solver.cg, "iterate", recorded)
-    assert solver.solve(tolerance, FixedSet(np.zeros((64, 64), dtype=bool)))
-    assert min(before) > 0.9 * tolerance
-    assert solver.cg_iterations == len(before) > 1
+    """A fifth less at least; measured: 0.63 level, 0.73 oblique."""
+    scene = replace(coupled(0.3), load=20.0)
+    together = rf.solve(scene, 64, oblique=oblique)
+    monkeypatch.setattr(lagged_terms, "WEAK_COUPLING", 0.0)
+    apart = rf.solve(scene, 64, oblique=oblique)
+    assert together.status is apart.status is rf.Status.CONVERGED
+    assert np.abs(together.pressure - apart.pressure).max() <= 1e-6 * apart.max_pressure
+    assert together.cost.point_logs <= 0.8 * apart.cost.point_logs
 
 
 def test_how_a_solve_ended(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -260,51 +186,6 @@ def test_how_a_solve_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     stagnating = level_solver(problem_of(coupled(8.0), 16))  # far beyond what materials have
     monkeypatch.setattr(constants, "CG_LIMIT", 10**6)
     assert stagnating.result(1e-8).status is rf.Status.STAGNATED
-
-
-@pytest.mark.parametrize("friction", [rf.Friction(), rf.Friction(tau=0.0, beta=0.1), rf.Friction(tau=1.0)])
-def test_without_tau_there_is_one_solve(friction: rf.Friction, monkeypatch: pytest.MonkeyPatch) -> None:
-    solver = level_solver(problem_of(replace(BALL, friction=friction), 8))
-    solves: list[ContactTest | None] = []
-    solve = solver.solve
-
-    def recorded(tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
-        solves.append(enough)
-        return solve(tolerance, active, enough)
-
-    monkeypatch.setattr(solver, "solve", recorded)
-    assert solver.result(1e-8).status is rf.Status.CONVERGED
-    if friction.tau == 0:
-        assert solves == [None]
-    else:
-        assert all(enough is not None for enough in solves)
-        assert len(solves) > 1
-
-
-@pytest.mark.parametrize(("tau", "too_small"), [(0.0, False), (1e6, True)])
-def test_only_states_of_taus_rule_must_keep_off_a_windows_edge(tau: float, too_small: bool) -> None:
-    """Without tau there is one state, and the check on the whole grid tells what its window lacks."""
-    problem = problem_of(coupled(0.3, tau=tau), 16)
-    solver = level_solver(problem, Window(4, 8, 4, 12), pressure=np.ones((4, 8)))
-    assert solver.window_too_small is too_small
-
-
-@pytest.mark.parametrize(
-    ("place", "too_small"), [((0, 3), True), ((2, 7), True), ((1, 1), False), ((2, 6), False)]
-)
-def test_shear_off_the_contact_must_keep_off_the_edge_as_well(
-    place: tuple[int, int], too_small: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Where the set of tau is behind the contact, elements that no longer press are sheared still."""
-    pressure = np.zeros((4, 8))
-    pressure[1:3, 2:6] = 1.0
-    problem = problem_of(coupled(0.3, tau=1e6), 16)
-    solver = level_solver(problem, Window(4, 8, 4, 12), pressure=pressure)
-    traction = np.zeros((4, 8))
-    monkeypatch.setattr(type(solver.lagged), "traction", property(lambda lagged: traction))
-    assert not solver.window_too_small
-    traction[place] = 2e5
-    assert solver.window_too_small is too_small
 
 
 @pytest.mark.parametrize("slope_correction", [False, True])

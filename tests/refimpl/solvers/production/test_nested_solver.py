@@ -1,4 +1,4 @@
-"""Windows of the production solver: how they grow, and the certificate on the whole grid."""
+"""Nested grids and windows: initial guesses, how windows grow, the certificate on the whole grid."""
 
 from __future__ import annotations
 
@@ -19,8 +19,14 @@ from refimpl.operators.influence import window_influence
 from refimpl.solvers.production import nested_solver
 from refimpl.solvers.production.constants import MARGIN
 from refimpl.solvers.production.level import LevelSolver
-from refimpl.solvers.production.nested_solver import certified, missed_by_window, solve_fft, widened
-from refimpl.solvers.tau_active_set import first_set
+from refimpl.solvers.production.nested_solver import (
+    certified,
+    from_guess,
+    missed_by_window,
+    solve_fft,
+    widened,
+)
+from refimpl.solvers.tau_active_set import FixedSet, first_set
 from tests.refimpl.solvers.production.levels import BALL, FAINT, coupled, level_solver, problem_of
 
 
@@ -38,18 +44,6 @@ def test_states_that_do_not_converge_end_taus_rule_and_say_so() -> None:
     solution = rf.solve(coupled(8.0, tau=1e6), 16, oblique=False)
     assert solution.status is rf.Status.STAGNATED
     assert solution.cost.iterations["CG at 16 x 16"] < 1000
-
-
-def test_facet_tractions_are_the_dense_solvers() -> None:
-    """With the slope correction what presses is not the pressure, and its displacement is applied anew."""
-    scene = replace(BALL, load=60.0)
-    dense, fft = (
-        rf.solve(scene, 12, method=m, oblique=True, slope_correction=True, tolerance=1e-10)
-        for m in ("dense", "fft")
-    )
-    assert fft.status is dense.status is rf.Status.CONVERGED
-    assert dense.slope_error.max_slope > 0.015
-    np.testing.assert_allclose(fft.pressure, dense.pressure, atol=1e-8 * dense.max_pressure, rtol=0)
 
 
 @pytest.mark.parametrize("rows", [slice(2, 6), slice(6, 9)])
@@ -73,15 +67,6 @@ def test_the_certificate_knows_all_tractions_and_transforms_no_more(rows: slice)
     assert found.point_logs < 0.6 * everything.point_logs
 
 
-def test_without_friction_the_certificate_transforms_no_more_than_the_contact_needs() -> None:
-    problem = problem_of(replace(BALL, friction=rf.Friction()), 32)
-    result = level_solver(problem).result(1e-6)
-    found, everything = Counter(), Counter()
-    certified(problem, result, found)
-    certified(problem, replace(result, pressure=np.ones((32, 32))), everything)
-    assert found.point_logs < 0.6 * everything.point_logs
-
-
 def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
     shape, tolerance = (48, 48), 1e-8
     problem = problem_of(BALL, 48)
@@ -101,29 +86,6 @@ def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
     assert solver.window.shape < shape
     inside = Window.around(expected > 0, margin=1)
     assert np.all(solver.window.mask(shape)[inside.slices])
-
-
-def test_a_wider_window_holds_the_contact_and_what_penetrates_beside_it() -> None:
-    shape = (48, 48)
-    solver = level_solver(problem_of(BALL, 48), Window(18, 30, 18, 30))
-    result = solver.result(1e-8)
-    outside = np.zeros(shape, dtype=bool)
-    outside[24, 31] = True
-    outside[18] = result.pressure[18] > 0  # as contact on the edge is where slopes count
-    assert outside[18].any()
-    needed = solver.window.mask(shape) | outside
-    wider = widened(solver.whole, result, needed, Counter(), needs_mixing=True)
-    assert wider.needs_mixing
-    assert wider.window == Window.around(needed, MARGIN).filling(shape)
-    assert wider.window.shape < shape
-    assert np.array_equal(wider.full(wider.cg.pressure), result.pressure)
-
-
-def test_what_just_touches_outside_a_window_is_no_penetration() -> None:
-    problem = problem_of(BALL, 16)
-    state = certified(problem, level_solver(problem).result(1e-8), Counter())
-    touching = replace(state, v=np.full((16, 16), state.approach))
-    assert not missed_by_window(problem, touching, Window(7, 9, 7, 9), 1e-8).any()
 
 
 def test_contact_on_a_windows_edge_has_outgrown_it_where_slopes_count() -> None:
@@ -165,17 +127,83 @@ def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) ->
         assert not np.any(before.mask((80, 80)) & ~after.mask((80, 80)))
 
 
-def test_a_guess_for_a_finer_grid_has_the_plastic_core_at_the_cap() -> None:
-    """The step that sharpens the guess leaves it out: there the misfit is indentation, and no error."""
-    peak = rf.solve(BALL, 64, oblique=False).max_pressure
-    lower = rf.Body(replace(BALL.lower.material, hardness=0.6 * peak), rf.Flat())
-    hard = replace(BALL, lower=lower, load=2.0)
-    coarse, fine = (problem_of(hard, M, plastic=True) for M in (32, 64))
-    solver = level_solver(coarse)
-    solver.solve(1e-6, first_set(coarse))
-    guess = nested_solver.from_guess(fine, solver.initial_guess(), Counter())
-    full = guess.full(guess.cg.pressure) >= 0.6 * peak * (1 - 1e-9)
-    result = solve_fft(fine, 1e-8, Counter())
-    expected = result.pressure >= 0.6 * peak
-    assert expected.sum() > 100
-    assert np.count_nonzero(full != expected) <= 0.05 * expected.sum()
+STEEP = rf.Scene(
+    upper=rf.Body(rf.Material(50e9, 0.2), rf.Sphere(2.4e-3) + rf.GaussianRoughness(3.3e-6, 51e-6, seed=4344)),
+    lower=rf.Body(rf.Material(2.8e9, 0.24), rf.GaussianRoughness(3.3e-6, 74e-6, seed=4345)),
+    friction=rf.Friction(tau=1.1e6, beta=0.32),
+    load=40.0,
+    side=1e-3,
+)
+"""Rough on rough: slopes of 0.13 (rms), modulus ratio 18, displacements of ten elements on a grid of 256."""
+
+
+def solved(problem: Problem, tolerance: float, window: Window | None = None) -> LevelSolver:
+    """The level's solver after a solve without tau."""
+    solver = level_solver(problem, window)
+    assert solver.solve(tolerance, FixedSet(np.zeros(solver.problem.gap.shape, dtype=bool)))
+    return solver
+
+
+def continued(solver: LevelSolver, finer: Problem) -> LevelSolver:
+    return from_guess(finer, solver.initial_guess(), Counter())
+
+
+def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() -> None:
+    """A ball's gap is below the approach as far as 1.41 contact radii; its displacement parts them there."""
+    coarse, fine = (problem_of(replace(BALL, load=20.0), M) for M in (32, 64))
+    whole = solved(coarse, 1e-6)
+    windowed = solved(coarse, 1e-6, Window.around(whole.contact, 1))
+    beside = np.ones((32, 32), dtype=bool)
+    beside[windowed.window.slices] = False
+    assert np.any(beside & (coarse.gap < 0.9 * windowed.cg.approach))
+    expected, found = continued(whole, fine), continued(windowed, fine)
+    assert found.window == expected.window
+    assert np.array_equal(found.cg.contact, expected.cg.contact)
+    np.testing.assert_allclose(found.cg.pressure, expected.cg.pressure, rtol=1e-4, atol=1.0)
+
+
+@pytest.mark.parametrize("approach", [None, 1e-6])
+def test_a_finer_grid_starts_close_to_its_solution(approach: float | None) -> None:
+    coarse, fine = (problem_of(BALL, M, approach=approach) for M in (32, 64))
+    refined = continued(solved(coarse, 1e-6), fine)
+    alone = solved(fine, 1e-8)
+    exact, start = alone.cg.pressure, refined.full(refined.cg.pressure)
+    assert refined.window == Window.around(exact > 0, MARGIN).filling((64, 64))
+    # the coarse grid's own error, measured: 0.080 and 0.057, and a fifteenth of the contact's elements
+    assert np.linalg.norm(start - exact) <= 0.1 * np.linalg.norm(exact)
+    assert np.count_nonzero((start > 0) != (exact > 0)) <= 0.08 * np.count_nonzero(exact)
+    assert refined.solve(1e-8, FixedSet(np.zeros(refined.problem.gap.shape, dtype=bool)))
+    assert refined.cg_iterations <= 10  # measured: 9 and 9
+    if approach is not None:  # measured: 12; under a load a foundation is as good for a smooth ball, 9
+        assert refined.cg_iterations < alone.cg_iterations
+
+
+def test_steep_slopes_converge_on_fine_grids() -> None:
+    """Their feedback grows with displacement over spacing; relaxed updates stagnated from 256 on."""
+    coarse, fine = (rf.solve(STEEP, M) for M in (128, 256))
+    assert coarse.status is fine.status is rf.Status.CONVERGED
+    assert fine.friction_coefficient == pytest.approx(coarse.friction_coefficient, rel=0.01)
+    assert fine.cost.iterations["CG at 256 x 256"] < 200
+
+
+def test_steps_are_reported_of_every_grid_and_the_finest_has_few_left() -> None:
+    result, _ = solve_fft(problem_of(BALL, 128), 1e-6, Counter())
+    assert list(result.iterations) == ["CG at 128 x 128", "CG at 32 x 32"]
+    # measured: 7, and 12 where the coarser grids are not solved
+    assert result.iterations["CG at 128 x 128"] <= 9
+    assert max(result.iterations.values()) <= 9  # and no coarse grid is solved to the end
+
+
+@pytest.mark.parametrize("approach", [None, 1e-6])
+@pytest.mark.parametrize("factor", [1.005, 0.995, 1.03, 0.97])
+def test_a_start_on_the_same_grid_is_used_where_it_is_off_by_one_per_cent(
+    approach: float | None, factor: float
+) -> None:
+    """And not by three; at an approach v is off by (factor - 1) u, whose work is twice that of the energy."""
+    problem = problem_of(replace(BALL, load=8.0), 32, approach=approach)
+    solver = level_solver(problem)
+    solver.solve(1e-9, first_set(problem))
+    guess = solver.initial_guess()
+    start = guess._replace(pressure=factor * guess.pressure, displacement=factor * guess.displacement)
+    found, _ = solve_fft(problem, 1e-6, Counter(), start)
+    assert ("CG at 16 x 16" in found.iterations) is (abs(factor - 1) > 0.02)

@@ -14,8 +14,8 @@ from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
-from refimpl.solution.data_error import data_error
-from refimpl.solution.domain_error import unseen_parts
+from refimpl.solution.data_error import data_error, finest_by_data
+from refimpl.solution.unseen import unseen_parts
 from refimpl.surfaces import Surface
 
 LENGTHS = (4e-3, 2e-3)
@@ -82,20 +82,11 @@ def test_roughness_by_formula_beside_the_data_makes_them_matter_less() -> None:
     assert data_error(scene, Grid((8, 4), LENGTHS, True)) == pytest.approx(0.02626, abs=6e-6)
 
 
-def test_several_maps_are_seen_at_the_pitch_of_each() -> None:
-    """Across: 8 points a wave, b = a / 2, on elements d = 2 p = 1 q: at its pitch q and on the grid
-    2 / 4 sin^2(22.5) = 0.07322, above 2 / 16 sin^2(45) = 0.0625. 1 - sqrt(0.36612 / 0.37770) = 0.01546 on the
-    grid, 1 - sqrt(0.35539 / 0.37770) = 0.02998 of the octave above.
-    """
-    across = Wave(1.5e-6, wavelength=4e-3, axis=1, data=0.5e-3)
-    lengths = (4e-3, 4e-3)
-    scene = waves(across, MEASURED)
-    assert data_error(scene, Grid((8, 8), lengths, True)) == pytest.approx(0.01546 + 1.5 * 0.02998, abs=2e-5)
-
-
-@pytest.mark.parametrize("formula", [rf.Sphere(0.2), Wave(3e-6, wavelength=1e-3)])
-def test_formulas_leave_nothing_open(formula: Surface) -> None:
-    assert data_error(waves(rf.Flat(), formula), Grid((8, 4), LENGTHS, True)) == 0
+@pytest.mark.parametrize(
+    "lower", [rf.Sphere(0.2), Wave(3e-6, wavelength=1e-3), Wave(0.0, wavelength=4e-3, data=0.25e-3)]
+)
+def test_formulas_and_a_level_map_leave_nothing_open(lower: Surface) -> None:
+    assert data_error(waves(rf.Flat(), lower), Grid((8, 4), LENGTHS, True)) == 0
 
 
 def test_a_balls_slope_is_no_roughness_beside_the_data() -> None:
@@ -103,18 +94,6 @@ def test_a_balls_slope_is_no_roughness_beside_the_data() -> None:
     assert data_error(waves(rf.Sphere(0.2), MEASURED), Grid((8, 4), LENGTHS, True)) == pytest.approx(
         0.04804, abs=6e-6
     )
-
-
-def test_a_level_map_leaves_nothing_open() -> None:
-    level = Wave(0.0, wavelength=4e-3, data=0.25e-3)
-    assert data_error(waves(rf.Flat(), level), Grid((8, 4), LENGTHS, True)) == 0
-
-
-def test_a_map_of_two_points_has_no_octave_above() -> None:
-    """All of its gradient may be between the points: 1.5 of the area."""
-    two = Wave(3e-6, wavelength=8e-3, data=2e-3)
-    scene = waves(rf.Flat(), two, periodic=False)
-    assert data_error(scene, Grid((8, 4), LENGTHS, False)) == pytest.approx(1.5)
 
 
 GRID = Grid((8, 4), LENGTHS, False)
@@ -133,7 +112,7 @@ def test_shares_of_every_number(approach: float | None) -> None:
     """
     scene = waves(rf.Flat(), SHORT, periodic=False)
     problem = discretise(scene, GRID, Terms(oblique=False), approach=approach)
-    state = solve_reference(problem)
+    _, state = solve_reference(problem)
     share, found = data_error(scene, GRID), unseen_parts(problem, state, scene)
     assert 0.1 < share < 1
     sheared = 3e5 * state.contact_area
@@ -163,7 +142,7 @@ def ball(approach: float, elements: tuple[int, int]) -> tuple[Mask, dict[str, di
         size=LENGTHS,
     )
     problem = discretise(scene, Grid(elements, LENGTHS, False), Terms(oblique=False), approach=approach)
-    state = solve_reference(problem)
+    _, state = solve_reference(problem)
     return state.contact, unseen_parts(problem, state, scene), state.contact_area
 
 
@@ -190,3 +169,14 @@ def test_a_contact_within_the_domain_has_no_part() -> None:
     contact, parts, _ = ball(4e-6, (16, 8))
     assert contact.any()
     assert parts == {}
+
+
+def test_the_closest_points_of_both_bodies_limit_the_grid_along_the_longer_side() -> None:
+    """Points 10 um apart below, 25 um above, on 300 x 100 um: four elements in 10 um are 120 in 300."""
+    few, many, ball = np.zeros((12, 4)), np.zeros((30, 10)), rf.Sphere(0.1)
+    rough = rf.GaussianRoughness(1e-7, 1e-4, seed=2)
+    soft = rf.Material(2e9, 0.4)
+    for lower, upper, most in ((many, few, 120.0), (few, ball, 48.0), (rough, ball, math.inf)):
+        bodies = rf.Body(soft, upper), rf.Body(soft, lower)
+        scene = rf.Scene(*bodies, friction=rf.Friction(), load=1.0, size=(300e-6, 100e-6))
+        assert finest_by_data(scene) == most
