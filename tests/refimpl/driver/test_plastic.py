@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.bounds.proven_bounds import NO_BOUND_PLASTIC
 from refimpl.driver.options import Options
-from refimpl.planning.terms import RequestedTerms
+from refimpl.model.problem import Terms
 from refimpl.scene.parameters import with_parameter
 from refimpl.sensitivities.budget import budget
-from refimpl.solution.bounds import NO_BOUND_PLASTIC
 from refimpl.solution.limits import Limit, ModelWarning
 
 H = 0.8e9
@@ -90,7 +90,7 @@ def test_indentation_is_where_pressures_are_capped() -> None:
     assert np.count_nonzero(at_cap) * s.grid.element_area == pytest.approx(s.plastic_area)
     assert not s.plastic_indentation[~at_cap].any()
     assert s.plastic_indentation[at_cap].min() >= 0
-    K = s.slopes.obliqueness
+    K = s.slopes.cosine_product
     # with the indentation the bodies fit: v - approach + w_p / K vanishes where pressures are capped
     assert np.abs(s.clearance + s.plastic_indentation / K)[at_cap].max() < 1e-12
 
@@ -144,7 +144,7 @@ def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:
     assert "plastic" not in rf.scene_to_toml(ROUGH)
     with pytest.raises(rf.InputError, match="plastic"):
         replace(ROUGH, plastic=1)
-    assert Options(scene=off, grid=8, requested=RequestedTerms()).requested.plastic is False
+    assert Options(scene=off, grid=8, requested=Terms()).requested.plastic is False
 
 
 def test_bounds_of_capped_states() -> None:

@@ -194,7 +194,7 @@ def test_cosines_and_sines_are_those_of_the_angles() -> None:
     np.testing.assert_allclose(slopes.sin_x, np.sin(theta_x), rtol=1e-15)
     np.testing.assert_allclose(slopes.cos_y, np.cos(theta_y), rtol=1e-15)
     np.testing.assert_allclose(slopes.sin_y, np.sin(theta_y), rtol=1e-15)
-    np.testing.assert_allclose(slopes.obliqueness, np.cos(theta_x) * np.cos(theta_y), rtol=1e-15)
+    np.testing.assert_allclose(slopes.cosine_product, np.cos(theta_x) * np.cos(theta_y), rtol=1e-15)
 
 
 def test_distance_looks_only_where_asked() -> None:

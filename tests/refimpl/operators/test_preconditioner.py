@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.bounds.energy_norm import smallest_symbol
 from refimpl.grid import Array, Grid, Mask, Window
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.influence import WindowInfluence, window_influence
 from refimpl.operators.kernel_tables import unit_table
 from refimpl.operators.preconditioner import ExtendedPreconditioner, SpectralPreconditioner, extended
-from refimpl.solution.energy_norm import smallest_symbol
 from refimpl.solvers.production import nested_solver
 from verification.exact.dense_influence import DenseInfluence
 

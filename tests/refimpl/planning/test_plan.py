@@ -11,13 +11,13 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
+from refimpl.model.problem import Terms
 from refimpl.planning import free_memory as module
 from refimpl.planning import plan, term_effects, terms
 from refimpl.planning.expected_contact import expected_contact, solved_contact
 from refimpl.planning.free_memory import free_memory
 from refimpl.planning.plan import Plan, make_plan, memory_of
 from refimpl.planning.term_effects import Scales
-from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import discretise
 from refimpl.solution.solution import REPORTED
 
@@ -37,9 +37,7 @@ def planned(
 ) -> Plan:
     """The plan of a scene on ``M x M`` elements, or on any grid, with what is requested of each term."""
     grid = scene.grid(grid) if isinstance(grid, int) else grid
-    return make_plan(
-        discretise(scene, grid, approach=approach), "fft", RequestedTerms(**words), demand=demand
-    )
+    return make_plan(discretise(scene, grid, approach=approach), "fft", Terms(**words), demand=demand)
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,11 @@ import pytest
 
 import refimpl as rf
 from refimpl.model.materials import Pair
+from refimpl.model.problem import Terms
 from refimpl.planning.expected_contact import ExpectedContact, solved_contact
 from refimpl.planning.plan import estimated_memory, make_plan
 from refimpl.planning.term_effects import Effect, Scales, effects_in, neglected_parts
-from refimpl.planning.terms import RequestedTerms, budget_of, choose
+from refimpl.planning.terms import budget_of, choose
 from refimpl.scene.discretise import discretise
 
 PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1))
@@ -118,7 +119,7 @@ def test_effects_are_parts_in_each_numbers_unit() -> None:
 @pytest.mark.parametrize(("mean", "included"), [(29e6, False), (31e6, True)])
 def test_the_cap_enters_where_three_mean_pressures_reach_the_hardness(mean: float, included: bool) -> None:
     problem = discretise(SCENE, SCENE.grid(6))
-    terms = choose(problem, replace(CONTACT, mean_pressure=mean), RequestedTerms(), 1e-8)
+    terms = choose(problem, replace(CONTACT, mean_pressure=mean), Terms(), 1e-8)
     (cap,) = (term for term in terms if term.name == "plastic")
     assert cap.included is included
 
@@ -159,7 +160,7 @@ def test_reasons_of_terms_that_come_with_others() -> None:
     """The budget less the neglected coupling, a hundredth more and less than the tilt takes."""
     problem, scales = discretise(SCENE, SCENE.grid(6)), Scales(CONTACT, PAIR, SCENE.friction)
     sizes = {name: effects_of(name, scales).larger for name in ("coupled", "tilted")}
-    both, given = sum(sizes.values()), RequestedTerms(oblique=True)
+    both, given = sum(sizes.values()), Terms(oblique=True)
     for share, reason in ((1.01, "negligible"), (0.99, "shear moves the common surface")):
         tilted = choose(problem, CONTACT, given, share * both)[2]
         assert (tilted.reason, tilted.negligible) == (reason, share > 1)
@@ -172,7 +173,7 @@ def test_without_friction_slopes_that_are_all_of_mu_stay_and_facets_still_shear(
     plan = make_plan(problem, demand=1.0, for_mu=True)
     assert not make_plan(problem, demand=1.0).includes("oblique")
     assert plan.restore(problem, "plastic").includes("oblique")
-    corrected = choose(problem, CONTACT, RequestedTerms(slope_correction=True), 1.0)
+    corrected = choose(problem, CONTACT, Terms(slope_correction=True), 1.0)
     assert [term.included for term in corrected] == [True, True, True, True, False, False]
 
 

@@ -13,6 +13,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
+from refimpl.half_space.influence_error import coefficient_error
+from refimpl.half_space.influence_error_3d import element_error
+from refimpl.half_space.local_error import local_error, share_above, short_wave_share
 from refimpl.model.elasticity import Elasticity
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
@@ -23,9 +26,6 @@ from refimpl.sensitivities.surface_verdict import (
     pressed_on_a_flat,
     surface_verdict,
 )
-from refimpl.solution.influence_error import coefficient_error
-from refimpl.solution.influence_error_3d import element_error
-from refimpl.solution.local_error import local_error, share_above, short_wave_share
 
 SIZE, ELEMENTS = (3e-3, 2e-3), (9, 6)
 # compliances 0.91 / 3 and 1 / 45: 91 to 20/3

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.scene.parameters import check_tolerances, moving, parameters, with_parameter
+from refimpl.scene.parameters import check_tolerances, parameters, with_parameter
 from refimpl.sensitivities.budget import budget
 from refimpl.sensitivities.fixed_contact import FixedContact, Response
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, friction_slopes, sensitivity
@@ -420,7 +420,7 @@ def test_hurst_exponents_stay_below_one() -> None:
 
 def test_what_makes_another_realisation_has_no_derivative() -> None:
     def moved(surface: rf.Surface, periodic: bool) -> set[str]:
-        names = moving(scene(surface, periodic=periodic))
+        names = differentiable_parameters(scene(surface, periodic=periodic))
         return {name.partition("].")[2] for name in names if name.startswith("lower.surface")}
 
     assert moved(FRACTAL, False) == {"rms", "hurst", "anisotropy", "lay"}

@@ -10,10 +10,10 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
+from refimpl.half_space.boundary_perturbation import Contact, gap_changes
 from refimpl.model.materials import Material, Pair
 from refimpl.model.slopes import Slopes
 from refimpl.sensitivities.half_space import half_space_error
-from refimpl.solution.boundary_perturbation import Contact, gap_changes
 
 NU, E = 0.2, 3e9
 WAVE = Grid((64, 4), (1.0, 4 / 64), periodic=True)

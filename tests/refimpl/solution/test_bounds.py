@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.model.slopes import Slopes
-from refimpl.solution.bounds import (
+from refimpl.bounds.energy_norm import EnergyNorm
+from refimpl.bounds.proven_bounds import (
     NO_BOUND_CORRECTED,
     NO_BOUND_PERIODIC,
     NO_BOUND_STEEP,
@@ -19,7 +19,7 @@ from refimpl.solution.bounds import (
     _shear_row,
     proven_bounds,
 )
-from refimpl.solution.energy_norm import EnergyNorm
+from refimpl.model.slopes import Slopes
 from tests.refimpl.solution.frozen import (
     POLYMER,
     SIDE,

@@ -15,7 +15,7 @@ from refimpl.grid import Array, Grid, Mask
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
 from refimpl.solution.data_error import data_error, finest_by_data
-from refimpl.solution.unseen import unseen_parts
+from refimpl.solution.domain_error import unseen_parts
 from refimpl.surfaces import Surface
 
 LENGTHS = (4e-3, 2e-3)

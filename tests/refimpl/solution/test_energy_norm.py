@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.bounds.energy_norm import _ROUNDING, EnergyNorm, smallest_symbol
 from refimpl.grid import Grid
 from refimpl.kernels import normal_table
-from refimpl.solution.energy_norm import _ROUNDING, EnergyNorm, smallest_symbol
 from tests.refimpl.solution.frozen import M, posed, scene, widened
 from verification.exact.dense_influence import DenseInfluence
 

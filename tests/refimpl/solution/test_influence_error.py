@@ -18,16 +18,16 @@ from appendix_a.fem3d.leading_order import first_order
 from appendix_a.fem3d.patch import normal_coefficient
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.wavy import Waviness
-from refimpl.model.materials import Pair
-from refimpl.model.slopes import Slopes
-from refimpl.solution.coefficient_tables import PLANE, SPACE, Layout, read_table, shipped_table
-from refimpl.solution.influence_error import (
+from refimpl.half_space.coefficient_tables import PLANE, SPACE, Layout, read_table, shipped_table
+from refimpl.half_space.influence_error import (
     SlopeError,
     coefficient_error,
     constant_along_an_axis,
     slope_error,
 )
-from refimpl.solution.influence_error_3d import element_error
+from refimpl.half_space.influence_error_3d import element_error
+from refimpl.model.materials import Pair
+from refimpl.model.slopes import Slopes
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 PAIR = Pair(lower=COPPER, upper=STEEL)

@@ -15,11 +15,11 @@ import pytest
 
 import refimpl as rf
 from refimpl.driver.options import Options
+from refimpl.half_space.influence_error import SlopeError
 from refimpl.model.forces import Forces, plasticity_index
+from refimpl.model.problem import Terms
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
-from refimpl.planning.terms import RequestedTerms
-from refimpl.solution.influence_error import SlopeError
 from refimpl.solution.limits import (
     Evidence,
     Limit,
@@ -351,4 +351,4 @@ def test_loads_under_a_cap_end_at_the_hardness_times_the_rectangle(size: tuple[f
     with pytest.raises(rf.InputError) as refused:
         Options(scene=replace(scene, load=601.0), grid=8)
     assert refused.value.field == "load"
-    Options(scene=replace(scene, load=601.0), grid=8, requested=RequestedTerms(plastic=False))
+    Options(scene=replace(scene, load=601.0), grid=8, requested=Terms(plastic=False))

@@ -17,7 +17,6 @@ from refimpl.model.elasticity import Elasticity, Influence, WindowOperator
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.materials import Pair
 from refimpl.model.problem import Problem, Terms
-from refimpl.model.state import SolverResult
 from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.paper import solve_paper

@@ -13,7 +13,7 @@ import refimpl as rf
 from refimpl.grid import Array, Mask, Shape
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem, Terms
-from refimpl.model.state import SolverResult, Status
+from refimpl.model.state import Status
 from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers import paper as module

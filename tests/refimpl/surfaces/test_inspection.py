@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.surfaces import statistics as stats
-from refimpl.surfaces.areal_parameters import (
+from refimpl.measured.areal_parameters import (
     Autocorrelation,
     height_parameters,
     mean_square_slopes,
     nayak,
 )
-from refimpl.surfaces.inspection import PARAMETERS
-from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd, _self_affine_psd, fit_roughness
+from refimpl.measured.inspection import PARAMETERS
+from refimpl.measured.roughness_fit import _drawn, _gaussian_psd, _self_affine_psd, fit_roughness
+from refimpl.surfaces import statistics as stats
 
 SHAPE, PIXEL = (256, 200), (1e-6, 1.5e-6)
 GAUSSIAN = {"rms": 1e-6, "lx": 20e-6, "ly": 20e-6}

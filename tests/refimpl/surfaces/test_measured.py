@@ -12,12 +12,12 @@ from scipy.interpolate import RectBivariateSpline
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.measured.areal_parameters import Spectrum
+from refimpl.measured.detrending import DEGREES, fit
+from refimpl.measured.missing_points import MAX_ELIMINATED, fill
+from refimpl.measured.readers import read
 from refimpl.surfaces import MeasuredSurface, SurfaceWarning
-from refimpl.surfaces.areal_parameters import Spectrum
-from refimpl.surfaces.detrending import DEGREES, fit
-from refimpl.surfaces.missing_points import MAX_ELIMINATED, fill
-from refimpl.surfaces.readers import read
-from tests.refimpl.surfaces.measured import (
+from tests.refimpl.measured.measured_surface import (
     DX,
     DY,
     NX,
@@ -212,7 +212,7 @@ def test_texts_are_of_the_map_as_it_lies(tmp_path: Path) -> None:
     grid = Grid((8, 12), (4e-6, 1.2e-6))
     assert surface.pitch((1e-6, 1e-6)) == DX
     assert surface.on_upper_body().reading is surface.reading
-    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.cautions(grid)[0]
+    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.notes(grid)[0]
     assert (
         "the window of 4e-06 x 1.2e-06 m about (4e-06, 7e-06) m is used, 13 x 8" in surface.describe(grid)[1]
     )

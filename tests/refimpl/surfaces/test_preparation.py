@@ -11,12 +11,12 @@ import pytest
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.measured.detrending import fit_form
+from refimpl.measured.preparation import gaussian_filter, prepare
+from refimpl.measured.reading import Reading
+from refimpl.measured.roughness_fit import _drawn, _gaussian_psd
 from refimpl.surfaces import MeasuredSurface
-from refimpl.surfaces.detrending import fit_form
-from refimpl.surfaces.preparation import gaussian_filter, prepare
-from refimpl.surfaces.reading import Reading
-from refimpl.surfaces.roughness_fit import _drawn, _gaussian_psd
-from tests.refimpl.surfaces.measured import quietly
+from tests.refimpl.measured.measured_surface import quietly
 
 PIXEL = (1e-6, 1.5e-6)
 X, Y = np.arange(96.0), np.arange(64.0)

@@ -67,7 +67,7 @@ def lagging(problem: Problem, pressure: Array) -> tuple[LaggedTerms, ProjectedCG
 
 def displacement(problem: Problem, lagged: LaggedTerms, cg: ProjectedCG) -> Array:
     """``u = (v - h) cos theta_x cos theta_y``: what CG inverts and what lags, together."""
-    return (cg.separation - problem.gap) * lagged.slopes.obliqueness
+    return (cg.separation - problem.gap) * lagged.slopes.cosine_product
 
 
 @pytest.mark.parametrize("periodic", [False, True])

@@ -13,7 +13,6 @@ from refimpl.grid import Mask, Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
-from refimpl.model.state import SolverResult
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.solvers.production import nested_solver
