@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.scene.parameters import check_tolerances, parameters, with_parameter
+from refimpl.scene.parameters import check_tolerances, differentiable_parameters, parameters, with_parameter
 from refimpl.sensitivities.budget import budget
 from refimpl.sensitivities.fixed_contact import FixedContact, Response
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, friction_slopes, sensitivity

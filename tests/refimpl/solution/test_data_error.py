@@ -112,7 +112,7 @@ def test_shares_of_every_number(approach: float | None) -> None:
     """
     scene = waves(rf.Flat(), SHORT, periodic=False)
     problem = discretise(scene, GRID, Terms(oblique=False), approach=approach)
-    _, state = solve_reference(problem)
+    state = solve_reference(problem)
     share, found = data_error(scene, GRID), unseen_parts(problem, state, scene)
     assert 0.1 < share < 1
     sheared = 3e5 * state.contact_area
@@ -142,7 +142,7 @@ def ball(approach: float, elements: tuple[int, int]) -> tuple[Mask, dict[str, di
         size=LENGTHS,
     )
     problem = discretise(scene, Grid(elements, LENGTHS, False), Terms(oblique=False), approach=approach)
-    _, state = solve_reference(problem)
+    state = solve_reference(problem)
     return state.contact, unseen_parts(problem, state, scene), state.contact_area
 
 

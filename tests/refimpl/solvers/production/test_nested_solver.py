@@ -53,7 +53,7 @@ def test_the_certificate_knows_all_tractions_and_transforms_no_more(rows: slice)
     pressure[3:5, 6:8], traction[rows, 6:9] = 1e7, 1e6
     traction[3:5, 6:8] = 1e6
     flat = Slopes.flat((16, 16))
-    result = SolverResult(pressure, traction, flat, rf.Status.CONVERGED, excluded=pressure > 0)
+    result = State(pressure, traction, flat, rf.Status.CONVERGED, excluded=pressure > 0)
     found, everything = Counter(), Counter()
     state = certified(problem, result, found)
     operator = window_influence(problem.grid, problem.direction, counter=everything)
@@ -109,7 +109,7 @@ def test_windows_of_taus_states_never_shrink(monkeypatch: pytest.MonkeyPatch) ->
     windows: list[Window] = []
     result = LevelSolver.result
 
-    def recorded(solver: LevelSolver, tolerance: float) -> SolverResult:
+    def recorded(solver: LevelSolver, tolerance: float) -> State:
         windows.append(solver.window)
         return result(solver, tolerance)
 
@@ -186,7 +186,7 @@ def test_steep_slopes_converge_on_fine_grids() -> None:
 
 
 def test_steps_are_reported_of_every_grid_and_the_finest_has_few_left() -> None:
-    result, _ = solve_fft(problem_of(BALL, 128), 1e-6, Counter())
+    result = solve_fft(problem_of(BALL, 128), 1e-6, Counter())
     assert list(result.iterations) == ["CG at 128 x 128", "CG at 32 x 32"]
     # measured: 7, and 12 where the coarser grids are not solved
     assert result.iterations["CG at 128 x 128"] <= 9
@@ -204,5 +204,5 @@ def test_a_start_on_the_same_grid_is_used_where_it_is_off_by_one_per_cent(
     solver.solve(1e-9, first_set(problem))
     guess = solver.initial_guess()
     start = guess._replace(pressure=factor * guess.pressure, displacement=factor * guess.displacement)
-    found, _ = solve_fft(problem, 1e-6, Counter(), start)
+    found = solve_fft(problem, 1e-6, Counter(), start)
     assert ("CG at 16 x 16" in found.iterations) is (abs(factor - 1) > 0.02)
