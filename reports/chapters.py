@@ -59,7 +59,7 @@ CHAPTERS = (
         "finer grids, sensitivities, and budgets after V&V 20. Identification of tau and beta from measured "
         "friction: coverage of its intervals, and effects of wrong input.",
         ("accuracy", "sensitivity", "identification"),
-        ("coverage", "coverage_fresh", "coverage_classes", "multilevel"),
+        ("coverage", "coverage_fresh", "coverage_classes"),
     ),
     Chapter(
         "yield",
@@ -92,7 +92,7 @@ CHAPTERS = (
         "costs",
         "Appendix III: costs",
         "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
-        ("tradeoff", "multilevel", "benchmarks"),
+        ("tradeoff", "benchmarks"),
         ("benchmarks", "tradeoff", "accuracy_costs", "large_grids", "sweeps"),
     ),
 )  # fmt: skip

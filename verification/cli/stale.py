@@ -46,7 +46,6 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "hypothesis": (*SOLVES, "verification/properties"),
     "large_grids": (*SOLVES, "verification/benchmarks"),
     "model_form": (*SOLVES, "appendix_a"),
-    "multilevel": (*SOLVES, "verification/multilevel"),
     "planning": SOLVES,
     "pulled": SOLVES,
     "quick": ("refimpl", "appendix_a", "verification/cases"),

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli import ensemble
 from verification.cli.output import (
     Parsers,
     add_json,
@@ -33,7 +32,6 @@ EPILOG = """examples:
   rough-friction sweep study.toml --parquet study.parquet
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
   rough-friction sweep study.toml --plot mu.svg --x load --by lower_rms
-  rough-friction sweep ensemble.toml --target-error 0.5%
 
 A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on
 where it was; runs that the store has are not done again. Exit status 1 when a run failed, and its
@@ -52,12 +50,6 @@ message is shown, or did not converge: then its row says so by its status.
   "lower.surface[0].lay" = [0.0, 0.7854]
   [solve]                     # optional: method, oblique, slope_correction, tolerance,
                               #   accuracy and quantity (chosen grids; then no grid in [vary])
-
-With --target-error the study is an ensemble that varies the grid alone, each grid twice the one
-before, and states no realisations: they are as many as it takes. By multilevel Monte Carlo it finds
-mean mu and A on the finest grid, each with a standard error of at most that share. A pilot says
-from which grid on the sum is cheapest; from the finest it is plain sampling. Where a realisation
-does not converge, there is no mean: without it the mean would be that of the easier surfaces.
 """
 
 
@@ -90,12 +82,6 @@ def add_parser(commands: Parsers) -> None:
     add("--x", metavar="COLUMN", help="with --plot: the column along x (default: what varies)")
     add("--y", metavar="COLUMN", help="with --plot: the column along y (default friction_coefficient)")
     add("--by", metavar="COLUMN", help="with --plot: the column that tells curves apart")
-    add(
-        "--target-error",
-        metavar="SHARE",
-        type=_share,
-        help="solve as many realisations as this relative standard error of mean mu and A takes (0.5%%)",
-    )
     add_json(parser)
     parser.set_defaults(run=run)
 
@@ -123,10 +109,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"rough-friction sweep: {note}", file=sys.stderr)
     line, where = _Line(), {"workers": options.workers, "scheduler": options.scheduler}
     try:
-        if options.target_error is not None:
-            found = ensemble.found(options, study, store, **where, tick=line.show)
-        else:
-            done = engine.sweep(study, store, **where, tick=line.show)
+        done = engine.sweep(study, store, **where, tick=line.show)
     except KeyboardInterrupt:
         line.close()
         print(f"rough-friction sweep: {line.interrupted(store)}", file=sys.stderr)
@@ -136,8 +119,6 @@ def run(options: argparse.Namespace) -> int:
         return 1
     finally:
         line.close()
-    if options.target_error is not None:
-        return ensemble.reported(options, found)
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
 
@@ -150,9 +131,9 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
 
     check_suffix(options.plot)
     given = {name: getattr(options, name) for name in ("x", "y", "by") if getattr(options, name)}
-    if options.plot is None or options.target_error is not None:
-        for name, value in (given | ({"plot": str(options.plot)} if options.plot else {})).items():
-            raise InputError(f"--{name}", value, "none without --plot, or with --target-error")
+    if options.plot is None:
+        for name, value in given.items():
+            raise InputError(f"--{name}", value, "none without --plot")
         return
     known = (*COORDINATES, *OUTCOMES, *study.own_axes)
     for name, value in given.items():
@@ -197,18 +178,6 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
         found = curves(done.rows, options.x, options.y, options.by)
         plot_sweep.draw(found, options.x, options.y, options.by, options.plot)
     emit(_document(done, store), options.json, table)
-
-
-def _share(text: str) -> float:
-    """A share from text: 0.5% or 0.005.
-
-    >>> _share("0.5%"), _share("0.01")
-    (0.005, 0.01)
-    """
-    try:
-        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
-    except ValueError as alien:
-        raise argparse.ArgumentTypeError(f"{text!r} is no share like 0.5% or 0.005") from alien
 
 
 def _document(done: Sweep, store: Path) -> dict[str, object]:

@@ -159,7 +159,6 @@ def test_help_does_not_wait_for_numpy() -> None:
         (["appendix-a", "surface", "hertz", "--pixel-size", "1e-6"], "--pixel-size = 1e-06"),
         (["identify", "hertz", "a.csv", "--loads", "5;8"], "'5;8' is no list of numbers"),
         (["remake", "--list", "--seconds", "0"], "--seconds = 0.0"),
-        (["sweep", "table3", "--target-error", "5%%"], "'5%%' is no share"),
         (["tradeoff", "hertz", "--grids", "3,8"], "fewer than 4 elements"),
         (["verify", "--export", "/dev/null/d", "--list"], "no other action"),
     ],

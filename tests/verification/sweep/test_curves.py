@@ -96,7 +96,6 @@ def test_a_sweep_is_drawn(suffix: str, tmp_path: Path, monkeypatch: pytest.Monke
         (["--plot", "mu.jpg"], ".svg"),
         (["--plot", "mu.png", "--x", "rms"], "--x"),
         (["--x", "load"], "--x"),
-        (["--plot", "mu.png", "--target-error", "5%"], "--plot"),
     ],
 )
 def test_a_wrong_picture_is_refused_before_any_run(
