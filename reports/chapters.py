@@ -92,8 +92,8 @@ CHAPTERS = (
         "costs",
         "Appendix III: costs",
         "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
-        ("tradeoff", "benchmarks"),
-        ("benchmarks", "tradeoff", "accuracy_costs", "large_grids", "sweeps"),
+        ("benchmarks",),
+        ("benchmarks", "accuracy_costs", "large_grids", "sweeps"),
     ),
 )  # fmt: skip
 

@@ -39,7 +39,7 @@ def page(documents: Mapping[str, Any]) -> str:
         claims(evidence),
         coverage(documents),
         costs(documents["benchmarks"]),
-        accuracy_costs(documents["tradeoff"]),
+        accuracy_costs(documents["accuracy_costs"]),
         checks(documents, evidence),
         studies(documents),
         codes(documents["cross_code"]),

@@ -54,3 +54,18 @@ def lengths(text: str) -> tuple[float, float]:
     except ValueError as wrong:
         raise argparse.ArgumentTypeError(f"expected two lengths in m like 2e-3x1e-3, not {text!r}") from wrong
     return x, y
+
+
+def grids(text: str) -> list[int]:
+    """Argument type of a list of grids, rising.
+
+    >>> grids("128,64")
+    [64, 128]
+    """
+    try:
+        numbers = sorted({int(part) for part in text.split(",")})
+    except ValueError as wrong:
+        raise argparse.ArgumentTypeError(f"{text!r} is no list of grids like 64,128") from wrong
+    if numbers[0] < 4:
+        raise argparse.ArgumentTypeError(f"{text!r} has a grid of fewer than 4 elements a side")
+    return numbers

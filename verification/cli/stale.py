@@ -55,7 +55,6 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "sweeps": (*SOLVES, "verification/benchmarks", "verification/sweep"),
     "table2": (*SOLVES, "verification/variational"),
     "tau_shares": SOLVES,
-    "tradeoff": (*SOLVES, "verification/tradeoff"),
     "variational": (*SOLVES, "verification/variational"),
 }
 """Folders that each committed file judges, with all below them, and the study's own where it has one.
