@@ -97,8 +97,8 @@ def accuracy_costs(costs: Mapping[str, Any]) -> str:
             rows.append((one["class"], label, *cells, link("accuracy_costs")))
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands), "file")
     text = (
-        "Coarsest grid (seconds) that keeps the relative error on itself and all finer ones, against a grid of "
-        "2048²; medians of three realisations, with friction and slopes."
+        "Coarsest grid (seconds) that keeps the relative error on itself and all finer ones, against a "
+        "grid of 2048²; medians of three realisations, with friction and slopes."
     )
     return section("Cost and accuracy", text, head, rows)
 
