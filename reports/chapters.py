@@ -42,7 +42,6 @@ CHAPTERS = (
         "Orders of convergence are fitted over at least four grids.",
         ("kernels", "surfaces", "manufactured", "hertz", "reference", "balance", "sliding", "golden",
          "bounds", "cross-check", "paper", "variational", "rectangles", "sweep"),
-        ("table2",),
     ),
     Chapter(
         "appendix",

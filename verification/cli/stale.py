@@ -53,9 +53,8 @@ JUDGED: Mapping[str, tuple[str, ...]] = {
     "reproduction": SOLVES,
     "sensitivity": SOLVES,
     "sweeps": (*SOLVES, "verification/benchmarks", "verification/sweep"),
-    "table2": (*SOLVES, "verification/variational"),
     "tau_shares": SOLVES,
-    "variational": (*SOLVES, "verification/variational"),
+    "variational": (*SOLVES, "verification/cases/solvers"),
 }
 """Folders that each committed file judges, with all below them, and the study's own where it has one.
 ``:!`` leaves a folder out, as in git.
