@@ -19,7 +19,6 @@ EPILOG = """examples:
   rough-friction verify --exec './my-solver --quiet' --able aperiodic,load --largest 32
   rough-friction verify --self-test
   rough-friction verify --export reference-data
-  rough-friction verify --stale
 """
 SELF_TEST = "contestants/*"
 """The cases that run the suite for other solvers on our own, and on broken ones."""
@@ -42,11 +41,6 @@ def add_parser(commands: Parsers) -> None:
     )
     parser.add_argument("--jobs", metavar="N", type=int, default=2, help="worker processes (default 2)")
     parser.add_argument("--list", action="store_true", help="list the selected cases and run nothing")
-    parser.add_argument(
-        "--stale",
-        action="store_true",
-        help="run nothing; list the committed results, and which are older than the code that they judge",
-    )
     export.add_options(parser)
     contestant.add_options(parser)
     add_json(parser)
@@ -59,10 +53,6 @@ def run(options: argparse.Namespace) -> int:
     from verification.framework import registry, runner
     from verification.framework.case import Tier
 
-    if options.stale:
-        from verification.cli import stale
-
-        return stale.run(options)
     if options.jobs < 1:
         raise InputError("--jobs", options.jobs, "at least one worker process")
     if options.export is not None:

@@ -158,7 +158,6 @@ def test_help_does_not_wait_for_numpy() -> None:
         ([*ELEMENT, "--upper-nu=0.3", "--upper-E=0"], "--upper-E = 0.0"),
         (["appendix-a", "surface", "hertz", "--pixel-size", "1e-6"], "--pixel-size = 1e-06"),
         (["identify", "hertz", "a.csv", "--loads", "5;8"], "'5;8' is no list of numbers"),
-        (["remake", "--list", "--seconds", "0"], "--seconds = 0.0"),
         (["tradeoff", "hertz", "--grids", "3,8"], "fewer than 4 elements"),
         (["verify", "--export", "/dev/null/d", "--list"], "no other action"),
     ],

@@ -35,7 +35,7 @@ M_QUICK = 32
 GRADIENT_TOLERANCE = 1e-6  # L-BFGS-B, of the projected gradient: penetration over approach
 INTERIOR_TOLERANCE = 1e-12  # interior point, of the gap and the residuals, in units of the approach
 DENSE_GRIDS, FFT_GRIDS = (48, 64, 80), (48, 64, 80, 100, 128, 256, 512)
-SCHEME_ERROR = 3.5e-4  # of the peak: what the paper's tolerances allow its scheme
+SCHEME_ERROR = 3.5e-4  # pressure error over the peak that the paper's tolerances allow its scheme
 _STEPS = 20_000  # at most, of L-BFGS-B
 _INTERIOR_STEPS = 60  # at most; 9 to 15 are needed
 
