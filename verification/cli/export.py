@@ -3,20 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from verification.cli.output import columns, emit
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """The option that names the folder."""
-    parser.add_argument(
-        "--export",
-        metavar="DIR",
-        type=Path,
-        help="run no case; write the problems of the suite for other solvers (of the cases that --only\n"
-        "selects, up to 64 elements a side) with certified pressures and proven bounds",
-    )
 
 
 def run(options: argparse.Namespace) -> int:

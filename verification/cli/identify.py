@@ -7,15 +7,24 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import (
+from verification.cli.options import (
+    SCENE,
+    Options,
     Parsers,
+    loads,
+    names,
+    option,
+    output_file,
+    subcommand,
+)
+from verification.cli.output import (
+    PICTURES,
     StatusLine,
-    add_json,
     check_outputs,
+    check_suffix,
     columns,
     emit,
     files_of,
-    output_file,
     wrapped,
 )
 
@@ -36,26 +45,29 @@ load is not used, its [tolerances] add to the uncertainty. With --store a stoppe
 """
 
 
+OPTIONS: Options = {
+    "scene": SCENE,
+    "data": option("the measured friction", metavar="DATA.csv", type=Path),
+    "--grid": option("elements along the longer side (default 256)", metavar="M", type=int, default=256),
+    "--loads": option("loads (N) at which mu is predicted", metavar="P,P,...", type=loads, default=()),
+    "--fit": option("fit the hardness as well", metavar="NAME,...", type=names, default=()),
+    "--realisations": option("draws of random surfaces (default 1)", metavar="N", type=int, default=1),
+    "--store": option("keep finished solves there, and go on", metavar="FILE.json", type=output_file),
+    "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=output_file),
+}
+
+
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "identify",
+        run,
+        OPTIONS,
         help="find tau and beta from friction measured at several loads",
         description="Find tau and beta, with 95 % intervals, from friction measured at several loads.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add = parser.add_argument
-    add("scene", metavar="SCENE", help="a TOML file, or the name of a shipped scene")
-    add("data", metavar="DATA.csv", type=Path, help="the measured friction")
-    add("--grid", metavar="M", type=int, default=256, help="elements along the longer side (default 256)")
-    add("--loads", metavar="P,P,...", type=_numbers, default=(), help="loads (N) at which mu is predicted")
-    add("--fit", metavar="NAME,...", type=_names, default=(), help="fit the hardness as well")
-    add("--realisations", metavar="N", type=int, default=1, help="draws of random surfaces (default 1)")
-    add("--store", metavar="FILE.json", type=output_file, help="keep finished solves there, and go on")
-    add("--plot", metavar="FILE.png", type=output_file, help="draw data, fit, ellipse and residuals")
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -63,10 +75,9 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.identification import identify, read_rows
     from refimpl.scene.scene_file import read_scene, read_tolerances
     from verification.cli.identify_store import SolveStore, key
-    from verification.cli.plot_style import check_suffix
     from verification.framework.provenance import provenance
 
-    check_suffix(options.plot)
+    check_suffix("--plot", options.plot, PICTURES)
     scene, tolerances = read_scene(options.scene), read_tolerances(options.scene)
     inputs = [Path(options.scene), options.data, *files_of(scene)]
     check_outputs(inputs, store=options.store, plot=options.plot, json=options.json)
@@ -89,32 +100,11 @@ def run(options: argparse.Namespace) -> int:
     finally:
         line.close()
     if options.plot is not None:
-        from verification.cli.plot_identify import draw
+        from verification.cli.plot_curves import draw_identification
 
-        draw(found, options.plot)
+        draw_identification(found, options.plot)
     emit(document(found) | {"provenance": provenance()}, options.json, table(found))
     return 0
-
-
-def _names(text: str) -> tuple[str, ...]:
-    """Names from text.
-
-    >>> _names("hardness, lower.material.hardness")
-    ('hardness', 'lower.material.hardness')
-    """
-    return tuple(name.strip() for name in text.split(","))
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    """Numbers from text.
-
-    >>> _numbers("5,80")
-    (5.0, 80.0)
-    """
-    try:
-        return tuple(float(item) for item in text.split(","))
-    except ValueError as alien:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of numbers like 5,80") from alien
 
 
 def document(found: Identification) -> dict[str, object]:

@@ -10,7 +10,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from verification.cli.output import Parsers, StatusLine, add_json, check_outputs, columns, emit
+from verification.cli.options import Options, Parsers, option, subcommand
+from verification.cli.output import StatusLine, check_outputs, columns, emit
 from verification.cli.pdf import PAPERS, compacts, printed
 
 EPILOG = """examples:
@@ -20,30 +21,28 @@ EPILOG = """examples:
 """
 
 
+OPTIONS: Options = {
+    "--results": option("result file", metavar="FILE", type=Path, default=Path("results.json")),
+    "--output": option("folder for the report", metavar="DIR", type=Path, default=Path("report")),
+    "--committed": option("committed results (default: those of the package)", metavar="DIR", type=Path),
+    "--against": option("say what changed since this result file", metavar="OLD", type=Path),
+    "--pdf": option("also print it to PDF, by an installed Chromium", action="store_true"),
+    "--paper": option("size of paper (default a4)", choices=sorted(PAPERS), default="a4"),
+}
+
+
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "report",
+        run,
+        OPTIONS,
         help="make the validation report",
         description="Make the validation report, one HTML file, from a result file of 'verify' and the\n"
         "committed results of long cases and studies.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "--results", metavar="FILE", type=Path, default=Path("results.json"), help="result file"
-    )
-    parser.add_argument(
-        "--output", metavar="DIR", type=Path, default=Path("report"), help="folder for the report"
-    )
-    parser.add_argument(
-        "--committed", metavar="DIR", type=Path, help="committed results (default: those of the package)"
-    )
-    parser.add_argument("--against", metavar="OLD", type=Path, help="say what changed since this result file")
-    parser.add_argument("--pdf", action="store_true", help="also print it to PDF, by an installed Chromium")
-    parser.add_argument("--paper", choices=sorted(PAPERS), default="a4", help="size of paper (default a4)")
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

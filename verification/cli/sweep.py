@@ -8,16 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import (
-    Parsers,
-    add_json,
-    check_outputs,
-    columns,
-    emit,
-    output_file,
-    output_text,
-    wrapped,
-)
+from verification.cli.options import Options, Parsers, option, output_file, output_text, subcommand
+from verification.cli.output import PICTURES, check_outputs, check_suffix, columns, emit, plain, wrapped
 
 if TYPE_CHECKING:
     from verification.sweep.engine import Progress, Sweep
@@ -53,37 +45,31 @@ message is shown, or did not converge: then its row says so by its status.
 """
 
 
+OPTIONS: Options = {
+    "study": option("a study's TOML file, or the name of a shipped study", metavar="STUDY"),
+    "--store": option("default: the study's name, .sqlite, here", metavar="FILE.sqlite", type=output_file),
+    "--workers": option("worker processes (default 2)", metavar="N", type=int, default=2),
+    "--scheduler": option("use the workers of this dask.distributed scheduler instead", metavar="ADDRESS"),
+    "--csv": option("export the study's rows as CSV ('-': to stdout)", metavar="FILE", type=output_text),
+    "--parquet": option("export the study's rows as Parquet", metavar="FILE", type=output_file),
+    "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=output_file),
+    "--x": option("with --plot: the column along x (default: what varies)", metavar="COLUMN"),
+    "--y": option("with --plot: the column along y (default friction_coefficient)", metavar="COLUMN"),
+    "--by": option("with --plot: the column that tells curves apart", metavar="COLUMN"),
+}
+
+
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "sweep",
+        run,
+        OPTIONS,
         help="solve the runs of a study: realisations x roughness x load x direction x grid",
         description="Solve the runs of a study in worker processes, resumably, and export the table.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add = parser.add_argument
-    add("study", metavar="STUDY", help="a study's TOML file, or the name of a shipped study")
-    add(
-        "--store",
-        metavar="FILE.sqlite",
-        type=output_file,
-        help="default: the study's name, .sqlite, here",
-    )
-    add("--workers", metavar="N", type=int, default=2, help="worker processes (default 2)")
-    add(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="use the workers of this dask.distributed scheduler instead",
-    )
-    add("--csv", metavar="FILE", type=output_text, help="export the study's rows as CSV ('-': to stdout)")
-    add("--parquet", metavar="FILE", type=output_file, help="export the study's rows as Parquet")
-    add("--plot", metavar="FILE", type=output_file, help="curves as a picture (.png, .svg or .pdf)")
-    add("--x", metavar="COLUMN", help="with --plot: the column along x (default: what varies)")
-    add("--y", metavar="COLUMN", help="with --plot: the column along y (default friction_coefficient)")
-    add("--by", metavar="COLUMN", help="with --plot: the column that tells curves apart")
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -126,10 +112,9 @@ def run(options: argparse.Namespace) -> int:
 def check_plot(options: argparse.Namespace, study: Study) -> None:
     """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
     from refimpl.errors import InputError
-    from verification.cli.plot_style import check_suffix
     from verification.sweep.run import COORDINATES, OUTCOMES
 
-    check_suffix(options.plot)
+    check_suffix("--plot", options.plot, PICTURES)
     given = {name: getattr(options, name) for name in ("x", "y", "by") if getattr(options, name)}
     if options.plot is None:
         for name, value in given.items():
@@ -151,11 +136,11 @@ def _check_suffixes(**written: Path | None) -> None:
     """Refuse a file whose name says that it is what another option writes."""
     from refimpl.errors import InputError
 
-    for option, path in written.items():
+    for name, path in written.items():
         for other, suffix in SUFFIXES.items():
-            if path is not None and other != option and path.suffix.lower() == suffix:
+            if path is not None and other != name and path.suffix.lower() == suffix:
                 allowed = f"no name that ends in {suffix}, as that of --{other} does"
-                raise InputError(f"--{option}", str(path), allowed)
+                raise InputError(f"--{name}", str(path), allowed)
 
 
 def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
@@ -172,16 +157,15 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
     if options.parquet is not None:
         export.write_parquet(done.table(), options.parquet)
     if options.plot is not None and done.rows:
-        from verification.cli import plot_sweep
+        from verification.cli.plot_curves import draw_sweep
         from verification.sweep.curves import curves
 
         found = curves(done.rows, options.x, options.y, options.by)
-        plot_sweep.draw(found, options.x, options.y, options.by, options.plot)
+        draw_sweep(found, options.x, options.y, options.by, options.plot)
     emit(_document(done, store), options.json, table)
 
 
 def _document(done: Sweep, store: Path) -> dict[str, object]:
-    from verification.cli.solve_table import plain
     from verification.framework.provenance import provenance
 
     return {

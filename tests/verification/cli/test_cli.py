@@ -15,7 +15,7 @@ import pytest
 from tests.documents import ROOT
 from tests.reports import sample
 from verification.cli import main, parser, verify
-from verification.cli.appendix_a import numbers
+from verification.cli.options import numbers
 from verification.cli.output import WIDTH, StatusLine, columns
 from verification.framework import registry, runner
 from verification.framework.case import Case, Measured, Metric, Status, Tier
