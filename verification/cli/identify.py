@@ -83,8 +83,7 @@ def run(options: argparse.Namespace) -> int:
     check_outputs(inputs, store=options.store, plot=options.plot, json=options.json)
     rows = read_rows(options.data)
     store = None if options.store is None else SolveStore(options.store)
-    line = StatusLine()
-    try:
+    with StatusLine() as line:
         found = identify(
             scene,
             rows,
@@ -97,8 +96,6 @@ def run(options: argparse.Namespace) -> int:
             key=key,
             report=line.show,
         )
-    finally:
-        line.close()
     if options.plot is not None:
         from verification.cli.plot_curves import draw_identification
 
@@ -167,51 +164,30 @@ def _scaled(name: str) -> tuple[str, float]:
     >>> _scaled("lower.material.hardness")
     ('lower.material.hardness (MPa)', 1000000.0)
     """
-    return (f"{name} (MPa)", MEGA) if name.endswith("hardness") else (name, 1.0)
+    return (f"{name} (MPa)", MEGA) if name == "tau" or name.endswith("hardness") else (name, 1.0)
 
 
-def _shown(label: str, one: Interval, unit: float) -> list[str]:
-    return [label, f"{one.value / unit:.4g}", f"{one.low / unit:.4g} to {one.high / unit:.4g}"]
+def _cells(interval: Interval, unit: float = 1.0) -> list[str]:
+    """Value and ends of an interval in a unit."""
+    value, low, high = (f"{end / unit:.4g}" for end in (interval.value, interval.low, interval.high))
+    return [value, f"{low} to {high}"]
 
 
 def table(found: Identification) -> str:
     """Values, parts of their uncertainty, rows, laws and warnings."""
-    tau, beta, both = found.values["tau"], found.values["beta"], found.combination
-    further = {name: _scaled(name) for name in _further(found)}
-    values = [
-        ["", "value", "95 % interval"],
-        ["tau (MPa)", f"{tau.value / MEGA:.4g}", f"{tau.low / MEGA:.4g} to {tau.high / MEGA:.4g}"],
-        ["beta", f"{beta.value:.4g}", f"{beta.low:.4g} to {beta.high:.4g}"],
-        *(_shown(label, found.values[name], unit) for name, (label, unit) in further.items()),
-        [
-            f"{found.factor * MEGA:.3g} tau/MPa + beta",
-            f"{both.value:.4g}",
-            f"{both.low:.4g} to {both.high:.4g}",
-        ],
-    ]
-    units = [MEGA, 1.0, *(unit for _, unit in further.values())]
-    parts = [
-        ["standard uncertainty", "tau (MPa)", "beta", *(label for label, _ in further.values())],
-        *(
-            [name, *(f"{u / unit:.2g}" for u, unit in zip(part, units, strict=True))]
-            for name, part in found.shares.items()
-        ),
-    ]
+    scales = {name: _scaled(name) for name in found.values}
+    values = [["", "value", "95 % interval"]]
+    values += [[label, *_cells(found.values[name], unit)] for name, (label, unit) in scales.items()]
+    values.append([f"{found.factor * MEGA:.3g} tau/MPa + beta", *_cells(found.combination)])
+    parts = [["standard uncertainty", *(label for label, _ in scales.values())]]
+    for name, part in found.shares.items():
+        parts.append([name, *(f"{u / unit:.2g}" for u, (_, unit) in zip(part, scales.values(), strict=True))])
     rows = [["load (N)", "mu measured", "mu of the model", "95 % interval", "residual / u"]]
     for k, prediction in enumerate(found.predictions):
-        mu = prediction.mu
-        measured, residual = (
-            (f"{found.rows[k].mu:.4g}", f"{found.residuals[k]:+.1f}") if k < len(found.rows) else ("-", "-")
-        )
-        rows.append(
-            [
-                f"{prediction.load:.4g}",
-                measured,
-                f"{mu.value:.4g}",
-                f"{mu.low:.4g} to {mu.high:.4g}",
-                residual,
-            ]
-        )
+        is_row = k < len(found.rows)
+        measured = f"{found.rows[k].mu:.4g}" if is_row else "-"
+        residual = f"{found.residuals[k]:+.1f}" if is_row else "-"
+        rows.append([f"{prediction.load:.4g}", measured, *_cells(prediction.mu), residual])
     laws = [["law", "chi-square", "AICc", "BIC"]]
     laws += [[one.name, f"{one.chi_square:.3g}", f"{one.aicc:.3g}", f"{one.bic:.3g}"] for one in found.laws]
     ended = (

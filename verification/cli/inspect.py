@@ -80,8 +80,7 @@ def run(options: argparse.Namespace) -> int:
     check_outputs([Path(options.file)], plot=options.plot, json=options.json)
     names = ("unit", "pixel_size", "channel", "level", "outliers", "low_pass", "high_pass", "centre")
     keys = {name: value for name in names if (value := getattr(options, name)) is not None}
-    line = StatusLine()
-    try:
+    with StatusLine() as line:
         line.show(f"{options.file}: reading")
         found = inspect(options.file, size=options.size, **keys)
         document, text = found.document(), table(found)
@@ -94,8 +93,6 @@ def run(options: argparse.Namespace) -> int:
             from verification.cli.plot_surface import draw_inspection
 
             draw_inspection(found, options.plot)
-    finally:
-        line.close()
     emit(plain(document), options.json, text)
     return 0
 

@@ -10,7 +10,7 @@ import textwrap
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from verification.framework.files import is_stream, to_json, write_text
 
@@ -150,10 +150,19 @@ def wrapped(text: str, first: str) -> str:
 
 
 class StatusLine:
-    """Progress on one line of stderr that is rewritten; nothing when stderr is no terminal."""
+    """Progress on one line of stderr that is rewritten; nothing when stderr is no terminal.
+
+    At the end of a ``with`` block the line is cleared.
+    """
 
     def __init__(self) -> None:
         self._shown, self._next = sys.stderr.isatty(), 0.0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def show(self, text: str) -> None:
         """Rewrite the line, at most ten times a second."""

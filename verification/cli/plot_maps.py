@@ -251,13 +251,6 @@ def _counts(view: View) -> tuple[int, int]:
     return view.last[0] - view.first[0], view.last[1] - view.first[1]
 
 
-def _extent(shape: tuple[int, ...], step: int, view: View) -> tuple[float, float, float, float]:
-    """Extent of blocks of elements, the last of which go on beyond the window."""
-    left, _, bottom, _ = view.extent
-    dx, dy = (span / count for span, count in zip(_spans(view), _counts(view), strict=True))
-    return left, left + shape[0] * step * dx, bottom, bottom + shape[1] * step * dy
-
-
 def _image(
     axes: Axes, values: Array, view: View, colours: str, *, lowest: bool = False, **limits: Any
 ) -> Any:
@@ -266,13 +259,26 @@ def _image(
 
     blocks, step = pooled(values, lowest=lowest)
     shown = blocks if lowest else np.ma.masked_equal(blocks, 0.0)
-    image = axes.imshow(
-        shown.T, origin="lower", extent=_extent(blocks.shape, step, view), cmap=colours,
-        aspect="auto" if view.is_slender else "equal", interpolation="nearest", **limits,
-    )  # fmt: skip
-    left, right, bottom, top = view.extent
-    axes.set(xlim=(left, right), ylim=(bottom, top))
+    image = _show(axes, shown.T, step, view, cmap=colours, **limits)
     axes.set(xlabel=f"x ({view.length.name})", ylabel=f"y ({view.length.name})")
+    return image
+
+
+def _overlay(axes: Axes, where: Mask, view: View, colour: str) -> None:
+    blocks, step = pooled(where)
+    _show(axes, _coloured(blocks, colour), step, view)
+
+
+def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: Any) -> Any:
+    """Draw blocks of ``step`` elements over the window; the last ones go on beyond it."""
+    left, right, bottom, top = view.extent
+    dx, dy = (step * span / count for span, count in zip(_spans(view), _counts(view), strict=True))
+    image = axes.imshow(
+        picture, origin="lower",
+        extent=(left, left + picture.shape[1] * dx, bottom, bottom + picture.shape[0] * dy),
+        aspect="auto" if view.is_slender else "equal", interpolation="nearest", **options,
+    )  # fmt: skip
+    axes.set(xlim=(left, right), ylim=(bottom, top))
     return image
 
 
@@ -280,16 +286,6 @@ def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
     """A colour bar as tall as the map; its quantity and unit are the map's title."""
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.05, 1.0)), extend=extend)
     axes.set_title(title, loc="left")
-
-
-def _overlay(axes: Axes, where: Mask, view: View, colour: str) -> None:
-    blocks, step = pooled(where)
-    axes.imshow(
-        _coloured(blocks, colour), origin="lower", extent=_extent(blocks.shape, step, view),
-        aspect="auto" if view.is_slender else "equal", interpolation="nearest",
-    )  # fmt: skip
-    left, right, bottom, top = view.extent
-    axes.set(xlim=(left, right), ylim=(bottom, top))
 
 
 def _coloured(where: Mask, colour: str) -> Array:

@@ -61,11 +61,8 @@ def run(options: argparse.Namespace) -> int:
     read = [options.results, *([] if options.against is None else [options.against]), *folder.glob("*.json")]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
     _check_folder(options.output)
-    line = StatusLine()
-    try:
+    with StatusLine() as line:
         page = rendered(results, options.results, committed, folder, against, line.show)
-    finally:
-        line.close()
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
@@ -114,7 +111,7 @@ def _check_folder(output: Path) -> None:
 
 def read_run(path: Path, option: str = "--results") -> Any:
     """A result file of `verify`, checked; raises InputError, naming the option, for anything else."""
-    return _checked(option, path, _read(option, path))
+    return _checked(option, path, read_or_refuse(option, path))
 
 
 def _committed(path: Path) -> Any:
@@ -122,7 +119,7 @@ def _committed(path: Path) -> Any:
     from refimpl.errors import InputError
     from reports.results import FORMAT
 
-    found = _read("--committed", path)
+    found = read_or_refuse("--committed", path)
     if not isinstance(found, dict):
         raise InputError("--committed", str(path), "a result file: a JSON object")
     return _checked("--committed", path, found) if found.get("format") == FORMAT else found
@@ -134,11 +131,12 @@ def _checked(option: str, path: Path, found: object) -> Any:
 
     try:
         return check(found)
-    except ResultFileError as alien:
-        raise InputError(option, str(path), f"a result file of 'verify' ({alien})") from alien
+    except ResultFileError as wrong:
+        raise InputError(option, str(path), f"a result file of 'verify' ({wrong})") from wrong
 
 
-def _read(option: str, path: Path) -> Any:
+def read_or_refuse(option: str, path: Path) -> Any:
+    """Return the document of a result file; raises InputError, naming the option, for no such file."""
     from refimpl.errors import InputError
     from reports.result_files import read_result
     from verification.framework.files import is_stream
@@ -154,5 +152,5 @@ def _read(option: str, path: Path) -> Any:
         raise InputError(option, str(path), f"a file that can be read ({refused.strerror})") from refused
     except InputError:
         raise
-    except (ValueError, RecursionError) as broken:  # JSON, UTF-8, or thousands of digits
-        raise InputError(option, str(path), f"JSON ({broken})") from broken
+    except (ValueError, RecursionError) as corrupt:  # JSON, UTF-8, or thousands of digits
+        raise InputError(option, str(path), f"JSON ({corrupt})") from corrupt

@@ -205,15 +205,12 @@ def _solved(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, An
     """Return the solution, with progress on a terminal; an interrupt shows the last finished grid."""
     import refimpl
 
-    line = StatusLine()
     try:
-        return refimpl.solve(scene, **keywords, progress=line.show)
+        with StatusLine() as line:
+            return refimpl.solve(scene, **keywords, progress=line.show)
     except KeyboardInterrupt as interrupt:
-        line.close()
         show_finished(interrupt, options.scene)
         raise
-    finally:
-        line.close()
 
 
 def _write_files(solution: Solution, scene: Scene, options: argparse.Namespace) -> None:

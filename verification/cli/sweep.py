@@ -9,7 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, Parsers, option, output_file, output_text, subcommand
-from verification.cli.output import PICTURES, check_outputs, check_suffix, columns, emit, plain, wrapped
+from verification.cli.output import (
+    PICTURES,
+    StatusLine,
+    check_outputs,
+    check_suffix,
+    columns,
+    emit,
+    plain,
+    wrapped,
+)
 
 if TYPE_CHECKING:
     from verification.sweep.engine import Progress, Sweep
@@ -93,18 +102,18 @@ def run(options: argparse.Namespace) -> int:
         posable.check_memory(study)
     for note in study.notes:
         print(f"rough-friction sweep: {note}", file=sys.stderr)
-    line, where = _Line(), {"workers": options.workers, "scheduler": options.scheduler}
+    line = _Line()
     try:
-        done = engine.sweep(study, store, **where, tick=line.show)
+        with line:
+            done = engine.sweep(
+                study, store, workers=options.workers, scheduler=options.scheduler, tick=line.count
+            )
     except KeyboardInterrupt:
-        line.close()
         print(f"rough-friction sweep: {line.interrupted(store)}", file=sys.stderr)
         raise
     except engine.WorkersLost as lost:
         print(f"rough-friction sweep: {lost}", file=sys.stderr)
         return 1
-    finally:
-        line.close()
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
 
@@ -223,21 +232,16 @@ def _quality(rows: list[Row]) -> list[str]:
     return parts
 
 
-class _Line:
-    """One progress line on stderr, rewritten; nothing at all when stderr is no terminal."""
+class _Line(StatusLine):
+    """Progress of a sweep, and where an interrupted one goes on."""
 
-    def __init__(self) -> None:
-        self._shown = sys.stderr.isatty()
-        self._last: Progress | None = None
+    _last: Progress | None = None
 
-    def show(self, progress: Progress) -> None:
-        """Rewrite the line."""
+    def count(self, progress: Progress) -> None:
+        """Show how many runs are done."""
         self._last = progress
-        if self._shown:
-            failed = f", {progress.failed} failed" if progress.failed else ""
-            text = f"[{progress.done}/{progress.total}]{failed} {time_left(progress.seconds_left)}"
-            sys.stderr.write(f"\r\x1b[K{text}")
-            sys.stderr.flush()
+        failed = f", {progress.failed} failed" if progress.failed else ""
+        self.show(f"[{progress.done}/{progress.total}]{failed} {time_left(progress.seconds_left)}")
 
     def interrupted(self, store: Path) -> str:
         """Return what is done and how it goes on."""
@@ -248,11 +252,6 @@ class _Line:
             f"interrupted: {self._last.done} of {self._last.total} runs are kept in {store}; "
             f"the same command resumes{f', {left}' if left else ''}"
         )
-
-    def close(self) -> None:
-        """Clear the line."""
-        if self._shown:
-            sys.stderr.write("\r\x1b[K")
 
 
 def time_left(seconds: float | None) -> str:

@@ -189,7 +189,7 @@ def test_progress_is_for_terminals(capsys: Capture, monkeypatch: pytest.MonkeyPa
     for terminal, shown in ((True, "[3/10], 1 failed 2 min left"), (False, "")):
         monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
         line = _Line()
-        line.show(Progress(3, 10, 1, 125.0))
+        line.count(Progress(3, 10, 1, 125.0))
         line.close()
         written = capsys.readouterr().err
         assert (shown in written) if terminal else written == ""
