@@ -34,7 +34,7 @@ WIDTH = 7.1  # inches, 180 mm: the width of a page's text
 LEFT, RIGHT = 0.6, 4.2  # inches, left edges of both columns
 MAP, LOWEST_MAP, GRAPH = 2.35, 1.0, 1.05  # inches: width of all panels, least height of a map, of a graph
 KEY = 2.15  # inches, least height of the numbers and the legend
-_BINS = 40  # of a histogram
+_BINS = 40  # bins of a histogram
 _GREY = "0.45"
 BELOW, ABOVE = 0.42, 0.25  # inches, for an axis with its label, and for a title
 
@@ -156,7 +156,7 @@ def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Lin
     found = [
         line("pressure p", BLUE),
         line("shear r", ORANGE, (0, (3, 1))),
-        line("gap (right scale)", "0.45", ":"),
+        line("gap (right scale)", _GREY, ":"),
     ]
     if hertz is not None:
         found.append(line("Hertz' pressure, smooth", BLACK, (0, (5, 2)), 0.8))
