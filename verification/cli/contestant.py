@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from verification.cli import contestant_report, suite_table
 from verification.cli.contestant_report import Judged
 from verification.cli.options import Options, declare, option, output_file
-from verification.cli.output import check_suffix, columns, emit
+from verification.cli.output import check_suffix, columns, emit, select_or_refuse
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -87,10 +87,10 @@ def chosen(options: argparse.Namespace) -> bool:
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from verification.framework.case import readable
-    from verification.solver_suite import convergence
+    from verification.solver_suite import convergence, suite
 
     among = _among(options)
-    checks = _selected(options, among)
+    checks = select_or_refuse(options.only, lambda: suite.select(options.only, among))
     check_suffix("--table", options.table, suite_table.SUFFIXES)
     if options.list:
         listed = [{"id": c.id, "title": c.title, "claim": c.description} for c in checks]
@@ -116,17 +116,6 @@ def _among(options: argparse.Namespace) -> tuple[Check, ...]:
             raise InputError("--thorough", True, "nothing beside --discretisation other")
         return convergence.CASES
     return suite.thorough() if options.thorough else suite.suite()
-
-
-def _selected(options: argparse.Namespace, among: tuple[Check, ...]) -> tuple[Check, ...]:
-    """Checks that ``--only`` names. Raises `InputError` where it names none."""
-    from refimpl.errors import InputError
-    from verification.solver_suite import suite
-
-    try:
-        return suite.select(options.only, among)
-    except LookupError as nothing:
-        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
 
 
 def _judged(

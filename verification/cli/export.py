@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from verification.cli.output import columns, emit
+from verification.cli.output import columns, emit, select_or_refuse
 
 
 def run(options: argparse.Namespace) -> int:
@@ -20,10 +20,7 @@ def run(options: argparse.Namespace) -> int:
     from verification.solver_suite.reference.files import Export
     from verification.solver_suite.reference.posed import problems
 
-    try:
-        progress = Progress(len(suite.select(options.only)))
-    except LookupError as nothing:
-        raise InputError("--only", options.only, f"the id of a case ({nothing})") from nothing
+    progress = Progress(len(select_or_refuse(options.only, lambda: suite.select(options.only))))
     failed = False
     bounds, uncertified, last = [], [], ""
     with limited_to_one_thread(), Export(options.export) as export:

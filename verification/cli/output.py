@@ -8,9 +8,9 @@ import os
 import sys
 import textwrap
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self, TypeVar
 
 from verification.framework.files import is_stream, to_json, write_text
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 WIDTH = 100
 """Columns that tables and texts keep within."""
 PICTURES = (".png", ".svg", ".pdf")
+Selected = TypeVar("Selected")
 
 
 def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | None) -> None:
@@ -42,6 +43,16 @@ def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | Non
     for (first, path), (option, again) in itertools.combinations(written, 2):
         if option != first and _one_file(path, again):
             raise InputError(f"--{option}", str(again), f"another file than that of --{first}")
+
+
+def select_or_refuse(only: Sequence[str], select: Callable[[], Selected]) -> Selected:
+    """Return what ``select`` finds; raises InputError where the patterns of ``--only`` match no case."""
+    from refimpl.errors import InputError
+
+    try:
+        return select()
+    except LookupError as nothing:
+        raise InputError("--only", only, f"the id of a case ({nothing}; see --list)") from nothing
 
 
 def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> None:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
+    from numpy.typing import NDArray
 
     from refimpl import Scene, Solution
     from verification.exact.hertz import Sphere as HertzSphere
@@ -214,18 +215,12 @@ def pressure_histogram(axes: Axes, solution: Solution, view: View) -> None:
 
     plastic = solution.plastic
     elastic = solution.pressure[solution.contact & ~plastic] / view.pressure.size
-    contacts = int(np.count_nonzero(solution.contact))
     top = solution.max_pressure / view.pressure.size
-    if len(elastic):
-        axes.hist(
-            elastic, bins=_BINS, range=(0.0, top), weights=np.full(len(elastic), 100 / contacts),
-            histtype="stepfilled", color=BLUE,
-        )  # fmt: skip
+    _histogram(axes, elastic, top, int(np.count_nonzero(solution.contact)), BLUE)
     if plastic.any():
         axes.axvline(top, color=ORANGE, linewidth=1.2)
-    axes.set(xlabel=f"pressure p ({view.pressure.name})", ylabel="share (%)")
     share = f"; {100 * solution.plastic_share:.3g} % at the hardness (line)" if plastic.any() else ""
-    axes.set_title(f"pressure in contact{share}")
+    axes.set(xlabel=f"pressure p ({view.pressure.name})", title=f"pressure in contact{share}")
     axes.set_xlim(0.0, 1.03 * top if top else 1.0)
 
 
@@ -236,12 +231,19 @@ def gap_histogram(axes: Axes, solution: Solution, view: View) -> None:
     contact = view.cut(solution.contact)
     gap = view.cut(solution.gap)[~contact] / view.gap.size
     if len(gap):
-        top = float(np.percentile(gap, 99.9))
-        axes.hist(
-            gap, bins=_BINS, range=(0.0, top or 1.0), weights=np.full(len(gap), 100 / contact.size),
-            histtype="stepfilled", color=GREEN,
-        )  # fmt: skip
-        axes.set_xlim(0.0, top or 1.0)
+        top = float(np.percentile(gap, 99.9)) or 1.0
+        _histogram(axes, gap, top, contact.size, GREEN)
+        axes.set_xlim(0.0, top)
     where = "domain" if view.whole else "window"
     axes.set(xlabel=f"gap ({view.gap.name})", ylabel="share (%)")
     axes.set_title(f"gap; {100 * contact.mean():.3g} % of the {where} in contact")
+
+
+def _histogram(axes: Axes, values: NDArray[Any], top: float, count: int, colour: str) -> None:
+    """Draw the shares of ``count`` elements by value, up to ``top``; nothing without values."""
+    import numpy as np
+
+    if len(values):
+        weights = np.full(len(values), 100 / count)
+        axes.hist(values, bins=_BINS, range=(0.0, top), weights=weights, histtype="stepfilled", color=colour)
+    axes.set_ylabel("share (%)")

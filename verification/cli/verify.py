@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from verification.cli import contestant, export
 from verification.cli.options import Options, Parsers, option, subcommand
-from verification.cli.output import columns, emit, judgement
+from verification.cli.output import columns, emit, judgement, select_or_refuse
 
 if TYPE_CHECKING:
     from verification.framework.runner import Run
@@ -70,10 +70,8 @@ def run(options: argparse.Namespace) -> int:
         return contestant.run(options)
     if options.self_test:
         options.tier, options.only = "full", options.only or [SELF_TEST]
-    try:
-        chosen = registry.select(registry.load(), Tier(options.tier), options.only)
-    except LookupError as nothing:
-        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
+    tier, only = Tier(options.tier), options.only
+    chosen = select_or_refuse(only, lambda: registry.select(registry.load(), tier, only))
     if options.list:
         document = [{"id": c.id, "tier": c.tier.value, "title": c.title} for c in chosen]
         emit(document, options.json, columns([[c.id, c.tier.value, c.title] for c in chosen], indent=""))
