@@ -103,7 +103,7 @@ def numbers_of(solution: Solution) -> list[str]:
     pressure = unit_at_scale(solution.max_pressure, PRESSURES)
     approach = unit_at_scale(solution.approach, LENGTHS)
     rows = (
-        ("friction_coefficient", "μ", 1.0, ""),
+        ("friction_coefficient_corrected", "μ", 1.0, ""),
         ("contact_area", "A", area.size, area.name),
         ("max_pressure", "$p_{max}$", pressure.size, pressure.name),
         ("approach", "approach", approach.size, approach.name),

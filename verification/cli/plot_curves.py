@@ -30,7 +30,8 @@ SCALES = {
 }
 LABELS = {
     "sliding_offset": "sliding distance",
-    "friction_coefficient": "friction coefficient $\\mu$",
+    "friction_coefficient_corrected": "friction coefficient $\\mu$",
+    "friction_coefficient": "friction coefficient $\\mu$, summed over elements",
     "contact_area": "real contact area $A$",
 }
 

@@ -58,7 +58,13 @@ SUFFIXES = {"plot": PICTURES, "vtk": (".vtk", ".vtu"), "npz": (".npz",), "netcdf
 FILES = (*SUFFIXES, "patches")
 # Options of refimpl, which --help does not wait for.
 METHODS = ("fft", "dense", "paper")
-ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
+ACCURATE = (
+    "friction_coefficient_corrected",
+    "friction_coefficient",
+    "contact_area",
+    "contact_area_corrected",
+    "max_pressure",
+)
 
 # Options with the names of `refimpl.solve`, and the switches of terms among them.
 PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")

@@ -23,7 +23,8 @@ NEXT = {
 
 # attribute of Solution, name in the table, factor from SI to the unit shown, that unit
 QUANTITIES = (
-    ("friction_coefficient", "friction coefficient mu", 1.0, ""),
+    ("friction_coefficient_corrected", "friction coefficient mu", 1.0, ""),
+    ("friction_coefficient", "mu, summed over elements", 1.0, ""),
     ("contact_area", "contact area A", 1e6, "mm^2"),
     ("contact_area_corrected", "A, perimeter-corrected", 1e6, "mm^2"),
     ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
@@ -101,7 +102,7 @@ def _verdict(solution: Solution, quantity: str) -> str:
     scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
     if not solution.traction.any():  # frictionless
         scale = dict.fromkeys(("friction_force", "binormal_force"), solution.normal_force)
-        scale["friction_coefficient"] = 1.0
+        scale |= dict.fromkeys(("friction_coefficient_corrected", "friction_coefficient"), 1.0)
     return verdict(error_bar(solution, quantity), scale.get(quantity, value))
 
 

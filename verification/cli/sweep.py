@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from verification.sweep.run import Row
     from verification.sweep.study import Study
 
-NAMES = {"friction_coefficient": "mu", "contact_area": "A"}
+NAMES = {"friction_coefficient_corrected": "mu", "contact_area": "A"}
 SUFFIXES = {"store": ".sqlite", "csv": ".csv", "parquet": ".parquet", "json": ".json"}
 
 EPILOG = """examples:
@@ -62,7 +62,9 @@ OPTIONS: Options = {
     "--parquet": option("export the study's rows as Parquet", metavar="FILE", type=output_file),
     "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=output_file),
     "--x": option("with --plot: the column along x (default: what varies)", metavar="COLUMN"),
-    "--y": option("with --plot: the column along y (default friction_coefficient)", metavar="COLUMN"),
+    "--y": option(
+        "with --plot: the column along y (default friction_coefficient_corrected)", metavar="COLUMN"
+    ),
     "--by": option("with --plot: the column that tells curves apart", metavar="COLUMN"),
 }
 
@@ -133,7 +135,7 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
         if value not in known:
             raise InputError(f"--{name}", value, f"one of {', '.join(known)}")
     several = [axis for axis, values in study.vary.items() if len(values) > 1]
-    options.y = options.y or "friction_coefficient"
+    options.y = options.y or "friction_coefficient_corrected"
     numbers = [axis for axis in several if axis != options.by and not axis.endswith((".path", ".seed"))]
     options.x = options.x or next(iter(numbers), "realisation")
     others = [axis for axis in several if axis != options.x and not axis.endswith(".seed")]

@@ -62,7 +62,8 @@ _SETTINGS: Mapping[str, tuple[str, str]] = {
     "accuracy": ("", "refine every run until the error bar is this share of `quantity`, in place of a grid"),
     "quantity": (
         "",
-        "number that the accuracy is about; not set: `friction_coefficient`, without friction `contact_area`",
+        "number that the accuracy is about; not set: `friction_coefficient_corrected`, "
+        "without friction `contact_area`",
     ),
 }
 

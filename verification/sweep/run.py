@@ -38,8 +38,11 @@ OUTCOMES = (
     "approach_error", "normal_force_error", "friction_force_error", "binormal_force_error",
     "plastic_area", "plastic_area_error", "plastic_share", "plasticity_index",
     "contact_area_share", "mean_pressure", "mean_gap", "elements_x", "elements_y", "warnings",
+    "friction_coefficient_corrected", "friction_coefficient_corrected_error",
+    "friction_force_corrected", "friction_force_corrected_error",
 )  # fmt: skip
-"""What a run gives. ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
+"""What a run gives. ``..._corrected`` leaves out the mean excess of the contact edge; ``friction_coefficient``
+is the sum over elements, Eq. (4); ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
 that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` what an alternating contact
 edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border;
 ``..._error`` a number's error bar (inf where unbounded); ``plasticity_index`` Eq. (12)'s, of the sampled
@@ -145,6 +148,8 @@ def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
         "elastic_friction": elastic,
         "binormal_force": solution.binormal_force,
         "residual": solution.certificate.largest,
+        "friction_coefficient_corrected": solution.friction_coefficient_corrected,
+        "friction_force_corrected": solution.friction_force_corrected,
         "friction_coefficient_cycle": cycle("friction_coefficient"),
         "contact_area_cycle": cycle("contact_area"),
         "border_elements": int(contact.sum() - contact[1:-1, 1:-1].sum()),
