@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from reports.result_files import SUFFIX
 from reports.results import Case
 
 RUN = "quick"
@@ -31,7 +32,7 @@ def number(value: float | None, digits: str = ".2g") -> str:
 
 def link(name: str) -> str:
     """A link to a result file."""
-    return f"[{name}.json](results/{name}.json)"
+    return f"[{name}.json](results/{name}{SUFFIX})"
 
 
 def origin(case: Case) -> str:

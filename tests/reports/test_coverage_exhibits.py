@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from reports.result_files import read_result
+from reports.result_files import committed
 from reports.studies import accuracy_costs, exhibit
 
-RESULTS = Path(__file__).parents[2] / "reports" / "results"
 TRAINED = range(1000, 1200)
-
-
-def committed(name: str) -> dict:
-    return read_result(RESULTS / f"{name}.json")
 
 
 def test_the_scenes_never_looked_at_are_no_others() -> None:

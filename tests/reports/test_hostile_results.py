@@ -14,7 +14,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from reports.generator import anchor, render
-from reports.result_files import LayoutError, compact, read_result
 from reports.results import METRICS, ResultFileError, check, verdict_of
 from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
 from tests.verification.cli.children import Ended, one_line
@@ -181,32 +180,6 @@ def test_data_that_its_figure_cannot_show_is_one_line(
     command = ["report", "--results", str(tmp_path / "r.json"), "--committed", str(none)]
     assert main([*command, "--output", str(tmp_path / "out")]) == 2
     one_line(Ended(2, capsys.readouterr().err), "data of case 'kernels/textbook-x-fails'", 2)
-
-
-def bomb(depth: int) -> dict[str, Any]:
-    """A compact file of 10^depth entries in some hundred bytes: references in references."""
-    shared: dict[str, Any] = {"0": [0] * 10}
-    shared |= {str(k): [{"$same": str(k - 1)}] * 10 for k in range(1, depth)}
-    file = json.loads(compact({"x": 1})[0])
-    return file | {"document": {"x": {"$same": str(depth - 1)}}, "shared": shared}
-
-
-def times(depth: int) -> dict[str, Any]:
-    """The same by repetition."""
-    value: list[Any] = [0]
-    for _ in range(depth):
-        value = [{"$times": [10, value]}]
-    return json.loads(compact({"x": 1})[0]) | {"document": {"x": value}}
-
-
-@pytest.mark.parametrize("made", [bomb, times])
-def test_a_small_file_does_not_fill_the_memory(made: Any, tmp_path: Path) -> None:
-    path = tmp_path / "r.json"
-    path.write_text(json.dumps(made(3)))
-    read_result(path)
-    path.write_text(json.dumps(made(12)))
-    with pytest.raises(LayoutError, match="entries"):
-        read_result(path)
 
 
 def test_a_pipe_without_an_end_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 
 from reports.generator import render
-from reports.result_files import read_result
-from tests.documents import ROOT
+from reports.result_files import committed
 from tests.reports.sample import case, results
 
 TABLE = re.compile(
@@ -17,8 +16,7 @@ TABLE = re.compile(
 
 
 def test_tables_of_more_than_eight_columns_are_set_small() -> None:
-    study = read_result(ROOT / "reports/results/benchmarks.json")
-    page = render(results(case("a/1")), {"benchmarks": study})
+    page = render(results(case("a/1")), {"benchmarks": committed("benchmarks")})
     columns = [(head.count("<th"), bool(wide)) for wide, head in TABLE.findall(page)]
     assert (13, True) in columns
     assert all(wide is (count > 8) for count, wide in columns)

@@ -17,7 +17,7 @@ from verification.variational.energy import Energy, frictionless, table2_scene
 from verification.variational.minimisers import MINIMISERS, Minimum, interior_point
 from verification.variational.timing import Contact, growth, measure, table
 
-COMMITTED = Path(__file__).resolve().parents[3] / "reports" / "results" / "table2.json"
+COMMITTED = Path(__file__).resolve().parents[3] / "reports" / "results" / "table2.json.gz"
 SOURCE = "paper Table 2; the principle: Kalker and van Randen 1972, Tian and Bhushan 1996"
 M_QUICK = 32
 
