@@ -24,8 +24,6 @@ VERDICTS = (
     "schematic",
 )
 """From the least to the most favourable; the last two judge nothing."""
-_EARLIER = {"refuted": "not confirmed"}
-"""Verdicts in files of earlier versions."""
 
 
 @dataclass(frozen=True)
@@ -104,16 +102,15 @@ def verdict(claim: Claim, cases: Sequence[Case]) -> str:
 
 
 def recorded(case: Case) -> str | None:
-    """Verdict that a case records on the paper, in today's words; None where it judges our code alone."""
+    """Return the verdict on the paper that a case records; None where it judges our code alone."""
     text = case["data"].get("verdict")
-    text = _EARLIER.get(text, text) if isinstance(text, str) else None
     return text if text in VERDICTS else None
 
 
 def note(case: Case) -> str:
     """The first statement of a case's note, without the verdict.
 
-    >>> note({"data": {"verdict": "refuted"}, "note": "refuted: 1 (of 2; 3) here; more. And more"})
+    >>> note({"data": {"verdict": "confirmed"}, "note": "confirmed: 1 (of 2; 3) here; more. And more"})
     '1 (of 2; 3) here'
     """
     text: str = case["note"].removeprefix(case["data"]["verdict"]).removeprefix(":").strip()

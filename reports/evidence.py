@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from reports.contestant import solver
-from reports.recorded import renamed
 from reports.results import FORMAT, Case, check
 
 
@@ -35,8 +34,7 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
     """The run with the committed files, by name without suffix, that it does not replace.
 
     A case counts once: the run's own result, else that of the newest committed run in which it was judged.
-    Committed runs of somebody else's solver are excluded: they are no evidence of this project's. Data have
-    the names of `reports.recorded`, whichever version recorded them.
+    Committed runs of somebody else's solver are excluded: they are no evidence of this project's.
     Raises ResultFileError for a run, or a committed run of `verify`, that is none.
     """
     checked = check(run)
@@ -58,7 +56,7 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
 
 
 def _case(case: Case, origin: dict[str, Any] | None) -> Case:
-    return {**case, "data": renamed(case["data"]), "origin": origin}
+    return {**case, "origin": origin}
 
 
 def _origin(name: str, file: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,7 +15,6 @@ from reports.claims import judged
 from reports.comparison import compared
 from reports.drawing import Figure
 from reports.evidence import Evidence, gathered
-from reports.extras import extra_exhibits
 from reports.findings import by_claim
 from reports.front_page import NAMED, front_page
 from reports.parts import shown
@@ -93,7 +92,6 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
     """Sections of a report on this project's own code beside its cases."""
     claims = judged(evidence.cases, evidence.errata)
     numbers = agreement.numbers(by_claim(evidence.cases))
-    extras = extra_exhibits(evidence)
     return {
         "front": front_page(evidence, claims, numbers),
         "named": NAMED,
@@ -102,8 +100,8 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
         "parts": shown(claims, numbers, evidence.cases),
         "chapters": [
-            (chapter, subjects_of(chapter, evidence), exhibits_of(chapter, evidence, extras))
-            for chapter in all_chapters(evidence, extras)
+            (chapter, subjects_of(chapter, evidence), exhibits_of(chapter, evidence))
+            for chapter in all_chapters(evidence)
         ],
     }
 
