@@ -33,8 +33,8 @@ class Claim:
     label: str
     quote: str
     verdict: str
-    evidence: tuple[str, ...]
-    corrected: tuple[str, ...] = ()
+    evidence: Sequence[str]
+    corrected: Sequence[str] = ()
     finding: str = ""
     own: bool = False
     part: str = ""
@@ -51,22 +51,29 @@ class Judged:
     errata: Sequence[Mapping[str, Any]]
 
 
-def paper() -> list[Claim]:
-    """Every claim of the matrix, in the paper's order."""
+def entries(kind: str) -> list[dict[str, Any]]:
+    """Return the entries of `paper.toml` of a kind, "claim" or "part", in the paper's order."""
     text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
-    entries: list[dict[str, Any]] = tomllib.loads(text)["claim"]
-    lists = ("evidence", "corrected")
-    for entry in entries:
-        entry.update({name: tuple(entry.get(name, ())) for name in lists})
-    return [Claim(**entry) for entry in entries]
+    found: list[dict[str, Any]] = tomllib.loads(text)[kind]
+    return found
+
+
+def paper() -> list[Claim]:
+    """Return every claim of the matrix."""
+    return [Claim(**entry) for entry in entries("claim")]
+
+
+def longest(cases: Iterable[Case]) -> list[Case]:
+    """Return the cases but for quick ones that have a long one (``-full``) that passed."""
+    known = list(cases)
+    long = {case["id"] for case in known if case["id"].endswith("-full") and case["status"] == "pass"}
+    return [case for case in known if f"{case['id']}-full" not in long]
 
 
 def judged(cases: Iterable[Case], errata: Iterable[Mapping[str, Any]]) -> list[Judged]:
-    """Every claim with its evidence; a long case that passed stands for the quick one of its name."""
-    known = list(cases)
+    """Return every claim with its evidence; a long case that passed stands for the quick one of its name."""
+    known = longest(cases)
     numbers = by_claim(known)
-    long = {case["id"] for case in known if case["id"].endswith("-full") and case["status"] == "pass"}
-    known = [case for case in known if f"{case['id']}-full" not in long]
     corrections = {erratum["equation"]: erratum for erratum in errata}
     return [_judged(claim, known, numbers, corrections) for claim in paper()]
 

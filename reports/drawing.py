@@ -38,6 +38,11 @@ _NAME = re.compile(r"[\w/]+(-\w+)+")
 _INSIDE = 6  # series up to which a legend finds room among them
 
 
+def look(k: int) -> dict[str, Any]:
+    """Return colour and marker of the k-th series."""
+    return {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]}
+
+
 @dataclass(frozen=True)
 class Figure:
     """A declared figure: which cases (glob) it belongs to, the series it needs, and how it is drawn.
@@ -170,6 +175,22 @@ def lines(
             axes.legend()
 
     return draw
+
+
+def curves(
+    cases: str,
+    caption: str,
+    x: str,
+    series: Mapping[str, str],
+    *,
+    exact: Mapping[str, str] | None = None,
+    band: tuple[str, str] | None = None,
+    size: tuple[float, float] = (6.4, 3.8),
+    **look: Any,
+) -> Figure:
+    """The figure of `lines`, which needs all series that it draws; ``look`` is passed on."""
+    needs = dict.fromkeys((x, *series, *(exact or ()), *(band or ())[:1]))
+    return Figure(cases, tuple(needs), lines(x, series, exact=exact, band=band, **look), caption, size)
 
 
 def order(

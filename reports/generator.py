@@ -8,8 +8,9 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import agreement, contestant, figures
+from reports import agreement, contestant
 from reports.agreement_figure import AGREEMENT
+from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
 from reports.claims import judged
 from reports.comparison import compared
@@ -45,8 +46,8 @@ def render(
     def case_pictures(case: Case) -> list[Mapping[str, Any]]:
         progress(case["id"])
         try:
-            offered = figures.figures_of(case["id"], case["data"])
-            return [p for f in offered if (p := album.add(f, case["data"], case["title"]))]
+            found = (album.add(figure, case["data"], case["title"]) for figure in figures_of(case["id"]))
+            return [picture for picture in found if picture]
         except _OTHER_SHAPE as broken:
             raise CaseDataError(f"data of case {case['id']!r}: {broken}", case["origin"]) from broken
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from matplotlib.figure import Figure as Canvas
 
 from reports.drawing import COLOURS, MARKERS, Data, Figure
-from reports.exhibit import Cell, Document, Exhibit, Table
+from reports.exhibit import Cell, Column, Document, Exhibit, Table, table
 
 OURS = "refimpl"
 STYLES = ("-", "--", ":")  # by the number of pluses in a code's name
@@ -35,7 +36,7 @@ def build(document: Document) -> Exhibit:
             f"Versions: {', '.join(versions)}.",
         ),
         [*(_table(kind, newest) for kind in kinds), _record(runs)],
-        [(_figure(kinds), _series(kinds, newest))],
+        [(replace(SECONDS, size=(4.4 * len(kinds), 4.8)), _series(kinds, newest))],
     )
 
 
@@ -53,79 +54,69 @@ def newest_rows(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
 
 
 def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
-    head = (
-        "grid", "code", "seconds", "warm-run time", "ratio to this code", "ratio of processor times",
-        "recomputed gap", "area (mm²)", "peak (MPa)", "peak memory (MB)", "convolutions in all",
-        "times one convolution", "commit",
-    )  # fmt: skip
-    rows: list[Sequence[Cell]] = []
-    for (of, M), entries in newest.items():
-        if of == kind:
-            rows += [_cells(M, row) for row in entries]
     caption = (
         f"{kind.capitalize()} flat. A convolution is rfft2 and irfft2 on the padded bounding box of the "
         "final contact; others count by n log n. Ratios are of a code's own run."
     )
-    return Table(caption, head, rows)
+    return table(caption, [row for (of, _), rows in newest.items() if of == kind for row in rows], TIMES)
 
 
-def _cells(M: int, row: Row) -> Sequence[Cell]:
-    commit = str(row["commit"])[:12]
-    if "seconds" not in row:
-        return (f"{M}²", row["code"], row["failure"], *[None] * 9, commit)
-    ratio = row["ratio"]
-    coupled = row["code"].startswith(f"{OURS}+")
-    return (
-        f"{M}²",
-        row["code"],
-        _spread(row["seconds"]),
-        row["seconds again"]["median"] if "seconds again" in row else None,
-        _spread(ratio["seconds"]) if ratio else None,
-        _spread(ratio["processor seconds"]) if ratio else None,
-        None if coupled else row["gap"],
-        f"{1e6 * row['area']:.5f}",
-        f"{1e-6 * row['peak']:.3f}",
-        round(1e-6 * row["peak memory"]["median"]),
-        row.get("convolution equivalents"),
-        row["times one convolution"]["median"],
-        commit,
-    )
+def _measured(column: Callable[[Row], Cell]) -> Callable[[Row], Cell]:
+    """The column, and None for a code that was not timed."""
+    return lambda row: column(row) if "seconds" in row else None
 
 
 def _spread(values: Row) -> str:
     return f"{values['median']:.3g} ({values['least']:.2g} to {values['most']:.2g})"
 
 
+def _ratio(clock: str) -> Callable[[Row], Cell]:
+    return _measured(lambda row: _spread(row["ratio"][clock]) if row["ratio"] else None)
+
+
+TIMES: dict[str, Column] = {
+    "grid": "{M}²",
+    "code": "code",
+    "seconds": lambda row: _spread(row["seconds"]) if "seconds" in row else row["failure"],
+    "warm-run time": _measured(lambda row: row.get("seconds again", {"median": None})["median"]),
+    "ratio to this code": _ratio("seconds"),
+    "ratio of processor times": _ratio("processor seconds"),
+    "recomputed gap": _measured(lambda row: None if row["code"].startswith(f"{OURS}+") else row["gap"]),
+    "area (mm²)": _measured(lambda row: f"{1e6 * row['area']:.5f}"),
+    "peak (MPa)": _measured(lambda row: f"{1e-6 * row['peak']:.3f}"),
+    "peak memory (MB)": _measured(lambda row: round(1e-6 * row["peak memory"]["median"])),
+    "convolutions in all": _measured(lambda row: row.get("convolution equivalents")),
+    "times one convolution": _measured(lambda row: row["times one convolution"]["median"]),
+    "commit": "{commit!s:.12}",
+}
+
+
+def _fastest(which: str) -> Callable[[Row], Cell]:
+    def cell(ratios: Row) -> str | None:
+        entry = ratios.get(which)
+        return None if entry is None else f"{entry['code']}, {entry['seconds over ours']:.3g}"
+
+    return cell
+
+
+RUNS: dict[str, Column] = {
+    "date": "date",
+    "commit": "{commit!s:.12}",
+    "problem": "{kind}, {M}²",
+    "rounds": "rounds",
+    "threads": "threads",
+    "load average": lambda row: row["load average"]["before"][0],
+    "fastest peer, as recommended": _fastest("fastest peer"),
+    "fastest set-up of any peer": _fastest("fastest set-up of a peer"),
+    "fastest peer over our solver alone": _fastest("fastest peer, solver alone"),
+    "the same, second solve": _fastest("fastest peer, solver alone, again"),
+}
+
+
 def _record(runs: Sequence[Row]) -> Table:
-    rows: list[Sequence[Cell]] = []
-    for run in runs:
-        provenance, conditions = run["provenance"], run["conditions"]
-        for ratios in run["ratios"]:
-            rows.append(
-                (
-                    provenance["date"],
-                    str(provenance["commit"])[:12],
-                    f"{ratios['kind']}, {ratios['M']}²",
-                    conditions["rounds"],
-                    conditions["threads"],
-                    conditions["load average"]["before"][0],
-                    _fastest(ratios, "fastest peer"),
-                    _fastest(ratios, "fastest set-up of a peer"),
-                    _fastest(ratios, "fastest peer, solver alone"),
-                    _fastest(ratios, "fastest peer, solver alone, again"),
-                )
-            )
-    head = (
-        "date", "commit", "problem", "rounds", "threads", "load average", "fastest peer, as recommended",
-        "fastest set-up of any peer", "fastest peer over our solver alone", "the same, second solve",
-    )  # fmt: skip
+    rows = [{**run["provenance"], **run["conditions"], **ratios} for run in runs for ratios in run["ratios"]]
     caption = "Every run so far, with the peers' ratio to this code; no run is ever removed."
-    return Table(caption, head, rows)
-
-
-def _fastest(ratios: Row, which: str) -> str | None:
-    entry = ratios.get(which)
-    return None if entry is None else f"{entry['code']}, {entry['seconds over ours']:.3g}"
+    return table(caption, rows, RUNS)
 
 
 def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Sequence[Row]]) -> dict[str, Any]:
@@ -140,16 +131,6 @@ def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Sequence[Row]
         "kinds": list(kinds),
         "seconds": {name: [*map(list, line.values())] for name, line in series.items()},
     }
-
-
-def _figure(kinds: Sequence[str]) -> Figure:
-    return Figure(
-        "*",
-        ("kinds", "seconds"),
-        _draw,
-        "Seconds over the grid, at a recomputed gap of 1e-8.",
-        (4.4 * len(kinds), 4.8),
-    )
 
 
 def _draw(canvas: Canvas, data: Data) -> None:
@@ -171,3 +152,6 @@ def _draw(canvas: Canvas, data: Data) -> None:
     panels[0].set_ylabel("seconds")
     lines, labels = panels[0].get_legend_handles_labels()
     canvas.legend(lines, labels, loc="outside lower center", ncols=4, fontsize=8)
+
+
+SECONDS = Figure("*", ("kinds", "seconds"), _draw, "Seconds over the grid, at a recomputed gap of 1e-8.")

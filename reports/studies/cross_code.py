@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from reports.drawing import Data, Figure
-from reports.exhibit import Cell, Document, Exhibit, Table
+from reports.exhibit import Cell, Column, Document, Exhibit, Table, table
 
 _DECADES = 4  # decades of the figure's colours, on both sides of the tolerance
 
@@ -32,46 +32,31 @@ def build(document: Document) -> Exhibit:
     return Exhibit(
         "Cross-code table",
         paragraphs,
-        [_overview(entrants), _verdicts(entrants, cases)],
+        [table(OVERVIEW_CAPTION, entrants, OVERVIEW), _verdicts(entrants, cases)],
         [(_figure(cases), {"case": [_slug(case) for case in cases], "share of tolerance": shares})],
     )
 
 
-def _overview(entrants: Sequence[Mapping[str, Any]]) -> Table:
-    head = (
-        "code",
-        "version",
-        "role",
-        "passed",
-        "failed",
-        "not applicable",
-        "seconds",
-        "worst residual",
-        "set-up",
-    )
-    rows: list[Sequence[Cell]] = []
-    for e in entrants:
-        counts = e["counts"]
-        judged = sum(counts.values()) - counts["unavailable"]
-        failed = counts["fail"] + counts["error"]
-        rows.append(
-            (
-                e["name"],
-                e["version"],
-                e["role"],
-                f"{counts['pass']} of {judged}",
-                failed,
-                counts["unavailable"],
-                e["seconds"],
-                e["worst residual"],
-                e["setup"],
-            )
-        )
-    caption = (
-        "Cases passed of those that apply; seconds in the solver for all of them; and the worst residual of "
-        "gap over elastic energy, load balance and tension, recomputed from the returned pressures."
-    )
-    return Table(caption, head, rows)
+def _judged(entrant: Mapping[str, Any]) -> int:
+    counts: Mapping[str, int] = entrant["counts"]
+    return sum(counts.values()) - counts["unavailable"]
+
+
+OVERVIEW: dict[str, Column] = {
+    "code": "name",
+    "version": "version",
+    "role": "role",
+    "passed": lambda e: f"{e['counts']['pass']} of {_judged(e)}",
+    "failed": lambda e: e["counts"]["fail"] + e["counts"]["error"],
+    "not applicable": lambda e: e["counts"]["unavailable"],
+    "seconds": "seconds",
+    "worst residual": "worst residual",
+    "set-up": "setup",
+}
+OVERVIEW_CAPTION = (
+    "Cases passed of those that apply; seconds in the solver for all of them; and the worst residual of "
+    "gap over elastic energy, load balance and tension, recomputed from the returned pressures."
+)
 
 
 def _verdicts(entrants: Sequence[Mapping[str, Any]], cases: Sequence[Mapping[str, Any]]) -> Table:
