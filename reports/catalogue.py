@@ -5,7 +5,6 @@ from __future__ import annotations
 from fnmatch import fnmatchcase
 
 from reports.appendix_figures import APPENDIX
-from reports.contestant_figures import CONTESTANTS
 from reports.drawing import Figure, curves, dots, maps, order
 from reports.reproduction_figures import REPRODUCTION
 from reports.yield_figures import BEYOND_YIELD
@@ -293,7 +292,7 @@ SCENE_BY_SCENE = (
 )  # fmt: skip
 
 DECLARED = (
-    *BEYOND_YIELD, *REPRODUCTION, *APPENDIX, *CONTESTANTS, *APPENDIX_A, *SMOOTH, *ROUGH, *BY_GRID,
+    *BEYOND_YIELD, *REPRODUCTION, *APPENDIX, *APPENDIX_A, *SMOOTH, *ROUGH, *BY_GRID,
     *SCENE_BY_SCENE,
 )  # fmt: skip
 

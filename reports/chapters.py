@@ -99,14 +99,14 @@ CHAPTERS = (
 
 def subjects_of(chapter: Chapter, evidence: Evidence) -> dict[str, list[Case]]:
     """The chapter's cases by subject, in the chapter's order; only subjects that have any."""
-    present = by_subject(list(evidence.cases))
+    present = by_subject(evidence.cases)
     return {subject: present[subject] for subject in chapter.subjects if subject in present}
 
 
 def all_chapters(evidence: Evidence) -> list[Chapter]:
     """Return the chapters, and one of the subjects that no chapter claims before the last main one."""
     claimed = {subject for chapter in CHAPTERS for subject in chapter.subjects} | set(REPRODUCED)
-    left = tuple(s for s in by_subject(list(evidence.cases)) if s not in claimed)
+    left = tuple(s for s in by_subject(evidence.cases) if s not in claimed)
     main = [chapter for chapter in CHAPTERS if not chapter.folded]
     back = [chapter for chapter in CHAPTERS if chapter.folded]
     further = [Chapter("further", "Further checks", "", left)] if left else []

@@ -63,21 +63,16 @@ class Figure:
         return all(data.get(name) not in (None, [], {}) for name in self.needs)
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """A figure as SVG for a page in the reader's colours, and what it shows in words."""
-
-    svg: str
-    alt: str
-
-
 def complete(figure: Figure, data: Data) -> Data:
     """The recorded series and those derived from them."""
     return {**data, **figure.derived(data)}
 
 
-def drawn(figure: Figure, data: Data, name: str = "figure", caption: str | None = None) -> Drawn | None:
-    """The drawn figure; its definitions carry ``name``, unique on the page. None without its series."""
+def svg(figure: Figure, data: Data, name: str = "figure", caption: str | None = None) -> str | None:
+    """Return the drawn figure for a page in the reader's colours; None without its series.
+
+    ``name`` is unique on the page: ids begin with it. ``caption`` replaces the figure's own.
+    """
     if not figure.available(data):
         return None
     data = complete(figure, data)
@@ -89,18 +84,12 @@ def drawn(figure: Figure, data: Data, name: str = "figure", caption: str | None 
         canvas.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
         alt = symbols(words(canvas, figure.caption if caption is None else caption))
     made = _TEXT.sub(lambda text: text[1] + _in_symbols(text[2]) + text[3], buffer.getvalue())
-    return Drawn(inline(made.replace(INK, "currentColor"), name, alt), alt)
+    return inline(made.replace(INK, "currentColor"), name, alt)
 
 
 def _in_symbols(text: str) -> str:
     """The text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
     return text if _NAME.fullmatch(text) else symbols(text)
-
-
-def svg(figure: Figure, data: Data) -> str | None:
-    """The drawn figure alone; None when its series are not available."""
-    found = drawn(figure, data)
-    return None if found is None else found.svg
 
 
 def words(canvas: Canvas, caption: str) -> str:

@@ -17,38 +17,39 @@ Row = Mapping[str, Any]
 
 
 def build(document: Document) -> Exhibit:
-    """A table for each surface, the record of all runs, and seconds over the grid."""
+    """Return a table for each surface, and seconds over the grid."""
     runs = document["runs"]
     newest = newest_rows(runs)
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
     last = runs[-1]["conditions"]
-    told = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
-    versions = [version for version in told if not version.endswith(" None")]  # None: commit alone
+    named = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
+    versions = [version for version in named if not version.endswith(" None")]  # None: commit alone
     return Exhibit(
         "Speed beside published solvers",
         (
             "Table 1's paraboloid under 70 N on a smooth and on a rough flat (0.5 um), in free space. The "
             "codes take turns, each in a process of its own, and each stops at the loosest of its own "
             f"tolerances whose result has a {last['target']}.",
-            f"Threads for every code: {last['threads']}. Clock: {last['clock']}. Seconds are medians with "
-            "the least and the most; ratios are medians of the ratios within rounds. A second solve in the "
-            "same process follows (warm-run time), as the next ones of a sweep.",
+            f"Clock: {last['clock']}. Seconds are medians with the least and the most; ratios are medians of "
+            "the ratios within rounds. A second solve in the same process follows (warm-run time), as the "
+            "next ones of a sweep.",
             f"Versions: {', '.join(versions)}.",
         ),
-        [*(_table(kind, newest) for kind in kinds), _record(runs)],
+        [_table(kind, newest) for kind in kinds],
         [(replace(SECONDS, size=(4.4 * len(kinds), 4.8)), _series(kinds, newest))],
     )
 
 
 def newest_rows(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
-    """By surface and grid, each code's newest row, with the ratios and the commit of its own run."""
+    """By surface and grid, each code's newest row, with ratios, commit and conditions of its own run."""
     found: dict[tuple[str, int], dict[str, Row]] = {}
     for run in runs:
         ratios = {(entry["kind"], entry["M"]): entry for entry in run["ratios"]}
         for row in run["rows"]:
             key = (row["kind"], row["M"])
             origin = {"ratio": ratios[key].get(row["code"]), "commit": run["provenance"]["commit"]}
-            found.setdefault(key, {})[row["code"]] = {**row, **origin}
+            conditions = {name: run["conditions"][name] for name in ("rounds", "threads")}
+            found.setdefault(key, {})[row["code"]] = {**row, **origin, **conditions}
     ordered = sorted(found.items(), key=lambda item: (item[0][0] != "smooth", item[0]))
     return {key: list(rows.values()) for key, rows in ordered}
 
@@ -87,36 +88,9 @@ TIMES: dict[str, Column] = {
     "peak memory (MB)": _measured(lambda row: round(1e-6 * row["peak memory"]["median"])),
     "convolutions in all": _measured(lambda row: row.get("convolution equivalents")),
     "times one convolution": _measured(lambda row: row["times one convolution"]["median"]),
+    "rounds, threads": "{rounds}, {threads}",
     "commit": "{commit!s:.12}",
 }
-
-
-def _fastest(which: str) -> Callable[[Row], Cell]:
-    def cell(ratios: Row) -> str | None:
-        entry = ratios.get(which)
-        return None if entry is None else f"{entry['code']}, {entry['seconds over ours']:.3g}"
-
-    return cell
-
-
-RUNS: dict[str, Column] = {
-    "date": "date",
-    "commit": "{commit!s:.12}",
-    "problem": "{kind}, {M}²",
-    "rounds": "rounds",
-    "threads": "threads",
-    "load average": lambda row: row["load average"]["before"][0],
-    "fastest peer, as recommended": _fastest("fastest peer"),
-    "fastest set-up of any peer": _fastest("fastest set-up of a peer"),
-    "fastest peer over our solver alone": _fastest("fastest peer, solver alone"),
-    "the same, second solve": _fastest("fastest peer, solver alone, again"),
-}
-
-
-def _record(runs: Sequence[Row]) -> Table:
-    rows = [{**run["provenance"], **run["conditions"], **ratios} for run in runs for ratios in run["ratios"]]
-    caption = "Every run so far, with the peers' ratio to this code; no run is ever removed."
-    return table(caption, rows, RUNS)
 
 
 def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Sequence[Row]]) -> dict[str, Any]:
