@@ -53,8 +53,8 @@ def number(value: float | None, digits: int = 4) -> str:
 def interval(value: float, half_width: float) -> str:
     """The value with the digits that its interval leaves; four where there is none.
 
-    >>> interval(0.10729513, 0.00042692), interval(5.1238826, 0.29116), interval(0.21550513, 0.0)
-    ('0.1073 ± 0.0004', '5.1 ± 0.3', '0.2155')
+    >>> interval(0.10729513, 0.00042692), interval(12.345, 3.0), interval(0.21550513, 0.0)
+    ('0.1073 ± 0.0004', '12 ± 3', '0.2155')
     """
     if half_width == 0:
         return f"{value:.4g}"

@@ -1,4 +1,4 @@
-"""Runs gathered, the paper traced, runs compared: what stands where, and what must not hide."""
+"""Runs gathered and the paper traced: what stands where, and what must not hide or be flattered."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ from fnmatch import fnmatchcase
 import pytest
 
 from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper
-from reports.comparison import compared
 from reports.evidence import gathered
 from reports.findings import fields
-from reports.generator import render
 from reports.parts import PARTS
 from reports.result_files import read_results
-from reports.results import ResultFileError
-from reports.studies import exhibit
+from reports.results import ResultFileError, check, worst
+from reports.revisions import one_revision, revisions_of
 from reports.summary import groups
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
@@ -33,6 +31,9 @@ def test_the_run_outweighs_committed_runs_and_the_newest_judged_of_those_counts(
     found = gathered(results(case("a/1", value=1.09)), {"older": older, "newer": newer, "study": {"x": 1}})
     values = {c["id"]: (c["value"], c["origin"] and c["origin"]["file"]) for c in found.cases}
     assert values == {"a/1": (1.09, None), "b/1": (1.02, "newer.json"), "c/1": (1.0, "older.json")}
+    command = "rough-friction verify --tier quick"
+    origin = {"file": "newer.json", "date": "2002-01-01", "commit": "0123456789abcdef", "command": command}
+    assert [c["origin"] for c in found.cases if c["id"] == "b/1"] == [origin]
     assert [group.counts["pass"] for group in groups(found)] == [3]
     assert list(found.studies) == ["study"]
 
@@ -95,20 +96,6 @@ def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
     assert len(labels) == len(set(labels))
 
 
-def test_changes_beyond_uncertainty_only() -> None:
-    old = results(case("a/1"), case("b/1"), case("c/1"), case("d/1"))
-    new = results(case("a/1", value=1.01 + 1e-5), case("b/1", "fail"), case("c/1", value=1.05), case("e/1"))
-    assert [(c.kind, c.id) for c in compared(old, new)] == [
-        ("status", "b/1"),
-        ("value", "c/1"),
-        ("not run", "d/1"),
-        ("new", "e/1"),
-    ]
-    page = render(new, {}, old)
-    assert "Changes against the older run" in page
-    assert "No case changed" in render(new, {}, new)
-
-
 def test_a_long_case_that_did_not_pass_stands_beside_the_quick_one() -> None:
     for status in ("fail", "error", "unavailable"):
         found = judged([case("reproduction/eq10"), case("reproduction/eq10-full", status)], [])
@@ -117,12 +104,57 @@ def test_a_long_case_that_did_not_pass_stands_beside_the_quick_one() -> None:
         assert row.verdict == NOT_ESTABLISHED
 
 
-def test_an_unknown_study_is_shown_by_its_numbers() -> None:
-    shown = exhibit("something_new", {"score": 0.5, "rows": [1, 2]})
-    assert shown.title == "Something new"
-    assert list(shown.tables[0].rows) == [("score", 0.5)]
+@pytest.mark.parametrize("status", ["error", "unavailable"])
+def test_committed_cases_that_were_not_judged_are_shown_as_such(status: str) -> None:
+    """In all runs but one it was not judged; the newest of these stands where no run judged it."""
+    older = dated("2001-01-01", case("a/1", status, note="older"), case("b/1", status))
+    newer = dated("2002-01-01", case("a/1", status, note="newer"))
+    found = gathered(results(case("c/1")), {"older": older, "newer": newer})
+    assert {c["id"]: (c["status"], c["note"]) for c in found.cases} == {
+        "a/1": (status, "newer"),
+        "b/1": (status, ""),
+        "c/1": ("pass", ""),
+    }
+    (group,) = groups(found)
+    assert [c["id"] for c in group.not_passed] == ["a/1", "b/1"]
+    assert group.counts == {"pass": 1, "fail": 0, "error": 0, "unavailable": 0} | {status: 2}
 
 
-def test_a_study_without_its_numbers_is_refused() -> None:
-    with pytest.raises(ResultFileError, match="hypothesis"):
-        exhibit("hypothesis", {})
+def test_what_decides_about_several_cases() -> None:
+    order = ["error", "fail", "unavailable", "pass"]
+    for k in range(4):
+        assert worst([case(f"a/{j}", order[j]) for j in range(k, 4)]) == order[k]
+
+
+@pytest.mark.parametrize(("uncertainty", "refused"), [(19.9, False), (20.1, True)])
+def test_a_reference_is_as_certain_as_the_tolerance(uncertainty: float, refused: bool) -> None:
+    """A tenth of 200."""
+    made = results(case("a/1", value=201.0, reference=200.0, reference_uncertainty=uncertainty))
+    if refused:
+        with pytest.raises(ResultFileError, match="not that of its value"):
+            check(made)
+    else:
+        check(made)
+
+
+def test_a_file_has_the_solver_of_the_run_or_another_one() -> None:
+    """A fit's code is no part of the solver; a file without digests has an unknown one."""
+    digests = {"refimpl": "a", "refimpl/model": "b", "refimpl/identification": "c", "verification": "d"}
+    run, same, other = (dated(f"2001-01-0{day}", case(f"{day}/1")) for day in (1, 2, 3))
+    run["provenance"]["sources"] = digests
+    same["provenance"]["sources"] = digests | {"refimpl/identification": "x", "verification": "y"}
+    other["provenance"]["sources"] = digests | {"refimpl/model": "x"}
+    other["provenance"]["dirty"] = True
+    study = {"runs": [{"provenance": {"date": "2001-02-03", "commit": None}}]}
+    rows = revisions_of(gathered(run, {"same": same, "other": other, "study": study}))
+    assert [(name, date) for name, date, _, _ in rows] == [
+        ("this run", "2001-01-01"),
+        ("other.json", "2001-01-03"),
+        ("same.json", "2001-01-02"),
+        ("study.json", "2001-02-03"),
+    ]
+    now, changed, equal, unknown = (solver for *_, solver in rows)
+    assert len({now, changed, unknown}) == 3
+    assert (equal, unknown) == (now, "n/a")
+    assert rows[1][2].endswith(" and uncommitted changes")
+    assert "1 of 3 files have that of this run" in one_revision(rows)
