@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, MARKERS, Data, Figure
+from reports.drawing import COLOURS, INK, Data, Figure, look
 from reports.exhibit import Column, Document, Exhibit, Table, table
 
 NAMES = {
@@ -36,17 +36,16 @@ def build(document: Document) -> Exhibit:
     first, last = document["seeds"]
     solves = document["solves"]
     summary = (
-        f"{last - first + 1} random scenes (seeds {first} to {last}, eight classes in turn), none of which "
-        f"the estimator was fitted to; {solves['count']} solves in {solves['seconds'] / 60:.0f} minutes of "
+        f"{last - first + 1} random scenes (seeds {first} to {last}, eight classes in turn); the estimator "
+        f"was fitted to none of them. {solves['count']} solves in {solves['seconds'] / 60:.0f} minutes of "
         f"processor time, worst residual {solves['worst_residual']:.1e}. The reference is the finest grid "
         "(1024, periodic scenes 512) less its edge's mean share, for p_max the height of the parabola "
-        "through its peak, which is the estimator's too; only grids at most half as fine are "
-        "requested. A bar covers the reference when it exceeds the value's distance from the reference; the "
-        "reference shares the edge's mean share with the estimator, so the next column moves the reference "
-        "by its whole bound, against the bar. Where the accuracy was "
-        "not reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
-        "refinement sequence starts from the answer before, which changes its cost and no number by more "
-        f"than {solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
+        "through its peak; the estimator uses both as well. Only grids at most half as fine are requested. A "
+        "bar covers the reference when it exceeds the value's distance from the reference; in the next "
+        "column the reference is moved by its whole bound, against the bar. Where the accuracy was not reached on "
+        "these grids, the end is reported as such, with the bar that was. Each grid of a refinement sequence "
+        "starts from the answer before, which changes its cost and no number by more than "
+        f"{solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
     )
     return Exhibit(
         "Accuracy requested, and kept",
@@ -118,17 +117,9 @@ def _draw(canvas: Canvas, data: Data) -> None:
     for axes, name in zip(all_axes, NAMES.values(), strict=True):
         for k, group in enumerate(classes):
             here = (number == name) & (kind == group)
-            style = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]}
+            style = {"linestyle": "none", "markersize": 3.5, "label": group, **look(k)}
             face = style["color"] if k < len(COLOURS) else "none"
-            axes.plot(
-                bar[here],
-                error[here],
-                linestyle="none",
-                markersize=3.5,
-                markerfacecolor=face,
-                label=group,
-                **style,
-            )
+            axes.plot(bar[here], error[here], markerfacecolor=face, **style)
         axes.plot([LOWEST, 1], [LOWEST, 1], color=INK, linewidth=1)
         axes.axvline(data["accuracy"], color=INK, linewidth=1, linestyle=":")
         held = np.mean(holds[number == name])

@@ -13,7 +13,8 @@ from matplotlib.patches import Patch
 from reports.drawing import COLOURS, INK, Data, Figure
 from reports.exhibit import Column, Document, Exhibit, Table, table
 
-VERDICTS = ("right", "honest failure", "wrong", "crash")
+VERDICTS = {"right": "right", "honest failure": "detected failure", "wrong": "wrong", "crash": "crash"}
+"""Recorded verdicts, and their names here."""
 DRAWN = ("load", "contact set", "material", "friction", "topography", "grid")
 NOT_RIGHT = {"honest failure": "#b0b0b0", "wrong": COLOURS[1], "crash": COLOURS[5]}
 """Colours of verdicts without digits."""
@@ -23,7 +24,7 @@ BY_SERIES: dict[str, Column] = {
     "series": "series",
     "from": "from",
     "to": "to",
-    **{verdict: verdict for verdict in VERDICTS},
+    **{name: verdict for verdict, name in VERDICTS.items()},
     "fewest digits kept": "fewest digits",
     "median": "median digits",
     "judged by": "oracle",
@@ -47,7 +48,7 @@ CONDITIONING = ("M", "condition", "CG iterations", "digits lost by a direct solv
 def build(document: Document) -> Exhibit:
     """Return the tables of the study, and a map of the digits that results keep."""
     rows, counts = document["states"], document["counts"]
-    found = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS)
+    found = ", ".join(f"{counts[verdict]} {name}" for verdict, name in VERDICTS.items())
     conditioning = document["conditioning"]
     return Exhibit(
         "Every axis to the point of failure",
@@ -94,7 +95,7 @@ def _by_axis(rows: Sequence[dict[str, Any]]) -> Table:
         counts = [sum(row["verdict"] == verdict for row in group) for verdict in VERDICTS]
         least_and_median = (digits[0], digits[len(digits) // 2]) if digits else (None, None)
         found.append((axis, len(group), *counts, *least_and_median))
-    head = ("axis", "states", *VERDICTS, "fewest digits kept", "median")
+    head = ("axis", "states", *VERDICTS.values(), "fewest digits kept", "median")
     return Table("Verdicts by axis; digits of the right ones.", head, found)
 
 
@@ -142,7 +143,9 @@ def _draw_kept(canvas: Canvas, data: Data) -> None:
     axes.set_xticks([-0.5, columns - 0.5], ["first state", "last state"])
     axes.set_xlabel("along the axis, to the end given in the table")
     legend = [
-        Patch(facecolor=c, edgecolor=INK, label=name) for name, c in NOT_RIGHT.items() if name in present
+        Patch(facecolor=c, edgecolor=INK, label=VERDICTS[name])
+        for name, c in NOT_RIGHT.items()
+        if name in present
     ]
     if legend:
         canvas.legend(handles=legend, loc="outside upper right", ncols=len(legend))
