@@ -112,14 +112,8 @@ def _single(cases: Cases) -> Iterator[Number]:
 def _table3(
     data: Mapping[str, Any], quantity: str, factor: float, unit: str, rounding: float
 ) -> list[Number]:
-    rows = zip(
-        data["sigma_e (um)"],
-        data["mesh"],
-        data["printed"],
-        data["ours"],
-        data["half width 95 %"],
-        strict=True,
-    )
+    names = ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %")
+    rows = zip(*(data[name] for name in names), strict=True)
     return [
         Number(
             "Table 3",
@@ -136,14 +130,14 @@ def _table3(
     ]
 
 
-def fine(found: Iterable[Number]) -> list[Number]:
-    """Table 3's numbers on the fine mesh."""
-    return [n for n in found if n.part == "Table 3" and n.label.endswith(f"{FINEST}²")]
-
-
 def compared(found: Iterable[Number]) -> list[Number]:
-    """All numbers, of Table 3 those on the fine mesh."""
+    """Return all numbers, of Table 3 those on the fine mesh."""
     return [n for n in found if n.part != "Table 3" or n.label.endswith(f"{FINEST}²")]
+
+
+def fine(found: Iterable[Number]) -> list[Number]:
+    """Return Table 3's numbers on the fine mesh."""
+    return [n for n in compared(found) if n.part == "Table 3"]
 
 
 def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
@@ -168,13 +162,6 @@ def bias_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
 
 def series(found: Sequence[Number]) -> dict[str, list[Any]]:
     """Columns of all numbers, for the figure and its CSV."""
-    return {
-        "part": [n.part for n in found],
-        "quantity": [n.quantity for n in found],
-        "label": [n.label for n in found],
-        "unit": [n.unit for n in found],
-        "printed": [n.printed for n in found],
-        "computed": [n.computed for n in found],
-        "uncertainty 95 %": [n.uncertainty for n in found],
-        "computed / printed": [n.ratio for n in found],
-    }
+    columns = {name: name for name in ("part", "quantity", "label", "unit", "printed", "computed")}
+    columns |= {"uncertainty 95 %": "uncertainty", "computed / printed": "ratio"}
+    return {column: [getattr(n, field) for n in found] for column, field in columns.items()}

@@ -42,9 +42,9 @@ def build(document: Document) -> Exhibit:
         "(1024, periodic scenes 512) less its edge's mean share, for p_max the height of the parabola "
         "through its peak; the estimator uses both as well. Only grids at most half as fine are requested. A "
         "bar covers the reference when it exceeds the value's distance from the reference; in the next "
-        "column the reference is moved by its whole bound, against the bar. Where the accuracy was not reached on "
-        "these grids, the end is reported as such, with the bar that was. Each grid of a refinement sequence "
-        "starts from the answer before, which changes its cost and no number by more than "
+        "column the reference is moved by its whole bound, against the bar. Where the accuracy was not "
+        "reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
+        "refinement sequence starts from the answer before, which changes its cost and no number by more than "
         f"{solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
     )
     return Exhibit(
