@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 
 from reports.findings import number
-from reports.results import Case
+from reports.results import OTHER_SHAPE, Case
 
 Cases = Mapping[str, Case]
-_BROKEN = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ def numbers(cases: Cases) -> list[Number]:
     for name, quantity, factor, unit, rounding in TABLE3:
         try:
             found += _table3(cases[f"reproduction/{name}"]["data"], quantity, factor, unit, rounding)
-        except _BROKEN:
+        except OTHER_SHAPE:
             continue
     return [n for n in found if n.printed > 0 and math.isfinite(n.computed) and n.computed > 0]
 

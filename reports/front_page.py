@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from reports.agreement import Number, bias_and_scatter, by_quantity, fine
-from reports.claims import NOT_ESTABLISHED, VERDICTS, Judged
+from reports.claims import VERDICTS, Judged
 from reports.evidence import Evidence
 from reports.results import Case
 from reports.text import QUANTITIES, number, unit_of
@@ -18,7 +18,6 @@ HERTZ = {
     "hertz/approach": "approach",
     "hertz/radius-corrected": "contact radius",
 }
-NAMED = (NOT_ESTABLISHED, "not confirmed", "erratum proposed", "confirmed with conditions", "confirmed")
 
 
 @dataclass(frozen=True)

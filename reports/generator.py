@@ -17,16 +17,13 @@ from reports.comparison import compared
 from reports.drawing import Figure
 from reports.evidence import Evidence, gathered
 from reports.findings import by_claim
-from reports.front_page import NAMED, front_page
+from reports.front_page import front_page
 from reports.parts import shown
 from reports.pictures import Album
-from reports.results import Case, CaseDataError, ResultFileError
+from reports.results import OTHER_SHAPE, Case, CaseDataError, ResultFileError
 from reports.revisions import one_revision, revisions_of
 from reports.summary import groups
 from reports.text import cell, interval, judgement, number, symbols
-
-_OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-"""Exceptions of drawing where data are not of the shape that a figure needs."""
 
 
 def render(
@@ -43,19 +40,18 @@ def render(
     evidence = gathered(results, committed or {})
     album = Album()
 
-    def case_pictures(case: Case) -> list[Mapping[str, Any]]:
+    def case_pictures(case: Case) -> list[Mapping[str, Any] | None]:
         progress(case["id"])
         try:
-            found = (album.add(figure, case["data"], case["title"]) for figure in figures_of(case["id"]))
-            return [picture for picture in found if picture]
-        except _OTHER_SHAPE as broken:
+            return [album.add(figure, case["data"], case["title"]) for figure in figures_of(case["id"])]
+        except OTHER_SHAPE as broken:
             raise CaseDataError(f"data of case {case['id']!r}: {broken}", case["origin"]) from broken
 
     def one_picture(figure: Figure, data: Mapping[str, Any]) -> Mapping[str, Any] | None:
         progress(figure.caption)
         try:
             return album.add(figure, data)
-        except _OTHER_SHAPE as broken:
+        except OTHER_SHAPE as broken:
             raise ResultFileError(f"data of the figure {figure.caption!r}: {broken}") from broken
 
     environment = Environment(
@@ -95,7 +91,6 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
     numbers = agreement.numbers(by_claim(evidence.cases))
     return {
         "front": front_page(evidence, claims, numbers),
-        "named": NAMED,
         "claims": claims,
         "numbers": numbers,
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,

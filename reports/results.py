@@ -77,6 +77,10 @@ PROVENANCE: Mapping[str, Kind] = {
 SOLVER: Mapping[str, Kind] = {"name": _text}
 
 
+OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+"""Exceptions where data are not of the shape that a table or a figure needs."""
+
+
 class ResultFileError(ValueError):
     """The file is not a result file that this report understands."""
 

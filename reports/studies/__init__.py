@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from reports.exhibit import Exhibit
-from reports.results import ResultFileError
+from reports.results import OTHER_SHAPE, ResultFileError
 
 
 def exhibit(name: str, document: Mapping[str, Any]) -> Exhibit:
@@ -18,6 +18,6 @@ def exhibit(name: str, document: Mapping[str, Any]) -> Exhibit:
     build = importlib.import_module(f"{__name__}.{name}").build
     try:
         built: Exhibit = build(document)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as lacking:
+    except OTHER_SHAPE as lacking:
         raise ResultFileError(f"the study {name} lacks {lacking}") from lacking
     return built

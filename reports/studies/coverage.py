@@ -44,8 +44,8 @@ def build(document: Document) -> Exhibit:
         "bar covers the reference when it exceeds the value's distance from the reference; in the next "
         "column the reference is moved by its whole bound, against the bar. Where the accuracy was not "
         "reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
-        "refinement sequence starts from the answer before, which changes its cost and no number by more than "
-        f"{solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
+        "refinement sequence starts from the answer before, which changes its cost and no number by more "
+        f"than {solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
     )
     return Exhibit(
         "Accuracy requested, and kept",
