@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, look
+from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, label_ticks, look
 
 PLACES = ("crest", "flank", "valley")
 COEFFICIENTS = {
@@ -47,8 +47,7 @@ def _effect(canvas: Canvas, data: Data) -> None:
         axes.axhline(0.0, color=INK, linewidth=0.8)
         axes.axvline(2.5, color=INK, linestyle=":")
         axes.set_xscale("log")
-        axes.set_xticks(slope, [f"{s:g}" for s in slope])
-        axes.minorticks_off()
+        label_ticks(axes, slope)
         axes.set(ylabel=f"change of {label} (%)")
         if key in ("f_max", "Q"):
             axes.set_xlabel("rms slope of the roughness (degrees)")
@@ -65,7 +64,7 @@ def _reach(canvas: Canvas, data: Data) -> None:
             axes.plot(reach, data[f"{key}, {name}, remedy"], label=name, **look(k))
             axes.plot(reach, data[f"{key}, {name}, correction"], "--", color=COLOURS[k])
         axes.set_xscale("symlog", base=2, linthresh=1)
-        axes.set_xticks(reach, [f"{r:g}" for r in reach])
+        label_ticks(axes, reach)
         label = f"change of {QUANTITIES[key]} (%)"
         axes.set(xlabel="reach of the coefficients on the slope (elements)", ylabel=label)
     axes.legend()
@@ -82,8 +81,7 @@ def _readings(canvas: Canvas, data: Data) -> None:
     axes.set_xscale("log")
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
-    axes.set_xticks([0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10], ["0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10"])
-    axes.minorticks_off()
+    label_ticks(axes, (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10))
     axes.set_xlabel("largest error of the flat coefficient (%)")
     axes.legend(title="slope is")
 

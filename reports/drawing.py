@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -212,8 +212,7 @@ def order(
             finest = min(finest, error[np.argmin(h)])
         for slope, style in zip(expected, ("--", ":", "-."), strict=False):
             axes.plot(grid, 0.6 * finest * (h / h.min()) ** slope, style, color=INK, label=f"order {slope:g}")
-        axes.set_xticks(grid, [f"{g:.3g}" for g in grid])
-        axes.xaxis.set_minor_locator(NullLocator())
+        label_ticks(axes, grid, ".3g")
         axes.legend()
 
     return draw
@@ -266,6 +265,13 @@ def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str
             canvas.colorbar(image, ax=axes, label=unit, shrink=0.85)
 
     return draw
+
+
+def label_ticks(axes: Axes, values: Iterable[float], form: str = "g") -> None:
+    """Label the x axis at the values alone, as a logarithmic axis needs it."""
+    values = list(values)
+    axes.set_xticks(values, [format(value, form) for value in values])
+    axes.xaxis.set_minor_locator(NullLocator())
 
 
 def _axes(canvas: Canvas, xlabel: str, ylabel: str, log: str) -> Axes:

@@ -8,7 +8,7 @@ from typing import Any
 
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, MARKERS, Data, Figure
+from reports.drawing import COLOURS, MARKERS, Data, Figure, label_ticks
 from reports.exhibit import Cell, Column, Document, Exhibit, Table, table
 
 OURS = "refimpl"
@@ -121,8 +121,7 @@ def _draw(canvas: Canvas, data: Data) -> None:
                 axes.plot(*line, style, marker=MARKERS[k], color=COLOURS[k], label=code)
                 grids |= set(line[0])
         axes.set(title=f"{kind} flat", xlabel="elements per side", xscale="log", yscale="log")
-        axes.set_xticks(sorted(grids), [str(M) for M in sorted(grids)])
-        axes.minorticks_off()
+        label_ticks(axes, sorted(grids), "d")
     panels[0].set_ylabel("seconds")
     lines, labels = panels[0].get_legend_handles_labels()
     canvas.legend(lines, labels, loc="outside lower center", ncols=4, fontsize=8)
