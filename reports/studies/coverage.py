@@ -21,9 +21,9 @@ BY_NUMBER: dict[str, Column] = {
     "accuracy": "accuracy",
     "scenes": "scenes",
     "reached (%)": lambda row: _percent(row["met"]),
-    "bar holds (%)": lambda row: _percent(row["covered"]),
-    "holds, reference off by its bound (%)": lambda row: _percent(row["covered_at_worst"]),
-    "bar / error, median": lambda row: _rounded(row["median_bar_over_error"]),
+    "covered (%)": lambda row: _percent(row["covered"]),
+    "covered, reference off by its bound (%)": lambda row: _percent(row["covered_at_worst"]),
+    "error bar / error, median": lambda row: _rounded(row["median_bar_over_error"]),
     "cost / cheapest, median": lambda row: _rounded(row["median_cost"]),
     "cost within 2x (%)": lambda row: _percent(row["cost_at_most_2"]),
 }
@@ -72,7 +72,7 @@ def _by_number(document: Document) -> Table:
         for judged in document["accuracies"]
         for number, found in judged["numbers"].items()
     ]
-    caption = "Bars by number and accuracy; cost in transforms, all grids over the cheapest."
+    caption = "Error bars by number and accuracy; cost in transforms, all grids over the cheapest."
     return table(caption, rows, BY_NUMBER)
 
 
@@ -81,7 +81,7 @@ def _by_class(judged: dict[str, Any]) -> Table:
         (kind, *(_percent(found["covered"]) if found["scenes"] else None for found in numbers.values()))
         for kind, numbers in judged["classes"].items()
     ]
-    caption = f"Share of bars that hold at accuracy {judged['accuracy']:g}, by class (%)."
+    caption = f"Share of error bars that cover the reference at accuracy {judged['accuracy']:g}, by class (%)."
     return Table(caption, ("class", *NAMES.values()), rows)
 
 
@@ -125,7 +125,7 @@ def _draw(canvas: Canvas, data: Data) -> None:
         held = np.mean(holds[number == name])
         limits = LOWEST / 1.5, 1.5 * LONGEST
         axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, xlabel="relative bar")
-        axes.set_title(f"{name}: {100 * held:.1f} % hold")
+        axes.set_title(f"{name}: {100 * held:.1f} % covered")
     all_axes[0].set_ylabel("relative error against the reference")
     handles, labels = all_axes[0].get_legend_handles_labels()
     canvas.legend(handles, labels, loc="outside lower center", ncols=8, fontsize=8)

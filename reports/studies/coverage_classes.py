@@ -10,18 +10,18 @@ from reports.exhibit import Column, Document, Exhibit, table
 CAPTION = (
     "Error bars of single grids of 48 to 128 elements against 512, on random scenes that were looked at "
     "once; at worst, the reference is off by all of its own bound. Usable bars are at most half of the "
-    "number; one without an end always holds. The length is a median."
+    "number; one without an end always covers. The length is a median."
 )
 COLUMNS: dict[str, Column] = {
     "class": lambda row: row["class"] or "all",
     "number": lambda row: row["number"] or "all",
     "scenes": "scenes",
-    "bar holds": "{held:.1%}",
+    "covered": "{held:.1%}",
     "at worst": "{held_at_worst:.1%}",
     "usable": "{usable:.0%}",
-    "of these, bar holds": lambda row: _share(row["held_of_usable"]),
+    "covered of the usable": lambda row: _share(row["held_of_usable"]),
     "p against 92 %": "{p:.2g}",
-    "bar over error": lambda row: _length(row["median_bar_over_error"]),
+    "error bar over error": lambda row: _length(row["median_bar_over_error"]),
 }
 
 
