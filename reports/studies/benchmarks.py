@@ -48,8 +48,7 @@ def newest_rows(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
         for row in run["rows"]:
             key = (row["kind"], row["M"])
             origin = {"ratio": ratios[key].get(row["code"]), "commit": run["provenance"]["commit"]}
-            conditions = {name: run["conditions"][name] for name in ("rounds", "threads")}
-            found.setdefault(key, {})[row["code"]] = {**row, **origin, **conditions}
+            found.setdefault(key, {})[row["code"]] = {**run["conditions"], **row, **origin}
     ordered = sorted(found.items(), key=lambda item: (item[0][0] != "smooth", item[0]))
     return {key: list(rows.values()) for key, rows in ordered}
 
@@ -71,6 +70,12 @@ def _spread(values: Row) -> str:
     return f"{values['median']:.3g} ({values['least']:.2g} to {values['most']:.2g})"
 
 
+def _load(row: Row) -> float:
+    """Load average before the run."""
+    before: float = row["load average"]["before"][0]
+    return before
+
+
 def _ratio(clock: str) -> Callable[[Row], Cell]:
     return _measured(lambda row: _spread(row["ratio"][clock]) if row["ratio"] else None)
 
@@ -88,7 +93,7 @@ TIMES: dict[str, Column] = {
     "peak memory (MB)": _measured(lambda row: round(1e-6 * row["peak memory"]["median"])),
     "convolutions in all": _measured(lambda row: row.get("convolution equivalents")),
     "times one convolution": _measured(lambda row: row["times one convolution"]["median"]),
-    "rounds, threads": "{rounds}, {threads}",
+    "rounds, threads, load": lambda row: f"{row['rounds']}, {row['threads']}, {_load(row):.0f}",
     "commit": "{commit!s:.12}",
 }
 

@@ -81,7 +81,9 @@ def _by_class(judged: dict[str, Any]) -> Table:
         (kind, *(_percent(found["covered"]) if found["scenes"] else None for found in numbers.values()))
         for kind, numbers in judged["classes"].items()
     ]
-    caption = f"Share of error bars that cover the reference at accuracy {judged['accuracy']:g}, by class (%)."
+    caption = (
+        f"Share of error bars that cover the reference at accuracy {judged['accuracy']:g}, by class (%)."
+    )
     return Table(caption, ("class", *NAMES.values()), rows)
 
 
