@@ -89,7 +89,7 @@ SURFACES = 75  # realisations behind a scatter, ours; its relative 95 % half wid
 
 
 def numbers(cases: Cases) -> list[Number]:
-    """All of them that the cases hold, in the paper's order of parts."""
+    """Return the printed numbers that the cases hold, in the paper's order of parts."""
     found = [*_single(cases)]
     for name, quantity, factor, unit, rounding in TABLE3:
         try:

@@ -97,7 +97,7 @@ def _is_column(values: object) -> bool:
 
 
 def _write_block(write: Callable[[Sequence[Any]], Any], name: str, values: Any) -> None:
-    """What is no column: a mapping, an array of rows, or a single value, below its name."""
+    """Write a mapping, an array of rows, or a single value below its name."""
     write([name])
     if isinstance(values, Mapping):
         for key, value in values.items():

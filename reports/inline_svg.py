@@ -77,7 +77,7 @@ def _short(match: re.Match[str]) -> str:
 
 
 def _named(body: str, name: str) -> str:
-    """Definitions keep an id, with the figure's name before it; groups lose theirs."""
+    """Put the figure's name before ids of definitions, and remove those of groups."""
     ids = {old: f"{name}-{k}" for k, old in enumerate(dict.fromkeys(_DEFINED.findall(body)))}
     used = {old for old in ids if f"#{old})" in body or f'"#{old}"' in body}
     for old in sorted(used, key=len, reverse=True):
@@ -88,7 +88,7 @@ def _named(body: str, name: str) -> str:
 
 
 def _without_plain_groups(body: str) -> str:
-    """Groups without attributes say nothing."""
+    """Remove groups without attributes."""
     open_groups: list[bool] = []
 
     def kept(match: re.Match[str]) -> str:

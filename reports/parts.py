@@ -34,7 +34,7 @@ class Shown:
 
 
 def shown(claims: Sequence[Judged], numbers: Sequence[Number], cases: Sequence[Case]) -> list[Shown]:
-    """Every part of which anything is known; a long case that passed replaces the quick one of its name."""
+    """Return the parts that have a claim, a number or a figure; long cases that passed replace quick ones."""
     known, found = longest(cases), []
     for part in PARTS:
         drawn = [case for pattern in part.figures for case in known if fnmatchcase(case["id"], pattern)]

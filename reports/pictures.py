@@ -11,7 +11,7 @@ from reports.inline_svg import StyleSheet
 
 
 class Album:
-    """Collects the figures of a page."""
+    """Collect the figures of a page."""
 
     def __init__(self) -> None:
         self._shown: set[str] = set()

@@ -70,12 +70,6 @@ def _spread(values: Row) -> str:
     return f"{values['median']:.3g} ({values['least']:.2g} to {values['most']:.2g})"
 
 
-def _load(row: Row) -> float:
-    """Load average before the run."""
-    before: float = row["load average"]["before"][0]
-    return before
-
-
 def _ratio(clock: str) -> Callable[[Row], Cell]:
     return _measured(lambda row: _spread(row["ratio"][clock]) if row["ratio"] else None)
 
@@ -93,7 +87,9 @@ TIMES: dict[str, Column] = {
     "peak memory (MB)": _measured(lambda row: round(1e-6 * row["peak memory"]["median"])),
     "convolutions in all": _measured(lambda row: row.get("convolution equivalents")),
     "times one convolution": _measured(lambda row: row["times one convolution"]["median"]),
-    "rounds, threads, load": lambda row: f"{row['rounds']}, {row['threads']}, {_load(row):.0f}",
+    "rounds, threads, load": lambda row: (
+        f"{row['rounds']}, {row['threads']}, {row['load average']['before'][0]:.0f}"
+    ),
     "commit": "{commit!s:.12}",
 }
 

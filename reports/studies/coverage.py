@@ -56,7 +56,7 @@ def build(document: Document) -> Exhibit:
 
 
 def _reference(document: Document) -> tuple[str, ...]:
-    """How far the references moved on a finer grid, if that was looked at."""
+    """Sentence on the change of the references on a finer grid, if that was computed."""
     checked = document["reference_check"]
     if not checked["seeds"]:
         return ()
@@ -108,7 +108,7 @@ def _series(judged: dict[str, Any]) -> dict[str, Any]:
 
 
 def _draw(canvas: Canvas, data: Data) -> None:
-    """True error over bar for each number; above the line a bar does not hold."""
+    """True error over bar for each number; above the line the bar does not cover."""
     number, kind = np.array(data["number"]), np.array(data["class"])
     error = np.maximum(np.array(data["error"], dtype=float), LOWEST)
     bar = np.array(data["bar"], dtype=float)
@@ -126,7 +126,7 @@ def _draw(canvas: Canvas, data: Data) -> None:
         axes.axvline(data["accuracy"], color=INK, linewidth=1, linestyle=":")
         held = np.mean(holds[number == name])
         limits = LOWEST / 1.5, 1.5 * LONGEST
-        axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, xlabel="relative bar")
+        axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, xlabel="relative error bar")
         axes.set_title(f"{name}: {100 * held:.1f} % covered")
     all_axes[0].set_ylabel("relative error against the reference")
     handles, labels = all_axes[0].get_legend_handles_labels()
