@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fnmatch import fnmatchcase
 
 from reports.appendix_figures import APPENDIX
-from reports.drawing import Figure, curves, dots, maps, order
+from reports.drawing import Data, Figure, curves, dots, maps, order
 from reports.reproduction_figures import REPRODUCTION
 from reports.yield_figures import BEYOND_YIELD
 
@@ -229,7 +230,31 @@ ROUGH = (
     ),
 )
 
+TIMED = ("paper", "production", "NNLS", "L-BFGS-B")
+
+
+def _table2_seconds(data: Data) -> Data:
+    """Seconds of each method over the grids of the paper's scheme; none where a method ends earlier."""
+    seconds = {name: dict(zip(data[f"{name}: M"], data[f"{name}: s"], strict=True)) for name in TIMED}
+    grids = data["paper: M"]
+    return {"M": grids, **{name: [by_grid.get(M) for M in grids] for name, by_grid in seconds.items()}}
+
+
 BY_GRID = (
+    replace(
+        curves(
+            "variational/table2-growth",
+            "Processor time on the same scene; the methods took turns on every grid.",
+            "M",
+            {name: name for name in TIMED},
+            xlabel="elements per side",
+            ylabel="processor time (s)",
+            log="xy",
+            marker=True,
+        ),
+        needs=tuple(f"{name}: {column}" for name in TIMED for column in ("M", "s")),
+        derived=_table2_seconds,
+    ),
     *(
         Figure(
             f"hertz/{case}",

@@ -15,7 +15,7 @@ import pytest
 from tests.documents import ROOT
 from tests.reports import sample
 from verification.cli import main, parser, verify
-from verification.cli.appendix_a import numbers
+from verification.cli.options import numbers
 from verification.cli.output import WIDTH, StatusLine, columns
 from verification.framework import registry, runner
 from verification.framework.case import Case, Measured, Metric, Status, Tier
@@ -158,8 +158,6 @@ def test_help_does_not_wait_for_numpy() -> None:
         ([*ELEMENT, "--upper-nu=0.3", "--upper-E=0"], "--upper-E = 0.0"),
         (["appendix-a", "surface", "hertz", "--pixel-size", "1e-6"], "--pixel-size = 1e-06"),
         (["identify", "hertz", "a.csv", "--loads", "5;8"], "'5;8' is no list of numbers"),
-        (["remake", "--list", "--seconds", "0"], "--seconds = 0.0"),
-        (["sweep", "table3", "--target-error", "5%%"], "'5%%' is no share"),
         (["tradeoff", "hertz", "--grids", "3,8"], "fewer than 4 elements"),
         (["verify", "--export", "/dev/null/d", "--list"], "no other action"),
     ],

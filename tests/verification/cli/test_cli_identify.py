@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 import refimpl as rf
 from refimpl.identification.data_table import Row
 from verification.cli import identify_store, main
-from verification.cli.plot_identify import _fit
+from verification.cli.plot_curves import _fit
 
 ROWS = "load,mu,u_mu\n5,0.4103,0.0082\n11,0.3337,0.0066\n24,0.2788,0.0055\n54,0.2253,0.0046\n"
 

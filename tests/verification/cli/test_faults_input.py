@@ -179,9 +179,7 @@ HOSTILE = (
 @pytest.mark.parametrize("text", HOSTILE)
 def test_hostile_texts_are_shown_and_not_run(text: str) -> None:
     names = ("title", "claim", "source", "note", "unit", "tolerance_reason")
-    hostile = case(
-        "a/1", **dict.fromkeys(names, text), data={text: 1.0, "t": text, "m": {text: text}}
-    )
+    hostile = case("a/1", **dict.fromkeys(names, text), data={text: 1.0, "t": text, "m": {text: text}})
     document = results(hostile)
     document["provenance"] |= {"command": text, "commit": text}
     page = render(document)

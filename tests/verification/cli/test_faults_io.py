@@ -25,7 +25,7 @@ import pytest
 import refimpl as rf
 from tests.reports.sample import case, results
 from tests.verification.cli.children import LONG, STUDY, Ended, forked, one_line, rows, small
-from verification.cli import main, plot_style
+from verification.cli import main, solve
 from verification.framework import files
 from verification.sweep import engine
 from verification.sweep.store import open_store
@@ -117,7 +117,7 @@ def test_a_read_only_folder(
     def turns(*_: object, **__: object) -> None:  # read-only once the solve has begun
         monkeypatch.setattr(files.tempfile, "mkstemp", refuses)
 
-    monkeypatch.setattr(plot_style, "check_suffix", turns)
+    monkeypatch.setattr(solve, "check_suffix", turns)
     assert main(["solve", "hertz", "--grid", "8", "--json", str(tmp_path / "s.json")]) == 1
     ended = capsys.readouterr()
     one_line(Ended(1, ended.err), os.strerror(refusal))

@@ -15,10 +15,19 @@ from matplotlib.image import AxesImage
 import refimpl as rf
 from refimpl.grid import Array
 from verification.cli import main, plot
-from verification.cli.plot_maps import domain_map, gap_map, outline, pressure_map, shear_map
-from verification.cli.plot_profiles import gap_histogram, pressure_histogram, profile
+from verification.cli.plot import gap_histogram, pressure_histogram, profile
+from verification.cli.plot_maps import (
+    View,
+    domain_map,
+    gap_map,
+    outline,
+    peak_of,
+    pooled,
+    pressure_map,
+    shear_map,
+    view_of,
+)
 from verification.cli.plot_style import PRESSURES, unit_at_scale
-from verification.cli.plot_view import View, peak_of, pooled, view_of
 
 STEEL, SOFT = rf.Material(E=200e9, nu=0.3), rf.Material(E=3e9, nu=0.38)
 

@@ -15,7 +15,7 @@ from refimpl.scene.resolution import Resolution
 from refimpl.sensitivities.budget import Budget, Budgets
 from refimpl.sensitivities.sensitivity import Sensitivity
 from refimpl.surfaces.surface import Detail
-from verification.cli import budget, explain, main, solve_table, tradeoff
+from verification.cli import budget, explain, main, solve_table
 from verification.cli.output import judgement
 from verification.framework.case import Case, Measured, Metric
 
@@ -154,23 +154,6 @@ def test_missing_slopes_fall_with_the_square_of_the_elements(
     assert "5: rms slopes are seen 4.5e-02 too small" in capsys.readouterr().out
     assert main(["solve", "table1-smooth", "--accuracy", "0.01", "--explain"]) == 0
     assert "48 required by the accuracy" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(("reference", "status"), [(30, 2), (31, 2), (32, 0), (34, 0), (33, 2)])
-def test_a_reference_is_even_and_twice_as_fine(
-    reference: int, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    from verification.tradeoff import study
-
-    offer = {"quantity": "contact_area", "error": 0.03, "way": "fft", "M": 16, "seconds": 0.125}
-    found = {"prices": [{**offer, "convolutions": 41.5}], "left out": {"qp": "why"}, "failed": {}}
-    monkeypatch.setattr(study, "study", lambda *_: found)
-    assert main(["tradeoff", "hertz", "--grids", "16,8", "--reference", str(reference)]) == status
-    if status == 0:
-        rows = [line.split() for line in capsys.readouterr().out.splitlines()]
-        assert ["contact_area", "3.0%", "fft", "16", "0.125", "41.5"] in rows
-        assert ["qp", "why"] in rows
-    assert tradeoff.EPILOG
 
 
 @pytest.mark.parametrize(

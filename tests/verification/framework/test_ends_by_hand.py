@@ -168,16 +168,3 @@ def test_each_field_of_a_result_is_that_of_its_case(monkeypatch: pytest.MonkeyPa
     document = Run(Tier.FULL, ("a/*",), (found,), 1.23456).document()
     assert [document[key] for key in ("tier", "only", "seconds")] == ["full", ["a/*"], 1.235]
     assert result(Status.FAIL).seconds == 0.5
-
-
-def test_compiled_files_are_no_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(provenance, "ROOT", tmp_path)
-    compiled = tmp_path / "refimpl" / "model" / "__pycache__"
-    compiled.mkdir(parents=True)
-    (compiled.parent / "a.py").write_text("x = 1\n")
-    before = provenance.sources()
-    (compiled / "a.cpython-311.pyc").write_bytes(b"1")
-    assert list(before) == ["refimpl/model"]
-    assert provenance.sources() == before
-    (compiled.parent / "a.py").write_text("x = 2\n")
-    assert provenance.sources() != before

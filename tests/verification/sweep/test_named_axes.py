@@ -12,7 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from tests.verification.sweep.test_quality import row
-from verification.cli import main, plot_sweep
+from verification.cli import main, plot_curves
 from verification.sweep.curves import curves
 from verification.sweep.export import unit_of
 from verification.sweep.quality import points_of, quality_of
@@ -76,7 +76,7 @@ def test_a_sweep_over_files_has_a_curve_for_each(maps: Path, capsys: Capture) ->
     found = curves(rows, "load", "friction_coefficient", PATH)
     assert [Path(str(name)).name for name in found] == ["b.npy", "c.npy"]
     assert all(len(points) == 2 for points in found.values())
-    assert plot_sweep._entry(PATH, "/far/away/b.npy") == f"{PATH} = b.npy"
+    assert plot_curves._entry(PATH, "/far/away/b.npy") == f"{PATH} = b.npy"
     assert main(["sweep", "study.toml", "--csv", "b.npy"]) == 2  # an input
     assert "--csv" in capsys.readouterr().err
 
@@ -149,8 +149,8 @@ def test_units_and_labels_of_full_names() -> None:
     assert [unit_of(name) for name in ("upper.material.E", "lower.surface[1].lay", SEED, PATH)] == [
         "Pa", "rad", "", "",
     ]  # fmt: skip
-    assert plot_sweep.label("sliding_offset") == "sliding distance (µm)"
-    assert plot_sweep._entry("lower.material.hardness", 4e8) == "lower.material.hardness = 400 MPa"
+    assert plot_curves.label("sliding_offset") == "sliding distance (µm)"
+    assert plot_curves._entry("lower.material.hardness", 4e8) == "lower.material.hardness = 400 MPa"
 
 
 def test_every_parameter_of_a_scene_can_vary() -> None:

@@ -42,11 +42,9 @@ def test_bad_input_is_one_line_and_status_2(arguments: list[str], named: str, ca
 
 @pytest.mark.parametrize("option", ["--store", "--csv", "--parquet", "--json"])
 @pytest.mark.parametrize("name", ["study.toml", "scene.toml", "heights.npy"])
-@pytest.mark.parametrize("target", [[], ["--target-error", "5%"]])
 def test_an_output_is_no_input(
     option: str,
     name: str,
-    target: list[str],
     tmp_path: Path,
     capsys: Capture,
     monkeypatch: pytest.MonkeyPatch,
@@ -58,7 +56,7 @@ def test_an_output_is_no_input(
     Path("scene.toml").write_text(text + surface)
     Path("study.toml").write_text('scene = "scene.toml"\n[vary]\ngrid = [8, 16]\n')
     before = Path(name).read_bytes()
-    assert main(["sweep", "study.toml", *target, option, name]) == 2
+    assert main(["sweep", "study.toml", option, name]) == 2
     assert f"{option} = '{name}'" in capsys.readouterr().err
     assert Path(name).read_bytes() == before
     assert len(list(tmp_path.iterdir())) == 3
@@ -137,7 +135,6 @@ def test_results_and_a_failed_run(tmp_path: Path, capsys: Capture, monkeypatch: 
     assert "failed: ValueError: no luck" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("target", [[], ["--target-error", "5%"]])
 @pytest.mark.parametrize(
     ("axes", "named"),
     [
@@ -148,11 +145,11 @@ def test_results_and_a_failed_run(tmp_path: Path, capsys: Capture, monkeypatch: 
     ],
 )
 def test_what_no_run_could_pose_is_refused_before_there_is_a_store(
-    axes: str, named: str, target: list[str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    axes: str, named: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(f'scene = "table1-rough"\n[vary]\n{axes}\n')
-    assert main(["sweep", "study.toml", *target]) == 2
+    assert main(["sweep", "study.toml"]) == 2
     assert named in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
@@ -192,7 +189,7 @@ def test_progress_is_for_terminals(capsys: Capture, monkeypatch: pytest.MonkeyPa
     for terminal, shown in ((True, "[3/10], 1 failed 2 min left"), (False, "")):
         monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
         line = _Line()
-        line.show(Progress(3, 10, 1, 125.0))
+        line.count(Progress(3, 10, 1, 125.0))
         line.close()
         written = capsys.readouterr().err
         assert (shown in written) if terminal else written == ""
