@@ -1,4 +1,4 @@
-"""What the paper states (`paper.toml`): claims with our verdict and the evidence, and its figures and tables."""
+"""What the paper states (`paper.toml`): claims, with our verdict and the evidence, and its parts."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from reports.drawing import Figure, lines
+from reports.drawing import curves
 from reports.exhibit import Document, Exhibit, Table
 
 
@@ -20,18 +20,15 @@ def build(document: Document) -> Exhibit:
         ]
         for method in methods
     }
-    figure = Figure(
+    figure = curves(
         "*",
-        ("M", *methods),
-        lines(
-            "M",
-            {method: method for method in methods},
-            xlabel="elements per side",
-            ylabel="processor time (s)",
-            log="xy",
-            marker=True,
-        ),
         "Processor time on the same scene; the methods took turns on every grid.",
+        "M",
+        {method: method for method in methods},
+        xlabel="elements per side",
+        ylabel="processor time (s)",
+        log="xy",
+        marker=True,
     )
     ratios = document["ratio to paper"]
     head = ("method", "time grows with elements to the power", *(f"{M}²" for M in grids))
