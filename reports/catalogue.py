@@ -197,22 +197,6 @@ ROUGH = (
         log="x",
         marker=True,
     ),
-    *(
-        curves(
-            "reference/lay-friction",
-            f"{ylabel.capitalize()} over the direction of sliding, of 24 realisations.",
-            "direction (deg)",
-            {f"{quantity}, {name}": name for name in ("isotropic", "lay along x")},
-            xlabel="direction of sliding (degrees)",
-            ylabel=ylabel,
-            marker=True,
-        )
-        for quantity, ylabel in (
-            ("mu", "mean friction coefficient"),
-            ("rms elastic part of mu", "rms elastic part of the friction coefficient"),
-            ("A over its mean", "real contact area / mean"),
-        )
-    ),
     curves(
         "identification/effects",
         "Residuals of a fit of tau and beta: one outlier stands apart, a wrong surface bends all of them.",

@@ -1,4 +1,4 @@
-"""The claims matrix: what the paper states (`paper.toml`), our verdict, what was found, and the evidence."""
+"""What the paper states (`paper.toml`): claims, with our verdict and the evidence, and its parts."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from fnmatch import fnmatchcase
 from importlib import resources
 from typing import Any
 
+from reports.agreement import Number
 from reports.findings import by_claim, filled
 from reports.results import Case, worst
 
@@ -41,6 +42,15 @@ class Claim:
 
 
 @dataclass(frozen=True)
+class Part:
+    """A part of the paper; the fields are those of `paper.toml`."""
+
+    name: str
+    setting: str
+    figures: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
 class Judged:
     """A claim with its verdict, its finding in numbers, the cases found for it, and errata."""
 
@@ -61,6 +71,11 @@ def entries(kind: str) -> list[dict[str, Any]]:
 def paper() -> list[Claim]:
     """Return every claim of the matrix."""
     return [Claim(**entry) for entry in entries("claim")]
+
+
+def parts() -> list[Part]:
+    """Return the parts of the paper."""
+    return [Part(**entry) for entry in entries("part")]
 
 
 def longest(cases: Iterable[Case]) -> list[Case]:
@@ -122,3 +137,25 @@ def note(case: Case) -> str:
     """
     text: str = case["note"].removeprefix(case["data"]["verdict"]).removeprefix(":").strip()
     return re.split(r"(?:;|\.) (?![^(]*\))", text)[0]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A part with what the evidence holds of it."""
+
+    part: Part
+    claims: Sequence[Judged]
+    numbers: Sequence[Number]
+    cases: Sequence[Case]
+
+
+def shown(claims: Sequence[Judged], numbers: Sequence[Number], cases: Sequence[Case]) -> list[Shown]:
+    """Return the parts that have a claim, a number or a figure; long cases that passed replace quick ones."""
+    known, found = longest(cases), []
+    for part in parts():
+        drawn = [case for pattern in part.figures for case in known if fnmatchcase(case["id"], pattern)]
+        mine = [claim for claim in claims if claim.claim.part == part.name and claim.cases]
+        compared = [n for n in numbers if n.part == part.name]
+        if mine or compared or drawn:
+            found.append(Shown(part, mine, compared, drawn))
+    return found

@@ -35,7 +35,7 @@ STYLE: dict[Any, Any] = {
 }  # fmt: skip
 _TEXT = re.compile(r"(<text\b[^>]*>)([^<]*)(</text>)")
 _NAME = re.compile(r"[\w/]+(-\w+)+")
-_INSIDE = 6  # series up to which a legend finds room among them
+SIZE = (6.4, 3.8)  # inches
 
 
 def look(k: int) -> dict[str, Any]:
@@ -55,7 +55,7 @@ class Figure:
     needs: tuple[str, ...]
     draw: Draw
     caption: str
-    size: tuple[float, float] = (6.4, 3.8)
+    size: tuple[float, float] = SIZE
     derived: Callable[[Data], Data] = field(default=lambda _: {})
 
     def available(self, data: Data) -> bool:
@@ -112,7 +112,9 @@ def _plain(text: str) -> str:
     return re.sub(r"[$\\{}]", "", text).strip()
 
 
-def lines(
+def curves(
+    cases: str,
+    caption: str,
     x: str,
     series: Mapping[str, str],
     *,
@@ -124,62 +126,46 @@ def lines(
     marker: bool = False,
     per_x: float = 1.0,
     difference: str = "",
-) -> Draw:
-    """Series (key to legend text) over `x`, and those of `exact` dashed.
+    size: tuple[float, float] = SIZE,
+) -> Figure:
+    """Return the figure of series (key to legend text) over `x`, and those of `exact` dashed.
 
     `band` is the key and the legend text of the first series' half width, drawn around it; `log` names the
     logarithmic axes, "", "x", "y" or "xy"; `x` is multiplied by `per_x`. `difference` labels a second panel,
-    of the first series less the first exact one: curves that coincide show nothing else.
+    of the first series less the first exact one: curves that coincide show nothing else. The figure needs all
+    series that it draws.
     """
+    exact = exact or {}
 
     def draw(canvas: Canvas, data: Data) -> None:
-        over = per_x * _numbers(data[x])
-        axes, below = _axes(canvas, xlabel, ylabel, log), None
+        over, middle = per_x * _numbers(data[x]), _numbers(data[next(iter(series))])
+        axes, below = canvas.add_subplot(), None
         if difference:
             canvas.clear()
             axes, below = canvas.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-            axes.set(ylabel=ylabel)
-            below.set(xlabel=xlabel, ylabel=difference)
+            less = middle - _numbers(data[next(iter(exact))])
+            below.plot(over, less, color=COLOURS[0])
+            below.set_ylabel(difference)
+        (below or axes).set_xlabel(xlabel)
+        _scale(axes, log)
+        axes.set_ylabel(ylabel)
         for k, (key, label) in enumerate(series.items()):
-            mark, colour = MARKERS[k % 6] if marker else None, COLOURS[k % 6]
-            style = ("-", "--")[k // 6 % 2]
-            axes.plot(over, _numbers(data[key]), style, marker=mark, color=colour, label=label)
-        for style, (key, label) in zip(("--", ":", "-."), (exact or {}).items(), strict=False):
-            axes.plot(over, _numbers(data[key]), style, color=INK, label=label)
-        middle = _numbers(data[next(iter(series))])
-        width = np.zeros_like(middle) if band is None else _numbers(data[band[0]])
-        exact_one = _numbers(data[next(iter(exact))]) if below is not None and exact else middle
-        if below is not None:
-            below.plot(over, middle - exact_one, color=COLOURS[0])
+            style = look(k) if marker else {"color": look(k)["color"]}
+            axes.plot(over, _numbers(data[key]), label=label, **style)
+        for dashes, (key, label) in zip(("--", ":", "-."), exact.items(), strict=False):
+            axes.plot(over, _numbers(data[key]), dashes, color=INK, label=label)
         if band is not None:
+            width = _numbers(data[band[0]])
             shade: dict[str, Any] = {"color": COLOURS[0], "alpha": 0.2, "label": band[1]}
             axes.fill_between(over, middle - width, middle + width, **shade)
             if below is not None:
-                below.fill_between(over, middle - exact_one - width, middle - exact_one + width, **shade)
+                below.fill_between(over, less - width, less + width, **shade)
         if "x" in log:
             _few_ticks(axes, over)
-        if len(series) > _INSIDE:
-            canvas.legend(loc="outside right upper")
-        else:
-            axes.legend()
+        axes.legend()
 
-    return draw
-
-
-def curves(
-    cases: str,
-    caption: str,
-    x: str,
-    series: Mapping[str, str],
-    *,
-    exact: Mapping[str, str] | None = None,
-    band: tuple[str, str] | None = None,
-    size: tuple[float, float] = (6.4, 3.8),
-    **look: Any,
-) -> Figure:
-    """The figure of `lines`, which needs all series that it draws; ``look`` is passed on."""
-    needs = dict.fromkeys((x, *series, *(exact or ()), *(band or ())[:1]))
-    return Figure(cases, tuple(needs), lines(x, series, exact=exact, band=band, **look), caption, size)
+    needs = dict.fromkeys((x, *series, *exact, *(band or ())[:1]))
+    return Figure(cases, tuple(needs), draw, caption, size)
 
 
 def order(
@@ -277,9 +263,13 @@ def label_ticks(axes: Axes, values: Iterable[float], form: str = "g") -> None:
 def _axes(canvas: Canvas, xlabel: str, ylabel: str, log: str) -> Axes:
     axes = canvas.add_subplot()
     axes.set(xlabel=xlabel, ylabel=ylabel)
+    _scale(axes, log)
+    return axes
+
+
+def _scale(axes: Axes, log: str) -> None:
     axes.set_xscale("log" if "x" in log else "linear")
     axes.set_yscale("log" if "y" in log else "linear")
-    return axes
 
 
 def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:

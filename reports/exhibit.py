@@ -60,8 +60,8 @@ def as_csv(figure: Figure, data: Data) -> str:
     """All series of the data as CSV, the figure's own first: lists as columns, mappings as two columns,
     arrays row by row; numbers to six digits.
 
-    >>> from reports.drawing import lines
-    >>> pair = Figure("*", ("h", "error"), lines("h", {"error": "e"}, xlabel="", ylabel=""), "")
+    >>> from reports.drawing import curves
+    >>> pair = curves("*", "", "h", {"error": "e"}, xlabel="", ylabel="")
     >>> print(as_csv(pair, {"h": [1, 2], "error": [0.1, None]}))
     h,error
     1,0.1

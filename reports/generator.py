@@ -12,17 +12,15 @@ from reports import agreement, contestant
 from reports.agreement_figure import AGREEMENT
 from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
-from reports.claims import judged
+from reports.claims import judged, shown
 from reports.comparison import compared
 from reports.drawing import Figure
-from reports.evidence import Evidence, gathered
+from reports.evidence import Evidence, gathered, groups
 from reports.findings import by_claim
 from reports.front_page import front_page
-from reports.parts import shown
 from reports.pictures import Album
 from reports.results import OTHER_SHAPE, Case, CaseDataError, ResultFileError
 from reports.revisions import revisions_of
-from reports.summary import groups
 from reports.text import cell, interval, judgement, number, symbols
 
 

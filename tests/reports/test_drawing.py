@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from matplotlib.figure import Figure as Canvas
 
 from reports.catalogue import DECLARED
-from reports.drawing import INK, Draw, Figure, complete, dots, lines, maps, order, svg
+from reports.drawing import INK, Draw, Figure, complete, curves, dots, maps, order, svg
 from reports.exhibit import as_csv
 from reports.reproduction_figures import LOADS
 from reports.yield_figures import BEYOND_YIELD, MODELS
@@ -32,8 +33,9 @@ def test_an_order_figure_states_the_fitted_order() -> None:
 
 
 def test_lines_hold_the_series() -> None:
-    axes = drawn(lines("x", {"p": "pressure"}, exact={"hertz": "Hertz"}, xlabel="x (mm)", ylabel="MPa"),
-                 {"x": [0, 1], "p": [1, None], "hertz": [1, 2]}).axes[0]  # fmt: skip
+    figure = curves("*", "", "x", {"p": "pressure"}, exact={"hertz": "Hertz"}, xlabel="x (mm)", ylabel="MPa")
+    assert figure.needs == ("x", "p", "hertz")
+    axes = drawn(figure.draw, {"x": [0, 1], "p": [1, None], "hertz": [1, 2]}).axes[0]
     np.testing.assert_array_equal(axes.lines[1].get_ydata(), [1, 2])
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), [1, np.nan])
     assert axes.lines[1].get_linestyle() == "--"
@@ -49,7 +51,7 @@ def test_lines_hold_the_series() -> None:
     ],
 )
 def test_few_points_of_a_logarithmic_axis_are_its_ticks(x: list[float], labels: list[str] | None) -> None:
-    draw = lines("x", {"y": "y"}, xlabel="x", ylabel="y", log="x")
+    draw = curves("*", "", "x", {"y": "y"}, xlabel="x", ylabel="y", log="x").draw
     axes = drawn(draw, {"x": x, "y": x}).axes[0]
     shown = [tick.get_text() for tick in axes.get_xticklabels()]
     assert (shown == labels) is (labels is not None)
@@ -72,7 +74,7 @@ def test_maps_have_x_to_the_right_and_blank_zeros() -> None:
 
 
 def test_the_export_takes_the_readers_colours() -> None:
-    figure = Figure("*", ("x", "y"), lines("x", {"y": "y"}, xlabel="x", ylabel="y"), "a caption")
+    figure = curves("*", "a caption", "x", {"y": "y"}, xlabel="x", ylabel="y")
     text = svg(figure, {"x": [0, 1], "y": [1, 2]})
     assert text is not None
     assert INK not in text
@@ -82,15 +84,15 @@ def test_the_export_takes_the_readers_colours() -> None:
 
 @pytest.mark.parametrize("data", [{}, {"x": [1]}, {"x": [1], "y": []}, {"x": [1], "y": None}])
 def test_missing_series_make_no_picture(data: dict[str, Any]) -> None:
-    figure = Figure("*", ("x", "y"), lines("x", {"y": "y"}, xlabel="x", ylabel="y"), "a caption")
+    figure = curves("*", "a caption", "x", {"y": "y"}, xlabel="x", ylabel="y")
     assert svg(figure, data) is None
 
 
 def test_curves_that_coincide_have_a_panel_of_their_difference() -> None:
-    draw = lines(
-        "x", {"p": "ours"}, exact={"q": "exact"}, band=("w", "95 %"), xlabel="x", ylabel="p",
+    draw = curves(
+        "*", "", "x", {"p": "ours"}, exact={"q": "exact"}, band=("w", "95 %"), xlabel="x", ylabel="p",
         difference="less", per_x=10.0,
-    )  # fmt: skip
+    ).draw  # fmt: skip
     above, below = drawn(draw, {"x": [0, 1], "p": [1.0, 2.0], "q": [1.0, 1.5], "w": [0.1, 0.1]}).axes
     np.testing.assert_array_equal(below.lines[0].get_ydata(), [0.0, 0.5])
     np.testing.assert_array_equal(above.lines[0].get_xdata(), [0, 10])
@@ -98,8 +100,8 @@ def test_curves_that_coincide_have_a_panel_of_their_difference() -> None:
 
 
 def test_derived_series_are_in_the_csv() -> None:
-    figure = Figure(
-        "*", ("x",), lines("x", {"y": "y"}, xlabel="", ylabel=""), "", derived=lambda d: {"y": d["x"]}
+    figure = replace(
+        curves("*", "", "x", {"y": "y"}, xlabel="", ylabel=""), needs=("x",), derived=lambda d: {"y": d["x"]}
     )
     assert as_csv(figure, complete(figure, {"x": [1, 2]})).splitlines() == ["x,y", "1,1", "2,2"]
     assert svg(figure, {"x": [1, 2]}) is not None

@@ -6,14 +6,12 @@ from fnmatch import fnmatchcase
 
 import pytest
 
-from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper
-from reports.evidence import gathered
+from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper, parts
+from reports.evidence import gathered, groups
 from reports.findings import fields
-from reports.parts import PARTS
 from reports.result_files import read_results
 from reports.results import ResultFileError, check, worst
 from reports.revisions import revisions_of
-from reports.summary import groups
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
 from verification.framework.registry import load
@@ -91,7 +89,7 @@ def test_a_verdict_of_the_matrix_is_not_milder_than_its_cases() -> None:
 def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
     claims = paper()
     assert {claim.verdict for claim in claims} <= set(VERDICTS[1:])
-    assert {claim.part for claim in claims} <= {part.name for part in PARTS} | {""}
+    assert {claim.part for claim in claims} <= {part.name for part in parts()} | {""}
     labels = [claim.label for claim in claims]
     assert len(labels) == len(set(labels))
 
