@@ -37,7 +37,6 @@ EXAMPLES = {
     "element": "--slope-deg 6.5 --nu 0.3 --E 118e9 --upper-nu 0.3 --upper-E 200e9",
 }
 
-
 WAVE_OPTIONS: Options = {
     "--slope-deg": option("maximum slope of the profile (degrees)", type=number, required=True),
     "--wavelength": option("in half-widths of the strip", type=number, required=True),
@@ -57,7 +56,6 @@ MAP_OPTIONS: Options = {
     "--positions": option("of the strip's centre: crest 0 to valley 0.5", type=numbers),
     "--jobs": option("worker processes (default 2)", metavar="N", type=int, default=2),
 }
-
 
 GROUPS = {
     "look-up": appendix_tables.PAIR,

@@ -23,7 +23,6 @@ ROWS = (  # name, label, factor, unit
 )
 ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surface file
 
-
 OPTIONS: Options = {
     "scene": option("a scene (.toml, or a shipped one's name), or a surface's file", metavar="SCENE|FILE"),
     "--grid": option("elements along the longer side (default 128)", type=int, default=128),

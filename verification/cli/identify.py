@@ -44,7 +44,6 @@ lower_file (measured surfaces, relative to the table). The scene's friction is t
 load is not used, its [tolerances] add to the uncertainty. With --store a stopped fit goes on.
 """
 
-
 OPTIONS: Options = {
     "scene": SCENE,
     "data": option("the measured friction", metavar="DATA.csv", type=Path),

@@ -39,7 +39,6 @@ EPILOG = """examples:
 """
 SCALES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"), (0.0, "pm"))
 
-
 OPTIONS: Options = {
     "file": option("an instrument's file, .npy, .csv, .txt, .xyz ...", metavar="FILE"),
     "--unit": option("of the heights: m, mm, um, nm, A or pm"),

@@ -26,7 +26,6 @@ EPILOG = """examples:
 
 HEAD = ("key", "type", "unit", "default", "allowed", "also in", "meaning")
 
-
 OPTIONS: Options = {
     "word": option("keys with this word in them", metavar="WORD", nargs="?", default=""),
     "--markdown": option("write the page of all keys", metavar="FILE", type=output_text),

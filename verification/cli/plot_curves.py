@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.plot_style import BLACK, BLUE, ORANGE, subplots, write
+from verification.cli.plot_style import BLACK, BLUE, GREEN, ORANGE, PINK, subplots, write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 MEGA = 1e6
 JOINT = 5.991464547107979  # 95 % quantile of chi-square, two degrees of freedom
 
-# Okabe and Ito 2008, safe for colour-blind readers; markers and dashes tell curves apart in print
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+# markers and dashes distinguish curves in print, too
+COLOURS = (BLUE, ORANGE, GREEN, PINK, "#E69F00", "#56B4E9", BLACK)
 MARKERS, DASHES = "osD^v<>", ("-", "--", "-.", ":")
 SCALES = {
     "m": (1e6, "µm"),

@@ -20,7 +20,6 @@ EPILOG = """examples:
   rough-friction report --results results.json --against older.json --pdf --paper letter
 """
 
-
 OPTIONS: Options = {
     "--results": option("result file", metavar="FILE", type=Path, default=Path("results.json")),
     "--output": option("folder for the report", metavar="DIR", type=Path, default=Path("report")),

@@ -65,7 +65,6 @@ PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
 LIMITS = ("max_grid", "max_seconds", "max_memory")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
-
 OPTIONS: Options = {
     "scene": option("a scene's TOML file, or the name of a shipped scene", metavar="SCENE"),
     "--grid": option(

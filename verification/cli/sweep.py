@@ -53,7 +53,6 @@ message is shown, or did not converge: then its row says so by its status.
                               #   accuracy and quantity (chosen grids; then no grid in [vary])
 """
 
-
 OPTIONS: Options = {
     "study": option("a study's TOML file, or the name of a shipped study", metavar="STUDY"),
     "--store": option("default: the study's name, .sqlite, here", metavar="FILE.sqlite", type=output_file),

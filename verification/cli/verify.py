@@ -25,7 +25,6 @@ EPILOG = """examples:
 SELF_TEST = "contestants/*"
 """The cases that run the suite for other solvers on our own, and on broken ones."""
 
-
 OPTIONS: Options = {
     "--tier": option("full includes the quick cases", choices=("quick", "full"), default="quick"),
     "--only": option("only these; may be repeated", metavar="ID-GLOB", action="append", default=[]),
