@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
-from matplotlib.figure import Figure as Canvas
-
-from reports.drawing import COLOURS, MARKERS, Data, Figure, label_ticks
+from reports.drawing import Data, Figure, curves
 from reports.exhibit import Cell, Column, Document, Exhibit, Table, table
 
 OURS = "refimpl"
-STYLES = ("-", "--", ":")  # by the number of pluses in a code's name
 Row = Mapping[str, Any]
 
 
@@ -36,7 +32,7 @@ def build(document: Document) -> Exhibit:
             f"Versions: {', '.join(versions)}.",
         ),
         [_table(kind, newest) for kind in kinds],
-        [(replace(SECONDS, size=(4.4 * len(kinds), 4.8)), _series(kinds, newest))],
+        [_seconds(kind, newest) for kind in kinds],
     )
 
 
@@ -94,38 +90,20 @@ TIMES: dict[str, Column] = {
 }
 
 
-def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Sequence[Row]]) -> dict[str, Any]:
-    series: dict[str, dict[str, list[float]]] = {}
-    for (kind, M), entries in newest.items():
-        for row in entries:
-            if "seconds" in row:
-                line = series.setdefault(f"{kind}, {row['code']}", {"M": [], "s": []})
-                line["M"].append(M)
-                line["s"].append(row["seconds"]["median"])
-    return {
-        "kinds": list(kinds),
-        "seconds": {name: [*map(list, line.values())] for name, line in series.items()},
-    }
-
-
-def _draw(canvas: Canvas, data: Data) -> None:
-    """One panel a surface, one colour a code; dashes and dots where it does more, or has other options."""
-    codes = list(dict.fromkeys(name.partition(", ")[2] for name in data["seconds"]))
-    families = list(dict.fromkeys(code.partition("+")[0] for code in codes))
-    panels = canvas.subplots(1, len(data["kinds"]), squeeze=False, sharey=True)[0]
-    for axes, kind in zip(panels, data["kinds"], strict=True):
-        grids = set()
-        for code in codes:
-            line = data["seconds"].get(f"{kind}, {code}")
-            if line is not None:
-                k, style = families.index(code.partition("+")[0]) % 6, STYLES[code.count("+") % 3]
-                axes.plot(*line, style, marker=MARKERS[k], color=COLOURS[k], label=code)
-                grids |= set(line[0])
-        axes.set(title=f"{kind} flat", xlabel="elements per side", xscale="log", yscale="log")
-        label_ticks(axes, sorted(grids), "d")
-    panels[0].set_ylabel("seconds")
-    lines, labels = panels[0].get_legend_handles_labels()
-    canvas.legend(lines, labels, loc="outside lower center", ncols=4, fontsize=8)
-
-
-SECONDS = Figure("*", ("kinds", "seconds"), _draw, "Seconds over the grid, at a recomputed gap of 1e-8.")
+def _seconds(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> tuple[Figure, Data]:
+    """Median seconds over the grid, a curve for each code; this code's terms are in the tables."""
+    timed = [row for (of, _), rows in newest.items() if of == kind for row in rows if "seconds" in row]
+    codes = list(dict.fromkeys(row["code"] for row in timed if not row["code"].startswith(f"{OURS}+")))
+    grids = sorted({row["M"] for row in timed})
+    medians = {(row["code"], row["M"]): row["seconds"]["median"] for row in timed}
+    figure = curves(
+        "*",
+        f"Seconds over the grid at a recomputed gap of 1e-8, {kind} flat.",
+        "M",
+        {code: code for code in codes},
+        xlabel="elements per side",
+        ylabel="seconds",
+        log="xy",
+        marker=True,
+    )
+    return figure, {"M": grids, **{code: [medians.get((code, M)) for M in grids] for code in codes}}
