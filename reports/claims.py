@@ -1,4 +1,4 @@
-"""What the paper states (`paper.toml`): claims, with our verdict and the evidence, and its parts."""
+"""Claims and parts of the paper (`paper.toml`), with our verdict and the evidence."""
 
 from __future__ import annotations
 
