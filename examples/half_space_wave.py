@@ -1,18 +1,16 @@
 """Half-space error of a wave under a rigid flat, committed. Usage: half_space_wave.py [RESULT] [PICTURE]"""
 
 import sys
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 from PIL import Image
 
-from reports.result_files import read_result
+from reports.result_files import committed
 
 NAME = sys.argv[1] if len(sys.argv) > 1 else "model_form"
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "half_space_wave.png"
-RESULTS = Path(__file__).parents[1] / "reports" / "results" / f"{NAME}.json"
 
-[wave] = [c for c in read_result(RESULTS)["cases"] if c["id"] == "model-form/half-space-wave"]
+[wave] = [c for c in committed(NAME)["cases"] if c["id"] == "model-form/half-space-wave"]
 slopes = wave["data"]["slope (degrees)"]
 figure, panels = plt.subplots(1, 2, figsize=(7.2, 3.2), layout="constrained")
 for axes, name in zip(panels, ("approach under the load", "N at the approach"), strict=True):

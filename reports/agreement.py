@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 
 from reports.findings import number
-from reports.results import Case
+from reports.results import OTHER_SHAPE, Case
 
 Cases = Mapping[str, Case]
-_BROKEN = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 @dataclass(frozen=True)
@@ -90,12 +89,12 @@ SURFACES = 75  # realisations behind a scatter, ours; its relative 95 % half wid
 
 
 def numbers(cases: Cases) -> list[Number]:
-    """All of them that the cases hold, in the paper's order of parts."""
+    """Return the printed numbers that the cases hold, in the paper's order of parts."""
     found = [*_single(cases)]
     for name, quantity, factor, unit, rounding in TABLE3:
         try:
             found += _table3(cases[f"reproduction/{name}"]["data"], quantity, factor, unit, rounding)
-        except _BROKEN:
+        except OTHER_SHAPE:
             continue
     return [n for n in found if n.printed > 0 and math.isfinite(n.computed) and n.computed > 0]
 
@@ -112,14 +111,8 @@ def _single(cases: Cases) -> Iterator[Number]:
 def _table3(
     data: Mapping[str, Any], quantity: str, factor: float, unit: str, rounding: float
 ) -> list[Number]:
-    rows = zip(
-        data["sigma_e (um)"],
-        data["mesh"],
-        data["printed"],
-        data["ours"],
-        data["half width 95 %"],
-        strict=True,
-    )
+    names = ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %")
+    rows = zip(*(data[name] for name in names), strict=True)
     return [
         Number(
             "Table 3",
@@ -136,14 +129,14 @@ def _table3(
     ]
 
 
-def fine(found: Iterable[Number]) -> list[Number]:
-    """Table 3's numbers on the fine mesh."""
-    return [n for n in found if n.part == "Table 3" and n.label.endswith(f"{FINEST}²")]
-
-
 def compared(found: Iterable[Number]) -> list[Number]:
-    """All numbers, of Table 3 those on the fine mesh."""
+    """Return all numbers, of Table 3 those on the fine mesh."""
     return [n for n in found if n.part != "Table 3" or n.label.endswith(f"{FINEST}²")]
+
+
+def fine(found: Iterable[Number]) -> list[Number]:
+    """Return Table 3's numbers on the fine mesh."""
+    return [n for n in compared(found) if n.part == "Table 3"]
 
 
 def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
@@ -168,13 +161,6 @@ def bias_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
 
 def series(found: Sequence[Number]) -> dict[str, list[Any]]:
     """Columns of all numbers, for the figure and its CSV."""
-    return {
-        "part": [n.part for n in found],
-        "quantity": [n.quantity for n in found],
-        "label": [n.label for n in found],
-        "unit": [n.unit for n in found],
-        "printed": [n.printed for n in found],
-        "computed": [n.computed for n in found],
-        "uncertainty 95 %": [n.uncertainty for n in found],
-        "computed / printed": [n.ratio for n in found],
-    }
+    columns = {name: name for name in ("part", "quantity", "label", "unit", "printed", "computed")}
+    columns |= {"uncertainty 95 %": "uncertainty", "computed / printed": "ratio"}
+    return {column: [getattr(n, field) for n in found] for column, field in columns.items()}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, Data, Figure
+from reports.drawing import COLOURS, INK, Data, Figure, label_ticks
 
 WIDEST = 2.0  # ratios beyond it, or below its reciprocal, are written at the border
 TICKS = (0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.5, 2.0)
@@ -37,8 +37,7 @@ def _draw(canvas: Canvas, data: Data) -> None:
     axes.axvline(1.0, color=INK, linestyle="--", linewidth=1)
     axes.set_xscale("log")
     axes.set_xlim(1 / WIDEST, WIDEST)
-    axes.set_xticks(TICKS, [f"{t:g}" for t in TICKS])
-    axes.minorticks_off()
+    label_ticks(axes, TICKS)
     axes.set_yticks(range(len(quantities)), quantities)
     axes.set_ylim(len(quantities) - 0.5, -0.5)
     axes.set_xlabel("computed / printed")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, MARKERS, Data, Figure
+from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, label_ticks, look
 
 PLACES = ("crest", "flank", "valley")
 COEFFICIENTS = {
@@ -26,14 +26,8 @@ def _error_map(canvas: Canvas, data: Data) -> None:
     for axes, place in zip(panels, PLACES, strict=True):
         for k, (key, label) in enumerate(COEFFICIENTS.items()):
             for name, style in (("one body", "-"), ("pair", "--")):
-                text = label if name == "one body" else None
-                axes.plot(
-                    data["slope (degrees)"],
-                    data[f"{name}, {place}, {key} (%)"],
-                    style,
-                    color=COLOURS[k],
-                    label=text,
-                )
+                shown = {"color": COLOURS[k], "label": label if name == "one body" else None}
+                axes.plot(data["slope (degrees)"], data[f"{name}, {place}, {key} (%)"], style, **shown)
         for limit in (-2, 2):
             axes.axhline(limit, color=INK, linestyle=":")
         axes.set(title=place, xlabel="maximum slope (degrees)", ylim=(-12, 8))
@@ -49,20 +43,11 @@ def _effect(canvas: Canvas, data: Data) -> None:
     ):
         for k, treatment in enumerate(TREATMENTS):
             mean, half = data[f"{key}, {treatment}"], data[f"{key}, {treatment}, half width"]
-            axes.errorbar(
-                slope * (1 + 0.03 * k),
-                mean,
-                half,
-                marker=MARKERS[k],
-                color=COLOURS[k],
-                capsize=2,
-                label=treatment,
-            )
+            axes.errorbar(slope * (1 + 0.03 * k), mean, half, capsize=2, label=treatment, **look(k))
         axes.axhline(0.0, color=INK, linewidth=0.8)
         axes.axvline(2.5, color=INK, linestyle=":")
         axes.set_xscale("log")
-        axes.set_xticks(slope, [f"{s:g}" for s in slope])
-        axes.minorticks_off()
+        label_ticks(axes, slope)
         axes.set(ylabel=f"change of {label} (%)")
         if key in ("f_max", "Q"):
             axes.set_xlabel("rms slope of the roughness (degrees)")
@@ -76,10 +61,10 @@ def _reach(canvas: Canvas, data: Data) -> None:
     for axes, key in zip(canvas.subplots(1, 2), ("mu", "f_max"), strict=True):
         # Without friction mu is nearly zero, and a percentage of mu is meaningless
         for k, name in enumerate(("with friction", "without friction")[: 1 if key == "mu" else 2]):
-            axes.plot(reach, data[f"{key}, {name}, remedy"], marker=MARKERS[k], color=COLOURS[k], label=name)
+            axes.plot(reach, data[f"{key}, {name}, remedy"], label=name, **look(k))
             axes.plot(reach, data[f"{key}, {name}, correction"], "--", color=COLOURS[k])
         axes.set_xscale("symlog", base=2, linthresh=1)
-        axes.set_xticks(reach, [f"{r:g}" for r in reach])
+        label_ticks(axes, reach)
         label = f"change of {QUANTITIES[key]} (%)"
         axes.set(xlabel="reach of the coefficients on the slope (elements)", ylabel=label)
     axes.legend()
@@ -96,8 +81,7 @@ def _readings(canvas: Canvas, data: Data) -> None:
     axes.set_xscale("log")
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
-    axes.set_xticks([0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10], ["0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10"])
-    axes.minorticks_off()
+    label_ticks(axes, (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10))
     axes.set_xlabel("largest error of the flat coefficient (%)")
     axes.legend(title="slope is")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.evidence import Evidence
@@ -70,7 +69,7 @@ CHAPTERS = (
         "limits",
         "Limits",
         "Where the model and this implementation stop being a reference, and what a solve neglects.",
-        ("planning", "validity"),
+        ("planning",),
     ),
     Chapter(
         "trust",
@@ -99,25 +98,20 @@ CHAPTERS = (
 
 def subjects_of(chapter: Chapter, evidence: Evidence) -> dict[str, list[Case]]:
     """The chapter's cases by subject, in the chapter's order; only subjects that have any."""
-    present = by_subject(list(evidence.cases))
+    present = by_subject(evidence.cases)
     return {subject: present[subject] for subject in chapter.subjects if subject in present}
 
 
-def all_chapters(evidence: Evidence, extras: Mapping[str, Sequence[Exhibit]]) -> list[Chapter]:
-    """The chapters, those that extras alone fill, and one of the subjects that no chapter claims."""
-    known = {chapter.anchor for chapter in CHAPTERS}
-    new = [Chapter(name, name.replace("-", " ").capitalize(), "", ()) for name in extras if name not in known]
+def all_chapters(evidence: Evidence) -> list[Chapter]:
+    """Return the chapters, and one of the subjects that no chapter claims before the last main one."""
     claimed = {subject for chapter in CHAPTERS for subject in chapter.subjects} | set(REPRODUCED)
-    left = tuple(s for s in by_subject(list(evidence.cases)) if s not in claimed)
+    left = tuple(s for s in by_subject(evidence.cases) if s not in claimed)
     main = [chapter for chapter in CHAPTERS if not chapter.folded]
     back = [chapter for chapter in CHAPTERS if chapter.folded]
     further = [Chapter("further", "Further checks", "", left)] if left else []
-    return [*main[:-1], *new, *further, *main[-1:], *back]
+    return [*main[:-1], *further, *main[-1:], *back]
 
 
-def exhibits_of(
-    chapter: Chapter, evidence: Evidence, extras: Mapping[str, Sequence[Exhibit]]
-) -> Sequence[Exhibit]:
-    """The chapter's studies that are at hand, and what other modules add to it."""
-    studies = [exhibit(name, evidence.studies[name]) for name in chapter.studies if name in evidence.studies]
-    return [*studies, *extras.get(chapter.anchor, ())]
+def exhibits_of(chapter: Chapter, evidence: Evidence) -> list[Exhibit]:
+    """Return the exhibits of the chapter's studies whose result files are there."""
+    return [exhibit(name, evidence.studies[name]) for name in chapter.studies if name in evidence.studies]

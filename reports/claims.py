@@ -1,4 +1,4 @@
-"""The claims matrix: what the paper states (`paper.toml`), our verdict, what was found, and the evidence."""
+"""Claims and parts of the paper (`paper.toml`), with our verdict and the evidence."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from fnmatch import fnmatchcase
 from importlib import resources
 from typing import Any
 
+from reports.agreement import Number
 from reports.findings import by_claim, filled
 from reports.results import Case, worst
 
@@ -24,8 +25,6 @@ VERDICTS = (
     "schematic",
 )
 """From the least to the most favourable; the last two judge nothing."""
-_EARLIER = {"refuted": "not confirmed"}
-"""Verdicts in files of earlier versions."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +34,20 @@ class Claim:
     label: str
     quote: str
     verdict: str
-    evidence: tuple[str, ...]
-    corrected: tuple[str, ...] = ()
+    evidence: Sequence[str]
+    corrected: Sequence[str] = ()
     finding: str = ""
     own: bool = False
     part: str = ""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the paper; the fields are those of `paper.toml`."""
+
+    name: str
+    setting: str
+    figures: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -53,22 +61,34 @@ class Judged:
     errata: Sequence[Mapping[str, Any]]
 
 
-def paper() -> list[Claim]:
-    """Every claim of the matrix, in the paper's order."""
+def entries(kind: str) -> list[dict[str, Any]]:
+    """Return the entries of `paper.toml` of a kind, "claim" or "part", in the paper's order."""
     text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
-    entries: list[dict[str, Any]] = tomllib.loads(text)["claim"]
-    lists = ("evidence", "corrected")
-    for entry in entries:
-        entry.update({name: tuple(entry.get(name, ())) for name in lists})
-    return [Claim(**entry) for entry in entries]
+    found: list[dict[str, Any]] = tomllib.loads(text)[kind]
+    return found
+
+
+def paper() -> list[Claim]:
+    """Return every claim of the matrix."""
+    return [Claim(**entry) for entry in entries("claim")]
+
+
+def parts() -> list[Part]:
+    """Return the parts of the paper."""
+    return [Part(**entry) for entry in entries("part")]
+
+
+def longest(cases: Iterable[Case]) -> list[Case]:
+    """Return the cases but for quick ones that have a long one (``-full``) that passed."""
+    known = list(cases)
+    long = {case["id"] for case in known if case["id"].endswith("-full") and case["status"] == "pass"}
+    return [case for case in known if f"{case['id']}-full" not in long]
 
 
 def judged(cases: Iterable[Case], errata: Iterable[Mapping[str, Any]]) -> list[Judged]:
-    """Every claim with its evidence; a long case that passed stands for the quick one of its name."""
-    known = list(cases)
+    """Return every claim with its evidence; a long case that passed stands for the quick one of its name."""
+    known = longest(cases)
     numbers = by_claim(known)
-    long = {case["id"] for case in known if case["id"].endswith("-full") and case["status"] == "pass"}
-    known = [case for case in known if f"{case['id']}-full" not in long]
     corrections = {erratum["equation"]: erratum for erratum in errata}
     return [_judged(claim, known, numbers, corrections) for claim in paper()]
 
@@ -104,17 +124,38 @@ def verdict(claim: Claim, cases: Sequence[Case]) -> str:
 
 
 def recorded(case: Case) -> str | None:
-    """Verdict that a case records on the paper, in today's words; None where it judges our code alone."""
+    """Return the verdict on the paper that a case records; None where it judges our code alone."""
     text = case["data"].get("verdict")
-    text = _EARLIER.get(text, text) if isinstance(text, str) else None
     return text if text in VERDICTS else None
 
 
 def note(case: Case) -> str:
     """The first statement of a case's note, without the verdict.
 
-    >>> note({"data": {"verdict": "refuted"}, "note": "refuted: 1 (of 2; 3) here; more. And more"})
+    >>> note({"data": {"verdict": "confirmed"}, "note": "confirmed: 1 (of 2; 3) here; more. And more"})
     '1 (of 2; 3) here'
     """
     text: str = case["note"].removeprefix(case["data"]["verdict"]).removeprefix(":").strip()
     return re.split(r"(?:;|\.) (?![^(]*\))", text)[0]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A part with what the evidence holds of it."""
+
+    part: Part
+    claims: Sequence[Judged]
+    numbers: Sequence[Number]
+    cases: Sequence[Case]
+
+
+def shown(claims: Sequence[Judged], numbers: Sequence[Number], cases: Sequence[Case]) -> list[Shown]:
+    """Return the parts that have a claim, a number or a figure; long cases that passed replace quick ones."""
+    known, found = longest(cases), []
+    for part in parts():
+        drawn = [case for pattern in part.figures for case in known if fnmatchcase(case["id"], pattern)]
+        mine = [claim for claim in claims if claim.claim.part == part.name and claim.cases]
+        compared = [n for n in numbers if n.part == part.name]
+        if mine or compared or drawn:
+            found.append(Shown(part, mine, compared, drawn))
+    return found

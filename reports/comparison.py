@@ -51,7 +51,7 @@ def _kind(old: Case | None, new: Case | None) -> str | None:
 
 
 def _unnoticed(case: Mapping[str, Any]) -> float:
-    """By how much the value may move without a change worth a line (unit of the value)."""
+    """Largest change of the value that is not listed (unit of the value)."""
     scale = abs(case["reference"] or 0.0) if case["metric"] == "relative" else 1.0
     uncertainty: float = case["reference_uncertainty"] or 0.0
     return max(uncertainty, _SHARE * (case["tolerance"] or 0.0) * scale)

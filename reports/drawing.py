@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -35,7 +35,12 @@ STYLE: dict[Any, Any] = {
 }  # fmt: skip
 _TEXT = re.compile(r"(<text\b[^>]*>)([^<]*)(</text>)")
 _NAME = re.compile(r"[\w/]+(-\w+)+")
-_INSIDE = 6  # series up to which a legend finds room among them
+SIZE = (6.4, 3.8)  # inches
+
+
+def look(k: int) -> dict[str, Any]:
+    """Return colour and marker of the k-th series."""
+    return {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]}
 
 
 @dataclass(frozen=True)
@@ -50,7 +55,7 @@ class Figure:
     needs: tuple[str, ...]
     draw: Draw
     caption: str
-    size: tuple[float, float] = (6.4, 3.8)
+    size: tuple[float, float] = SIZE
     derived: Callable[[Data], Data] = field(default=lambda _: {})
 
     def available(self, data: Data) -> bool:
@@ -58,21 +63,16 @@ class Figure:
         return all(data.get(name) not in (None, [], {}) for name in self.needs)
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """A figure as SVG for a page in the reader's colours, and what it shows in words."""
-
-    svg: str
-    alt: str
-
-
 def complete(figure: Figure, data: Data) -> Data:
     """The recorded series and those derived from them."""
     return {**data, **figure.derived(data)}
 
 
-def drawn(figure: Figure, data: Data, name: str = "figure", caption: str | None = None) -> Drawn | None:
-    """The drawn figure; its definitions carry ``name``, unique on the page. None without its series."""
+def svg(figure: Figure, data: Data, name: str = "figure", caption: str | None = None) -> str | None:
+    """Return the drawn figure for a page in the reader's colours; None without its series.
+
+    ``name`` is unique on the page: ids begin with it. ``caption`` replaces the figure's own.
+    """
     if not figure.available(data):
         return None
     data = complete(figure, data)
@@ -84,18 +84,12 @@ def drawn(figure: Figure, data: Data, name: str = "figure", caption: str | None 
         canvas.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
         alt = symbols(words(canvas, figure.caption if caption is None else caption))
     made = _TEXT.sub(lambda text: text[1] + _in_symbols(text[2]) + text[3], buffer.getvalue())
-    return Drawn(inline(made.replace(INK, "currentColor"), name, alt), alt)
+    return inline(made.replace(INK, "currentColor"), name, alt)
 
 
 def _in_symbols(text: str) -> str:
     """The text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
     return text if _NAME.fullmatch(text) else symbols(text)
-
-
-def svg(figure: Figure, data: Data) -> str | None:
-    """The drawn figure alone; None when its series are not available."""
-    found = drawn(figure, data)
-    return None if found is None else found.svg
 
 
 def words(canvas: Canvas, caption: str) -> str:
@@ -118,7 +112,9 @@ def _plain(text: str) -> str:
     return re.sub(r"[$\\{}]", "", text).strip()
 
 
-def lines(
+def curves(
+    cases: str,
+    caption: str,
     x: str,
     series: Mapping[str, str],
     *,
@@ -130,46 +126,46 @@ def lines(
     marker: bool = False,
     per_x: float = 1.0,
     difference: str = "",
-) -> Draw:
-    """Series (key to legend text) over `x`, and those of `exact` dashed.
+    size: tuple[float, float] = SIZE,
+) -> Figure:
+    """Return the figure of series (key to legend text) over `x`, and those of `exact` dashed.
 
     `band` is the key and the legend text of the first series' half width, drawn around it; `log` names the
     logarithmic axes, "", "x", "y" or "xy"; `x` is multiplied by `per_x`. `difference` labels a second panel,
-    of the first series less the first exact one: curves that coincide show nothing else.
+    of the first series less the first exact one: curves that coincide show nothing else. The figure needs all
+    series that it draws.
     """
+    exact = exact or {}
 
     def draw(canvas: Canvas, data: Data) -> None:
-        over = per_x * _numbers(data[x])
-        axes, below = _axes(canvas, xlabel, ylabel, log), None
+        over, middle = per_x * _numbers(data[x]), _numbers(data[next(iter(series))])
+        axes, below = canvas.add_subplot(), None
         if difference:
             canvas.clear()
             axes, below = canvas.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-            axes.set(ylabel=ylabel)
-            below.set(xlabel=xlabel, ylabel=difference)
+            less = middle - _numbers(data[next(iter(exact))])
+            below.plot(over, less, color=COLOURS[0])
+            below.set_ylabel(difference)
+        (below or axes).set_xlabel(xlabel)
+        _scale(axes, log)
+        axes.set_ylabel(ylabel)
         for k, (key, label) in enumerate(series.items()):
-            mark, colour = MARKERS[k % 6] if marker else None, COLOURS[k % 6]
-            style = ("-", "--")[k // 6 % 2]
-            axes.plot(over, _numbers(data[key]), style, marker=mark, color=colour, label=label)
-        for style, (key, label) in zip(("--", ":", "-."), (exact or {}).items(), strict=False):
-            axes.plot(over, _numbers(data[key]), style, color=INK, label=label)
-        middle = _numbers(data[next(iter(series))])
-        width = np.zeros_like(middle) if band is None else _numbers(data[band[0]])
-        exact_one = _numbers(data[next(iter(exact))]) if below is not None and exact else middle
-        if below is not None:
-            below.plot(over, middle - exact_one, color=COLOURS[0])
+            style = look(k) if marker else {"color": look(k)["color"]}
+            axes.plot(over, _numbers(data[key]), label=label, **style)
+        for dashes, (key, label) in zip(("--", ":", "-."), exact.items(), strict=False):
+            axes.plot(over, _numbers(data[key]), dashes, color=INK, label=label)
         if band is not None:
+            width = _numbers(data[band[0]])
             shade: dict[str, Any] = {"color": COLOURS[0], "alpha": 0.2, "label": band[1]}
             axes.fill_between(over, middle - width, middle + width, **shade)
             if below is not None:
-                below.fill_between(over, middle - exact_one - width, middle - exact_one + width, **shade)
+                below.fill_between(over, less - width, less + width, **shade)
         if "x" in log:
             _few_ticks(axes, over)
-        if len(series) > _INSIDE:
-            canvas.legend(loc="outside right upper")
-        else:
-            axes.legend()
+        axes.legend()
 
-    return draw
+    needs = dict.fromkeys((x, *series, *exact, *(band or ())[:1]))
+    return Figure(cases, tuple(needs), draw, caption, size)
 
 
 def order(
@@ -202,8 +198,7 @@ def order(
             finest = min(finest, error[np.argmin(h)])
         for slope, style in zip(expected, ("--", ":", "-."), strict=False):
             axes.plot(grid, 0.6 * finest * (h / h.min()) ** slope, style, color=INK, label=f"order {slope:g}")
-        axes.set_xticks(grid, [f"{g:.3g}" for g in grid])
-        axes.xaxis.set_minor_locator(NullLocator())
+        label_ticks(axes, grid, ".3g")
         axes.legend()
 
     return draw
@@ -258,12 +253,23 @@ def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str
     return draw
 
 
+def label_ticks(axes: Axes, values: Iterable[float], form: str = "g") -> None:
+    """Label the x axis at the values alone, as a logarithmic axis needs it."""
+    values = list(values)
+    axes.set_xticks(values, [format(value, form) for value in values])
+    axes.xaxis.set_minor_locator(NullLocator())
+
+
 def _axes(canvas: Canvas, xlabel: str, ylabel: str, log: str) -> Axes:
     axes = canvas.add_subplot()
     axes.set(xlabel=xlabel, ylabel=ylabel)
+    _scale(axes, log)
+    return axes
+
+
+def _scale(axes: Axes, log: str) -> None:
     axes.set_xscale("log" if "x" in log else "linear")
     axes.set_yscale("log" if "y" in log else "linear")
-    return axes
 
 
 def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:

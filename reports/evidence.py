@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from reports.contestant import solver
-from reports.recorded import renamed
-from reports.results import FORMAT, Case, check
+from reports.results import FORMAT, STATUSES, Case, check
+
+OWN = "This project's own cases, from committed runs: no evidence about the solver under test"
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,7 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
     """The run with the committed files, by name without suffix, that it does not replace.
 
     A case counts once: the run's own result, else that of the newest committed run in which it was judged.
-    Committed runs of somebody else's solver are excluded: they are no evidence of this project's. Data have
-    the names of `reports.recorded`, whichever version recorded them.
+    Committed runs of somebody else's solver are excluded: they are no evidence of this project's.
     Raises ResultFileError for a run, or a committed run of `verify`, that is none.
     """
     checked = check(run)
@@ -58,7 +58,7 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
 
 
 def _case(case: Case, origin: dict[str, Any] | None) -> Case:
-    return {**case, "data": renamed(case["data"]), "origin": origin}
+    return {**case, "origin": origin}
 
 
 def _origin(name: str, file: Mapping[str, Any]) -> dict[str, Any]:
@@ -69,3 +69,30 @@ def _origin(name: str, file: Mapping[str, Any]) -> dict[str, Any]:
         "commit": provenance["commit"],
         "command": provenance["command"],
     }
+
+
+@dataclass(frozen=True)
+class Group:
+    """Cases that are counted together; ``title`` is "" where there is but one group."""
+
+    title: str
+    cases: Sequence[Case]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of cases by status."""
+        return {status: sum(c["status"] == status for c in self.cases) for status in STATUSES}
+
+    @property
+    def not_passed(self) -> list[Case]:
+        """The cases to look at first."""
+        return [c for c in self.cases if c["status"] != "pass"]
+
+
+def groups(evidence: Evidence) -> list[Group]:
+    """All cases; where somebody else's solver was run, its own ones apart from this project's."""
+    if evidence.solver is None:
+        return [Group("", evidence.cases)]
+    theirs = [c for c in evidence.cases if c["origin"] is None]
+    ours = [c for c in evidence.cases if c["origin"] is not None]
+    return [Group(f"The solver under test, {evidence.solver}", theirs), Group(OWN, ours)]

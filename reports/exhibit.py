@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import quote
@@ -14,6 +14,7 @@ from reports.drawing import Data, Figure
 _UNQUOTED = "!$&'()*+,-./:;=?@_~"
 """Characters that need no quoting in a ``data:`` address in HTML."""
 Cell = str | float | int | bool | None
+Column = str | Callable[[Any], Cell]
 Document = Mapping[str, Any]
 
 
@@ -26,6 +27,25 @@ class Table:
     rows: Sequence[Sequence[Cell]]
 
 
+def table(caption: str, records: Iterable[Any], columns: Mapping[str, Column]) -> Table:
+    """Return a table with a row a record; ``columns`` has the heads, and what stands below each.
+
+    A column is a key of the record, a format of its values, or a function of it.
+
+    >>> table("", [{"M": 64, "s": 0.5}], {"grid": "{M}²", "s": "s", "ms": lambda row: 1000 * row["s"]})
+    Table(caption='', head=('grid', 's', 'ms'), rows=[('64²', 0.5, 500.0)])
+    """
+    rows = [tuple(_cell(record, column) for column in columns.values()) for record in records]
+    return Table(caption, tuple(columns), rows)
+
+
+def _cell(record: Any, column: Column) -> Cell:
+    if callable(column):
+        return column(record)
+    found: Cell = column.format_map(record) if "{" in column else record[column]
+    return found
+
+
 @dataclass(frozen=True)
 class Exhibit:
     """A study in the report: a title, paragraphs of plain text, tables, and figures with their series."""
@@ -36,16 +56,12 @@ class Exhibit:
     figures: Sequence[tuple[Figure, Data]] = field(default=())
 
 
-Build = Callable[[Document], Exhibit]
-"""From the study's result file to what is shown of it; KeyError where the file lacks what it should hold."""
-
-
 def as_csv(figure: Figure, data: Data) -> str:
     """All series of the data as CSV, the figure's own first: lists as columns, mappings as two columns,
     arrays row by row; numbers to six digits.
 
-    >>> from reports.drawing import lines
-    >>> pair = Figure("*", ("h", "error"), lines("h", {"error": "e"}, xlabel="", ylabel=""), "")
+    >>> from reports.drawing import curves
+    >>> pair = curves("*", "", "h", {"error": "e"}, xlabel="", ylabel="")
     >>> print(as_csv(pair, {"h": [1, 2], "error": [0.1, None]}))
     h,error
     1,0.1
@@ -81,7 +97,7 @@ def _is_column(values: object) -> bool:
 
 
 def _write_block(write: Callable[[Sequence[Any]], Any], name: str, values: Any) -> None:
-    """What is no column: a mapping, an array of rows, or a single value, below its name."""
+    """Write a mapping, an array of rows, or a single value below its name."""
     write([name])
     if isinstance(values, Mapping):
         for key, value in values.items():

@@ -8,18 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from reports.agreement import Number, bias_and_scatter, by_quantity, fine
-from reports.claims import NOT_ESTABLISHED, VERDICTS, Judged
+from reports.claims import VERDICTS, Judged
 from reports.evidence import Evidence
 from reports.results import Case
-from reports.text import number
+from reports.text import QUANTITIES, number, unit_of
 
 HERTZ = {
     "hertz/peak-pressure": "peak pressure",
     "hertz/approach": "approach",
     "hertz/radius-corrected": "contact radius",
 }
-NAMED = (NOT_ESTABLISHED, "not confirmed", "erratum proposed", "confirmed with conditions", "confirmed")
-UNITS = {"Pa": ("MPa", 1e-6), "m": ("µm", 1e6)}
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ def _hertz(case: Case) -> str:
     name = HERTZ.get(case["id"])
     if name is None or case["value"] is None or case["reference"] is None:
         return ""
-    unit, scale = UNITS.get(case["unit"], (case["unit"], 1.0))
+    unit, scale = unit_of(case)
     value, reference = (f"{scale * case[key]:.6g}" for key in ("value", "reference"))
     return f"{name} {value} for {reference} {unit} ({case['error']:.1e})"
 
@@ -91,9 +89,8 @@ def _quantity(name: str, group: Sequence[Number]) -> tuple[str, int, str, str, i
 
 def _coverage(studies: Mapping[str, Any]) -> list[str]:
     """Coverage of error bars of mu, A and p_max at 1 %, on both samples of random scenes."""
-    names = {"friction_coefficient": "μ", "contact_area": "A", "max_pressure": "p_max"}
     said = []
-    for name, label in names.items():
+    for name in ("friction_coefficient", "contact_area", "max_pressure"):
         found = [
             judged["numbers"][name]
             for study in ("coverage", "coverage_fresh")
@@ -103,7 +100,7 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
         if found:
             covered = " and ".join(f"{100 * f['covered']:.0f} %" for f in found)
             longer = " and ".join(number(f["median_bar_over_error"], 2) for f in found)
-            said.append(f"{label} in {covered} ({longer} times the error)")
+            said.append(f"{QUANTITIES[name]} in {covered} ({longer} times the error)")
     samples = "95 % error bars asked to 1 % cover far finer grids, on two samples of random scenes"
     return [f"{samples}: {'; '.join(said)}"] if said else []
 

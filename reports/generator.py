@@ -8,25 +8,20 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import agreement, contestant, figures
+from reports import agreement, contestant
 from reports.agreement_figure import AGREEMENT
+from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
-from reports.claims import judged
+from reports.claims import judged, shown
 from reports.comparison import compared
 from reports.drawing import Figure
-from reports.evidence import Evidence, gathered
-from reports.extras import extra_exhibits
+from reports.evidence import Evidence, gathered, groups
 from reports.findings import by_claim
-from reports.front_page import NAMED, front_page
-from reports.parts import shown
+from reports.front_page import front_page
 from reports.pictures import Album
-from reports.results import Case, CaseDataError, ResultFileError
+from reports.results import OTHER_SHAPE, Case, CaseDataError, ResultFileError
 from reports.revisions import revisions_of
-from reports.summary import groups
 from reports.text import cell, interval, judgement, number, symbols
-
-_OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-"""Exceptions of drawing where data are not of the shape that a figure needs."""
 
 
 def render(
@@ -43,19 +38,18 @@ def render(
     evidence = gathered(results, committed or {})
     album = Album()
 
-    def case_pictures(case: Case) -> list[Mapping[str, Any]]:
+    def case_pictures(case: Case) -> list[Mapping[str, Any] | None]:
         progress(case["id"])
         try:
-            offered = figures.figures_of(case["id"], case["data"])
-            return [p for f in offered if (p := album.add(f, case["data"], case["title"]))]
-        except _OTHER_SHAPE as broken:
+            return [album.add(figure, case["data"], case["title"]) for figure in figures_of(case["id"])]
+        except OTHER_SHAPE as broken:
             raise CaseDataError(f"data of case {case['id']!r}: {broken}", case["origin"]) from broken
 
     def one_picture(figure: Figure, data: Mapping[str, Any]) -> Mapping[str, Any] | None:
         progress(figure.caption)
         try:
             return album.add(figure, data)
-        except _OTHER_SHAPE as broken:
+        except OTHER_SHAPE as broken:
             raise ResultFileError(f"data of the figure {figure.caption!r}: {broken}") from broken
 
     environment = Environment(
@@ -92,17 +86,15 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
     """Sections of a report on this project's own code beside its cases."""
     claims = judged(evidence.cases, evidence.errata)
     numbers = agreement.numbers(by_claim(evidence.cases))
-    extras = extra_exhibits(evidence)
     return {
         "front": front_page(evidence, claims, numbers),
-        "named": NAMED,
         "claims": claims,
         "numbers": numbers,
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
         "parts": shown(claims, numbers, evidence.cases),
         "chapters": [
-            (chapter, subjects_of(chapter, evidence), exhibits_of(chapter, evidence, extras))
-            for chapter in all_chapters(evidence, extras)
+            (chapter, subjects_of(chapter, evidence), exhibits_of(chapter, evidence))
+            for chapter in all_chapters(evidence)
         ],
     }
 

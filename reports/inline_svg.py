@@ -21,7 +21,6 @@ _DROPPED = (
 )
 _INVISIBLE = re.compile(r'<path\b[^>]*\bstyle="fill: none"\s*/>')
 _DEFINED = re.compile(r'<(?:clipPath|path|image|linearGradient|pattern)\b[^>]*\bid="([^"]+)"')
-_TAG = re.compile(r"<(/?)g\b([^>]*)>")
 _STYLE = re.compile(r'style="([^"]*)"')
 
 
@@ -41,7 +40,7 @@ def inline(svg: str, name: str, alt: str) -> str:
         lambda m: m[1] + re.sub(r"-?\d+\.\d{4,}", lambda n: f"{float(n[0]):.3f}", m[2]) + m[3], body
     )
     body = _PATH.sub(lambda m: f' d="{_COMMAND.sub(lambda c: c[1], " ".join(m[1].split()))}"', body)
-    body = _without_plain_groups(_named(_FONT.sub("", body), name))
+    body = _named(_FONT.sub("", body), name)
     body = re.sub(r">\s+<", "><", _INVISIBLE.sub("", body).strip()).replace("xlink:href=", "href=")
     body = body.replace(' transform="rotate(-0 ', ' data-0="').replace("<defs></defs>", "")
     body = re.sub(r' data-0="[^"]*"', "", re.sub(r"\n\s*", " ", body))
@@ -77,7 +76,7 @@ def _short(match: re.Match[str]) -> str:
 
 
 def _named(body: str, name: str) -> str:
-    """Definitions keep an id, with the figure's name before it; groups lose theirs."""
+    """Put the figure's name before ids of definitions, and remove those of groups."""
     ids = {old: f"{name}-{k}" for k, old in enumerate(dict.fromkeys(_DEFINED.findall(body)))}
     used = {old for old in ids if f"#{old})" in body or f'"#{old}"' in body}
     for old in sorted(used, key=len, reverse=True):
@@ -85,18 +84,3 @@ def _named(body: str, name: str) -> str:
         body = body.replace(f"#{old})", f"#{ids[old]})").replace(f'"#{old}"', f'"#{ids[old]}"')
     body = re.sub(r' id="[^"]*"', "", body)
     return body.replace(' ID="', ' id="')
-
-
-def _without_plain_groups(body: str) -> str:
-    """Groups without attributes say nothing."""
-    open_groups: list[bool] = []
-
-    def kept(match: re.Match[str]) -> str:
-        if match[2].endswith("/"):
-            return ""
-        if match[1]:
-            return match[0] if open_groups.pop() else ""
-        open_groups.append(bool(match[2].strip()))
-        return match[0] if open_groups[-1] else ""
-
-    return _TAG.sub(kept, body)

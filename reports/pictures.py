@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from reports.drawing import Data, Figure, complete, drawn
+from reports.drawing import Data, Figure, complete, svg
 from reports.exhibit import as_csv, csv_address
 from reports.inline_svg import StyleSheet
 
 
 class Album:
-    """Collects the figures of a page."""
+    """Collect the figures of a page."""
 
     def __init__(self) -> None:
         self._shown: set[str] = set()
@@ -31,14 +31,14 @@ class Album:
         key = repr((figure.caption, [data[name] for name in figure.needs]))
         if key in self._shown:
             return None
-        found = drawn(figure, data, f"f{self._number}", caption)
+        drawn = svg(figure, data, f"f{self._number}", caption)
         self._shown.add(key)
         self._number += 1
         name = f"figure-{self._number}"
         first = self._tables.setdefault(id(data), (data, name))[1]  # holds the data: an id is used once
         return {
             "caption": caption,
-            "svg": self._sheet.shared(found.svg) if found else None,
+            "svg": self._sheet.shared(drawn) if drawn else None,
             "csv": csv_address(as_csv(figure, complete(figure, data))) if first == name else f"#{first}",
             "name": name,
             "table": first,

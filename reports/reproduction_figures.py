@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, lines, maps
+from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, curves, look, maps
 
 DASHED, DOTTED, DASH_DOT = "--", ":", "-."
 LOADS = ("14 N", "42 N", "70 N")
+SIGMA = "$\\sigma_e$ (µm)"
+PSI = "$\\psi$, Eq. (12) with the correlation length"
 FIG11 = ("undeformed height", "undeformed slope", "deformed height in contact", "deformed slope in contact")
-
-
-def _row(canvas: Canvas, number: int, *, rows: int = 1) -> list[Axes]:
-    return list(canvas.subplots(rows, number, squeeze=False).ravel())
-
-
-def _label(axes: Axes, xlabel: str, ylabel: str, title: str = "") -> None:
-    axes.set(xlabel=xlabel, ylabel=ylabel, title=title)
 
 
 def _below(canvas: Canvas, columns: int) -> None:
@@ -42,21 +34,13 @@ def _table3(canvas: Canvas, data: Data) -> None:
     for k, sigma in enumerate(np.unique(rms)):
         here = rms == sigma
         x = np.log2(mesh[here]) + 0.06 * (k - 1.5)
-        style: dict[str, Any] = {"color": COLOURS[k], "marker": MARKERS[k], "capsize": 3}
         label = f"$\\sigma_e$ = {sigma:.3g} µm"
-        axes.errorbar(x, ratio[here], half[here], label=label, **style)
+        axes.errorbar(x, ratio[here], half[here], label=label, capsize=3, **look(k))
     axes.axhline(1.0, color=INK, linestyle=DASHED)
     meshes = np.unique(mesh)
     axes.set_xticks(np.log2(meshes), [f"{m:.0f}²" for m in meshes])
-    _label(axes, "mesh", "this code / printed")
+    axes.set(xlabel="mesh", ylabel="this code / printed")
     axes.legend()
-
-
-def _fig4(canvas: Canvas, data: Data) -> None:
-    draw = maps(
-        {"surface map": "(a) half-space", "ball map": "(b) ball"}, side="side (mm)", unit="height / rms"
-    )
-    draw(canvas, data)
 
 
 def _fig5_differences(data: Data) -> dict[str, list[float]]:
@@ -82,8 +66,8 @@ def _fig5(canvas: Canvas, data: Data) -> None:
         axes.plot(x, data["coulomb (MPa)"], DASHED, color=INK, label="Coulomb, same $\\mu$")
         below.plot(x, data[f"pressure{suffix} less hertz (MPa)"], color=COLOURS[0])
         below.plot(x, data[f"traction{suffix} less coulomb (MPa)"], color=COLOURS[1])
-        _label(axes, "", "stress (MPa)", title)
-        _label(below, "distance from the centre (mm)", "difference (MPa)")
+        axes.set(ylabel="stress (MPa)", title=title)
+        below.set(xlabel="distance from the centre (mm)", ylabel="difference (MPa)")
     _below(canvas, 4)
 
 
@@ -96,7 +80,7 @@ def _fig6(canvas: Canvas, data: Data) -> None:
     label = "Greenwood and Tripp, summits of Eq. (9)"
     axes.plot(r, data["Greenwood-Tripp p/p0"], DASH_DOT, color=COLOURS[1], label=label)
     axes.plot(r, data["mu = 4 p/p0"], DOTTED, color=COLOURS[1], label="the same, textbook's $\\mu$ = 4")
-    _label(axes, "$r / a_0$", "effective pressure / $f_0$")
+    axes.set(xlabel="$r / a_0$", ylabel="effective pressure / $f_0$")
     axes.legend()
 
 
@@ -109,13 +93,12 @@ def _fig6d(canvas: Canvas, data: Data) -> None:
 
 
 def _fig7(canvas: Canvas, data: Data) -> None:
-    before, contact = _row(canvas, 2)
+    before, contact = canvas.subplots(1, 2)
     x = _values(data, "x (mm)")
-    before.plot(x, data["ball before (um)"], color=COLOURS[1], label="ball")
-    before.plot(x, data["flat before (um)"], color=COLOURS[0], label="half-space")
+    for axes, state in ((before, "before"), (contact, "deformed")):
+        axes.plot(x, data[f"ball {state} (um)"], color=COLOURS[1], label="ball")
+        axes.plot(x, data[f"flat {state} (um)"], color=COLOURS[0], label="half-space")
     before.axhline(0.0, color=INK, linestyle=DASHED, label="mean plane")
-    contact.plot(x, data["ball deformed (um)"], color=COLOURS[1], label="ball")
-    contact.plot(x, data["flat deformed (um)"], color=COLOURS[0], label="half-space")
     contact.plot(
         x, data["flat deformed, frictionless (um)"], DOTTED, color=COLOURS[2], label="without friction"
     )
@@ -123,33 +106,30 @@ def _fig7(canvas: Canvas, data: Data) -> None:
     flat = _values(data, "flat before (um)")
     for axes, title in ((before, "(a) before contact"), (contact, "(b) in contact")):
         axes.set_ylim(1.6 * flat.min(), 3.0 * flat.max())
-        _label(axes, "x from the centre (mm)", "height (µm)", title)
+        axes.set(xlabel="x from the centre (mm)", ylabel="height (µm)", title=title)
         axes.legend()
 
 
 def _fig8(canvas: Canvas, data: Data) -> None:
-    friction, area, rates, key = _row(canvas, 2, rows=2)
+    friction, area, rates, key = canvas.subplots(2, 2).ravel()
     sigma = _values(data, "sigma_e (um)")
     for k, load in enumerate(LOADS):
-        style: dict[str, Any] = {
-            "color": COLOURS[k],
-            "marker": MARKERS[k],
-            "capsize": 2,
-            "label": f"P = {load}",
-        }
+        style = {"capsize": 2, "label": f"P = {load}", **look(k)}
         friction.errorbar(sigma, data[f"mu, {load}"], data[f"mu half width, {load}"], **style)
         area.errorbar(sigma, data[f"A (mm^2), {load}"], data[f"A half width (mm^2), {load}"], **style)
         middle = data["sigma_e of rates (um)"]
         rates.plot(middle, data[f"rate of mu, {load}"], color=COLOURS[k], label=f"$\\mu$, P = {load}")
         ring: dict[str, Any] = {"markerfacecolor": "none", "markersize": 7, "color": INK}
         rates.plot(middle, data[f"rate of A, {load}"], MARKERS[k], label=f"A, P = {load}", **ring)
-    _label(friction, "$\\sigma_e$ (µm)", "friction coefficient", "(a)")
-    _label(area, "$\\sigma_e$ (µm)", "contact area (mm²)", "(b)")
-    _label(rates, "$\\sigma_e$ (µm)", "rate of change / its first", "(c)")
     per_micron = _values(data, "psi")[-1] / sigma[-1]
-    for axes in (friction, area, rates):
+    for axes, ylabel, title in (
+        (friction, "friction coefficient", "(a)"),
+        (area, "contact area (mm²)", "(b)"),
+        (rates, "rate of change / its first", "(c)"),
+    ):
+        axes.set(xlabel=SIGMA, ylabel=ylabel, title=title)
         above = axes.secondary_xaxis("top", (lambda s: s * per_micron, lambda p: p / per_micron))
-        above.set_xlabel("$\\psi$, Eq. (12) with the correlation length")
+        above.set_xlabel(PSI)
     key.set_axis_off()
     loads, curves = (panel.get_legend_handles_labels() for panel in (friction, rates))
     key.add_artist(key.legend(*loads, loc="upper left", bbox_to_anchor=(0.05, 0.95)))
@@ -164,12 +144,12 @@ def _fig9(canvas: Canvas, data: Data) -> None:
         data["distance (um)"], data["direction (deg)"], Q, cmap="PuOr", vmin=-largest, vmax=largest
     )
     axes.grid(visible=False)
-    _label(axes, "sliding distance (µm)", "direction of sliding (degrees)")
+    axes.set(xlabel="sliding distance (µm)", ylabel="direction of sliding (degrees)")
     canvas.colorbar(image, ax=axes, label="transverse force Q (N)")
 
 
 def _fig10(canvas: Canvas, data: Data) -> None:
-    above, below = _row(canvas, 1, rows=2)
+    above, below = canvas.subplots(2, 1)
     x = _values(data, "direction (deg)")
     for axes, start, ylabel in (
         (above, "elastic / F, ", "elastic part / F"),
@@ -177,8 +157,8 @@ def _fig10(canvas: Canvas, data: Data) -> None:
     ):
         for k, name in enumerate(name for name in data if name.startswith(start)):
             label = f"$\\sigma$ = {name.removeprefix(start).replace('um', 'µm')}"
-            axes.plot(x, data[name], color=COLOURS[k], marker=MARKERS[k], label=label)
-        _label(axes, "direction of sliding (degrees)", ylabel)
+            axes.plot(x, data[name], label=label, **look(k))
+        axes.set(xlabel="direction of sliding (degrees)", ylabel=ylabel)
     above.legend(ncols=2)
 
 
@@ -195,7 +175,7 @@ def _fig11_gaussians(data: Data) -> dict[str, list[float]]:
 
 def _fig11(canvas: Canvas, data: Data) -> None:
     units = ("height from the mean (µm)", "slope from the mean (degrees)") * 2
-    for axes, panel, letter, unit in zip(_row(canvas, 2, rows=2), FIG11, "abcd", units, strict=True):
+    for axes, panel, letter, unit in zip(canvas.subplots(2, 2).ravel(), FIG11, "abcd", units, strict=True):
         x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")
         axes.step(x, density, where="mid", color=COLOURS[0], label="all realisations")
         axes.plot(x, data[f"{panel}: Gaussian"], DASHED, color=INK, label="Gaussian of the same rms")
@@ -209,40 +189,31 @@ def _fig11(canvas: Canvas, data: Data) -> None:
 def _traces(canvas: Canvas, data: Data) -> None:
     x = _values(data, "offset (um)")
     names = {"mu": "$\\mu$", "A (mm^2)": "A (mm²)", "elastic friction (N)": "elastic F (N)", "Q (N)": "Q (N)"}
-    for axes, (name, label), colour in zip(_row(canvas, 1, rows=4), names.items(), COLOURS, strict=False):
+    for axes, (name, label), colour in zip(canvas.subplots(4, 1), names.items(), COLOURS, strict=False):
         values = _values(data, name)
         axes.plot(x, values, color=colour)
         axes.axhline(values.mean(), color=INK, linestyle=DASHED)
-        _label(axes, "", label)
+        axes.set_ylabel(label)
     canvas.axes[-1].set_xlabel("sliding distance (µm); means dashed")
 
 
 def _scatter(canvas: Canvas, data: Data) -> None:
     axes = canvas.add_subplot()
     x = _values(data, "sigma_e (um)")
-    names: Sequence[str] = ("scatter of A", "scatter of mu", "Eq. (10)")
+    names = ("scatter of A", "scatter of mu", "Eq. (10)")
     for k, name in enumerate(name for name in names if name in data):
-        label = name.replace("mu", "$\\mu$")
-        axes.plot(x, 100 * _values(data, name), marker=MARKERS[k], color=COLOURS[k], label=label)
+        axes.plot(x, 100 * _values(data, name), label=_symbol(name), **look(k))
     for name, style in (("printed A", DASHED), ("printed mu", DOTTED)):
         if name in data:
-            axes.axhline(
-                100 * float(data[name]), color=INK, linestyle=style, label=name.replace("mu", "$\\mu$")
-            )
+            axes.axhline(100 * float(data[name]), color=INK, linestyle=style, label=_symbol(name))
+    axes.set(xlabel=SIGMA, ylabel="standard deviation / mean (%)")
     axes.set_ylim(bottom=0)
-    _label(axes, "$\\sigma_e$ (µm)", "standard deviation / mean (%)")
     axes.legend()
 
 
-_FACETS = lines(
-    "rms slope",
-    {"change of N": "N", "change of F": "F"},
-    xlabel="rms slope on the contact",
-    ylabel="exact facets / printed cosines - 1",
-    log="xy",
-    marker=True,
-)
-_FIG8_NEEDS = ("sigma_e (um)", "psi", "sigma_e of rates (um)", *(f"mu, {load}" for load in LOADS))
+def _symbol(name: str) -> str:
+    return name.replace("mu", "$\\mu$")
+
 
 REPRODUCTION = (
     Figure(
@@ -254,7 +225,9 @@ REPRODUCTION = (
     Figure(
         "reproduction/fig4-correlation*",
         ("surface map", "ball map", "side (mm)"),
-        _fig4,
+        maps(
+            {"surface map": "(a) half-space", "ball map": "(b) ball"}, side="side (mm)", unit="height / rms"
+        ),
         "Fig. 4: one realisation of both surfaces, normalised.",
         (8.6, 3.8),
     ),
@@ -292,7 +265,7 @@ REPRODUCTION = (
     ),
     Figure(
         "reproduction/fig8-*",
-        _FIG8_NEEDS,
+        ("sigma_e (um)", "psi", "sigma_e of rates (um)", *(f"mu, {load}" for load in LOADS)),
         _fig8,
         "Fig. 8: friction, contact area and their rates of change; bars are 95 % intervals.",
         (8.6, 7.0),
@@ -332,10 +305,14 @@ REPRODUCTION = (
         _scatter,
         "{title}: standard deviation over the mean.",
     ),
-    Figure(
+    curves(
         "reproduction/facet-tractions",
-        ("rms slope", "change of N", "change of F"),
-        _FACETS,
         "Resultants with exact facet tractions against the printed cosines.",
+        "rms slope",
+        {"change of N": "N", "change of F": "F"},
+        xlabel="rms slope on the contact",
+        ylabel="exact facets / printed cosines - 1",
+        log="xy",
+        marker=True,
     ),
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 FORMAT = "rough-friction results, version 1"
@@ -16,8 +16,11 @@ Case = Mapping[str, Any]
 Kind = Callable[[object], bool]
 
 
-def _text(value: object) -> bool:
-    return isinstance(value, str)
+def _a(kind: type) -> Kind:
+    return lambda value: isinstance(value, kind)
+
+
+_text, _flag, _table, _list = _a(str), _a(bool), _a(Mapping), _a(list)
 
 
 def _number(value: object) -> bool:
@@ -28,20 +31,8 @@ def _size(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0
 
 
-def _flag(value: object) -> bool:
-    return isinstance(value, bool)
-
-
 def _texts(value: object) -> bool:
     return isinstance(value, list) and all(map(_text, value))
-
-
-def _table(value: object) -> bool:
-    return isinstance(value, Mapping)
-
-
-def _list(value: object) -> bool:
-    return isinstance(value, list)
 
 
 def _id(value: object) -> bool:
@@ -84,6 +75,10 @@ PROVENANCE: Mapping[str, Kind] = {
     "versions": _labels, "machine": _labels,
 }  # fmt: skip
 SOLVER: Mapping[str, Kind] = {"name": _text}
+
+
+OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+"""Exceptions where data are not of the shape that a table or a figure needs."""
 
 
 class ResultFileError(ValueError):
@@ -178,11 +173,8 @@ def _check_values(value: object, where: str) -> None:
         raise ResultFileError(f"{where} holds {value}, which is no number")
     elif isinstance(value, int) and abs(value) > LARGEST_INTEGER:
         raise ResultFileError(f"{where} holds an integer beyond {LARGEST_INTEGER}")
-    elif isinstance(value, str) and not value.isascii():
-        try:
-            value.encode()
-        except UnicodeEncodeError as lone:
-            raise ResultFileError(f"{where} holds a text that is no UTF-8") from lone
+    elif isinstance(value, str) and not value.isascii() and any("\ud800" <= c <= "\udfff" for c in value):
+        raise ResultFileError(f"{where} holds a text that is no UTF-8")
 
 
 def worst(cases: list[Case]) -> str:
@@ -191,21 +183,16 @@ def worst(cases: list[Case]) -> str:
     return next(status for status in ("error", "fail", "unavailable", "pass") if status in present)
 
 
-def by(cases: list[Case], key: str) -> dict[str, list[Case]]:
-    """Cases grouped by a field, in order of first appearance.
+def by_subject(cases: Iterable[Case]) -> dict[str, list[Case]]:
+    """Return cases by the part of their id before the slash, in order of first appearance.
 
-    >>> by([{"claim": "a", "id": 1}, {"claim": "b", "id": 2}, {"claim": "a", "id": 3}], "claim")["a"]
-    [{'claim': 'a', 'id': 1}, {'claim': 'a', 'id': 3}]
+    >>> by_subject([{"id": "a/1"}, {"id": "b/1"}, {"id": "a/2"}])["a"]
+    [{'id': 'a/1'}, {'id': 'a/2'}]
     """
     groups: dict[str, list[Case]] = {}
     for case in cases:
-        groups.setdefault(case[key], []).append(case)
+        groups.setdefault(case["id"].partition("/")[0], []).append(case)
     return groups
-
-
-def by_subject(cases: list[Case]) -> dict[str, list[Case]]:
-    """Cases grouped by the part of their id before the slash."""
-    return by([{**case, "subject": case["id"].partition("/")[0]} for case in cases], "subject")
 
 
 def _require(item: object, schema: Mapping[str, Kind], where: str) -> None:

@@ -7,6 +7,14 @@ import re
 
 from reports.results import Case
 
+QUANTITIES = {
+    "friction_coefficient": "μ",
+    "contact_area": "A",
+    "contact_area_corrected": "A, perimeter-corrected",
+    "max_pressure": "p_max",
+}
+"""Symbols of a solution's numbers."""
+_UNITS = {"Pa": ("MPa", 1e-6), "m": ("µm", 1e6)}
 _SYMBOLS = (
     (re.compile(r"\bsigma_e\b"), "σ_e"),
     (re.compile(r"\bmu\b"), "μ"),
@@ -45,13 +53,22 @@ def number(value: float | None, digits: int = 4) -> str:
 def interval(value: float, half_width: float) -> str:
     """The value with the digits that its interval leaves; four where there is none.
 
-    >>> interval(0.10729513, 0.00042692), interval(5.1238826, 0.29116), interval(0.21550513, 0.0)
-    ('0.1073 ± 0.0004', '5.1 ± 0.3', '0.2155')
+    >>> interval(0.10729513, 0.00042692), interval(12.345, 3.0), interval(0.21550513, 0.0)
+    ('0.1073 ± 0.0004', '12 ± 3', '0.2155')
     """
     if half_width == 0:
         return f"{value:.4g}"
     decimals = max(0, -math.floor(math.log10(half_width)))
     return f"{value:.{decimals}f} ± {half_width:.{decimals}f}"
+
+
+def unit_of(case: Case) -> tuple[str, float]:
+    """Return the unit in which a case's value is printed, and the factor to it.
+
+    >>> unit_of({"unit": "m"}), unit_of({"unit": "N"})
+    (('µm', 1000000.0), ('N', 1.0))
+    """
+    return _UNITS.get(case["unit"], (case["unit"], 1.0))
 
 
 def percent(share: float) -> str:

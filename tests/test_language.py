@@ -27,10 +27,8 @@ KEY = "key of recorded results"
 FAULT = "name of a fault in recorded results"
 
 EXCEPTIONS: dict[tuple[str, str], str] = {
-    ("reports/recorded.py", "withheld"): "former key, in the example of a renamed one",
     ("reports/reproduction_figures.py", "summits"): SUMMITS,
     ("reports/studies/benchmarks.py", "seconds again"): KEY,
-    ("reports/studies/extremes.py", "honest failure"): VERDICT,
     ("verification/benchmarks/summary.py", "seconds again"): KEY,
     ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
     ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,

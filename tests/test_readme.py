@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from reports.result_files import read_result
+from reports.result_files import committed
 from tests.documents import ROOT, blocks, commands, run
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -72,8 +72,7 @@ def test_the_table_of_bars_is_that_of_the_results() -> None:
     page = (ROOT / "docs/error-bars.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| ([\w, -]+) to (0\.\d+) \| (.*) \|$", page, flags=re.M)
     assert len(rows) == 6
-    files = [ROOT / "reports/results" / f"{name}.json" for name in ("coverage", "coverage_fresh")]
-    studies = [read_result(path) for path in files]
+    studies = [committed(name) for name in ("coverage", "coverage_fresh")]
     for name, accuracy, rest in rows:
         halves = [
             found["numbers"][JUDGED[name]]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.result_files import read_result
+from reports.result_files import committed
 from tests.documents import ROOT
 
 NUMBERS = ("contact_area", "contact_area_corrected", "friction_coefficient", "max_pressure", "approach")
@@ -16,7 +16,7 @@ def test_every_class_and_number_is_that_of_the_study() -> None:
     for line in lines[start : lines.index("", start)]:
         name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
         stated[name] = cells
-    table = read_result(ROOT / "reports" / "results" / "coverage_classes.json")["table"]
+    table = committed("coverage_classes")["table"]
     found: dict[str, list[str]] = {}
     for row in table:
         if row["class"] and row["number"] in NUMBERS:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from reports.result_files import read_result
+from reports.result_files import committed
 from tests.documents import ROOT
 
 PAGE = (ROOT / "docs/costs.md").read_text(encoding="utf-8")
@@ -46,7 +46,7 @@ TABLE: dict[str, Number] = {
 
 
 EVERY = frozenset({OURS, ALONE, PEER, QUICKEST, SHEARED, SLOPED})
-RUNS = read_result(ROOT / "reports/results/benchmarks.json")["runs"]
+RUNS = committed("benchmarks")["runs"]
 
 
 def newest(codes: frozenset[str] = EVERY) -> dict[tuple[str, int], tuple[Ratios, Rows]]:

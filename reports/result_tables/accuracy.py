@@ -5,70 +5,63 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from reports.result_tables.markdown import Row, link, number, section
+from reports.exhibit import Column
+from reports.result_tables.markdown import Row, link, listing, number, section
 from reports.studies.benchmarks import newest_rows
-from reports.text import percent
+from reports.text import QUANTITIES, percent
+
+COVERAGE: dict[str, Column] = {
+    "number": "label",
+    "accuracy": "{accuracy:g}",
+    "scenes": "scenes",
+    "reached": lambda row: percent(row["met"]),
+    "covered": lambda row: percent(row["covered"]),
+    "covered at worst": lambda row: percent(row["covered_at_worst"]),
+    "error bar over error": lambda row: number(row["median_bar_over_error"], ".1f"),
+    "cost": lambda row: number(row["median_cost"], ".1f"),
+    "file": lambda row: link(row["study"]),
+}
 
 
 def coverage(documents: Mapping[str, Any]) -> str:
     """Coverage of the reference by error bars."""
-    labels = {
-        "friction_coefficient": "μ",
-        "contact_area": "A",
-        "contact_area_corrected": "A, perimeter-corrected",
-        "max_pressure": "p_max",
-    }
-    rows: list[Row] = []
-    for name in ("coverage", "coverage_fresh"):
-        for entry in documents[name]["accuracies"]:
-            for quantity, label in labels.items():
-                found = entry["numbers"][quantity]
-                rows.append(
-                    (
-                        label,
-                        f"{entry['accuracy']:g}",
-                        found["scenes"],
-                        percent(found["met"]),
-                        percent(found["covered"]),
-                        percent(found["covered_at_worst"]),
-                        number(found["median_bar_over_error"], ".1f"),
-                        number(found["median_cost"], ".1f"),
-                        link(name),
-                    )
-                )
-    head = (
-        "number", "accuracy", "scenes", "reached", "covered", "covered at worst", "error bar over error",
-        "cost", "file",
-    )  # fmt: skip
+    rows = [
+        {**entry["numbers"][quantity], "label": label, "accuracy": entry["accuracy"], "study": study}
+        for study in ("coverage", "coverage_fresh")
+        for entry in documents[study]["accuracies"]
+        for quantity, label in QUANTITIES.items()
+    ]
     text = (
         "Error bars of 95 % against far finer grids, on random scenes that the estimator was not fitted to. "
         "*Reached*: on grids up to 512². *At worst*: the reference is off by its own bound, against the "
         "error bar. *Error bar over error* and *cost* are medians. The cost is in transforms, over that of "
         "the cheapest grid that would have been enough."
     )
-    return section("Coverage of error bars", text, head, rows)
+    return listing("Coverage of error bars", text, rows, COVERAGE)
+
+
+OWN = {
+    "solver": "refimpl-solver",
+    "with error bars": "refimpl",
+    "with friction": "refimpl+friction",
+    "with friction and slopes": "refimpl+friction+slopes",
+}
+PEERS = {"ASPHER": "aspher", "Tamaas": "tamaas", "ContactMechanics": "ContactMechanics"}
 
 
 def costs(benchmarks: Mapping[str, Any]) -> str:
-    """Seconds of this code and of published solvers, newest run of each."""
-    own = {
-        "refimpl-solver": "solver",
-        "refimpl": "with error bars",
-        "refimpl+friction": "with friction",
-        "refimpl+friction+slopes": "with friction and slopes",
-    }
-    peers = {"aspher": "ASPHER", "tamaas": "Tamaas", "ContactMechanics": "ContactMechanics"}
+    """Seconds of this code and ratios of published solvers, newest run of each."""
     rows: list[Row] = []
     for (kind, M), entries in newest_rows(benchmarks["runs"]).items():
         found = {row["code"]: row for row in entries}
-        cells = [number(median(found.get(code), "seconds")) for code in own]
-        cells += [number(median(found.get(code, {}).get("ratio"), "seconds")) for code in peers]
+        cells = [number(_median(found.get(code))) for code in OWN.values()]
+        cells += [number(_median(found.get(code, {}).get("ratio"))) for code in PEERS.values()]
         rows.append((f"{kind} flat", f"{M}²", *cells, link("benchmarks")))
     head = (
         "surface",
         "grid",
-        *(f"{label} (s)" for label in own.values()),
-        *(f"ratio: {label}" for label in peers.values()),
+        *(f"{label} (s)" for label in OWN),
+        *(f"ratio: {name}" for name in PEERS),
         "file",
     )
     text = (
@@ -80,9 +73,9 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
     return section("Time", text, head, rows)
 
 
-def median(row: Mapping[str, Any] | None, clock: str) -> float | None:
-    """The median of a benchmark's row; None for a code that was not timed."""
-    return None if row is None or clock not in row else row[clock]["median"]
+def _median(row: Mapping[str, Any] | None) -> float | None:
+    """The median of the seconds of a benchmark's row; None for a code that was not timed."""
+    return None if row is None or "seconds" not in row else row["seconds"]["median"]
 
 
 def accuracy_costs(costs: Mapping[str, Any]) -> str:

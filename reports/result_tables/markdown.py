@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
+from reports.exhibit import Column, table
+from reports.result_files import SUFFIX
 from reports.results import Case
 
 RUN = "quick"
 """The run that the report is made of; the other files are beside it."""
 
 Row = Sequence[object]
+
+
+def listing(title: str, text: str, records: Iterable[Any], columns: Mapping[str, Column]) -> str:
+    """Return a section with the table of the records (`reports.exhibit.table`)."""
+    made = table(text, records, columns)
+    return section(title, text, made.head, made.rows)
 
 
 def section(title: str, text: str, head: Sequence[str], rows: Sequence[Row]) -> str:
@@ -31,7 +40,7 @@ def number(value: float | None, digits: str = ".2g") -> str:
 
 def link(name: str) -> str:
     """A link to a result file."""
-    return f"[{name}.json](results/{name}.json)"
+    return f"[{name}.json](results/{name}{SUFFIX})"
 
 
 def origin(case: Case) -> str:

@@ -7,18 +7,21 @@ from typing import Any
 
 from reports.claims import VERDICTS, Judged, judged
 from reports.evidence import Evidence
-from reports.result_tables.markdown import RUN, Row, link, origin, section
-from reports.text import interval, symbols
+from reports.exhibit import Column
+from reports.result_tables.markdown import RUN, Row, link, listing, origin, section
+from reports.results import Case
+from reports.text import interval, symbols, unit_of
 
 
 def table_3(reproduction: Mapping[str, Any]) -> str:
     """The paper's Table 3, printed and computed."""
     cases = {case["id"]: case["data"] for case in reproduction["cases"]}
-    mu, area, peak = (cases[f"reproduction/table3-{name}-full"] for name in ("mu", "area", "peak"))
+    data = [cases[f"reproduction/table3-{name}-full"] for name in ("mu", "area", "peak")]
+    first = data[0]
     rows: list[Row] = []
-    for k, roughness in enumerate(mu["sigma_e (um)"]):
-        cells: list[object] = [f"{roughness:.3f}", f"{mu['mesh'][k]}²", mu["realisations"][k]]
-        for found, scale in ((mu, 1.0), (area, 1e6), (peak, 1e-9)):
+    for k, roughness in enumerate(first["sigma_e (um)"]):
+        cells: list[object] = [f"{roughness:.3f}", f"{first['mesh'][k]}²", first["realisations"][k]]
+        for found, scale in zip(data, (1.0, 1e6, 1e-9), strict=True):
             computed, half_width = scale * found["ours"][k], scale * found["half width 95 %"][k]
             cells += [f"{scale * found['printed'][k]:.4g}", interval(computed, half_width)]
         rows.append([*cells, link("reproduction")])
@@ -33,51 +36,47 @@ def table_3(reproduction: Mapping[str, Any]) -> str:
     return section("Table 3 of the paper", text, head, rows)
 
 
+def _scaled(case: Case, key: str) -> str:
+    """Value or reference in the printed unit; nothing for cases without a reference."""
+    return "" if case["reference"] is None else f"{unit_of(case)[1] * case[key]:.7g}"
+
+
+HERTZ: dict[str, Column] = {
+    "quantity": "title",
+    "unit": lambda case: unit_of(case)[0],
+    "computed": lambda case: _scaled(case, "value"),
+    "exact": lambda case: _scaled(case, "reference"),
+    "error": "{error:.1e}",
+    "tolerance": "{tolerance:.1e}",
+    "status": "status",
+    "file": lambda case: link(RUN),
+}
+
+
 def hertz(run: Mapping[str, Any]) -> str:
     """The smooth ball against Hertz' solution."""
-    rows: list[Row] = []
-    for case in run["cases"]:
-        if case["id"].startswith("hertz/"):
-            unit, scale = {"Pa": ("MPa", 1e-6), "m": ("µm", 1e6)}.get(case["unit"], (case["unit"], 1.0))
-            value, reference = (None if x is None else scale * x for x in (case["value"], case["reference"]))
-            rows.append(
-                (
-                    case["title"],
-                    unit,
-                    "" if reference is None else f"{value:.7g}",
-                    "" if reference is None else f"{reference:.7g}",
-                    f"{case['error']:.1e}",
-                    f"{case['tolerance']:.1e}",
-                    case["status"],
-                    link(RUN),
-                )
-            )
-    head = ("quantity", "unit", "computed", "exact", "error", "tolerance", "status", "file")
     text = (
         "Smooth ball under 70 N without friction. Errors of quantities are relative, errors of orders of "
         "convergence absolute."
     )
-    return section("Hertz contact", text, head, rows)
+    return listing("Hertz contact", text, (c for c in run["cases"] if c["id"].startswith("hertz/")), HERTZ)
+
+
+CLAIMS: dict[str, Column] = {
+    "verdict": lambda item: item.verdict,
+    "where": lambda item: item.claim.label,
+    "as printed": lambda item: f"“{symbols(item.claim.quote)}”",
+    "found": lambda item: symbols(item.finding),
+    "evidence": lambda item: ", ".join(f"`{case['id']}`" for case in item.cases[:2]),
+    "file": lambda item: origin(item.cases[0]),
+}
 
 
 def claims(evidence: Evidence) -> str:
     """List the paper's claims that do not hold or hold with conditions, and errata."""
     found = judged(evidence.cases, evidence.errata)
-    rows: list[Row] = [
-        (
-            item.verdict,
-            item.claim.label,
-            f"“{symbols(item.claim.quote)}”",
-            symbols(item.finding),
-            ", ".join(f"`{case['id']}`" for case in item.cases[:2]),
-            origin(item.cases[0]),
-        )
-        for verdict in VERDICTS[:4]
-        for item in found
-        if item.verdict == verdict and item.cases
-    ]
-    head = ("verdict", "where", "as printed", "found", "evidence", "file")
-    return "\n\n".join([section("Claims of the paper", _counted(found), head, rows), errata(evidence)])
+    shown = [item for verdict in VERDICTS[:4] for item in found if item.verdict == verdict and item.cases]
+    return "\n\n".join([listing("Claims of the paper", _counted(found), shown, CLAIMS), errata(evidence)])
 
 
 def _counted(items: Sequence[Judged]) -> str:
@@ -93,17 +92,13 @@ def _counted(items: Sequence[Judged]) -> str:
 def errata(evidence: Evidence) -> str:
     """List printed text and its correction."""
     cases = {case["id"]: case for case in evidence.cases}
-    rows = [
-        (
-            erratum["equation"],
-            symbols(erratum["printed"]),
-            symbols(erratum["corrected"]),
-            symbols(erratum["measure"]),
-            f"{erratum['printed_error']:.2g}",
-            f"{erratum['corrected_error']:.2g}",
-            origin(cases[erratum["case"]]),
-        )
-        for erratum in evidence.errata
-    ]
-    head = ("equation", "printed", "corrected", "measure", "as printed", "as corrected", "file")
-    return section("Errata of the paper", "", head, rows)
+    columns: dict[str, Column] = {
+        "equation": "equation",
+        "printed": lambda erratum: symbols(erratum["printed"]),
+        "corrected": lambda erratum: symbols(erratum["corrected"]),
+        "measure": lambda erratum: symbols(erratum["measure"]),
+        "as printed": "{printed_error:.2g}",
+        "as corrected": "{corrected_error:.2g}",
+        "file": lambda erratum: origin(cases[erratum["case"]]),
+    }
+    return listing("Errata of the paper", "", evidence.errata, columns)

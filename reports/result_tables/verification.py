@@ -9,10 +9,6 @@ from reports.evidence import Evidence
 from reports.result_tables.markdown import Row, link, section
 from reports.results import FORMAT, STATUSES
 
-_EXTREMES = {
-    "extreme inputs": "extremes",
-}
-
 
 def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
     """Counts of statuses, by result file."""
@@ -41,14 +37,13 @@ def studies(documents: Mapping[str, Any]) -> str:
 
 def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
     """Rows of searches for inputs that are answered wrongly."""
-    for what, name in _EXTREMES.items():
-        found = documents[name]["counts"]
-        yield (
-            what,
-            f"{found['right']} right, {found['honest failure']} detected failures, "
-            f"{found['wrong']} wrong, {found['crash']} crashes",
-            link(name),
-        )
+    found = documents["extremes"]["counts"]
+    yield (
+        "extreme inputs",
+        f"{found['right']} right, {found['honest failure']} detected failures, "
+        f"{found['wrong']} wrong, {found['crash']} crashes",
+        link("extremes"),
+    )
     invariants = documents["hypothesis"]
     yield (
         "random examples of invariants",

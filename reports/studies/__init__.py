@@ -3,30 +3,21 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 from collections.abc import Mapping
 from typing import Any
 
-from reports.exhibit import Exhibit, Table
-from reports.results import ResultFileError
+from reports.exhibit import Exhibit
+from reports.results import OTHER_SHAPE, ResultFileError
 
 
 def exhibit(name: str, document: Mapping[str, Any]) -> Exhibit:
-    """The study's exhibit, by the module of its name, or its single numbers where there is none.
+    """Return the study's exhibit, by the module of its name.
 
     Raises ResultFileError where the file lacks what the module needs.
     """
-    module = f"{__name__}.{name}"
-    if importlib.util.find_spec(module) is None:
-        return _plain(name, document)
+    build = importlib.import_module(f"{__name__}.{name}").build
     try:
-        built: Exhibit = importlib.import_module(module).build(document)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as lacking:
+        built: Exhibit = build(document)
+    except OTHER_SHAPE as lacking:
         raise ResultFileError(f"the study {name} lacks {lacking}") from lacking
     return built
-
-
-def _plain(name: str, document: Mapping[str, Any]) -> Exhibit:
-    rows = [(key, value) for key, value in document.items() if isinstance(value, str | float | int | bool)]
-    title = name.replace("_", " ").capitalize()
-    return Exhibit(title, tables=[Table("Its single numbers.", ("name", "value"), rows)])

@@ -2,172 +2,108 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from matplotlib.figure import Figure as Canvas
-
-from reports.drawing import COLOURS, MARKERS, Data, Figure
-from reports.exhibit import Cell, Document, Exhibit, Table
+from reports.drawing import Data, Figure, curves
+from reports.exhibit import Cell, Column, Document, Exhibit, Table, table
 
 OURS = "refimpl"
-STYLES = ("-", "--", ":")  # by the number of pluses in a code's name
 Row = Mapping[str, Any]
 
 
 def build(document: Document) -> Exhibit:
-    """A table for each surface, the record of all runs, and seconds over the grid."""
+    """Return a table for each surface, and seconds over the grid."""
     runs = document["runs"]
     newest = newest_rows(runs)
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
     last = runs[-1]["conditions"]
-    told = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
-    versions = [version for version in told if not version.endswith(" None")]  # None: commit alone
+    named = dict.fromkeys(v for run in runs for v in run["conditions"]["versions"].values())
+    versions = [version for version in named if not version.endswith(" None")]  # None: commit alone
     return Exhibit(
         "Speed beside published solvers",
         (
             "Table 1's paraboloid under 70 N on a smooth and on a rough flat (0.5 um), in free space. The "
             "codes take turns, each in a process of its own, and each stops at the loosest of its own "
             f"tolerances whose result has a {last['target']}.",
-            f"Threads for every code: {last['threads']}. Clock: {last['clock']}. Seconds are medians with "
-            "the least and the most; ratios are medians of the ratios within rounds. A second solve in the "
-            "same process follows (warm-run time), as the next ones of a sweep.",
+            f"Clock: {last['clock']}. Seconds are medians with the least and the most; ratios are medians of "
+            "the ratios within rounds. A second solve in the same process follows (warm-run time), as the "
+            "next ones of a sweep.",
             f"Versions: {', '.join(versions)}.",
         ),
-        [*(_table(kind, newest) for kind in kinds), _record(runs)],
-        [(_figure(kinds), _series(kinds, newest))],
+        [_table(kind, newest) for kind in kinds],
+        [_seconds(kind, newest) for kind in kinds],
     )
 
 
 def newest_rows(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
-    """By surface and grid, each code's newest row, with the ratios and the commit of its own run."""
+    """By surface and grid, each code's newest row, with ratios, commit and conditions of its own run."""
     found: dict[tuple[str, int], dict[str, Row]] = {}
     for run in runs:
         ratios = {(entry["kind"], entry["M"]): entry for entry in run["ratios"]}
         for row in run["rows"]:
             key = (row["kind"], row["M"])
             origin = {"ratio": ratios[key].get(row["code"]), "commit": run["provenance"]["commit"]}
-            found.setdefault(key, {})[row["code"]] = {**row, **origin}
+            found.setdefault(key, {})[row["code"]] = {**run["conditions"], **row, **origin}
     ordered = sorted(found.items(), key=lambda item: (item[0][0] != "smooth", item[0]))
     return {key: list(rows.values()) for key, rows in ordered}
 
 
 def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
-    head = (
-        "grid", "code", "seconds", "warm-run time", "ratio to this code", "ratio of processor times",
-        "recomputed gap", "area (mm²)", "peak (MPa)", "peak memory (MB)", "convolutions in all",
-        "times one convolution", "commit",
-    )  # fmt: skip
-    rows: list[Sequence[Cell]] = []
-    for (of, M), entries in newest.items():
-        if of == kind:
-            rows += [_cells(M, row) for row in entries]
     caption = (
         f"{kind.capitalize()} flat. A convolution is rfft2 and irfft2 on the padded bounding box of the "
         "final contact; others count by n log n. Ratios are of a code's own run."
     )
-    return Table(caption, head, rows)
+    return table(caption, [row for (of, _), rows in newest.items() if of == kind for row in rows], TIMES)
 
 
-def _cells(M: int, row: Row) -> Sequence[Cell]:
-    commit = str(row["commit"])[:12]
-    if "seconds" not in row:
-        return (f"{M}²", row["code"], row["failure"], *[None] * 9, commit)
-    ratio = row["ratio"]
-    coupled = row["code"].startswith(f"{OURS}+")
-    return (
-        f"{M}²",
-        row["code"],
-        _spread(row["seconds"]),
-        row["seconds again"]["median"] if "seconds again" in row else None,
-        _spread(ratio["seconds"]) if ratio else None,
-        _spread(ratio["processor seconds"]) if ratio else None,
-        None if coupled else row["gap"],
-        f"{1e6 * row['area']:.5f}",
-        f"{1e-6 * row['peak']:.3f}",
-        round(1e-6 * row["peak memory"]["median"]),
-        row.get("convolution equivalents"),
-        row["times one convolution"]["median"],
-        commit,
-    )
+def _measured(column: Callable[[Row], Cell]) -> Callable[[Row], Cell]:
+    """The column, and None for a code that was not timed."""
+    return lambda row: column(row) if "seconds" in row else None
 
 
 def _spread(values: Row) -> str:
     return f"{values['median']:.3g} ({values['least']:.2g} to {values['most']:.2g})"
 
 
-def _record(runs: Sequence[Row]) -> Table:
-    rows: list[Sequence[Cell]] = []
-    for run in runs:
-        provenance, conditions = run["provenance"], run["conditions"]
-        for ratios in run["ratios"]:
-            rows.append(
-                (
-                    provenance["date"],
-                    str(provenance["commit"])[:12],
-                    f"{ratios['kind']}, {ratios['M']}²",
-                    conditions["rounds"],
-                    conditions["threads"],
-                    conditions["load average"]["before"][0],
-                    _fastest(ratios, "fastest peer"),
-                    _fastest(ratios, "fastest set-up of a peer"),
-                    _fastest(ratios, "fastest peer, solver alone"),
-                    _fastest(ratios, "fastest peer, solver alone, again"),
-                )
-            )
-    head = (
-        "date", "commit", "problem", "rounds", "threads", "load average", "fastest peer, as recommended",
-        "fastest set-up of any peer", "fastest peer over our solver alone", "the same, second solve",
-    )  # fmt: skip
-    caption = "Every run so far, with the peers' ratio to this code; no run is ever removed."
-    return Table(caption, head, rows)
+def _ratio(clock: str) -> Callable[[Row], Cell]:
+    return _measured(lambda row: _spread(row["ratio"][clock]) if row["ratio"] else None)
 
 
-def _fastest(ratios: Row, which: str) -> str | None:
-    entry = ratios.get(which)
-    return None if entry is None else f"{entry['code']}, {entry['seconds over ours']:.3g}"
+TIMES: dict[str, Column] = {
+    "grid": "{M}²",
+    "code": "code",
+    "seconds": lambda row: _spread(row["seconds"]) if "seconds" in row else row["failure"],
+    "warm-run time": _measured(lambda row: row.get("seconds again", {"median": None})["median"]),
+    "ratio to this code": _ratio("seconds"),
+    "ratio of processor times": _ratio("processor seconds"),
+    "recomputed gap": _measured(lambda row: None if row["code"].startswith(f"{OURS}+") else row["gap"]),
+    "area (mm²)": _measured(lambda row: f"{1e6 * row['area']:.5f}"),
+    "peak (MPa)": _measured(lambda row: f"{1e-6 * row['peak']:.3f}"),
+    "peak memory (MB)": _measured(lambda row: round(1e-6 * row["peak memory"]["median"])),
+    "convolutions in all": _measured(lambda row: row.get("convolution equivalents")),
+    "times one convolution": _measured(lambda row: row["times one convolution"]["median"]),
+    "rounds, threads, load": lambda row: (
+        f"{row['rounds']}, {row['threads']}, {row['load average']['before'][0]:.0f}"
+    ),
+    "commit": "{commit!s:.12}",
+}
 
 
-def _series(kinds: Sequence[str], newest: Mapping[tuple[str, int], Sequence[Row]]) -> dict[str, Any]:
-    series: dict[str, dict[str, list[float]]] = {}
-    for (kind, M), entries in newest.items():
-        for row in entries:
-            if "seconds" in row:
-                line = series.setdefault(f"{kind}, {row['code']}", {"M": [], "s": []})
-                line["M"].append(M)
-                line["s"].append(row["seconds"]["median"])
-    return {
-        "kinds": list(kinds),
-        "seconds": {name: [*map(list, line.values())] for name, line in series.items()},
-    }
-
-
-def _figure(kinds: Sequence[str]) -> Figure:
-    return Figure(
+def _seconds(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> tuple[Figure, Data]:
+    """Median seconds over the grid, a curve for each code; this code's terms are in the tables."""
+    timed = [row for (of, _), rows in newest.items() if of == kind for row in rows if "seconds" in row]
+    codes = list(dict.fromkeys(row["code"] for row in timed if not row["code"].startswith(f"{OURS}+")))
+    grids = sorted({row["M"] for row in timed})
+    medians = {(row["code"], row["M"]): row["seconds"]["median"] for row in timed}
+    figure = curves(
         "*",
-        ("kinds", "seconds"),
-        _draw,
-        "Seconds over the grid, at a recomputed gap of 1e-8.",
-        (4.4 * len(kinds), 4.8),
+        f"Seconds over the grid at a recomputed gap of 1e-8, {kind} flat.",
+        "M",
+        {code: code for code in codes},
+        xlabel="elements per side",
+        ylabel="seconds",
+        log="xy",
+        marker=True,
     )
-
-
-def _draw(canvas: Canvas, data: Data) -> None:
-    """One panel a surface, one colour a code; dashes and dots where it does more, or has other options."""
-    codes = list(dict.fromkeys(name.partition(", ")[2] for name in data["seconds"]))
-    families = list(dict.fromkeys(code.partition("+")[0] for code in codes))
-    panels = canvas.subplots(1, len(data["kinds"]), squeeze=False, sharey=True)[0]
-    for axes, kind in zip(panels, data["kinds"], strict=True):
-        grids = set()
-        for code in codes:
-            line = data["seconds"].get(f"{kind}, {code}")
-            if line is not None:
-                k, style = families.index(code.partition("+")[0]) % 6, STYLES[code.count("+") % 3]
-                axes.plot(*line, style, marker=MARKERS[k], color=COLOURS[k], label=code)
-                grids |= set(line[0])
-        axes.set(title=f"{kind} flat", xlabel="elements per side", xscale="log", yscale="log")
-        axes.set_xticks(sorted(grids), [str(M) for M in sorted(grids)])
-        axes.minorticks_off()
-    panels[0].set_ylabel("seconds")
-    lines, labels = panels[0].get_legend_handles_labels()
-    canvas.legend(lines, labels, loc="outside lower center", ncols=4, fontsize=8)
+    return figure, {"M": grids, **{code: [medians.get((code, M)) for M in grids] for code in codes}}

@@ -7,14 +7,25 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, MARKERS, Data, Figure
-from reports.exhibit import Document, Exhibit, Table
+from reports.drawing import COLOURS, INK, Data, Figure, look
+from reports.exhibit import Column, Document, Exhibit, Table, table
 
 NAMES = {
     "friction_coefficient": "mu",
     "contact_area": "A",
     "contact_area_corrected": "A, corrected",
     "max_pressure": "f_max",
+}
+BY_NUMBER: dict[str, Column] = {
+    "number": "number",
+    "accuracy": "accuracy",
+    "scenes": "scenes",
+    "reached (%)": lambda row: _percent(row["met"]),
+    "covered (%)": lambda row: _percent(row["covered"]),
+    "covered, reference off by its bound (%)": lambda row: _percent(row["covered_at_worst"]),
+    "error bar / error, median": lambda row: _rounded(row["median_bar_over_error"]),
+    "cost / cheapest, median": lambda row: _rounded(row["median_cost"]),
+    "cost within 2x (%)": lambda row: _percent(row["cost_at_most_2"]),
 }
 LOWEST = 1e-6  # errors below are drawn there: they are rounding and iteration
 LONGEST = 0.5  # bars beyond are drawn there, and those that have no end
@@ -25,15 +36,14 @@ def build(document: Document) -> Exhibit:
     first, last = document["seeds"]
     solves = document["solves"]
     summary = (
-        f"{last - first + 1} random scenes (seeds {first} to {last}, eight classes in turn), none of which "
-        f"the estimator was fitted to; {solves['count']} solves in {solves['seconds'] / 60:.0f} minutes of "
+        f"{last - first + 1} random scenes (seeds {first} to {last}, eight classes in turn); the estimator "
+        f"was fitted to none of them. {solves['count']} solves in {solves['seconds'] / 60:.0f} minutes of "
         f"processor time, worst residual {solves['worst_residual']:.1e}. The reference is the finest grid "
         "(1024, periodic scenes 512) less its edge's mean share, for p_max the height of the parabola "
-        "through its peak, which is the estimator's too; only grids at most half as fine are "
-        "requested. A bar covers the reference when it exceeds the value's distance from the reference; the "
-        "reference shares the edge's mean share with the estimator, so the next column moves the reference "
-        "by its whole bound, against the bar. Where the accuracy was "
-        "not reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
+        "through its peak; the estimator uses both as well. Only grids at most half as fine are requested. A "
+        "bar covers the reference when it exceeds the value's distance from the reference; in the next "
+        "column the reference is moved by its whole bound, against the bar. Where the accuracy was not "
+        "reached on these grids, the end is reported as such, with the bar that was. Each grid of a "
         "refinement sequence starts from the answer before, which changes its cost and no number by more "
         f"than {solves['worst_apart']:.1e} of it; the cheapest grid is solved afresh."
     )
@@ -46,7 +56,7 @@ def build(document: Document) -> Exhibit:
 
 
 def _reference(document: Document) -> tuple[str, ...]:
-    """How far the references moved on a finer grid, if that was looked at."""
+    """Sentence on the change of the references on a finer grid, if that was computed."""
     checked = document["reference_check"]
     if not checked["seeds"]:
         return ()
@@ -58,32 +68,12 @@ def _reference(document: Document) -> tuple[str, ...]:
 
 def _by_number(document: Document) -> Table:
     rows = [
-        (
-            NAMES[number],
-            judged["accuracy"],
-            found["scenes"],
-            _percent(found["met"]),
-            _percent(found["covered"]),
-            _percent(found["covered_at_worst"]),
-            _rounded(found["median_bar_over_error"]),
-            _rounded(found["median_cost"]),
-            _percent(found["cost_at_most_2"]),
-        )
+        {**found, "number": NAMES[number], "accuracy": judged["accuracy"]}
         for judged in document["accuracies"]
         for number, found in judged["numbers"].items()
     ]
-    head = (
-        "number",
-        "accuracy",
-        "scenes",
-        "reached (%)",
-        "bar holds (%)",
-        "holds, reference off by its bound (%)",
-        "bar / error, median",
-        "cost / cheapest, median",
-        "cost within 2x (%)",
-    )
-    return Table("Bars by number and accuracy; cost in transforms, all grids over the cheapest.", head, rows)
+    caption = "Error bars by number and accuracy; cost in transforms, all grids over the cheapest."
+    return table(caption, rows, BY_NUMBER)
 
 
 def _by_class(judged: dict[str, Any]) -> Table:
@@ -91,7 +81,9 @@ def _by_class(judged: dict[str, Any]) -> Table:
         (kind, *(_percent(found["covered"]) if found["scenes"] else None for found in numbers.values()))
         for kind, numbers in judged["classes"].items()
     ]
-    caption = f"Share of bars that hold at accuracy {judged['accuracy']:g}, by class (%)."
+    caption = (
+        f"Share of error bars that cover the reference at accuracy {judged['accuracy']:g}, by class (%)."
+    )
     return Table(caption, ("class", *NAMES.values()), rows)
 
 
@@ -116,7 +108,7 @@ def _series(judged: dict[str, Any]) -> dict[str, Any]:
 
 
 def _draw(canvas: Canvas, data: Data) -> None:
-    """True error over bar for each number; above the line a bar does not hold."""
+    """True error over bar for each number; above the line the bar does not cover."""
     number, kind = np.array(data["number"]), np.array(data["class"])
     error = np.maximum(np.array(data["error"], dtype=float), LOWEST)
     bar = np.array(data["bar"], dtype=float)
@@ -127,23 +119,15 @@ def _draw(canvas: Canvas, data: Data) -> None:
     for axes, name in zip(all_axes, NAMES.values(), strict=True):
         for k, group in enumerate(classes):
             here = (number == name) & (kind == group)
-            style = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]}
+            style = {"linestyle": "none", "markersize": 3.5, "label": group, **look(k)}
             face = style["color"] if k < len(COLOURS) else "none"
-            axes.plot(
-                bar[here],
-                error[here],
-                linestyle="none",
-                markersize=3.5,
-                markerfacecolor=face,
-                label=group,
-                **style,
-            )
+            axes.plot(bar[here], error[here], markerfacecolor=face, **style)
         axes.plot([LOWEST, 1], [LOWEST, 1], color=INK, linewidth=1)
         axes.axvline(data["accuracy"], color=INK, linewidth=1, linestyle=":")
         held = np.mean(holds[number == name])
         limits = LOWEST / 1.5, 1.5 * LONGEST
-        axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, xlabel="relative bar")
-        axes.set_title(f"{name}: {100 * held:.1f} % hold")
+        axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, xlabel="relative error bar")
+        axes.set_title(f"{name}: {100 * held:.1f} % covered")
     all_axes[0].set_ylabel("relative error against the reference")
     handles, labels = all_axes[0].get_legend_handles_labels()
     canvas.legend(handles, labels, loc="outside lower center", ncols=8, fontsize=8)

@@ -1,26 +1,53 @@
-"""Who passes what: published solvers and ours through one suite, and how close each comes to its limits."""
+"""Published solvers and ours through one suite: verdicts, and errors as shares of the tolerance."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from reports.drawing import Data, Figure
-from reports.exhibit import Cell, Document, Exhibit, Table
+from reports.exhibit import Column, Document, Exhibit, Table, table
 
 _DECADES = 4  # decades of the figure's colours, on both sides of the tolerance
+Row = Mapping[str, Any]
+
+
+def _judged(entrant: Row) -> int:
+    counts: Mapping[str, int] = entrant["counts"]
+    return sum(counts.values()) - counts["unavailable"]
+
+
+ENTRANTS: dict[str, Column] = {
+    "code": "name",
+    "version": "version",
+    "role": "role",
+    "passed": lambda e: f"{e['counts']['pass']} of {_judged(e)}",
+    "failed": lambda e: e["counts"]["fail"] + e["counts"]["error"],
+    "not applicable": lambda e: e["counts"]["unavailable"],
+    "seconds": "seconds",
+    "worst residual": "worst residual",
+    "set-up": "setup",
+}
 
 
 def build(document: Document) -> Exhibit:
-    """Entrants with their set-ups, verdicts case by case, and a map of error over tolerance."""
+    """Return entrants with their set-ups, verdicts case by case, and a map of error over tolerance."""
     entrants = [e for e in document["entrants"] if e["installed"]]
     absent = [e["version"] for e in document["entrants"] if not e["installed"]]
     cases = document["cases"]
-    shares = {e["name"]: _shares(e, cases) for e in entrants}
+    slugs = [str(case["id"]).partition("/")[2] for case in cases]
+    found = {e["name"]: {row["id"]: row for row in e["results"]} for e in entrants}
+    shares = {
+        name: [_share(rows[case["id"]], case["metric"]) for case in cases] for name, rows in found.items()
+    }
+    verdicts = [
+        (slug, case["title"], *(_verdict(rows[case["id"]], case["metric"]) for rows in found.values()))
+        for slug, case in zip(slugs, cases, strict=True)
+    ]
     paragraphs = [
         "Every code solves the problems that it can pose, by its own recommended set-up; what it cannot pose "
         "is not counted for or against it. Peers stop at tolerances derived from those of the suite.",
@@ -29,76 +56,35 @@ def build(document: Document) -> Exhibit:
     ]
     if absent:
         paragraphs.append(f"Not measured: {', '.join(absent)}.")
-    return Exhibit(
-        "Cross-code table",
-        paragraphs,
-        [_overview(entrants), _verdicts(entrants, cases)],
-        [(_figure(cases), {"case": [_slug(case) for case in cases], "share of tolerance": shares})],
-    )
-
-
-def _overview(entrants: Sequence[Mapping[str, Any]]) -> Table:
-    head = (
-        "code",
-        "version",
-        "role",
-        "passed",
-        "failed",
-        "not applicable",
-        "seconds",
-        "worst residual",
-        "set-up",
-    )
-    rows: list[Sequence[Cell]] = []
-    for e in entrants:
-        counts = e["counts"]
-        judged = sum(counts.values()) - counts["unavailable"]
-        failed = counts["fail"] + counts["error"]
-        rows.append(
-            (
-                e["name"],
-                e["version"],
-                e["role"],
-                f"{counts['pass']} of {judged}",
-                failed,
-                counts["unavailable"],
-                e["seconds"],
-                e["worst residual"],
-                e["setup"],
-            )
-        )
-    caption = (
+    overview = (
         "Cases passed of those that apply; seconds in the solver for all of them; and the worst residual of "
         "gap over elastic energy, load balance and tension, recomputed from the returned pressures."
     )
-    return Table(caption, head, rows)
-
-
-def _verdicts(entrants: Sequence[Mapping[str, Any]], cases: Sequence[Mapping[str, Any]]) -> Table:
-    by_name = {e["name"]: {row["id"]: row for row in e["results"]} for e in entrants}
-    rows: list[Sequence[Cell]] = []
-    for case in cases:
-        verdicts = [_verdict(rows_of[case["id"]], case["metric"]) for rows_of in by_name.values()]
-        rows.append((_slug(case), case["title"], *verdicts))
     caption = "Verdict and error as a share of the case's tolerance: up to 1 is a pass."
-    return Table(caption, ("case", "what", *by_name), rows)
+    figure = Figure(
+        "*",
+        ("case", "share of tolerance"),
+        _map,
+        "Error over tolerance, case by case: blue within it, red beyond; grey where a code does not offer "
+        "what the case asks for, or answered nothing that could be judged.",
+        (7.4, 1.2 + 0.19 * len(cases)),
+    )
+    return Exhibit(
+        "Cross-code table",
+        paragraphs,
+        [table(overview, entrants, ENTRANTS), Table(caption, ("case", "what", *found), verdicts)],
+        [(figure, {"case": slugs, "share of tolerance": shares})],
+    )
 
 
-def _verdict(row: Mapping[str, Any], metric: str) -> str:
+def _verdict(row: Row, metric: str) -> str:
     share = _share(row, metric)
     if row["status"] == "unavailable":
         return "not applicable"
-    if share is None:
-        return str(row["status"])
-    return f"{row['status']}, {share:.2g}"
+    return str(row["status"]) if share is None else f"{row['status']}, {share:.2g}"
 
 
-def _shares(entrant: Mapping[str, Any], cases: Sequence[Mapping[str, Any]]) -> list[float | None]:
-    rows = {row["id"]: row for row in entrant["results"]}
-    return [_share(rows[case["id"]], case["metric"]) for case in cases]
-
-
-def _share(row: Mapping[str, Any], metric: str) -> float | None:
+def _share(row: Row, metric: str) -> float | None:
     """Error over tolerance; for a figure of merit the other way round. None where nothing was measured."""
     error, tolerance = row["error"], row["tolerance"]
     if error is None:
@@ -107,32 +93,15 @@ def _share(row: Mapping[str, Any], metric: str) -> float | None:
     return above / below if below else math.inf if above else 0.0
 
 
-def _slug(case: Mapping[str, Any]) -> str:
-    return str(case["id"]).partition("/")[2]
-
-
-def _figure(cases: Sequence[Mapping[str, Any]]) -> Figure:
-    return Figure(
-        "*",
-        ("case", "share of tolerance"),
-        _map,
-        "Error over tolerance, case by case: blue within it, red beyond; grey where a code does not offer "
-        "what the case asks for, or answered nothing that could be judged.",
-        (7.4, 1.2 + 0.19 * len(cases)),
-    )
-
-
 def _map(canvas: Canvas, data: Data) -> None:
     """Decades from the tolerance, one column a code."""
     names, cases = list(data["share of tolerance"]), data["case"]
     field = np.array([data["share of tolerance"][name] for name in names], dtype=float).T
     with np.errstate(divide="ignore"):
-        decades = np.clip(np.log10(field), -_DECADES, _DECADES)
+        decades = np.ma.masked_invalid(np.clip(np.log10(field), -_DECADES, _DECADES))
     axes = canvas.add_subplot()
     axes.set_facecolor("#9a9a9a")
-    image = axes.imshow(
-        np.ma.masked_invalid(decades), cmap="RdBu_r", vmin=-_DECADES, vmax=_DECADES, aspect="auto"
-    )
+    image = axes.imshow(decades, cmap="RdBu_r", vmin=-_DECADES, vmax=_DECADES, aspect="auto")
     axes.set_xticks(range(len(names)), names, rotation=30, ha="left", fontsize=8)
     axes.xaxis.tick_top()
     axes.set_yticks(range(len(cases)), cases, fontsize=7)

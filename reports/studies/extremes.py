@@ -1,33 +1,59 @@
-"""Extremes: verdicts and digits by axis, the limits found, lawful states, precision and condition numbers."""
+"""Extremes: verdicts and digits by axis, limits found, lawful states, precision, conditioning."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
-from reports.exhibit import Document, Exhibit, Table
-from reports.extremes_figures import CONDITION, KEPT, LAWFUL, LOST
+import numpy as np
+from matplotlib.figure import Figure as Canvas
+from matplotlib.patches import Patch
 
-Row = Mapping[str, Any]
-VERDICTS = ("right", "honest failure", "wrong", "crash")
+from reports.drawing import COLOURS, INK, Data, Figure
+from reports.exhibit import Column, Document, Exhibit, Table, table
+
+VERDICTS = {"right": "right", "honest failure": "detected failure", "wrong": "wrong", "crash": "crash"}
+"""Recorded verdicts, and their names here."""
 DRAWN = ("load", "contact set", "material", "friction", "topography", "grid")
+NOT_RIGHT = {"honest failure": "#b0b0b0", "wrong": COLOURS[1], "crash": COLOURS[5]}
+"""Colours of verdicts without digits."""
+
+BY_SERIES: dict[str, Column] = {
+    "axis": "axis",
+    "series": "series",
+    "from": "from",
+    "to": "to",
+    **{name: verdict for verdict, name in VERDICTS.items()},
+    "fewest digits kept": "fewest digits",
+    "median": "median digits",
+    "judged by": "oracle",
+}
+LIMITS: dict[str, Column] = {
+    "what happens": "what",
+    "why": "why",
+    "what would help": "remedy",
+    "states": "states",
+}
+LAWFUL: dict[str, Column] = {
+    "tau / mean pressure": "tau",
+    "none": "none",
+    "one": "one",
+    "several": "several",
+    "solver not converged": lambda row: _not_converged(row["statuses"]["fft"]),
+}
+CONDITIONING = ("M", "condition", "CG iterations", "digits lost by a direct solve")
 
 
 def build(document: Document) -> Exhibit:
-    """The chapter's part on extremes."""
+    """Return the tables of the study, and a map of the digits that results keep."""
     rows, counts = document["states"], document["counts"]
-    said = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS)
-    lawful = document["lawful states"]
-    statuses = [row["statuses"]["fft"] for row in lawful]
-    taus = {
-        "tau / mean pressure": [row["tau"] for row in lawful],
-        **{name: [row[name] for row in lawful] for name in ("none", "one", "several")},
-        "not converged": [sum(told.values()) - told.get("converged", 0) for told in statuses],
-    }
+    found = ", ".join(f"{counts[verdict]} {name}" for verdict, name in VERDICTS.items())
+    conditioning = document["conditioning"]
     return Exhibit(
         "Every axis to the point of failure",
         (
-            f"{len(rows)} states: {said}. Right: within its limit of an oracle that shares nothing with the "
+            f"{len(rows)} states: {found}. Right: within its limit of an oracle that shares nothing with the "
             "solver: the discrete problem in 34 digits, a scaling law, a closed form. Detected failure: "
             "refused, or a status that says so. Crash: an exception without a reason, or no end in the time "
             "allowed.",
@@ -37,20 +63,31 @@ def build(document: Document) -> Exhibit:
         ),
         [
             _by_axis(rows),
-            _by_series(document["table"]),
-            _limits(document["limits"]),
+            table("Every series, its range, and its verdicts.", document["table"], BY_SERIES),
+            table(
+                "Limits found: where this implementation stops being a reference.", document["limits"], LIMITS
+            ),
             _causes(document["precision"]),
+            table(
+                "Lawful states of 40 rough flats on 3 x 3 elements, counted by trying all contact sets.",
+                document["lawful states"],
+                LAWFUL,
+            ),
+            Table(
+                "Condition number of the dense flexibility on M x M elements, about 1.66 M, and its cost.",
+                CONDITIONING,
+                list(zip(*(conditioning.get(name, ()) for name in CONDITIONING), strict=True)),
+            ),
         ],
-        [
-            (KEPT, {"digits kept": _kept(rows)}),
-            (LOST, document["precision"]),
-            (LAWFUL, taus),
-            (CONDITION, document["conditioning"]),
-        ],
+        [(KEPT, {"digits kept": _kept(rows)})],
     )
 
 
-def _by_axis(rows: Sequence[Row]) -> Table:
+def _not_converged(statuses: dict[str, int]) -> int:
+    return sum(statuses.values()) - statuses.get("converged", 0)
+
+
+def _by_axis(rows: Sequence[dict[str, Any]]) -> Table:
     found = []
     for axis in dict.fromkeys(row["axis"] for row in rows):
         group = [row for row in rows if row["axis"] == axis]
@@ -58,37 +95,20 @@ def _by_axis(rows: Sequence[Row]) -> Table:
         counts = [sum(row["verdict"] == verdict for row in group) for verdict in VERDICTS]
         least_and_median = (digits[0], digits[len(digits) // 2]) if digits else (None, None)
         found.append((axis, len(group), *counts, *least_and_median))
-    head = ("axis", "states", *VERDICTS, "fewest digits kept", "median")
+    head = ("axis", "states", *VERDICTS.values(), "fewest digits kept", "median")
     return Table("Verdicts by axis; digits of the right ones.", head, found)
 
 
-def _by_series(table: Sequence[Row]) -> Table:
-    head = ("axis", "series", "from", "to", *VERDICTS, "fewest digits kept", "median", "judged by")
-    keys = ("axis", "series", "from", "to", *VERDICTS, "fewest digits", "median digits", "oracle")
-    return Table(
-        "Every series, its range, and its verdicts.", head, [[row[key] for key in keys] for row in table]
-    )
-
-
-def _limits(limits: Sequence[Row]) -> Table:
-    keys = ("what", "why", "remedy", "states")
-    caption = "Limits found: where this implementation stops being a reference."
-    return Table(
-        caption, ("what happens", "why", "what would help", "states"), [[r[k] for k in keys] for r in limits]
-    )
-
-
-def _causes(precision: Mapping[str, Any]) -> Table:
-    names, lost = precision["arithmetic"], precision["digits lost"]
-    head = ("quantity", *names, "cause", "what this code does")
+def _causes(precision: dict[str, Any]) -> Table:
+    head = ("quantity", *precision["arithmetic"], "cause", "what this code does")
     rows = [
         (name, *values, precision["cause"][name], precision["cure"][name] or "it is this code's form")
-        for name, values in lost.items()
+        for name, values in precision["digits lost"].items()
     ]
     return Table("Decimal digits lost in each arithmetic, why, and the cure.", head, rows)
 
 
-def _kept(rows: Sequence[Row]) -> dict[str, list[Any]]:
+def _kept(rows: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
     """Digits, or the verdict of what is not right, by series of the production solver."""
     found: dict[str, list[Any]] = {}
     for row in rows:
@@ -97,3 +117,45 @@ def _kept(rows: Sequence[Row]) -> dict[str, list[Any]]:
             right = row["verdict"] == "right"
             found.setdefault(name, []).append(row["digits"] if right else row["verdict"])
     return found
+
+
+def _draw_kept(canvas: Canvas, data: Data) -> None:
+    """Digits kept along each series, in colours; other verdicts apart."""
+    series = data["digits kept"]
+    columns = max(map(len, series.values()))
+    axes = canvas.add_subplot()
+    values = np.full((len(series), columns), np.nan)
+    present = set()
+    for i, states in enumerate(series.values()):
+        edges = np.linspace(0, columns, len(states) + 1).round().astype(int)
+        for state, (low, high) in zip(states, pairwise(edges), strict=True):
+            if isinstance(state, str):
+                present.add(state)
+                colour = NOT_RIGHT[state]
+                axes.axhspan(
+                    i - 0.5, i + 0.5, low / columns, high / columns, facecolor=colour, edgecolor=INK, lw=0.2
+                )
+            else:
+                values[i, low:high] = state
+    image = axes.imshow(np.ma.masked_invalid(values), cmap="viridis", vmin=0, vmax=16, aspect="auto")
+    axes.grid(visible=False)
+    axes.set_yticks(range(len(series)), list(series), fontsize=7.5)
+    axes.set_xticks([-0.5, columns - 0.5], ["first state", "last state"])
+    axes.set_xlabel("along the axis, to the end given in the table")
+    legend = [
+        Patch(facecolor=c, edgecolor=INK, label=VERDICTS[name])
+        for name, c in NOT_RIGHT.items()
+        if name in present
+    ]
+    if legend:
+        canvas.legend(handles=legend, loc="outside upper right", ncols=len(legend))
+    canvas.colorbar(image, ax=axes, label="decimal digits kept", shrink=0.6)
+
+
+KEPT = Figure(
+    "*",
+    ("digits kept",),
+    _draw_kept,
+    "Digits that results of the production solver keep along each series, against the oracle.",
+    (8.6, 7.2),
+)

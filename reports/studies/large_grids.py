@@ -2,42 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from reports.exhibit import Column, Document, Exhibit, table
 
-from reports.exhibit import Exhibit, Table
+CAPTION = (
+    "Each solve in a process of its own, one thread. Work is that of all transforms over one real "
+    "transform of the grid; iterations are those on the finest grid. Seconds are of a busy machine."
+)
+COLUMNS: dict[str, Column] = {
+    "surface": "surface",
+    "terms": "terms",
+    "grid": "{M}²",
+    "status": "status",
+    "iterations": "finest iterations",
+    "work in transforms": "{transforms:.0f}",
+    "bytes an element": "{bytes an element:.0f}",
+    "peak memory (GB)": lambda row: f"{row['peak memory (bytes)'] / 1e9:.2f}",
+    "processor seconds": "{processor seconds:.3g}",
+}
 
 
-def build(document: Mapping[str, Any]) -> Exhibit:
-    """Return the table of solves."""
-    rows = [
-        (
-            row["surface"],
-            row["terms"],
-            f"{row['M']}²",
-            row["status"],
-            row["finest iterations"],
-            f"{row['transforms']:.0f}",
-            f"{row['bytes an element']:.0f}",
-            f"{row['peak memory (bytes)'] / 1e9:.2f}",
-            f"{row['processor seconds']:.3g}",
-        )
-        for row in document["rows"]
-        if "failure" not in row
-    ]
-    head = (
-        "surface",
-        "terms",
-        "grid",
-        "status",
-        "iterations",
-        "work in transforms",
-        "bytes an element",
-        "peak memory (GB)",
-        "processor seconds",
-    )
-    caption = (
-        "Each solve in a process of its own, one thread. Work is that of all transforms over one real "
-        "transform of the grid; iterations are those on the finest grid. Seconds are of a busy machine."
-    )
-    return Exhibit("Large grids", tables=[Table(caption, head, rows)])
+def build(document: Document) -> Exhibit:
+    """Return the table of the solves that ended."""
+    rows = [row for row in document["rows"] if "failure" not in row]
+    return Exhibit("Large grids", tables=[table(CAPTION, rows, COLUMNS)])

@@ -1,33 +1,27 @@
-"""Sweeps: what a neighbour's answer saves, in work."""
+"""Sweeps: seconds by number of workers, and work that a neighbour's answer saves."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from reports.exhibit import Column, Document, Exhibit, table
 
-from reports.exhibit import Exhibit, Table
+WORKERS: dict[str, Column] = {"workers": "workers", "seconds a run": "{seconds:.3g}"}
+NEIGHBOURS: dict[str, Column] = {
+    "surface": "surface",
+    "neighbour": "neighbour",
+    "cold": "{cold:.0f}",
+    "from the neighbour": "{from the neighbour:.0f}",
+}
 
 
-def build(document: Mapping[str, Any]) -> Exhibit:
+def build(document: Document) -> Exhibit:
     """Return the tables of workers and of neighbours."""
-    workers = [(name, f"{seconds:.3g}") for name, seconds in document["seconds a run"].items()]
-    rows = [
-        (row["surface"], row["neighbour"], f"{row['cold']:.0f}", f"{row['from the neighbour']:.0f}")
-        for row in document["neighbours"]
-    ]
-    grid = document["grid"]
+    workers = [{"workers": n, "seconds": seconds} for n, seconds in document["seconds a run"].items()]
+    first = (
+        f"Seconds a run on {document['grid']}² elements, by workers; 0: one process, one solve after the "
+        "other."
+    )
+    second = "Work in transforms of a solve from a neighbour's answer on this grid, beside a cold one."
     return Exhibit(
         "Sweeps",
-        tables=[
-            Table(
-                f"Seconds a run on {grid}² elements, by workers; 0: one process, one solve after the other.",
-                ("workers", "seconds a run"),
-                workers,
-            ),
-            Table(
-                "Work in transforms of a solve from a neighbour's answer on this grid, beside a cold one.",
-                ("surface", "neighbour", "cold", "from the neighbour"),
-                rows,
-            ),
-        ],
+        tables=[table(first, workers, WORKERS), table(second, document["neighbours"], NEIGHBOURS)],
     )

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 import refimpl as rf
-from reports.result_files import read_result
-from tests.layers import ROOT
+from reports.result_files import committed
 from verification.cases.appendix_a.model_form import METAL
 from verification.cases.appendix_a.model_form_study import CREST, LOADS, SLOPES, pair_of, scene_of
 
@@ -15,7 +14,7 @@ SHARE = LOADS[1]
 
 def committed_errors() -> dict[float, float]:
     """Percent by which N at a given approach is off, by maximum slope (degrees)."""
-    document = read_result(ROOT / "reports" / "results" / "model_form.json")
+    document = committed("model_form")
     [found] = [case for case in document["cases"] if case["id"] == "model-form/metal-crest-medium"]
     return dict(zip(SLOPES, map(abs, found["data"]["normal, as printed"]), strict=True))
 

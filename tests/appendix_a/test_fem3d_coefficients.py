@@ -21,6 +21,7 @@ from appendix_a.fem3d.patch import boussinesq, cerruti, normal_coefficient
 from appendix_a.fem3d.space import space
 from appendix_a.fem3d.surface import X, Y, flat_sample, outer_displacements, sample, solved
 from appendix_a.fem3d.wavy import Kind, Waviness
+from reports.result_files import committed
 
 NU = 0.3
 
@@ -193,7 +194,7 @@ def test_fields_are_written_through_meshio(tmp_path: Path) -> None:
 
 def test_committed_table() -> None:
     """It has all of the study's points, to 0.2 % of flat, and full rows confirm what quick ones state."""
-    rows = study.load(Path(__file__).parents[2] / "reports" / "results" / "appendix_a_3d.json")
+    rows = committed("appendix_a_3d")["points"]
     wanted = {tuple(asdict(p).values()) for p in study.points()}
     names = list(asdict(study.points()[0]))
     best: dict[tuple[object, ...], float] = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from importlib.resources import as_file, files
 from pathlib import Path
 
@@ -9,11 +10,10 @@ import numpy as np
 import pytest
 
 from appendix_a.errors import InputError
-from appendix_a.fem3d import study
 from appendix_a.fem3d.coefficients import LABELS
 from appendix_a.fem3d.table import Series, Table3D, condensed, main
+from reports.result_files import committed
 
-STUDY = Path(__file__).parents[2] / "reports" / "results" / "appendix_a_3d.json"
 FLANK = Series(20.0, 0.25, 0.3)
 
 
@@ -24,8 +24,9 @@ def table() -> Table3D:
 
 
 def test_the_shipped_table_is_the_committed_study(tmp_path: Path) -> None:
-    made = tmp_path / "table.json"
-    assert main([str(STUDY), str(made)]) == 0
+    study_file, made = tmp_path / "study.json", tmp_path / "table.json"
+    study_file.write_text(json.dumps(committed("appendix_a_3d")))
+    assert main([str(study_file), str(made)]) == 0
     shipped = files("refimpl") / "data" / "coefficient_error_3d.json"
     assert made.read_text() == shipped.read_text(encoding="utf-8")
 
@@ -35,7 +36,11 @@ def test_every_point_is_known_to_two_tenths_of_a_percent(table: Table3D) -> None
 
 
 def test_tabulated_slopes_are_met_and_those_between_lie_between(table: Table3D) -> None:
-    rows = {row["slope_deg"]: row["error"] for row in condensed(study.load(STUDY)) if at_flank(row)}
+    rows = {
+        row["slope_deg"]: row["error"]
+        for row in condensed(committed("appendix_a_3d")["points"])
+        if at_flank(row)
+    }
     for slope, error in rows.items():
         assert table.error(FLANK, slope) == pytest.approx(error, rel=1e-12)
     slopes = np.array([0.0, 8.0, 10.0])

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from reports.comparison import compared
+from reports.generator import render
 from tests.reports.sample import case, results
 
 LARGE: dict[str, Any] = {"reference": 2e6, "tolerance": 0.1}
@@ -42,3 +43,16 @@ def test_another_status_is_a_change_whatever_the_value(old: str, new: str) -> No
     assert change.old is not None
     assert change.new is not None
     assert (change.old["status"], change.new["status"]) == (old, new)
+
+
+def test_every_kind_of_change_is_on_the_page() -> None:
+    old = results(case("a/1"), case("b/1"), case("c/1"), case("d/1"))
+    new = results(case("a/1", value=1.01 + 1e-5), case("b/1", "fail"), case("c/1", value=1.05), case("e/1"))
+    assert [(c.kind, c.id) for c in compared(old, new)] == [
+        ("status", "b/1"),
+        ("value", "c/1"),
+        ("not run", "d/1"),
+        ("new", "e/1"),
+    ]
+    assert "Changes against the older run" in render(new, {}, old)
+    assert "No case changed" in render(new, {}, new)

@@ -9,10 +9,9 @@ from typing import Any
 import pytest
 
 from reports.contestant import rerun
-from reports.evidence import gathered
+from reports.evidence import gathered, groups
 from reports.generator import render
 from reports.results import ResultFileError, check
-from reports.summary import groups
 from tests.reports.sample import case, results
 from tests.reports.test_generator import Page, summary_of
 from verification.cli import parser

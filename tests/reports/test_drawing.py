@@ -1,16 +1,20 @@
-"""Kinds of figures: they draw what they are given, and the export follows the page's colours."""
+"""Figures: they draw what they are given, in the page's colours, and their data as CSV."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, Draw, Figure, complete, dots, lines, maps, order, svg
+from reports.catalogue import DECLARED
+from reports.drawing import INK, Draw, Figure, complete, curves, dots, maps, order, svg
 from reports.exhibit import as_csv
+from reports.reproduction_figures import LOADS
+from reports.yield_figures import BEYOND_YIELD, MODELS
 
 
 def drawn(draw: Draw, data: dict[str, Any]) -> Canvas:
@@ -29,8 +33,9 @@ def test_an_order_figure_states_the_fitted_order() -> None:
 
 
 def test_lines_hold_the_series() -> None:
-    axes = drawn(lines("x", {"p": "pressure"}, exact={"hertz": "Hertz"}, xlabel="x (mm)", ylabel="MPa"),
-                 {"x": [0, 1], "p": [1, None], "hertz": [1, 2]}).axes[0]  # fmt: skip
+    figure = curves("*", "", "x", {"p": "pressure"}, exact={"hertz": "Hertz"}, xlabel="x (mm)", ylabel="MPa")
+    assert figure.needs == ("x", "p", "hertz")
+    axes = drawn(figure.draw, {"x": [0, 1], "p": [1, None], "hertz": [1, 2]}).axes[0]
     np.testing.assert_array_equal(axes.lines[1].get_ydata(), [1, 2])
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), [1, np.nan])
     assert axes.lines[1].get_linestyle() == "--"
@@ -46,7 +51,7 @@ def test_lines_hold_the_series() -> None:
     ],
 )
 def test_few_points_of_a_logarithmic_axis_are_its_ticks(x: list[float], labels: list[str] | None) -> None:
-    draw = lines("x", {"y": "y"}, xlabel="x", ylabel="y", log="x")
+    draw = curves("*", "", "x", {"y": "y"}, xlabel="x", ylabel="y", log="x").draw
     axes = drawn(draw, {"x": x, "y": x}).axes[0]
     shown = [tick.get_text() for tick in axes.get_xticklabels()]
     assert (shown == labels) is (labels is not None)
@@ -69,7 +74,7 @@ def test_maps_have_x_to_the_right_and_blank_zeros() -> None:
 
 
 def test_the_export_takes_the_readers_colours() -> None:
-    figure = Figure("*", ("x", "y"), lines("x", {"y": "y"}, xlabel="x", ylabel="y"), "a caption")
+    figure = curves("*", "a caption", "x", {"y": "y"}, xlabel="x", ylabel="y")
     text = svg(figure, {"x": [0, 1], "y": [1, 2]})
     assert text is not None
     assert INK not in text
@@ -79,24 +84,24 @@ def test_the_export_takes_the_readers_colours() -> None:
 
 @pytest.mark.parametrize("data", [{}, {"x": [1]}, {"x": [1], "y": []}, {"x": [1], "y": None}])
 def test_missing_series_make_no_picture(data: dict[str, Any]) -> None:
-    figure = Figure("*", ("x", "y"), lines("x", {"y": "y"}, xlabel="x", ylabel="y"), "a caption")
+    figure = curves("*", "a caption", "x", {"y": "y"}, xlabel="x", ylabel="y")
     assert svg(figure, data) is None
 
 
 def test_curves_that_coincide_have_a_panel_of_their_difference() -> None:
-    draw = lines(
-        "x", {"p": "ours"}, exact={"q": "exact"}, band=("w", "95 %"), xlabel="x", ylabel="p",
+    draw = curves(
+        "*", "", "x", {"p": "ours"}, exact={"q": "exact"}, band=("w", "95 %"), xlabel="x", ylabel="p",
         difference="less", per_x=10.0,
-    )  # fmt: skip
+    ).draw  # fmt: skip
     above, below = drawn(draw, {"x": [0, 1], "p": [1.0, 2.0], "q": [1.0, 1.5], "w": [0.1, 0.1]}).axes
     np.testing.assert_array_equal(below.lines[0].get_ydata(), [0.0, 0.5])
     np.testing.assert_array_equal(above.lines[0].get_xdata(), [0, 10])
     assert (above.get_xlabel(), below.get_xlabel(), below.get_ylabel()) == ("", "x", "less")
 
 
-def test_what_is_drawn_beside_the_record_is_in_the_csv() -> None:
-    figure = Figure(
-        "*", ("x",), lines("x", {"y": "y"}, xlabel="", ylabel=""), "", derived=lambda d: {"y": d["x"]}
+def test_derived_series_are_in_the_csv() -> None:
+    figure = replace(
+        curves("*", "", "x", {"y": "y"}, xlabel="", ylabel=""), needs=("x",), derived=lambda d: {"y": d["x"]}
     )
     assert as_csv(figure, complete(figure, {"x": [1, 2]})).splitlines() == ["x,y", "1,1", "2,2"]
     assert svg(figure, {"x": [1, 2]}) is not None
@@ -109,15 +114,62 @@ def test_labels_have_symbols_and_names_are_left_alone() -> None:
     assert {"μ over 3 µm", "τ", "tau-bar"} <= set(texts)
 
 
-@pytest.mark.parametrize("page", ["#ffffff", "#17181b"])
-@pytest.mark.parametrize("colour", COLOURS)
-def test_colours_are_seen_on_light_and_dark(colour: str, page: str) -> None:
-    """Contrast of at least 3 after WCAG 2.1."""
-    shades = [luminance(colour), luminance(page)]
-    assert (max(shades) + 0.05) / (min(shades) + 0.05) >= 3
+@pytest.mark.parametrize(
+    ("data", "text"),
+    [
+        ({"a": [1, 2], "b": [0.5]}, "a,b\n1,0.5\n2,\n"),
+        ({"a": [1], "b": {"x": 2, "y": [3, 4]}}, "a\n1\nb\nx,2\ny,3,4\n"),
+        ({"a": [[1, 2], [3, 4]], "b": [5]}, "b\n5\na\n1,2\n3,4\n"),
+        ({"a": [{"x": 1}, 2], "b": 0.25}, "a\n{'x': 1}\n2\nb\n0.25\n"),
+    ],
+)
+def test_everything_that_a_figure_needs_is_in_the_file(data: dict[str, object], text: str) -> None:
+    figure = Figure("*", ("a", "b"), lambda *_: None, "")
+    assert as_csv(figure, data) == text
 
 
-def luminance(colour: str) -> float:
-    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
-    return sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+def test_the_file_holds_what_else_the_case_recorded_in_six_digits() -> None:
+    figure = Figure("*", ("a",), lambda *_: None, "")
+    data = {"b": [1 / 3], "a": [2], "verdict": "confirmed", "c": 0.5}
+    assert as_csv(figure, data) == "a,b\n2,0.333333\nc\n0.5\n"
+
+
+@pytest.mark.parametrize(
+    "figure", DECLARED, ids=lambda figure: f"{figure.cases} {' '.join(figure.needs)[:40]}"
+)
+def test_a_figure_has_columns_a_drawing_and_a_sentence(figure: Figure) -> None:
+    assert callable(figure.draw)
+    assert isinstance(figure.caption, str)
+    assert len(figure.caption.split()) > 3
+    assert figure.caption.endswith(".")
+    assert len(set(figure.needs)) == len(figure.needs) > 0
+    assert all(isinstance(name, str) for name in (figure.cases, *figure.needs))
+
+
+def half_widths(axes: Any) -> list[float]:
+    """Half of each error bar's length at the first place."""
+    segments = [container.lines[2][0].get_segments()[0] for container in axes.containers]
+    return [float(np.ptp(segment[:, 1])) / 2 for segment in segments]
+
+
+def test_each_mean_of_section_8_has_its_own_interval() -> None:
+    """Curves in the order of loads, elastic before capped: half widths of 0.001 to 0.006."""
+    data: dict[str, Any] = {"sigma_e (um)": [0.5, 1.0], "psi": [1.0, 2.0], "Eq. (11)": 0.1}
+    for k, (load, model) in enumerate((load, model) for load in LOADS for model in MODELS):
+        width = 0.001 * (k + 1)
+        data |= {
+            f"mu, {model}, {load}": [0.11 + 0.001 * k] * 2,
+            f"mu half width, {model}, {load}": [width] * 2,
+        }
+        data |= {f"A (mm^2), {model}, {load}": [k + 1.0] * 2}
+        data |= {f"A half width (mm^2), {model}, {load}": [10 * width] * 2}
+        data |= {f"mean pressure / H, {model}, {load}": [0.1 * k, 0.2], f"plastic share, {load}": [0.3, 0.4]}
+    canvas = Canvas()
+    BEYOND_YIELD[0].draw(canvas, data)
+    friction, area, pressure, share = canvas.axes
+    assert half_widths(friction) == pytest.approx([0.001, 0.002, 0.003, 0.004, 0.005, 0.006])
+    assert half_widths(area) == pytest.approx([0.01, 0.02, 0.03, 0.04, 0.05, 0.06])
+    means = [container.lines[0].get_ydata()[0] for container in friction.containers]
+    assert means == pytest.approx([0.11, 0.111, 0.112, 0.113, 0.114, 0.115])
+    assert [line.get_ydata()[0] for line in pressure.lines[:6]] == pytest.approx([0, 0.1, 0.2, 0.3, 0.4, 0.5])
+    assert [list(line.get_ydata()) for line in share.lines] == [[0.3, 0.4]] * 3

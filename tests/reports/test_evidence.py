@@ -1,4 +1,4 @@
-"""Runs gathered, the paper traced, runs compared: what stands where, and what must not hide."""
+"""Runs gathered and the paper traced: what stands where, and what must not hide or be flattered."""
 
 from __future__ import annotations
 
@@ -6,16 +6,12 @@ from fnmatch import fnmatchcase
 
 import pytest
 
-from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper
-from reports.comparison import compared
-from reports.evidence import gathered
+from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper, parts
+from reports.evidence import gathered, groups
 from reports.findings import fields
-from reports.generator import render
-from reports.parts import PARTS
 from reports.result_files import read_results
-from reports.results import ResultFileError
-from reports.studies import exhibit
-from reports.summary import groups
+from reports.results import ResultFileError, check, worst
+from reports.revisions import revisions_of
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
 from verification.framework.registry import load
@@ -33,15 +29,11 @@ def test_the_run_outweighs_committed_runs_and_the_newest_judged_of_those_counts(
     found = gathered(results(case("a/1", value=1.09)), {"older": older, "newer": newer, "study": {"x": 1}})
     values = {c["id"]: (c["value"], c["origin"] and c["origin"]["file"]) for c in found.cases}
     assert values == {"a/1": (1.09, None), "b/1": (1.02, "newer.json"), "c/1": (1.0, "older.json")}
+    command = "rough-friction verify --tier quick"
+    origin = {"file": "newer.json", "date": "2002-01-01", "commit": "0123456789abcdef", "command": command}
+    assert [c["origin"] for c in found.cases if c["id"] == "b/1"] == [origin]
     assert [group.counts["pass"] for group in groups(found)] == [3]
     assert list(found.studies) == ["study"]
-
-
-def test_names_of_earlier_versions_are_read_as_those_of_today() -> None:
-    old = {"obliqueness": {"left out": [1]}, "bar": {"2031: 1 withheld": 0.5}}
-    run, committed = (results(case(id, data=old)) for id in ("a/1", "b/1"))
-    for found in gathered(run, {"file": committed}).cases:
-        assert found["data"] == {"slope terms": {"neglected": [1]}, "bar": {"2031: 1 excluded": 0.5}}
 
 
 def test_errata_of_committed_runs_count_the_newest_of_each() -> None:
@@ -79,7 +71,7 @@ def test_no_claim_holds_on_missing_or_failed_evidence() -> None:
 
 def test_the_least_favourable_verdict_counts_and_long_cases_replace_quick_ones() -> None:
     quick = case("reproduction/eq10", data={"verdict": "confirmed"})
-    long = case("reproduction/eq10-full", data={"verdict": "refuted"})
+    long = case("reproduction/eq10-full", data={"verdict": "not confirmed"})
     row = next(r for r in judged([quick, long], []) if r.claim.label == "Eq. (10)")
     assert [c["id"] for c in row.cases] == ["reproduction/eq10-full"]
     assert row.verdict == "not confirmed"
@@ -97,23 +89,9 @@ def test_a_verdict_of_the_matrix_is_not_milder_than_its_cases() -> None:
 def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
     claims = paper()
     assert {claim.verdict for claim in claims} <= set(VERDICTS[1:])
-    assert {claim.part for claim in claims} <= {part.name for part in PARTS} | {""}
+    assert {claim.part for claim in claims} <= {part.name for part in parts()} | {""}
     labels = [claim.label for claim in claims]
     assert len(labels) == len(set(labels))
-
-
-def test_changes_beyond_uncertainty_only() -> None:
-    old = results(case("a/1"), case("b/1"), case("c/1"), case("d/1"))
-    new = results(case("a/1", value=1.01 + 1e-5), case("b/1", "fail"), case("c/1", value=1.05), case("e/1"))
-    assert [(c.kind, c.id) for c in compared(old, new)] == [
-        ("status", "b/1"),
-        ("value", "c/1"),
-        ("not run", "d/1"),
-        ("new", "e/1"),
-    ]
-    page = render(new, {}, old)
-    assert "Changes against the older run" in page
-    assert "No case changed" in render(new, {}, new)
 
 
 def test_a_long_case_that_did_not_pass_stands_beside_the_quick_one() -> None:
@@ -124,12 +102,49 @@ def test_a_long_case_that_did_not_pass_stands_beside_the_quick_one() -> None:
         assert row.verdict == NOT_ESTABLISHED
 
 
-def test_an_unknown_study_is_shown_by_its_numbers() -> None:
-    shown = exhibit("something_new", {"score": 0.5, "rows": [1, 2]})
-    assert shown.title == "Something new"
-    assert list(shown.tables[0].rows) == [("score", 0.5)]
+@pytest.mark.parametrize("status", ["error", "unavailable"])
+def test_committed_cases_that_were_not_judged_are_shown_as_such(status: str) -> None:
+    """In all runs but one it was not judged; the newest of these stands where no run judged it."""
+    older = dated("2001-01-01", case("a/1", status, note="older"), case("b/1", status))
+    newer = dated("2002-01-01", case("a/1", status, note="newer"))
+    found = gathered(results(case("c/1")), {"older": older, "newer": newer})
+    assert {c["id"]: (c["status"], c["note"]) for c in found.cases} == {
+        "a/1": (status, "newer"),
+        "b/1": (status, ""),
+        "c/1": ("pass", ""),
+    }
+    (group,) = groups(found)
+    assert [c["id"] for c in group.not_passed] == ["a/1", "b/1"]
+    assert group.counts == {"pass": 1, "fail": 0, "error": 0, "unavailable": 0} | {status: 2}
 
 
-def test_a_study_without_its_numbers_is_refused() -> None:
-    with pytest.raises(ResultFileError, match="hypothesis"):
-        exhibit("hypothesis", {})
+def test_what_decides_about_several_cases() -> None:
+    order = ["error", "fail", "unavailable", "pass"]
+    for k in range(4):
+        assert worst([case(f"a/{j}", order[j]) for j in range(k, 4)]) == order[k]
+
+
+@pytest.mark.parametrize(("uncertainty", "refused"), [(19.9, False), (20.1, True)])
+def test_a_reference_is_as_certain_as_the_tolerance(uncertainty: float, refused: bool) -> None:
+    """A tenth of 200."""
+    made = results(case("a/1", value=201.0, reference=200.0, reference_uncertainty=uncertainty))
+    if refused:
+        with pytest.raises(ResultFileError, match="not that of its value"):
+            check(made)
+    else:
+        check(made)
+
+
+def test_a_file_has_the_date_and_the_commit_of_its_newest_run() -> None:
+    run, old, other = (dated(f"2001-01-0{day}", case(f"{day}/1")) for day in (1, 2, 3))
+    other["provenance"]["dirty"] = True
+    made = [{"provenance": {"date": f"2001-02-0{day}", "commit": None}} for day in (2, 3, 1)]
+    rows = revisions_of(gathered(run, {"old": old, "other": other, "study": {"runs": made, "x": [1]}}))
+    assert [(name, date) for name, date, _ in rows] == [
+        ("this run", "2001-01-01"),
+        ("old.json", "2001-01-02"),
+        ("other.json", "2001-01-03"),
+        ("study.json", "2001-02-03"),
+    ]
+    assert rows[2][2].endswith(" and uncommitted changes")
+    assert rows[3][2] == "n/a"

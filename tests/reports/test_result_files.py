@@ -1,8 +1,10 @@
-"""The compact form of result files loses nothing, is small, and is refused when it is damaged."""
+"""Result files keep every digit, plain or compressed, and are refused when they are damaged."""
 
 from __future__ import annotations
 
+import gzip
 import json
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -10,139 +12,101 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reports.result_files import LAYOUT, LayoutError, compact, main, read_result, read_results, write_result
-from tests.documents import ROOT
+from reports import result_files
+from reports.result_files import FOLDER, committed, main, read_result, read_results, write_result
+from verification.framework import files
 
-RESULTS = ROOT / "reports" / "results"
-RECORDS = [
-    {"name": f"{k % 3} of a text that is long enough to be shared", "x": k / 7, "y": 0.0} for k in range(9)
-]
+DOCUMENT = {"rows": [{"x": k / 7, "name": f"Größe {k}"} for k in range(90)], "none": None}
 SCALARS = (
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text()
 )
-KEYS = st.text(max_size=3).filter(lambda key: not key.startswith("$"))
 VALUES = st.recursive(
-    SCALARS | st.builds(lambda value, n: [value] * n, SCALARS, st.integers(0, 60)),
-    lambda inner: (
-        st.lists(inner, max_size=5)
-        | st.dictionaries(KEYS, inner, max_size=4)
-        | st.builds(lambda value, n: [value] * n, inner, st.integers(0, 4))
-        | st.lists(st.fixed_dictionaries({"a": inner, "b": inner}), max_size=4)
-        | st.dictionaries(KEYS, st.fixed_dictionaries({"a": inner, "b": inner}), max_size=4)
-    ),
-    max_leaves=30,
+    SCALARS, lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(), inner, max_size=4)
 )
 
 
-def text(document: object) -> str:
-    """Every number with all its digits, and the order of keys."""
-    return json.dumps(document)
-
-
-@given(document=st.dictionaries(KEYS, VALUES, max_size=5), most=st.integers(1, 2000))
+@given(document=VALUES)
+@pytest.mark.parametrize("name", ["a.json", "a.json.gz"])
 def test_documents_come_back_to_the_last_bit(
-    document: dict[str, Any], most: int, tmp_path_factory: pytest.TempPathFactory
+    name: str, document: Any, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    compact(document, most)  # raises where its files do not lead back
-    path = tmp_path_factory.mktemp("results") / "a.json"
+    """As text: -0.0 and 0, 1 and True, and the order of keys differ."""
+    path = tmp_path_factory.mktemp("results") / name
     write_result(document, path)
-    assert text(read_result(path)) == text(document)
+    assert json.dumps(read_result(path)) == json.dumps(document)
 
 
-def test_zeros_ones_and_booleans_are_not_mistaken() -> None:
-    mixed = 30 * [0.0] + 30 * [-0.0] + 30 * [0] + 30 * [False] + 30 * [1] + 30 * [True] + 30 * [1.0]
-    assert len(compact({"x": mixed})[0]) < 350
+@pytest.mark.parametrize("write", [write_result, files.write_result])
+def test_the_suffix_decides_and_the_bytes_are_the_same_again(write: Any, tmp_path: Path) -> None:
+    plain, packed, again = (tmp_path / name for name in ("a.json", "b.json.gz", "c.json.gz"))
+    for path in (plain, packed, again):
+        write(DOCUMENT, path)
+    assert json.loads(plain.read_text(encoding="utf-8")) == DOCUMENT
+    assert gzip.decompress(packed.read_bytes()) == plain.read_bytes()
+    assert packed.read_bytes() == again.read_bytes()
+    assert packed.stat().st_size < plain.stat().st_size / 2
+    assert read_results(tmp_path) == dict.fromkeys("abc", DOCUMENT)
 
 
-def test_records_are_columns_and_texts_are_stored_once() -> None:
-    (made,) = compact({"rows": RECORDS})
-    assert made.count('"name"') == 1
-    assert made.count("1 of a text") == 1
-    assert '{"$times":[9,0.0]}' in made
-    assert max(map(len, made.splitlines())) <= 110
+def test_a_plain_file_is_compressed_in_its_place(tmp_path: Path) -> None:
+    (tmp_path / "a.json").write_text(json.dumps(DOCUMENT, indent=1))
+    main([str(tmp_path / "a.json")])
+    main([str(tmp_path / "a.json.gz")])
+    assert [path.name for path in tmp_path.iterdir()] == ["a.json.gz"]
+    assert read_results(tmp_path) == {"a": DOCUMENT}
 
 
-def test_records_by_name_are_columns_and_names(tmp_path: Path) -> None:
-    """And files of before, which have no names, are read as they were."""
-    document = {"mu": {"mean": 0.5, "seen": 3}, "A": {"mean": 0.25, "seen": 3}}
-    (made,) = compact(document)
-    table = '{"$names":["mu","A"],"$table":{"mean":[0.5,0.25],"seen":[3,3]}}'
-    assert f'"document":{table},' in made
-    before = made.replace("version 2", "version 1").replace(table, json.dumps(document))
-    for number, form in enumerate((made, before)):
-        (tmp_path / f"{number}.json").write_text(form)
-        assert text(read_result(tmp_path / f"{number}.json")) == text(document)
+def test_a_name_with_both_forms_is_refused(tmp_path: Path) -> None:
+    for name in ("a.json", "a.json.gz", "b.json"):
+        write_result({}, tmp_path / name)
+    with pytest.raises(ValueError, match=r"a\.json and a\.json\.gz"):
+        read_results(tmp_path)
 
 
-def test_long_lists_continue_in_other_files(tmp_path: Path) -> None:
-    path, document = (
-        tmp_path / "a.json",
-        {"head": 1, "rows": [{"x": list(range(k, k + 90))} for k in range(9)]},
-    )
-    write_result(document, path, most_bytes=1000)
-    names = sorted(file.name for file in tmp_path.iterdir())
-    assert names[:2] == ["a.2.json", "a.3.json"]
-    assert max(file.stat().st_size for file in tmp_path.iterdir()) <= 1000
-    assert read_results(tmp_path) == {"a": document}
-    first = (tmp_path / "a.2.json").read_text()
-    document["rows"].append({"x": [0]})
-    write_result(document, path, most_bytes=1000)
-    assert (tmp_path / "a.2.json").read_text() == first  # only the end of a record that grows has changed
-    (tmp_path / "a.2.json").write_text(first.replace("1", "2", 1))
-    with pytest.raises(LayoutError, match=r"a\.2\.json does not belong to a\.json"):
-        read_result(path)
-    (tmp_path / "a.2.json").unlink()
-    with pytest.raises(LayoutError, match=r"continues in a\.2\.json, which is missing"):
-        read_result(path)
-    write_result({"rows": []}, path)
-    assert not (tmp_path / "a.2.json").exists()
-
-
-def test_plain_files_are_read_and_rewritten(tmp_path: Path) -> None:
-    path = tmp_path / "a.json"
-    path.write_text(json.dumps({"rows": RECORDS}, indent=1))
-    before = path.stat().st_size
-    assert read_result(path) == {"rows": RECORDS}
-    main([str(path)])
-    assert path.stat().st_size < before
-    assert read_result(path) == {"rows": RECORDS}
-
-
-@pytest.mark.parametrize("document", [{"x": float("nan")}, {"x": float("inf")}, {"$times": [3, 0]}])
-def test_what_it_cannot_hold_is_refused(document: dict[str, object], tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"JSON|begins with"):
-        write_result(document, tmp_path / "a.json")
+@pytest.mark.parametrize("number", [float("nan"), float("inf")])
+def test_what_json_does_not_hold_is_neither_written_nor_read(number: float, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="JSON"):
+        write_result({"x": number}, tmp_path / "a.json")
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    "damaged",
-    [
-        {"document": {"$same": "a"}, "shared": {}},
-        {"document": {"$same": "a"}, "shared": {"a": [{"$same": "a"}]}},
-        {"document": {"$same": []}, "shared": {}},
-        {"document": {"$table": {"x": [1], "y": [1, 2]}}, "shared": {}},
-        {"document": {"$table": 3}, "shared": {}},
-        {"document": {"$names": ["a"], "$table": {"x": [1, 2]}}, "shared": {}},
-        {"document": {"$names": [["a"], ["b"]], "$table": {"x": [1, 2]}}, "shared": {}},
-        {"document": [{"$times": [10**12, 0]}], "shared": {}},
-        {"document": [{"$times": [0, 0]}], "shared": {}},
-        {"document": [{"$times": ["x", 0]}], "shared": {}},
-        {"document": [{"$times": 7}], "shared": {}},
-        {"document": {}, "shared": {}},
-        {"document": {}, "shared": {}, "continued": {"list": "rows", "digests": 3}},
-        {"shared": {}},
-        {},
-    ],
-)
-def test_damaged_files_are_refused(damaged: dict[str, object], tmp_path: Path) -> None:
-    (tmp_path / "a.json").write_text(json.dumps({"layout": LAYOUT, **damaged}))
-    with pytest.raises(LayoutError):
+    (tmp_path / "a.json").write_text(json.dumps({"x": number}))
+    with pytest.raises(ValueError, match="is not JSON"):
         read_result(tmp_path / "a.json")
 
 
-def test_committed_results_are_as_the_writer_leaves_them() -> None:
-    """All but the study of `appendix_a`, which is no part of what imports the writer, one point a line."""
-    for path in RESULTS.glob("*.json"):
-        compact_form = json.loads(path.read_text(encoding="utf-8")).get("layout") == LAYOUT
-        assert compact_form == (path.stem != "appendix_a_3d"), path.name
+PACKED = gzip.compress(json.dumps(DOCUMENT).encode(), mtime=0)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        PACKED[:2],
+        PACKED[:-1],  # the checksum is cut
+        PACKED[:-9],
+        PACKED + b"x",
+        PACKED[:40] + b"\xff" + PACKED[41:],
+        gzip.compress(b'{"x": 1'),
+        gzip.compress(b"\xff"),
+        zlib.compress(b"{}"),
+    ],
+)
+def test_damaged_files_are_refused(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "a.json.gz").write_bytes(content)
+    with pytest.raises(ValueError):
+        read_result(tmp_path / "a.json.gz")
+
+
+def test_a_small_file_does_not_fill_the_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(result_files, "MOST_BYTES", 1000)
+    for zeros, accepted in ((900, True), (1_000_000, False)):
+        (tmp_path / "a.json.gz").write_bytes(gzip.compress(b"[" + b" " * zeros + b"]"))
+        if accepted:
+            assert read_result(tmp_path / "a.json.gz") == []
+        else:
+            with pytest.raises(ValueError, match="more than 1000 bytes"):
+                read_result(tmp_path / "a.json.gz")
+
+
+def test_committed_results_are_as_the_writer_leaves_them(tmp_path: Path) -> None:
+    for path in FOLDER.glob("*.json.gz"):
+        found = gzip.decompress(path.read_bytes())
+        assert found == result_files.encoded(committed(path.name.partition(".")[0]), tmp_path / "a.json")

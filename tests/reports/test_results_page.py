@@ -10,7 +10,6 @@ import pytest
 from reports.result_files import read_results
 from reports.result_tables.paper import table_3
 from reports.results_page import FOLDER, PAGE, page
-from reports.text import interval
 from tests.documents import ROOT
 
 
@@ -51,8 +50,3 @@ def test_table_3_has_the_printed_numbers(documents: dict[str, Any]) -> None:
         ["0.095", "0.07", "3.21"],
         ["0.089", "0.044", "5.28"],
     ]
-
-
-def test_an_interval_decides_the_digits() -> None:
-    assert interval(12.345, 3.0) == "12 ± 3"
-    assert interval(0.012341, 0.00005) == "0.01234 ± 0.00005"

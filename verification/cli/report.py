@@ -47,7 +47,7 @@ def add_parser(commands: Parsers) -> None:
 def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
     from refimpl.errors import InputError
-    from reports.result_files import result_paths
+    from reports.result_files import name_of, result_paths
     from verification.framework.files import write_text
 
     results = read_run(options.results)
@@ -55,9 +55,13 @@ def run(options: argparse.Namespace) -> int:
     folder = options.committed or Path(str(resources.files("reports").joinpath("results")))
     if not folder.is_dir():
         raise InputError("--committed", str(folder), "a folder of result files")
-    committed = {path.stem: _committed(path) for path in result_paths(folder)}
+    try:
+        files = result_paths(folder)
+    except ValueError as twice:
+        raise InputError("--committed", str(folder), f"one result file of a name ({twice})") from twice
+    committed = {name_of(path): _committed(path) for path in files}
     path = options.output / "report.html"
-    read = [options.results, *([] if options.against is None else [options.against]), *folder.glob("*.json")]
+    read = [options.results, *([] if options.against is None else [options.against]), *files]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
     _check_folder(options.output)
     with StatusLine() as line:

@@ -18,14 +18,12 @@ from typing import Any
 
 from refimpl.errors import InputError
 from reports import results_page
-from reports.result_files import read_result, write_result
+from reports.result_files import FOLDER, SUFFIX, read_result, write_result
 from verification.cli.output import columns
 from verification.cli.verify import SELF_TEST
 from verification.framework.case import Status
-from verification.framework.provenance import ROOT
 from verification.framework.runner import FORMAT
 
-FOLDER = ROOT / "reports" / "results"
 _ROW = re.compile(r"^\| `(\w+)\.json` \| `([^`]*\bFILE\b[^`]*)`", flags=re.M)
 
 
@@ -45,10 +43,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name, command in commands().items():
         selected = patterns_of(command)
         if selected is None:
-            others.append([command.replace("FILE", f"reports/results/{name}.json")])
+            others.append([command.replace("FILE", f"reports/results/{name}{SUFFIX}")])
             continue
         found = cases_of(run, *selected)
-        write_result(found, FOLDER / f"{name}.json")
+        write_result(found, FOLDER / f"{name}{SUFFIX}")
         bad = found["counts"]["fail"] + found["counts"]["error"]
         failed += bad
         written.append([f"{name}.json", f"{len(found['cases'])} cases", f"{bad} did not pass" if bad else ""])

@@ -1,7 +1,7 @@
 """Tables of a run of the suite for a paper, beside the published codes: CSV, LaTeX, Markdown, by the suffix.
 
-The published codes' results are those of `reports/results/cross_code.json`, in the version of the suite that
-the file names; ours are in it too.
+The published codes' results are those of `reports/results/cross_code.json.gz`, in the version of the suite
+that the file names; ours are in it too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from verification.framework.case import Result
 
 SUFFIXES = (".csv", ".tex", ".md")
-PUBLISHED = ROOT / "reports" / "results" / "cross_code.json"
+PUBLISHED = ROOT / "reports" / "results" / "cross_code.json.gz"
 COLUMNS = ("code", "version", "checksum", "suite", "case", "status", "error", "tolerance", "metric")
 _SPECIAL = {c: f"\\{c}" for c in "&%$#_{}"} | {
     "\\": r"\textbackslash{}",

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from filelock import FileLock
 
-import reports.result_files
+from reports.result_files import encoded
 
 _UNUSUAL = re.compile(r"[^\n -~]")
 _SHOWN = 40  # characters of the target's name in that of a temporary file
@@ -106,8 +106,10 @@ def to_json(document: object, *, ascii_only: bool = False) -> str:
 
 
 def write_result(document: object, path: Path) -> None:
-    """Write a study's result file in the compact form, which `reports.result_files.read_result` reads."""
-    reports.result_files.write_result(document, path, write_text)
+    """Write a study's result file, compressed where the path ends in ``.gz``, in one step."""
+    content = encoded(document, path)
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
 
 
 class Progress:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from reports.result_files import read_result, result_paths
+from reports.result_files import name_of, read_result, result_paths
 from verification.cli import results
 from verification.cli.results import main, patterns_of
 from verification.framework.runner import FORMAT
@@ -50,7 +50,7 @@ def test_a_file_holds_the_cases_of_its_command_and_the_other_commands_are_listed
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([str(folder / "full")]) == 1  # a case failed
-    love, disc, quick = (read_result(folder / f"{name}.json") for name in ("love", "disc", "quick"))
+    love, disc, quick = (read_result(folder / f"{name}.json.gz") for name in ("love", "disc", "quick"))
     assert [each["id"] for each in love["cases"]] == ["love/disc", "love/far"]
     assert love["counts"] == {"pass": 1, "fail": 1, "error": 0, "unavailable": 0}
     assert (love["seconds"], love["only"], love["errata"]) == (3.75, ["love/*"], [])
@@ -58,11 +58,11 @@ def test_a_file_holds_the_cases_of_its_command_and_the_other_commands_are_listed
     assert (quick["tier"], quick["seconds"]) == ("quick", 1.25)
     assert quick["errata"] == RUN["errata"]
     assert quick["provenance"] == {"commit": "abc"}
-    assert not (folder / "extremes.json").exists()
+    assert not (folder / "extremes.json.gz").exists()
     printed = capsys.readouterr().out
     assert "love.json   2 cases  1 did not pass\n" in printed
     assert "disc.json   1 cases\n" in printed
-    assert "  python -m verification.stress_tests --json reports/results/extremes.json" in printed
+    assert "  python -m verification.stress_tests --json reports/results/extremes.json.gz" in printed
 
 
 def test_a_run_that_passed_has_status_zero(folder: Path) -> None:
@@ -76,7 +76,7 @@ def test_the_self_test_is_a_pattern_of_cases() -> None:
 
 
 def test_every_committed_file_has_its_command() -> None:
-    assert set(results.commands()) == {path.stem for path in result_paths(results.FOLDER)}
+    assert set(results.commands()) == {name_of(path) for path in result_paths(results.FOLDER)}
 
 
 @pytest.mark.parametrize(
@@ -95,4 +95,4 @@ def test_no_other_file_is_cut(
     with pytest.raises(SystemExit, match="2"):
         main([str(folder / "full")])
     assert allowed in capsys.readouterr().err
-    assert not (folder / "love.json").exists()
+    assert not (folder / "love.json.gz").exists()

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 import refimpl as rf
-from reports.result_files import read_result
+from reports.result_files import committed
 from verification.coverage import class_costs
 from verification.coverage.class_costs import SIZES, costs, summary
-
-COMMITTED = Path(__file__).parents[3] / "reports" / "results" / "class_costs.json"
 
 
 def row(cost: float | None, forecast: int | None, last: int, *, met: bool = True) -> dict[str, object]:
@@ -71,7 +68,7 @@ def test_a_smooth_ball_costs_about_the_cheapest_grid() -> None:
 
 
 def test_the_readmes_words_follow_from_the_committed_table() -> None:
-    found = [one for one in read_result(COMMITTED)["table"] if one["median_cost"] is not None]
+    found = [one for one in committed("class_costs")["table"] if one["median_cost"] is not None]
     medians = [one["median_cost"] for one in found]
     assert f"{min(medians):.1f}" == "0.7"
     assert f"{max(medians):.1f}" == "1.6"

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from refimpl import Scene
-from reports.result_files import read_result
-from tests.documents import ROOT
+from reports.result_files import committed
 from verification.coverage import twins
 from verification.coverage.identification import LEVEL, SETS, TwinSet, judged, study, summary
 from verification.coverage.twins import SHARP_NOISE, Twin, sharp_twin, twin
@@ -117,7 +116,7 @@ def test_a_fit_of_a_twin_covers_its_truth() -> None:
 
 def test_committed_intervals_cover_in_92_per_cent_of_all_twins() -> None:
     """The full tier judges every third twin; what is claimed rests on all of them."""
-    found = read_result(ROOT / "reports/results/identification.json")
+    found = committed("identification")
     for name in ("drawn", "sharp", "hardness", "roughness"):
         row = found[name]["summary"]
         assert row["twins"] == len(SETS[name].seeds)

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import dblquad
 
 import refimpl as rf
-from reports.result_files import read_result
+from reports.result_files import committed
 from verification.cases.appendix_a.fem3d_answer import STEEPEST
 from verification.cases.paper.contact import FIG6_TOLERANCE
 from verification.framework import registry
@@ -225,8 +225,7 @@ def test_a_cell_compares_ours_with_print() -> None:
 
 def test_numbers_that_one_case_takes_from_another_are_those_of_the_committed_run() -> None:
     """The steepest slope of fem3d/less-than-two-percent takes 75 surfaces of 512 elements to measure."""
-    committed = Path(__file__).parents[3] / "reports" / "results" / "reproduction.json"
-    cases = {case["id"]: case for case in read_result(committed)["cases"]}
+    cases = {case["id"]: case for case in committed("reproduction")["cases"]}
     measured = cases["reproduction/largest-slope-full"]["data"]["largest gradient (deg)"]
     assert round(measured, 2) == STEEPEST
 

@@ -14,7 +14,7 @@ import refimpl as rf
 import verification.stress_tests.axes  # noqa: F401  # registers the axes
 from appendix_a import wedge
 from refimpl.operators.fft import FFTInfluence
-from reports.result_files import read_result
+from reports.result_files import committed, read_result
 from verification.cases.solvers.extremes import counted
 from verification.exact.dense_influence import DenseInfluence
 from verification.scenes.cross_checks import POLYMER, pressed
@@ -267,8 +267,7 @@ def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_the_committed_study_has_no_wrong_number() -> None:
-    path = Path(__file__).parents[3] / "reports" / "results" / "extremes.json"
-    found = read_result(path)
+    found = committed("extremes")
     assert len(found["states"]) >= 400
     assert found["counts"]["wrong"] == 0
 

@@ -1,0 +1,131 @@
+"""Numbers beside the paper's, in sentences, and on the first page: by hand."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from reports import findings
+from reports.agreement import Number, bias_and_scatter, by_quantity, fine, numbers
+from reports.findings import MISSING, by_claim, filled
+from reports.front_page import front_page
+from tests.reports.sample import case
+
+CASES = {
+    "reproduction/table3-area": case("a/1", data={
+        "sigma_e (um)": [0.0, 1.68, 1.68],
+        "mesh": [512, 256, 512],
+        "printed": [0.64e-6, 0.21e-6, 0.2e-6],
+        "ours": [0.65e-6, 0.22e-6, 0.19e-6],
+        "half width 95 %": [0.0, 3e-9, 4e-9],
+    }),
+    "reproduction/section8-scatter": case(
+        "b/1", data={"scatter of mu": [0.011, 0.02, 0.03], "scatter of A": "no"}
+    ),
+}  # fmt: skip
+
+
+def test_means_of_two_ensembles_scatter_both() -> None:
+    """Of 4e-9 m^2 either, 5.66e-3 mm^2 together; the smooth ball has the rounding alone, 5e-4 mm^2."""
+    ball, coarse, rough = (n for n in numbers(CASES) if n.part == "Table 3")
+    assert (rough.printed, rough.computed, rough.unit) == (pytest.approx(0.2), pytest.approx(0.19), "mm²")
+    assert rough.uncertainty == pytest.approx(math.hypot(4e-3 * math.sqrt(2), 0.0005))
+    assert ball.uncertainty == pytest.approx(0.0005)
+    assert (rough.difference, rough.within, ball.within) == (pytest.approx(-0.01), False, False)
+    assert rough.ratio == pytest.approx(0.95)
+    assert (coarse.label, rough.label) == ("σ_e 1.68 µm, 256²", "σ_e 1.68 µm, 512²")
+    assert fine([ball, coarse, rough]) == [ball, rough]
+
+
+def test_a_scatter_of_75_surfaces_is_known_to_a_sixth() -> None:
+    """2 / sqrt(2 * 74) = 0.1644 of it; numbers that a case lacks are left out."""
+    found = [n for n in numbers(CASES) if n.quantity == "scatter of μ"]
+    assert [n.computed for n in found] == pytest.approx([1.1, 2.0, 3.0])
+    assert [n.half_width for n in found] == pytest.approx([0.1808, 0.3288, 0.4932], rel=1e-3)
+    assert [n.within for n in found] == [True, False, False]  # 1.0 is printed, to a tenth
+    assert list(by_quantity(numbers(CASES))) == ["scatter of μ", "A, Table 3"]
+
+
+def test_bias_and_scatter_of_one_number() -> None:
+    (one,) = [n for n in numbers(CASES) if n.label == "σ_e 1.68 µm, 512²"]
+    assert bias_and_scatter([one]) == (pytest.approx(math.log(0.95)), None)
+
+
+MADE = case(
+    "a/1",
+    value=-0.5,
+    data={
+        "x": [0.1, -3.0, None, 2.0],
+        "numbers": {"mu": 0.25},
+        "sure": True,
+        "lower, self": [1.9, -1.9, -2.5],
+        "upper, in line": [2.0, "n/a"],
+        "across": [0.1],
+        "elsewhere": [0.2],
+    },
+)
+
+
+@pytest.mark.parametrize(
+    ("key", "found"),
+    [
+        ("value", -0.5),
+        ("x#max", 3.0),  # the largest magnitude
+        ("x#1", -3.0),
+        ("x#2", None),
+        ("x#4", None),
+        ("numbers#mu", 0.25),
+        ("numbers#tau", None),
+        ("sure", None),
+        ("#readings", 6.0 - 1.0),  # numbers of the three lists
+        ("#below 2", 3.0),  # 1.9, -1.9 and 0.1
+    ],
+)
+def test_the_number_under_a_key(key: str, found: float | None) -> None:
+    assert findings.number(MADE, key) == found
+
+
+def test_what_is_missing_in_a_sentence_is_not_available() -> None:
+    text = "{a/1 | x#max | .1f} and {a/1 | y | .1f} of {b/1 | value | d}, {a/1 | #below 2 | d}"
+    assert filled(text, {"a/1": MADE}) == f"3.0 and {MISSING} of {MISSING}, 3"
+
+
+@pytest.mark.parametrize(("status", "value"), [("pass", 2.0), ("fail", 1.0)])
+def test_a_long_case_stands_for_the_quick_one_where_it_passed(status: str, value: float) -> None:
+    quick, long = case("b/1", value=1.0), case("b/1-full", status, value=2.0)
+    for order in ([quick, long], [long, quick]):
+        assert by_claim(order)["b/1"]["value"] == value
+
+
+NUMBERS = [
+    Number("Table 3", "μ, Table 3", "σ_e 1.68 µm, 512²", "", 0.1, 0.11, 0.004, 0.0005, sampled=True),
+    Number("Table 3", "A, Table 3", "σ_e 0 µm, 512²", "mm²", 0.5, 0.5004, 0.0, 0.0005),
+    Number("Table 3", "A, Table 3", "σ_e 0 µm, 256²", "mm²", 0.5, 0.9, 0.0, 0.0005),
+]
+COVERED = {name: {"covered": 0.9 + 0.011 * k, "median_bar_over_error": 1.234 + k} for k, name in
+           enumerate(("friction_coefficient", "contact_area", "max_pressure"))}  # fmt: skip
+STUDIES: dict[str, Any] = {
+    "coverage": {"accuracies": [{"accuracy": 0.02, "numbers": {}}, {"accuracy": 0.01, "numbers": COVERED}]},
+    "extremes": {"counts": {"right": 5, "wrong": 1, "crash": 2, "honest failure": 3}},
+}
+
+
+def test_the_first_page_by_hand() -> None:
+    """mu is 0.01 off, beyond u = 0.0057; A by 4e-4 less than its rounding, of which sampling has nothing."""
+    cases = [
+        case("hertz/approach", value=2.5e-6, reference=2.4e-6, unit="m"),
+        case("hertz/peak-pressure", "error"),
+    ]
+    found = front_page(SimpleNamespace(cases=cases, studies=STUDIES), [], NUMBERS)  # type: ignore[arg-type]
+    assert (found.beyond, found.beyond_sampling, round(found.largest_difference, 9)) == (1, 2, 10.0)
+    assert found.table3_rows == {"μ": NUMBERS[:1], "A (mm²)": NUMBERS[1:2]}
+    assert found.roughness == ["1.68 µm", "0 µm"]
+    assert found.hertz == ["approach 2.5 for 2.4 µm (4.2e-02)"]
+    assert found.quantities == [("μ, Table 3", 1, "+9.5 %", "", 0), ("A, Table 3", 1, "+0.1 %", "", 1)]
+    bars, extremes = found.trust
+    for text in ("μ in 90 % (1.2 times the error)", "A in 91 % (2.2 times", "p_max in 92 % (3.2 times"):
+        assert text in bars
+    assert extremes.startswith("1 of 11 extreme inputs gave a wrong answer, 2 a crash, and 3 a status")

@@ -1,0 +1,202 @@
+"""Tables and figures of the studies, from small documents made up here: what is shown of what."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from reports.drawing import svg
+from reports.exhibit import as_csv
+from reports.generator import render
+from reports.result_files import committed
+from reports.results import ResultFileError
+from reports.studies import exhibit
+from tests.reports.sample import case, results
+
+
+class Names(dict[str, Any]):
+    """A record whose entries are their own names, but for those that are given."""
+
+    def __missing__(self, key: str) -> str:
+        return key
+
+
+FOUND = {"scenes": 9, "met": 0.91, "covered": 0.82, "covered_at_worst": 0.73, "median_bar_over_error": 2.345,
+         "median_cost": 1.234, "cost_at_most_2": 0.64, "median_bar": 0.056}  # fmt: skip
+JUDGED = {"accuracy": 0.02, "numbers": {"contact_area": FOUND}, "verdicts": {},
+          "classes": {"flat": {"a": FOUND, "b": {"scenes": 0}, "c": FOUND, "d": FOUND}}}  # fmt: skip
+COVERAGE = Names(accuracies=[JUDGED], seeds=[3, 12], reference_check={"seeds": []},
+                 solves={"count": 55, "seconds": 600, "worst_residual": 2e-9,
+                         "worst_apart": 3e-7})  # fmt: skip
+BARS = Names(held=0.951, held_at_worst=0.902, usable=0.83, held_of_usable=None, p=0.0123,
+             median_bar_over_error=None)  # fmt: skip
+OTHERS = BARS | {"class": None, "number": None, "scenes": 7, "held_of_usable": 0.8,
+                 "median_bar_over_error": 3.456}  # fmt: skip
+OFFERS = [{"quantity": "mu", "error": 0.001, "M": None},
+          {"quantity": "mu", "error": 0.02, "M": 48, "transforms of 256": 1.2345}]  # fmt: skip
+STATES = [("load", "fft", "right", d) for d in (12, 3, 7)] + [("load", "fft", "wrong", 5)]
+STATES += [("load", "dense", "honest failure", 1), ("scale", "fft", "crash", 1)]
+EXTREMES = Names(
+    states=[{"axis": a, "series": f"s, {s}", "verdict": v, "digits": d} for a, s, v, d in STATES],
+    counts=Names(), table=[Names()], limits=[Names()],
+    conditioning={"M": [2], "condition": [3.5], "CG iterations": [4], "digits lost by a direct solve": [0.5]},
+    precision={"arithmetic": ["f4"], "digits lost": {"N": [6.5]}, "cause": {"N": "sum"}, "cure": {"N": ""}},
+)  # fmt: skip
+EXTREMES["lawful states"] = [Names(statuses={"fft": {"converged": 5, "cycle": 3, "stuck": 4}})]
+GRIDS = Names(M=512, transforms=1234.4, seconds=1)
+GRIDS |= {"bytes an element": 99.6, "peak memory (bytes)": 1.234e9, "processor seconds": 12.345}
+NEIGHBOUR = Names(cold=41.2)
+NEIGHBOUR["from the neighbour"] = 12.6
+SLICES = [
+    {"invariant": "turn", "solver": s, "held": n, "claim": "alike"} for s, n in (("a", 2), ("b", 3), ("a", 4))
+]
+
+
+def entrant(name: str, *found: tuple[str, float | None]) -> dict[str, Any]:
+    rows = [
+        {"id": one["id"], "status": status, "error": error, "tolerance": 0.1}
+        for one, (status, error) in zip(SUITE, found, strict=True)
+    ]
+    statuses = [row["status"] for row in rows]
+    counts = {status: statuses.count(status) for status in ("pass", "fail", "error", "unavailable")}
+    return Names(name=name, installed=True, counts=counts, results=rows)
+
+
+SUITE = [{"id": f"contestant/{slug}", "title": slug.title(), "metric": metric} for slug, metric in
+         (("peak", "relative"), ("order", "at_least"), ("shear", "relative"))]  # fmt: skip
+CODES = {
+    "cases": SUITE,
+    "entrants": [
+        entrant("A", ("pass", 0.05), ("fail", 0.05), ("unavailable", None)),
+        entrant("B", ("fail", 0.3), ("pass", 0.4), ("error", None)),
+        {"name": "C", "version": "C (not installed)", "installed": False},
+    ],
+}
+
+
+def spread(value: float) -> dict[str, float]:
+    return {"median": value, "least": 0.9 * value, "most": 1.1 * value}
+
+
+def timed(code: str, M: int, seconds: float) -> dict[str, Any]:
+    return {"code": code, "kind": "smooth", "M": M, "failure": "", "seconds": spread(seconds),
+            "peak memory": spread(1e8), "times one convolution": spread(40.0), "gap": 5e-9, "area": 6.3e-7,
+            "peak": 1.66e8}  # fmt: skip
+
+
+def run(M: int, ours: float, theirs: float) -> dict[str, Any]:
+    ratio = {"seconds": spread(theirs / ours), "processor seconds": spread(theirs / ours)}
+    slow = {"code": "slow", "kind": "smooth", "M": M, "failure": "left out: 900 s expected"}
+    return {
+        "provenance": {"date": "2001-01-01", "commit": "0123456789abcdef"},
+        "conditions": Names(
+            {"load average": {"before": [4.4]}}, rounds=3, threads=2, versions={"refimpl": "refimpl 1.0"}
+        ),
+        "rows": [timed("refimpl", M, ours), timed("peer", M, theirs), slow],
+        "ratios": [{"kind": "smooth", "M": M, "peer": ratio}],
+    }
+
+
+BENCHMARKS = {"runs": [run(128, 1.0, 2.0), run(256, 2.0, 6.0), run(128, 1.0, 4.0)]}
+DOCUMENTS: dict[str, Any] = {
+    "accuracy_costs": {"classes": [Names(prices=OFFERS)]},
+    "benchmarks": BENCHMARKS,
+    "coverage": COVERAGE,
+    "coverage_classes": {"table": [BARS, OTHERS]},
+    "cross_code": CODES,
+    "extremes": EXTREMES,
+    "hypothesis": Names(slices=SLICES, processor_seconds=1),
+    "large_grids": {"rows": [GRIDS, {"failure": "memory"}]},
+    "sweeps": {"grid": 256, "neighbours": [NEIGHBOUR], "seconds a run": {"2": 0.12345}},
+}
+ROWS: list[tuple[str, int, list[Any]]] = [
+    ("accuracy_costs", 0, [("class", "mu", "48 (1.23)", "finer")]),
+    ("coverage", 0, [("A", 0.02, 9, 91.0, 82.0, 73.0, 2.35, 1.23, 64.0)]),
+    ("coverage", 1, [("flat", 82.0, None, 82.0, 82.0)]),
+    ("coverage_classes", 0,
+     [("class", "number", "scenes", "95.1%", "90.2%", "83%", "none", "0.012", "unbounded"),
+      ("all", "all", 7, "95.1%", "90.2%", "83%", "80.0%", "0.012", "3.46")]),
+    ("cross_code", 0,
+     [("A", "version", "role", "1 of 2", 1, 1, "seconds", "worst residual", "setup"),
+      ("B", "version", "role", "1 of 3", 2, 0, "seconds", "worst residual", "setup")]),
+    ("cross_code", 1,  # a figure of merit below its tolerance is a share above one
+     [("peak", "Peak", "pass, 0.5", "fail, 3"), ("order", "Order", "fail, 2", "pass, 0.25"),
+      ("shear", "Shear", "not applicable", "error")]),
+    ("extremes", 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
+    ("extremes", 3, [("N", 6.5, "sum", "it is this code's form")]),
+    ("extremes", 4, [("tau", "none", "one", "several", 7)]),
+    ("extremes", 5, [(2, 3.5, 4, 0.5)]),
+    ("hypothesis", 0, [("turn", "alike", 6, 3)]),
+    ("large_grids", 0,
+     [("surface", "terms", "512²", "status", "finest iterations", "1234", "100", "1.23", "12.3")]),
+    ("sweeps", 0, [("2", "0.123")]),
+    ("sweeps", 1, [("surface", "neighbour", "41", "13")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("study", "table", "rows"), ROWS)
+def test_each_number_has_its_column(study: str, table: int, rows: list[Any]) -> None:
+    assert [tuple(row) for row in exhibit(study, DOCUMENTS[study]).tables[table].rows] == rows
+
+
+@pytest.mark.parametrize("study", sorted(DOCUMENTS))
+def test_tables_are_rectangular_and_figures_draw(study: str) -> None:
+    built = exhibit(study, DOCUMENTS[study])
+    for table in built.tables:
+        assert {len(cells) for cells in table.rows} == {len(table.head)}
+    for figure, data in built.figures:
+        if figure.available(data):
+            assert "</svg>" in (svg(figure, data) or "")
+            assert as_csv(figure, data)
+
+
+@pytest.mark.parametrize("study", sorted(DOCUMENTS))
+def test_a_study_without_its_numbers_is_refused(study: str) -> None:
+    with pytest.raises(ResultFileError, match=study):
+        exhibit(study, {})
+
+
+def test_the_newest_run_of_a_code_counts() -> None:
+    (smooth,) = exhibit("benchmarks", BENCHMARKS).tables
+    peers = [(cells[0], cells[4], cells[-2]) for cells in smooth.rows if cells[1] == "peer"]
+    assert peers == [("128²", "4 (3.6 to 4.4)", "3, 2, 4"), ("256²", "3 (2.7 to 3.3)", "3, 2, 4")]
+    assert {cells[-1] for cells in smooth.rows} == {"0123456789ab"}
+    assert ("128²", "slow", "left out: 900 s expected") in [tuple(cells[:3]) for cells in smooth.rows]
+
+
+def test_series_of_figures_and_codes_that_are_not_there() -> None:
+    """Digits of the production solver alone."""
+    ((_, kept),) = exhibit("extremes", EXTREMES).figures
+    assert kept == {"digits kept": {"load: s": [12, 3, 7, "wrong"]}}
+    assert any("C (not installed)" in text for text in exhibit("cross_code", CODES).paragraphs)
+
+
+def test_committed_samples_are_apart_and_show_only_what_was_judged() -> None:
+    """The estimator was fitted to scenes 1000 to 1199."""
+    (seen, last), (first, end) = (committed(name)["seeds"] for name in ("coverage", "coverage_fresh"))
+    assert seen == 0
+    assert last < first < end < 1000
+    for name in ("coverage", "coverage_fresh"):
+        by_number, *_ = exhibit(name, committed(name)).tables
+        assert len(by_number.rows) == 8
+        assert all(row[2] for row in by_number.rows)
+
+
+TABLE = re.compile(
+    r'<table class="(?:sortable)?(?: short)?( wide)?">\s*<caption[^>]*>[^<]*</caption>'
+    r"\s*<thead><tr>(.*?)</tr>",
+    flags=re.S,
+)
+
+
+def test_tables_of_more_than_eight_columns_are_set_small_on_paper() -> None:
+    """There nothing scrolls: the last columns would be cut off."""
+    page = render(results(case("a/1")), {"benchmarks": BENCHMARKS})
+    columns = [(head.count("<th"), bool(wide)) for wide, head in TABLE.findall(page)]
+    assert (14, True) in columns
+    assert all(wide is (count > 8) for count, wide in columns)
+    paper = page.partition("@media print")[2].partition("\n}")[0]
+    assert ".wide { font-size" in paper
+    assert "th { white-space: normal; }" in paper
