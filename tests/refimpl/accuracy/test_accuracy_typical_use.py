@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from verification.coverage.class_scenes import Wave
+from verification.coverage.drawing import Wave
 from verification.exact.westergaard import Wave as Exact
 
 SIDE = 1e-3
