@@ -18,7 +18,7 @@ from verification.solver_suite.checks.residuals import (
 )
 from verification.solver_suite.checks.residuals import SOURCE as CONDITIONS
 from verification.solver_suite.gaps import rough_bump
-from verification.solver_suite.pin_arrays import PEAK, YieldingPins, standing, uneven
+from verification.solver_suite.pin_arrays import PEAK, PinArray, standing, uneven
 from verification.solver_suite.protocol import Coupling
 
 BUMP, WAVY = 0.03 * MODULUS, 0.08 * MODULUS
@@ -51,16 +51,16 @@ CHECKS = (
     Check("capped-pins", "A bed of pins, half of them at the hardness",
           "Pressures that were chosen, some at the hardness over bodies that overlap, come back under a load",
           SOURCE, 1.1, HIDDEN, (*OF_CAP, F.MODULUS_OFF, F.TRANSPOSED, F.PERIODIC_FOR_APERIODIC),
-          by_load(YieldingPins.of(uneven(standing(12), seed=1)))),
+          by_load(PinArray.yielding(uneven(standing(12), seed=1)))),
     Check("capped-pins-approach", "A bed of pins at an approach, half of them at the hardness",
           "Pressures that were chosen, some at the hardness, come back at a prescribed approach",
           SOURCE, 1.1, BOUND + "the approach is exact",
           (*OF_CAP, F.MODULUS_OFF, F.TRANSPOSED, F.MEAN_DISPLACEMENT_LOST),
-          by_approach(YieldingPins.of(uneven(standing(12), seed=2)))),
+          by_approach(PinArray.yielding(uneven(standing(12), seed=2)))),
     Check("capped-sheared-pins", "A sliding bed of pins, half of them at the hardness",
           "With shear tau + beta f, at the hardness tau + beta H, the chosen pressures come back",
           SOURCE, 1.1, BOUND + "shear is fixed on pins that all stand", (*OF_CAP, F.SIGN_OF_C, F.TAU_MISSING),
-          by_load(YieldingPins.of(uneven(standing(12), seed=3), SLIDING))),
+          by_load(PinArray.yielding(uneven(standing(12), seed=3), SLIDING))),
     held("capped-residual", "A rough bump that yields: what was claimed is so",
          "The complementarity gap of both bounds, load balance, tension and excess meet the claim",
          CONDITIONS, (*SEEN, *OF_CAP, F.PERIODIC_FOR_APERIODIC, F.NEAR_FIELD, F.TENSION),
