@@ -39,35 +39,26 @@ def sphere(M: int = 128, *, periodic: bool = False) -> ContactProblem:
     )
 
 
-def small(name: str) -> ContactProblem:
-    """Small problems in SI units, two of them lopsided."""
-    bump, wave = gaps.rough_bump(24, 1) * 1e-3, gaps.waves(24, 3, shortest=8) * 1e-6
-    kinds: dict[str, tuple[Any, dict[str, Any]]] = {
-        "free": (bump, {"load": 20.0}),
-        "free, light": (bump, {"load": 0.5}),
-        "free, approach": (bump, {"approach": 1e-4}),
-        "free, punch": (0 * bump, {"load": 1.0}),
-        "periodic": (wave, {"load": 1.0, "periodic": True}),
-        "periodic, light": (wave, {"load": 1e-3, "periodic": True}),
-        "periodic, approach": (wave, {"approach": -1e-6, "periodic": True}),
-        "periodic, nearly full": (wave, {"approach": -1e-7, "periodic": True}),
-        "periodic, pressed flat": (wave, {"load": 200.0, "periodic": True}),
-    }
-    gap, control = kinds[name]
-    return ContactProblem(gap - gap.min(), 1e-3 / len(gap), 2e9, **control)
+BUMP, WAVE = gaps.rough_bump(24, 1) * 1e-3, gaps.waves(24, 3, shortest=8) * 1e-6
+SMALL: dict[str, tuple[Any, dict[str, Any]]] = {
+    "free": (BUMP, {"load": 20.0}),
+    "free, light": (BUMP, {"load": 0.5}),
+    "free, approach": (BUMP, {"approach": 1e-4}),
+    "free, punch": (0 * BUMP, {"load": 1.0}),
+    "periodic": (WAVE, {"load": 1.0, "periodic": True}),
+    "periodic, light": (WAVE, {"load": 1e-3, "periodic": True}),
+    "periodic, approach": (WAVE, {"approach": -1e-6, "periodic": True}),
+    "periodic, nearly full": (WAVE, {"approach": -1e-7, "periodic": True}),
+    "periodic, pressed flat": (WAVE, {"load": 200.0, "periodic": True}),
+}
+"""Small problems in SI units, two of them lopsided."""
 
 
-NAMES = (
-    "free",
-    "free, light",
-    "free, approach",
-    "free, punch",
-    "periodic",
-    "periodic, light",
-    "periodic, approach",
-    "periodic, nearly full",
-    "periodic, pressed flat",
-)
+def small(name: str, **other: Any) -> ContactProblem:
+    gap, control = SMALL[name]
+    return ContactProblem(gap - gap.min(), 1e-3 / len(gap), 2e9, **control, **other)
+
+
 CANNOT = {
     ("tamaas", "free, approach"): "an approach in free space",
     ("tamaas", "free, punch"): "did not converge",  # its error is relative to the heights: there are none
@@ -77,7 +68,7 @@ CANNOT = {
 }
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SMALL)
 @pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS])
 def test_peer_meets_the_tolerance_or_refuses(peer: Peer, name: str) -> None:
     problem = small(name)
@@ -177,7 +168,7 @@ def test_present_peer_keeps_to_its_abilities() -> None:
         peer(sphere(4, periodic=True))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SMALL)
 def test_closure_is_a_bound(name: str) -> None:
     """Where the mean gap under the pressure is `closure`, the relative gap is at most the tolerance."""
     problem = small(name)
@@ -188,6 +179,21 @@ def test_closure_is_a_bound(name: str) -> None:
     if mean_displacement > 0:  # one periodic element under load stores no energy in the reference's symbols
         rounding = 1e-12  # an exact equality where contact is full
         assert closure(problem) / (0.5 * mean_displacement) <= problem.tolerance * (1 + rounding)
+
+
+@pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS[:2]])
+def test_peers_refuse_an_approach_with_a_hardness(peer: Peer) -> None:
+    with pytest.raises(Unsupported, match="with a hardness"):
+        peer(small("periodic, approach", hardness=1e8))
+
+
+@needs(tamaas.solve)
+def test_negative_control_tamaas_saturated_in_pascal_stays_at_the_uniform_pressure() -> None:
+    gap = gaps.rough_bump(12, seed=71)
+    posed = ContactProblem(gap - gap.min(), 1 / 12, 2e9, load=4e7, periodic=True, hardness=2e8)
+    in_pascal, right = tamaas._saturated(posed, 1.0), tamaas.solve(posed)
+    assert in_pascal.converged is True
+    assert np.ptp(np.asarray(in_pascal.pressure)) < 1e-3 * np.ptp(np.asarray(right.pressure))
 
 
 @needs(tamaas.solve)

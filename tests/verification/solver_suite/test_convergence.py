@@ -17,7 +17,7 @@ from verification.cli import main
 from verification.framework.case import Result
 from verification.solver_suite import convergence, own, suite
 from verification.solver_suite.check import Entrant
-from verification.solver_suite.convergence import SLOW, WRONG, _OfField, exit_status, weighted
+from verification.solver_suite.convergence import SLOW, WRONG, exit_status, of_field, weighted
 from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, Contestant
 
 FREE = Abilities(periodic=False, coupling=True)
@@ -131,7 +131,7 @@ def test_fields_that_do_not_converge_are_judged_on_the_finest_grid(falls: int, e
         chessboard = (-1.0) ** np.add.outer(np.arange(n), np.arange(n))
         return 1 + 0.02 * (12 / n) ** falls * chessboard, np.ones((n, n))
 
-    found = _OfField(pose)(None)  # type: ignore[arg-type]  # nobody is asked
+    found = of_field(pose)(None)  # type: ignore[arg-type]  # nobody is asked
     assert found.value == pytest.approx(error, abs=1e-12)
     assert found.data["order"] == pytest.approx(falls, abs=1e-9)
 
