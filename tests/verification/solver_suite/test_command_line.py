@@ -7,13 +7,12 @@ import json
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from verification.cli import main
 from verification.cli.contestant import _source, add_options
-from verification.cli.contestant_report import Judged, unseen_faults
+from verification.cli.contestant_report import unseen_faults
 from verification.framework.case import Status
 from verification.solver_suite import own
 from verification.solver_suite.check import Fault
@@ -175,7 +174,7 @@ def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(capfd: Captur
         (["--solver", "rival_solver:solve", "--largest", "0"], "largest"),
         (["--solver", "rival_solver:solve", "--precision", "0.1"], "precision"),
         (["--solver", "rival_solver:solve", "--only", "hertz/*"], "no case of the suite matches"),
-        (["--exec", "'"], "--exec"),
+        (["--exec", "solve 'it"], '--exec = "solve \'it": expected a command (No closing quotation)'),
         (["--exec", ""], "--exec = '': expected a command\n"),
         (["--exec", "./missing --fast"], "--exec = './missing --fast': expected a command whose first word"),
         (["--exec", "no-such-program"], "'no-such-program': expected a command whose first word"),
@@ -227,11 +226,3 @@ def test_thorough_adds_problems_of_other_seeds_after_the_suite(tmp_path: Path, c
     assert main(words) == 2
     assert main([*words[:3], "--thorough", "--discretisation", "other"]) == 2
     assert "nothing beside --discretisation other" in capfd.readouterr().err
-
-
-@pytest.mark.parametrize("judged", [0, 1, 3])
-def test_what_an_interrupted_run_did_not_reach_begins_after_its_last_verdict(judged: int) -> None:
-    checks = suite()[:3]
-    verdicts: Any = ("verdict",) * judged
-    run = Judged(checks, verdicts, (), False, (), KeyboardInterrupt(), 1.0)
-    assert run.missing == [check.id for check in checks][judged:]

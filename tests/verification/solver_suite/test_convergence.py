@@ -98,28 +98,24 @@ def test_a_fault_has_its_exit_status(how: str, status: int) -> None:
     assert exit_status(found) == status, found[0].note
 
 
-def test_nothing_judged_is_no_success() -> None:
-    assert exit_status([]) == WRONG
-    assert exit_status(results(averaging, ("other-hertz",))) == WRONG  # beyond its abilities
-
-
 @pytest.mark.parametrize(
     ("ends", "status"),
     [
-        (["pass", "unavailable"], 0),
-        (["unavailable"], WRONG),
-        (["pass", "fail"], WRONG),
-        (["pass", "error"], WRONG),
+        ([], WRONG),
+        ([("pass", 2.0), ("unavailable", 0.0)], 0),
+        ([("unavailable", 0.0)], WRONG),
+        ([("pass", 2.0), ("fail", 2.0)], WRONG),
+        ([("pass", 2.0), ("error", 2.0)], WRONG),
+        ([("pass", 1.19)], SLOW),  # below three fifths of the expected order
+        ([("pass", 1.21)], 0),
+        ([("pass", math.nan)], SLOW),
     ],
 )
-def test_one_wrong_or_broken_case_makes_the_whole_wrong(ends: list[str], status: int) -> None:
-    made: Any = [SimpleNamespace(id=str(k), status=end, data={}) for k, end in enumerate(ends)]
-    assert exit_status(made) == status
-
-
-@pytest.mark.parametrize(("order", "status"), [(1.19, SLOW), (1.21, 0), (math.nan, SLOW)])
-def test_orders_below_three_fifths_of_the_expected_one_are_slow(order: float, status: int) -> None:
-    made: Any = [SimpleNamespace(id="a", status="pass", data={"order": order, "expected": 2})]
+def test_the_exit_status_of_a_run(ends: list[tuple[str, float]], status: int) -> None:
+    made: Any = [
+        SimpleNamespace(id=str(k), status=end, data={"order": order, "expected": 2})
+        for k, (end, order) in enumerate(ends)
+    ]
     assert exit_status(made) == status
 
 

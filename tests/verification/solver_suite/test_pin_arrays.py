@@ -8,10 +8,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from refimpl.grid import Array
+from tests.verification.solver_suite.asked import problem_of
 from verification.exact.fourier import symbol_at
-from verification.solver_suite import own, reference_solution
-from verification.solver_suite.check import COMPLIANCE, MODULUS, Entrant
+from verification.solver_suite import reference_solution
+from verification.solver_suite.check import COMPLIANCE, MODULUS
 from verification.solver_suite.checks.sliding_pins import FREE, PERIODIC
 from verification.solver_suite.pin_arrays import FAR, PinArray, standing, uneven
 from verification.solver_suite.protocol import ContactProblem, Coupling
@@ -19,24 +19,11 @@ from verification.solver_suite.protocol import ContactProblem, Coupling
 ARRAYS = (*FREE, *PERIODIC)
 
 
-def problem(array: PinArray, *, by_load: bool = True) -> ContactProblem:
-    """The problem that an array poses."""
-    posed: list[ContactProblem] = []
-
-    def watching(asked: ContactProblem) -> Array:
-        posed.append(asked)
-        return array.pressure
-
-    watching.abilities = own.solve.abilities  # type: ignore[attr-defined]  # as solvers carry them
-    (array.under_load if by_load else array.at_approach)(Entrant(watching))
-    return posed[0]
-
-
 @pytest.mark.parametrize("array", ARRAYS)
 @pytest.mark.parametrize("by_load", [True, False], ids=["load", "approach"])
 def test_chosen_pressures_solve_what_is_posed(array: PinArray, by_load: bool) -> None:
     """To the rounding of the mean gap, a thousand times what the pins give way."""
-    assert reference_solution.residual(problem(array, by_load=by_load), array.pressure).worst < 1e-11
+    assert reference_solution.residual(problem_of(array, by_load=by_load), array.pressure).worst < 1e-11
 
 
 def solutions(array: PinArray, *, by_load: bool) -> int:
