@@ -98,7 +98,7 @@ def document(rows: list[Row]) -> dict[str, Any]:
             "format": FORMAT,
             "counts": counts(rows),
             "table": summary(rows),
-            "limits": [asdict(limit) for limit in LIMITS],
+            "limits": [limit._asdict() for limit in LIMITS],
             "states": rows,
             "precision": precision.table(),
             "conditioning": conditioning.table(),
