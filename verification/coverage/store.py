@@ -136,5 +136,5 @@ def _apart(one: rf.Solution, other: rf.Solution) -> float:
 
 
 def judged_numbers(friction: FrictionLaw) -> tuple[str, ...]:
-    """Return the names of the numbers to judge: without friction mu is rounding and left out."""
+    """Return the names of the numbers to judge: not mu without friction, where it is rounding."""
     return NUMBERS[1:] if is_frictionless(friction) else NUMBERS
