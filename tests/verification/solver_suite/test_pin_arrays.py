@@ -12,7 +12,7 @@ from tests.verification.solver_suite.asked import problem_of
 from verification.exact.fourier import symbol_at
 from verification.solver_suite import reference_solution
 from verification.solver_suite.check import COMPLIANCE, MODULUS
-from verification.solver_suite.checks.sliding_pins import FREE, PERIODIC
+from verification.solver_suite.checks.sliding import FREE, PERIODIC
 from verification.solver_suite.pin_arrays import FAR, PinArray, standing, uneven
 from verification.solver_suite.protocol import ContactProblem, Coupling
 

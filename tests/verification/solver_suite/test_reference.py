@@ -19,7 +19,7 @@ from tests.verification.solver_suite.asked import problem_of
 from verification.cli import export as cli_export
 from verification.cli import main
 from verification.solver_suite import own, reference_solution
-from verification.solver_suite.checks.sliding_pins import FREE, PERIODIC
+from verification.solver_suite.checks.sliding import FREE, PERIODIC
 from verification.solver_suite.gaps import rough_bump, waves
 from verification.solver_suite.pin_arrays import PinArray
 from verification.solver_suite.protocol import ContactProblem, Coupling
