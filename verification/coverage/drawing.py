@@ -39,7 +39,7 @@ class Ball:
 
     @property
     def load(self) -> float:
-        """N."""
+        """Load (N)."""
         return 4 * self.modulus * self.a**3 / (3 * self.R)
 
     @property
@@ -49,7 +49,7 @@ class Ball:
 
     @property
     def approach(self) -> float:
-        """m."""
+        """Approach (m)."""
         return self.a**2 / self.R
 
 

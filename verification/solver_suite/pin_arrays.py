@@ -94,7 +94,7 @@ class PinArray:
 
     @property
     def load(self) -> float:
-        """N."""
+        """Load of the pressures (N)."""
         return float(self.pressure.mean())
 
     @property
