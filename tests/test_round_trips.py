@@ -28,7 +28,7 @@ from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.from_table import KINDS
 from reports.results import check
 from tests.generated import instances, plain
-from verification.coverage.store import Rung, climb, rungs
+from verification.coverage.store import GridSolve, grid_solves, refine
 from verification.framework.case import Case, Measured, Metric, Result, Tier
 from verification.framework.runner import Run as CasesRun
 from verification.sweep.export import header, to_csv
@@ -114,13 +114,13 @@ def test_a_surface_given_by_its_gradient_comes_back_by_its_gradient() -> None:
 
 
 @FEW
-@given(st.lists(instances(Rung, KNOWN), min_size=1, max_size=3, unique_by=lambda rung: (rung.seed, rung.M)))
-def test_rungs_of_a_store(tmp_path_factory: pytest.TempPathFactory, made: list[Rung]) -> None:
-    store = tmp_path_factory.mktemp("rungs") / "store.jsonl"
-    solved = {(rung.seed, rung.M): rung for rung in made}
-    for rung in made:
-        climb(store, [rung.seed], [rung.M], lambda seed, M: solved[seed, M])
-    assert [plain(rung) for rung in rungs(store)] == [plain(rung) for rung in made]
+@given(st.lists(instances(GridSolve, KNOWN), min_size=1, max_size=3, unique_by=lambda one: (one.seed, one.M)))
+def test_solves_of_a_store(tmp_path_factory: pytest.TempPathFactory, made: list[GridSolve]) -> None:
+    store = tmp_path_factory.mktemp("solves") / "store.jsonl"
+    solved = {(one.seed, one.M): one for one in made}
+    for one in made:
+        refine(store, [one.seed], [one.M], lambda seed, M: solved[seed, M])
+    assert [plain(one) for one in grid_solves(store)] == [plain(one) for one in made]
 
 
 def test_rows_of_a_sweep(tmp_path: Path) -> None:

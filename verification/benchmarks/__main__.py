@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from refimpl.errors import InputError
+from reports.result_files import read_result
+from verification.benchmarks import rounds
 from verification.benchmarks.codes import codes
 from verification.benchmarks.problems import FLATS
-from verification.benchmarks.run import append, measured
-from verification.benchmarks.summary import lines
+from verification.benchmarks.summary import lines, ratios, row
 from verification.cli.output import columns
+from verification.framework.case import jsonable
+from verification.framework.files import Progress, write_result
+from verification.framework.provenance import provenance
+
+CLOCK = (
+    "from heights to pressures, kernels and plans included; a solve at 64 x 64 comes first. "
+    "Ours goes on to forces and error bars, but for the solver alone, which is timed as peers are"
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -49,6 +60,43 @@ def known(option: str, names: str | None, allowed: Sequence[str]) -> list[str]:
         if name not in allowed:
             raise InputError(option, name, f"one of those available here: {', '.join(allowed)}")
     return asked
+
+
+def measured(
+    grids: Sequence[int], names: Sequence[str], kinds: Sequence[str], count: int, threads: int, limit: float
+) -> dict[str, Any]:
+    """One run: tolerances found for each code, then ``count`` rounds; ready for JSON."""
+    before = os.getloadavg()
+    rows: list[object] = []
+    found: list[dict[str, object]] = []
+    progress = Progress(len(grids) * len(kinds))
+    for kind in kinds:
+        last: dict[str, rounds.Turns] = {}
+        for M in sorted(grids):
+            turns = [rounds.tuned_turns(name, kind, M, last.get(name), threads, limit) for name in names]
+            rounds.in_turns(turns, count, lambda one: one.solve(one.tolerance, threads, limit))
+            last = {one.code: one for one in turns}
+            rows += [row(one) for one in turns]
+            found.append({"kind": kind, "M": M, **ratios(turns)})
+            progress.tick(f"{kind}, {M} x {M}")
+    progress.close()
+    conditions = {
+        "rounds": count,
+        "threads": threads,
+        "limit (s)": limit,
+        "load average": {"before": before, "after": os.getloadavg()},
+        "target": f"relative gap {rounds.TARGET:g}, recomputed from the returned pressures",
+        "versions": {name: codes()[name].version for name in names},
+        "clock": CLOCK,
+    }
+    return {"provenance": provenance(), "conditions": conditions, "rows": rows, "ratios": found}
+
+
+def append(run: dict[str, object], file: Path) -> None:
+    """Add a run at the end of the record; earlier ones stay as they are."""
+    record = read_result(file) if file.is_file() else {"runs": []}
+    record["runs"].append(jsonable(run))
+    write_result(record, file)
 
 
 if __name__ == "__main__":

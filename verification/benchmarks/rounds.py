@@ -13,15 +13,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from verification.benchmarks.codes import OWN
+
 TARGET = 1e-8  # relative gap, recomputed, that everybody has to meet
 CERTIFIED = 1e-8  # tolerance at which our own solver starts: its default, so never looser
 LOOSE = 1e-7  # where a peer's search starts: adapters derive their tolerances from bounds, on the safe side
 _LONG = 20.0  # s; above it a tolerance that does is not loosened further
 _TRIES = 8
+_GROWTH = 8.0  # seconds from one grid to the twice finer one: four times the elements, and more iterations
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 Found = dict[str, Any]
-Solve = Callable[[float], Found]
+"""Result of one solve, as `timed.timed_solve` returns it."""
 
 
 class Failed(Exception):
@@ -39,24 +42,24 @@ class Turns:
     rounds: list[Found] = field(default_factory=list)
     failure: str = ""
 
-
-def solved(code: str, kind: str, M: int, tolerance: float, threads: int, limit: float) -> Found:
-    """Return the result of one fresh process. Raises `Failed` with the last line of its stderr."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "found.json"
-        asked = ["--code", code, "--kind", kind, "--grid", str(M), "--tolerance", repr(tolerance)]
-        command = [sys.executable, "-m", "verification.benchmarks.child", *asked, "--json", str(file)]
-        environment = {**os.environ, **dict.fromkeys(THREADS, str(threads))}
-        try:
-            done = subprocess.run(
-                command, env=environment, capture_output=True, text=True, timeout=limit, check=False
-            )
-        except subprocess.TimeoutExpired:
-            raise Failed(f"took longer than {limit:g} s") from None
-        if done.returncode != 0:
-            raise Failed((done.stderr.strip() or "no word").splitlines()[-1])
-        found: Found = json.loads(file.read_text(encoding="utf-8"))
-        return found
+    def solve(self, tolerance: float, threads: int, limit: float) -> Found:
+        """Solve in a fresh process, within ``limit`` seconds. Raises `Failed` with the last line said."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "found.json"
+            asked = ["--code", self.code, "--kind", self.kind, "--grid", str(self.M)]
+            asked += ["--tolerance", repr(tolerance), "--json", str(file)]
+            command = [sys.executable, "-m", "verification.benchmarks.timed", *asked]
+            environment = {**os.environ, **dict.fromkeys(THREADS, str(threads))}
+            try:
+                done = subprocess.run(
+                    command, env=environment, capture_output=True, text=True, timeout=limit, check=False
+                )
+            except subprocess.TimeoutExpired:
+                raise Failed(f"took longer than {limit:g} s") from None
+            if done.returncode != 0:
+                raise Failed((done.stderr.strip() or "no word").splitlines()[-1])
+            found: Found = json.loads(file.read_text(encoding="utf-8"))
+            return found
 
 
 def error(found: Mapping[str, Any]) -> float:
@@ -64,7 +67,31 @@ def error(found: Mapping[str, Any]) -> float:
     return float(found["gap"] if found["residual"] is None else found["residual"])
 
 
-def tuned(solve: Solve, start: float, *, loosen: bool) -> tuple[float, Found]:
+def tuned_turns(name: str, kind: str, M: int, last: Turns | None, threads: int, limit: float) -> Turns:
+    """The code with a tolerance of its own that meets the target; or why it takes no part on this grid.
+
+    ``last`` are its turns on the next coarser grid: a peer's search goes on from their tolerance.
+    """
+    ours = name.startswith(OWN)
+    turns = Turns(name, kind, M, CERTIFIED if ours else (last.tolerance if last else LOOSE))
+    if last is not None:
+        if last.failure:
+            turns.failure = f"not run after {last.M} x {last.M}: {last.failure}"
+            return turns
+        expected = _GROWTH ** math.log2(M / last.M) * min(found["seconds"] for found in last.rounds)
+        if expected > limit:
+            turns.failure = f"not run: {expected:.0f} s expected"
+            return turns
+    try:
+        turns.tolerance, _ = tuned(
+            lambda tolerance: turns.solve(tolerance, threads, limit), turns.tolerance, loosen=not ours
+        )
+    except Failed as failure:
+        turns.failure = str(failure)
+    return turns
+
+
+def tuned(solve: Callable[[float], Found], start: float, *, loosen: bool) -> tuple[float, Found]:
     """The loosest tolerance, within a factor of two, whose error meets the target, and what it found.
 
     Without ``loosen`` the start is the loosest allowed. Raises `Failed` when no tolerance tried will do.

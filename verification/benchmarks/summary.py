@@ -10,7 +10,8 @@ from typing import Any
 from verification.benchmarks.codes import ALONE, OWN
 from verification.benchmarks.rounds import TARGET, Found, Turns, error
 
-JUDGED = ("gap", "balance", "penetration", "tension", "area", "peak", "converged", "operations")
+TIMED = ("seconds", "processor seconds", "peak memory", "seconds again")
+JUDGED = ("gap", "balance", "penetration", "tension", "area", "peak", "converged", "operations", "padded box")
 
 
 def spread(values: Iterable[float]) -> dict[str, float]:
@@ -26,35 +27,25 @@ def spread(values: Iterable[float]) -> dict[str, float]:
 def row(turns: Turns) -> dict[str, object]:
     """One code on one problem."""
     head: dict[str, object] = {
-        "code": turns.code,
-        "kind": turns.kind,
-        "M": turns.M,
-        "tolerance": turns.tolerance,
-        "failure": turns.failure,
+        name: getattr(turns, name) for name in ("code", "kind", "M", "tolerance", "failure")
     }
     if not turns.rounds:
         return head
     last = turns.rounds[-1]
-    numbers: dict[str, object] = {
-        "seconds": spread(found["seconds"] for found in turns.rounds),
-        "processor seconds": spread(found["processor seconds"] for found in turns.rounds),
-        "peak memory": spread(found["peak memory"] for found in turns.rounds),
-        "memory of the solve": spread(
-            found["peak memory"] - found["memory before"] for found in turns.rounds
-        ),
-        "times one convolution": spread(
-            found["seconds"] / found["convolution seconds"] for found in turns.rounds
-        ),
-        "meets the target": all(error(found) <= TARGET for found in turns.rounds),
+    series: dict[str, list[float]] = {
+        name: [found[name] for found in turns.rounds if found[name] is not None] for name in TIMED
     }
-    again = [found["seconds again"] for found in turns.rounds if found["seconds again"] is not None]
-    if again:
-        numbers["seconds again"] = spread(again)
+    series["memory of the solve"] = [found["peak memory"] - found["memory before"] for found in turns.rounds]
+    series["times one convolution"] = [
+        found["seconds"] / found["convolution seconds"] for found in turns.rounds
+    ]
+    numbers: dict[str, object] = {name: spread(values) for name, values in series.items() if values}
+    numbers["meets the target"] = all(error(found) <= TARGET for found in turns.rounds)
     logs = last["operations"].get("n log2 n")
     if logs is not None:
         points = math.prod(last["padded box"])
         numbers["convolution equivalents"] = logs / (points * math.log2(points))
-    return head | numbers | {name: last[name] for name in JUDGED} | {"padded box": last["padded box"]}
+    return head | numbers | {name: last[name] for name in JUDGED}
 
 
 def ratios(turns: Sequence[Turns]) -> dict[str, object]:

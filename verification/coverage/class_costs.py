@@ -8,9 +8,7 @@ grids that open a refinement forecast.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,10 +19,19 @@ from refimpl.driver.options import Options
 from refimpl.driver.refined import forecast
 from refimpl.scene.discretise import Discretiser
 from verification.cli.output import columns
-from verification.coverage.class_scenes import CLASSES, MEASURED, Kind, read_heights, scene, windows_of
+from verification.coverage.class_scenes import (
+    CLASSES,
+    MEASURED,
+    Kind,
+    each,
+    options,
+    read_heights,
+    scene,
+    windows_of,
+)
 from verification.coverage.classes import REFERENCE, reference
 from verification.framework.case import jsonable
-from verification.framework.files import Progress, write_result
+from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 
 ASKED: dict[Quantity, float] = {"friction_coefficient": 0.02, "contact_area_corrected": 0.05}
@@ -43,24 +50,15 @@ def costs(one: rf.Scene, *, most: int = REFERENCE) -> list[dict[str, Any]]:
         exact, _ = reference(finest, name)
         fit = {M: abs(float(getattr(s, name)) - exact) <= accuracy * abs(exact) for M, s in single.items()}
         cheapest = next((M for M in SIZES if all(fit[N] for N in SIZES if N >= M)), None)
-        options = Options(scene=one, accuracy=accuracy, quantity=name)
-        discretiser = Discretiser(one, None)
-        expected = forecast(options, options.plan(discretiser), discretiser)
-        climbed = rf.solve(one, accuracy=accuracy, quantity=name, max_grid=most)
-        met = climbed.status is not rf.Status.ACCURACY_NOT_REACHED and climbed.converged
-        last = max(climbed.problem.grid.shape)
-        work = climbed.cost.point_logs / single[cheapest].cost.point_logs if met and cheapest else None
-        foreseen = None if expected.refusal else max(expected.grid.shape)
-        rows.append(
-            {
-                "number": name,
-                "cost": work,
-                "cheapest": cheapest,
-                "last": last,
-                "met": met,
-                "forecast": foreseen,
-            }
-        )
+        asked, discretiser = Options(scene=one, accuracy=accuracy, quantity=name), Discretiser(one, None)
+        expected = forecast(asked, asked.plan(discretiser), discretiser)
+        refined = rf.solve(one, accuracy=accuracy, quantity=name, max_grid=most)
+        met = refined.status is not rf.Status.ACCURACY_NOT_REACHED and refined.converged
+        row: dict[str, Any] = {"number": name, "cheapest": cheapest, "met": met}
+        row["last"] = max(refined.problem.grid.shape)
+        row["cost"] = refined.cost.point_logs / single[cheapest].cost.point_logs if met and cheapest else None
+        row["forecast"] = None if expected.refusal else max(expected.grid.shape)
+        rows.append(row)
     return rows
 
 
@@ -81,39 +79,23 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Solve the scenes of all classes, write the document and print its table."""
-    parser = argparse.ArgumentParser(prog="python -m verification.coverage.class_costs", description=__doc__)
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--scenes", type=int, default=20, help="of each class")
-    parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
-    parser.add_argument("--json", type=Path, required=True)
-    options = parser.parse_args(arguments)
+    chosen = options("class_costs", __doc__, scenes=20).parse_args(arguments)
     classes: dict[str, Kind] = dict(CLASSES)
-    if options.map is not None:
-        classes |= {MEASURED: windows_of(read_heights(options.map))}
-    progress, rows = Progress(len(classes) * options.scenes), list[dict[str, Any]]()
-    for kind in classes:
-        for seed in range(options.first, options.first + options.scenes):
-            found = costs(scene(kind, seed, classes))
-            rows += [{"class": kind, "seed": seed, **row} for row in found]
-            progress.tick(f"{kind}, {seed}")
-    progress.close()
+    if chosen.map is not None:
+        classes |= {MEASURED: windows_of(read_heights(chosen.map))}
+    rows = [
+        {"class": kind, "seed": seed, **row}
+        for kind, seed in each(classes, chosen.first, chosen.scenes)
+        for row in costs(scene(kind, seed, classes))
+    ]
     table = [
-        {
-            "class": kind,
-            "number": name,
-            **summary([r for r in rows if (r["class"], r["number"]) == (kind, name)]),
-        }
+        {"class": kind, "number": name}
+        | summary([row for row in rows if (row["class"], row["number"]) == (kind, name)])
         for name in ASKED
         for kind in classes
     ]
-    document = {
-        "provenance": provenance(),
-        "first": options.first,
-        "asked": ASKED,
-        "table": table,
-        "rows": rows,
-    }
-    write_result(jsonable(document), options.json)
+    document = {"first": chosen.first, "asked": ASKED, "table": table, "rows": rows}
+    write_result(jsonable({"provenance": provenance(), **document}), chosen.json)
     print(columns(lines(table), indent=""))
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,31 +14,17 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.model.materials import Pair
+from verification.coverage.drawing import SIDE, Ball, Dice, Wave
+from verification.framework.files import Progress
 
-SIDE, RMS = 1e-3, 1e-7  # m
-
-
-@dataclass(frozen=True)
-class Wave(rf.Surface):
-    """``amplitude cos(2 pi n c / length + phase)`` along one axis: grooves (m)."""
-
-    amplitude: float
-    number: int
-    phase: float
-    axis: int
-    kind = "wave"
-
-    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
-        c, length = (grid.x, grid.y)[self.axis] + offset[self.axis], grid.lengths[self.axis]
-        z = self.amplitude * np.cos(2 * math.pi * self.number * c / length + self.phase)
-        return np.broadcast_to(z[:, None] if self.axis == 0 else z[None, :], grid.shape).copy()
+RMS = 1e-7  # m
 
 
-class _Draw:
+class _Draw(Dice):
     """The random choices of a scene that its class does not make."""
 
     def __init__(self, kind: str, seed: int) -> None:
-        self.rng = np.random.default_rng([38, *kind.encode(), seed])
+        super().__init__(38, *kind.encode(), seed)
         self.seed = int(self.rng.integers(2**31))
         self.periodic, ratio = bool(self.rng.integers(2)), self.rng.choice([1.0, self.log(1.0, 3.0)])
         self.size = (SIDE, SIDE / ratio) if self.rng.integers(2) else (SIDE / ratio, SIDE)
@@ -45,10 +32,7 @@ class _Draw:
             rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49))) for _ in range(2)
         )
         self.modulus = Pair(lower=self.lower, upper=self.upper).reduced_modulus
-        self.direction = float(self.rng.uniform(0, 2 * math.pi))
-
-    def log(self, low: float, high: float) -> float:
-        return math.exp(self.rng.uniform(math.log(low), math.log(high)))
+        self.direction = self.angle()
 
     def lengths(self) -> tuple[float, float]:
         """Correlation lengths of a lay, three to ten to one within the shorter side."""
@@ -64,24 +48,23 @@ def _isotropic(draw: _Draw) -> rf.Surface:
     return rf.GaussianRoughness(RMS, min(draw.size) * draw.log(0.05, 0.25), draw.seed)
 
 
-def _along(draw: _Draw) -> rf.Surface:
-    draw.direction = float(draw.rng.integers(4)) * math.pi / 2
-    return rf.GaussianRoughness(RMS, draw.lengths(), draw.seed, lay=draw.direction % math.pi)
+def _lay(turn: float) -> Kind:
+    """A lay at an angle (rad) to sliding, which is along an axis of the grid."""
 
+    def lay(draw: _Draw) -> rf.Surface:
+        draw.direction = float(draw.rng.integers(4)) * math.pi / 2
+        return rf.GaussianRoughness(RMS, draw.lengths(), draw.seed, lay=(draw.direction + turn) % math.pi)
 
-def _across(draw: _Draw) -> rf.Surface:
-    draw.direction = float(draw.rng.integers(4)) * math.pi / 2
-    return rf.GaussianRoughness(RMS, draw.lengths(), draw.seed, lay=(draw.direction + math.pi / 2) % math.pi)
+    return lay
 
 
 def _oblique(draw: _Draw) -> rf.Surface:
-    return rf.GaussianRoughness(
-        RMS, draw.lengths(), draw.seed, lay=math.radians(float(draw.rng.uniform(12, 78)))
-    )
+    lengths, degrees = draw.lengths(), float(draw.rng.uniform(12, 78))
+    return rf.GaussianRoughness(RMS, lengths, draw.seed, lay=math.radians(degrees))
 
 
 def _grooves(draw: _Draw) -> rf.Surface:
-    phase = float(draw.rng.uniform(0, 2 * math.pi))
+    phase = draw.angle()
     return Wave(RMS, int(draw.rng.integers(1, 5)), phase, int(draw.rng.integers(2)))
 
 
@@ -99,8 +82,8 @@ def _self_affine(draw: _Draw) -> rf.Surface:
 
 CLASSES: dict[str, Kind] = {
     "isotropic": _isotropic,
-    "lay along sliding": _along,
-    "lay across sliding": _across,
+    "lay along sliding": _lay(0.0),
+    "lay across sliding": _lay(math.pi / 2),
     "lay oblique to the grid": _oblique,
     "grooves": _grooves,
     "self-affine": _self_affine,
@@ -108,7 +91,7 @@ CLASSES: dict[str, Kind] = {
 }
 
 
-MEASURED = "windows of a measured map"
+MEASURED, DECIMATED = "windows of a measured map", "decimated maps"
 WHOLE = 256  # points of a window that is decimated
 
 
@@ -137,14 +120,33 @@ def windows_of(heights: Array, *, whole: bool = False) -> Kind:
     return window
 
 
-DECIMATED = "decimated maps"
-
-
 def decimated(one: rf.Scene, seed: int) -> tuple[rf.Scene, int]:
     """Return the scene with every second or fourth point of its map, and a grid of two elements a point."""
     step = (2, 4)[seed % 2]
     z = one.lower.surface.parts[0].sample(one.grid(WHOLE))[::step, ::step]
     return replace(one, lower=rf.Body(one.lower.material, rf.ArraySurface(z))), 2 * len(z)
+
+
+def options(module: str, description: str | None, scenes: int) -> argparse.ArgumentParser:
+    """Return the options of a study by class: seeds, a measured map, and the file to write."""
+    parser = argparse.ArgumentParser(
+        prog=f"python -m verification.coverage.{module}", description=description
+    )
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--scenes", type=int, default=scenes, help="of each class")
+    parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
+    parser.add_argument("--json", type=Path, required=True)
+    return parser
+
+
+def each(classes: Mapping[str, Kind], first: int, scenes: int) -> Iterator[tuple[str, int]]:
+    """Yield class and seed of every scene, with a line of progress."""
+    progress = Progress(len(classes) * scenes)
+    for kind in classes:
+        for seed in range(first, first + scenes):
+            yield kind, seed
+            progress.tick(f"{kind}, {seed}")
+    progress.close()
 
 
 def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Scene:
@@ -167,11 +169,10 @@ def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Sce
         share = draw.log(0.05, 0.6)
         return _with_friction(draw, kind, probe, share * pressed * SIDE * min(draw.size), pressed)
     a = min(draw.size) * draw.log(0.1, 0.3)
-    R = a**2 / (height * draw.log(1.5, 30))
-    load = 4 * draw.modulus * a**3 / (3 * R)
-    pressed = max(load / (math.pi * a**2), 0.5 * draw.modulus * slope)
-    ball = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(R)))
-    return _with_friction(draw, kind, ball, load, pressed)
+    ball = Ball(draw.modulus, a**2 / (height * draw.log(1.5, 30)), a)
+    pressed = max(ball.pressure, 0.5 * draw.modulus * slope)
+    under = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(ball.R)))
+    return _with_friction(draw, kind, under, ball.load, pressed)
 
 
 def _with_friction(draw: _Draw, kind: str, base: rf.Scene, load: float, pressed: float) -> rf.Scene:

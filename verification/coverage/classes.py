@@ -7,10 +7,8 @@ and square. Each number's bar is that of the single grid, as ``solve(scene, grid
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,13 +24,15 @@ from verification.coverage.class_scenes import (
     DECIMATED,
     MEASURED,
     decimated,
+    each,
+    options,
     read_heights,
     scene,
     windows_of,
 )
 from verification.coverage.judge import EDGE_SIZE, EDGE_SIZE_BOUND
 from verification.framework.case import jsonable
-from verification.framework.files import Progress, write_result
+from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 
 GRIDS = (48, 64, 96, 128)
@@ -42,7 +42,7 @@ LEVEL = 0.92
 STRAIGHT_SIZE = 0.21  # mean excess of straight edges along the grid over an element: Westergaard's strips
 
 
-def judged(one: rf.Scene, M: int, known: rf.Scene | None = None) -> list[dict[str, Any]] | None:
+def single_grid_rows(one: rf.Scene, M: int, known: rf.Scene | None = None) -> list[dict[str, Any]] | None:
     """Return bar, error and the reference's bound, over each number; None where a solve did not end well.
 
     ``known`` replaces the scene on the coarse grid.
@@ -106,47 +106,35 @@ def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Judge the scenes of all classes, write the document and print its table."""
-    parser = argparse.ArgumentParser(prog="python -m verification.coverage.classes", description=__doc__)
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--scenes", type=int, default=100, help="of each class")
-    parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
+    parser = options("classes", __doc__, scenes=100)
     parser.add_argument("--only", help="one class")
-    parser.add_argument("--json", type=Path, required=True)
-    options = parser.parse_args(arguments)
+    chosen = parser.parse_args(arguments)
     classes = dict(CLASSES)
-    if options.map is not None:
-        heights = read_heights(options.map)
+    if chosen.map is not None:
+        heights = read_heights(chosen.map)
         classes |= {MEASURED: windows_of(heights), DECIMATED: windows_of(heights, whole=True)}
-    if options.only:
-        classes = {name: kind for name, kind in classes.items() if name == options.only}
-    progress = Progress(len(classes) * options.scenes)
+    if chosen.only:
+        classes = {name: kind for name, kind in classes.items() if name == chosen.only}
     found: list[dict[str, Any]] = []
     lost: dict[str, int] = dict.fromkeys(classes, 0)
-    for kind in classes:
-        for seed in range(options.first, options.first + options.scenes):
-            M = GRIDS[seed % len(GRIDS)]
-            one, known = scene(kind, seed, classes), None
-            if kind == DECIMATED:
-                known, M = decimated(one, seed)
-            rows = judged(one, M, known)
-            if rows is None:
-                lost[kind] += 1
-            else:
-                found += [{"class": kind, "seed": seed, **row} for row in rows]
-            progress.tick(f"{kind}, {seed}")
-    progress.close()
+    for kind, seed in each(classes, chosen.first, chosen.scenes):
+        M = GRIDS[seed % len(GRIDS)]
+        one, known = scene(kind, seed, classes), None
+        if kind == DECIMATED:
+            known, M = decimated(one, seed)
+        rows = single_grid_rows(one, M, known)
+        lost[kind] += rows is None
+        found += [{"class": kind, "seed": seed, **row} for row in rows or ()]
     table = tables(found)
+    rows = sorted(found, key=lambda row: str(row["number"]))
     document = {
         "provenance": provenance(),
-        "first": options.first,
+        "first": chosen.first,
         "not_converged": lost,
         "table": table,
-        "rows": [
-            {name: _short(value) for name, value in row.items()}
-            for row in sorted(found, key=lambda row: str(row["number"]))
-        ],
+        "rows": [{name: _short(value) for name, value in row.items()} for row in rows],
     }
-    write_result(jsonable(document), options.json)
+    write_result(jsonable(document), chosen.json)
     print(columns(lines(table), indent=""))
 
 
@@ -168,21 +156,16 @@ def tables(found: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
     """Return the lines of the printed table."""
-    head = ["class", "number", "scenes", "held", "with the reference's bound", "usable", "of these", "p"]
-    head.append("bar/error")
-    return [head] + [
-        [
-            row["class"] or "all",
-            row["number"] or "all",
-            str(row["scenes"]),
-            f"{row['held']:.3f}",
-            f"{row['held_at_worst']:.3f}",
-            f"{row['usable']:.2f}",
-            "" if row["held_of_usable"] is None else f"{row['held_of_usable']:.3f}",
-            f"{row['p']:.2g}",
-            "" if row["median_bar_over_error"] is None else f"{row['median_bar_over_error']:.2f}",
-        ]
-        for row in table
+    shown = {
+        "class": ("class", ""), "number": ("number", ""), "scenes": ("scenes", ""), "held": ("held", ".3f"),
+        "held_at_worst": ("with the reference's bound", ".3f"), "usable": ("usable", ".2f"),
+        "held_of_usable": ("of these", ".3f"), "p": ("p", ".2g"),
+        "median_bar_over_error": ("bar/error", ".2f"),
+    }  # fmt: skip
+    names = [row | {name: row[name] or "all" for name in ("class", "number")} for row in table]
+    return [[head for head, _ in shown.values()]] + [
+        ["" if row[name] is None else format(row[name], digits) for name, (_, digits) in shown.items()]
+        for row in names
     ]
 
 

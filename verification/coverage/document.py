@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from refimpl.accuracy.refinement import FIRST_GRIDS, GRID_SIZES
-from verification.coverage.judge import moved, summary, verdicts
+from verification.coverage.judge import coverages, reference_change, summary
 from verification.coverage.scenes import CLASSES
-from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, Rung, climb, ladders
+from verification.coverage.store import FINEST, NUMBERS, TOLERANCE, GridSolve, refine, refinements
 from verification.framework.provenance import provenance
 
 GRIDS = (*FIRST_GRIDS, *(M for M in GRID_SIZES if FIRST_GRIDS[-1] < M <= FINEST))
@@ -29,13 +29,8 @@ def grids_of(seed: int) -> tuple[int, ...]:
 def document(accuracies: Sequence[float], seeds: Sequence[int], store: Path) -> dict[str, object]:
     """Solve what the store lacks and judge all of it."""
     for seed in seeds:
-        climb(store, [seed], grids_of(seed))
-    wanted = {seed: set(grids_of(seed)) for seed in seeds}
-    stored = {
-        seed: [rung for rung in rungs if rung.M in wanted[seed]]
-        for seed, rungs in ladders(store).items()
-        if seed in wanted
-    }
+        refine(store, [seed], grids_of(seed))
+    stored = _of_grids(store, {seed: grids_of(seed) for seed in seeds})
     return {
         "study": "accuracy= on random scenes",
         "seeds": [seeds[0], seeds[-1]],
@@ -47,13 +42,21 @@ def document(accuracies: Sequence[float], seeds: Sequence[int], store: Path) -> 
     }
 
 
+def _of_grids(store: Path, grids: Mapping[int, Sequence[int]]) -> dict[int, list[GridSolve]]:
+    """The store's solves of these scenes on these grids."""
+    return {
+        seed: [one for one in found if one.M in grids[seed]]
+        for seed, found in refinements(store).items()
+        if seed in grids
+    }
+
+
 def reference_check(seeds: Sequence[int], store: Path) -> dict[str, object]:
     """References on a grid twice as fine, over their stated bounds; None where no scene is checked."""
     chosen = [seed for seed in seeds if seed in CHECK_SEEDS]
-    climb(store, chosen, [CHECK])
-    found = ladders(store)
-    wanted = {seed: {*grids_of(seed), CHECK} for seed in chosen}
-    shares = [moved([rung for rung in found[seed] if rung.M in wanted[seed]]) for seed in chosen]
+    refine(store, chosen, [CHECK])
+    found = _of_grids(store, {seed: (*grids_of(seed), CHECK) for seed in chosen})
+    shares = [reference_change(found[seed]) for seed in chosen]
     return {
         "grid": CHECK,
         "seeds": chosen,
@@ -62,47 +65,46 @@ def reference_check(seeds: Sequence[int], store: Path) -> dict[str, object]:
     }
 
 
-def solves(stored: Iterable[Sequence[Rung]]) -> dict[str, float]:
+def solves(stored: Iterable[Sequence[GridSolve]]) -> dict[str, float]:
     """Number and time (s) of solves, worst residual, and largest change of an answer by the initial guess."""
-    rungs = [rung for ladder in stored for rung in ladder]
+    found = [one for several in stored for one in several]
     return {
-        "count": len(rungs),
-        "seconds": sum(rung.seconds for rung in rungs),
-        "worst_residual": max(rung.worst for rung in rungs),
-        "worst_apart": max((rung.apart for rung in rungs if rung.apart is not None), default=0.0),
-        "not_converged": sum(rung.status not in ("converged", "cycled") for rung in rungs),
+        "count": len(found),
+        "seconds": sum(one.seconds for one in found),
+        "worst_residual": max(one.worst for one in found),
+        "worst_apart": max((one.apart for one in found if one.apart is not None), default=0.0),
+        "not_converged": sum(one.status not in ("converged", "cycled") for one in found),
     }
 
 
-def _judged(stored: Mapping[int, Sequence[Rung]], accuracy: float) -> dict[str, object]:
-    found = verdicts(stored, accuracy)
-    of = {number: [verdict for verdict in found if verdict.number == number] for number in NUMBERS}
+def _judged(stored: Mapping[int, Sequence[GridSolve]], accuracy: float) -> dict[str, object]:
+    found = coverages(stored, accuracy)
+    of = {number: [one for one in found if one.number == number] for number in NUMBERS}
+    columns: dict[str, dict[str, list[object]]] = {
+        number: {name: [getattr(one, name) for one in part] for name in ("seed", "met", "cheapest")}
+        | {
+            "class": [one.kind for one in part],
+            "grid": [one.grids[-1] for one in part],
+            "grids": [list(one.grids) for one in part],
+        }
+        | {
+            name: _four_digits(getattr(one, name) for one in part)
+            for name in ("bar", "error", "reference_bound", "cost")
+        }
+        for number, part in of.items()
+    }
     return {
         "accuracy": accuracy,
         "numbers": {number: summary(part) for number, part in of.items()},
         "classes": {
-            kind: {number: summary(v for v in part if v.kind == kind) for number, part in of.items()}
+            kind: {number: summary(one for one in part if one.kind == kind) for number, part in of.items()}
             for kind in CLASSES
         },
-        "verdicts": {
-            number: {
-                "seed": [v.seed for v in part],
-                "class": [v.kind for v in part],
-                "grid": [v.grids[-1] for v in part],
-                "grids": [list(v.grids) for v in part],
-                "met": [v.met for v in part],
-                "bar": _four_digits(v.bar for v in part),
-                "error": _four_digits(v.error for v in part),
-                "reference_bound": _four_digits(v.reference_bound for v in part),
-                "cheapest": [v.cheapest for v in part],
-                "cost": _four_digits(v.cost for v in part),
-            }
-            for number, part in of.items()
-        },
+        "verdicts": columns,
     }
 
 
-def _four_digits(values: Iterable[float | None]) -> list[float | None]:
+def _four_digits(values: Iterable[float | None]) -> list[object]:
     """Relative bars and errors as recorded: an infinite one is None.
 
     >>> _four_digits([2 / 3, math.inf])

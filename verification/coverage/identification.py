@@ -1,7 +1,7 @@
-"""Coverage of `refimpl.identification` on twins with known tau and beta (`verification.coverage.twins`).
+"""Coverage of `refimpl.identification` on `synthetic_tables`, whose tau and beta are known.
 
-`python -m verification.coverage.identification --json FILE` runs every set of twins; `--log` keeps finished
-twins, and the study goes on where it was.
+`python -m verification.coverage.identification --json FILE` fits every set of tables; `--log` keeps finished
+fits, and the study goes on where it was. The result file calls the tables twins.
 """
 
 from __future__ import annotations
@@ -9,21 +9,20 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from refimpl.identification import Identification, identify
-from verification.coverage.twins import (
+from refimpl.identification import identify
+from verification.coverage.synthetic_tables import (
     ROUGHNESS_TOLERANCE,
-    Twin,
-    blind,
-    ensemble_twin,
-    sharp_twin,
-    twin,
-    yielding_twin,
+    SyntheticTable,
+    drawn_table,
+    ensemble_table,
+    sharp_table,
+    without_friction,
+    yielding_table,
 )
 from verification.framework.case import jsonable
 from verification.framework.files import Progress, write_result
@@ -35,148 +34,130 @@ DIGITS = 5  # significant, of the numbers in the result file
 
 
 @dataclass(frozen=True)
-class TwinSet:
-    """A set of twins: its seeds, and the function that makes the twin of a seed.
+class TableSet:
+    """A set of tables: its seeds, and the function that makes the table of a seed.
 
     fit : parameters fitted beside tau and beta; realisations : draws of a surface known by its statistics
-    tolerances : relative half-widths (95 %) of inputs, which the twins are off by
+    tolerances : relative half-widths (95 %) of inputs, which the tables' scenes are off by
     """
 
     seeds: range
-    make: Callable[[int], Twin]
+    make: Callable[[int], SyntheticTable]
     fit: tuple[str, ...] = ()
     realisations: int = 1
     tolerances: Mapping[str, float] = field(default_factory=dict)
 
 
-SETS: Mapping[str, TwinSet] = {
-    "drawn": TwinSet(range(5000, 5300), twin),
-    "sharp": TwinSet(range(6000, 6060), sharp_twin),
-    "hardness": TwinSet(range(7000, 7040), yielding_twin, ("hardness",)),
-    "roughness": TwinSet(
+SETS: Mapping[str, TableSet] = {
+    "drawn": TableSet(range(5000, 5300), drawn_table),
+    "sharp": TableSet(range(6000, 6060), sharp_table),
+    "hardness": TableSet(range(7000, 7040), yielding_table, ("hardness",)),
+    "roughness": TableSet(
         range(8200, 8240),
-        ensemble_twin,
+        ensemble_table,
         realisations=4,
         tolerances={"lower.surface[0].rms": ROUGHNESS_TOLERANCE},
     ),
 }
 
 
-def judged(twins: TwinSet, seed: int) -> dict[str, object]:
-    """Return the result of the fit of one twin, beside the truth."""
-    case = twins.make(seed)
+def fitted(tables: TableSet, seed: int) -> dict[str, object]:
+    """Return the result of the fit of one table, beside the truth."""
+    table = tables.make(seed)
     found = identify(
-        blind(case.scene),
-        case.rows,
-        case.grid,
-        loads=(case.new_load,),
-        fit=twins.fit,
-        realisations=twins.realisations,
-        tolerances=twins.tolerances,
+        without_friction(table.scene),
+        table.rows,
+        table.grid,
+        loads=(table.new_load,),
+        fit=tables.fit,
+        realisations=tables.realisations,
+        tolerances=tables.tolerances,
         design=False,
     )
     tau, beta, mu = found.values["tau"], found.values["beta"], found.predictions[-1].mu
-    truth = case.scene.friction
-    measured = found.shares["measurement"]
-    return {
+    truth = table.scene.friction
+    row: dict[str, object] = {
         "seed": seed,
-        "kind": case.kind,
-        "loads": len(case.rows),
-        "noise": case.noise,
+        "kind": table.kind,
+        "loads": len(table.rows),
+        "noise": table.noise,
         "tau": tau.low <= truth.tau <= tau.high,
         "beta": beta.low <= truth.beta <= beta.high,
-        "mu": mu.low <= case.new_mu <= mu.high,
+        "mu": mu.low <= table.new_mu <= mu.high,
         "tau_half_width": tau.relative if math.isfinite(tau.relative) else None,
         "tau_error": tau.value / truth.tau - 1,
         "beta_error": beta.value / truth.beta - 1,
-        "measurement_share": measured[0] / math.sqrt(found.covariance[0, 0]),
-        "warned": _warns(found),
+        "measurement_share": found.shares["measurement"][0] / math.sqrt(found.covariance[0, 0]),
+        "warned": any("not determined apart" in text for text in found.warnings),
         "solves": found.solves,
-        **_further(found, case.further),
     }
+    if table.further is not None:  # the parameter fitted beside tau and beta
+        one = list(found.values.values())[-1]
+        row["further"] = one.low <= table.further <= one.high
+        row["further_half_width"] = 0.5 * (one.high - one.low) / one.value
+        row["further_error"] = one.value / table.further - 1
+    return row
 
 
-def _further(found: Identification, truth: float | None) -> dict[str, object]:
-    """Error and coverage of the parameter fitted beside tau and beta, if there is one."""
-    if truth is None:
-        return {}
-    one = list(found.values.values())[-1]
-    return {
-        "further": one.low <= truth <= one.high,
-        "further_half_width": 0.5 * (one.high - one.low) / one.value,
-        "further_error": one.value / truth - 1,
-    }
-
-
-def _warns(found: Identification) -> bool:
-    return any("not determined apart" in text for text in found.warnings)
-
-
-def summary(twins: Iterable[Mapping[str, object]]) -> dict[str, object]:
+def summary(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """Return coverages by number and kind, and whether the warning stands where it should.
 
     The warning follows from the width of tau's interval. ``unwarned_tau_error``, the largest error of tau
-    among twins without a warning, is independent of it.
+    among tables without a warning, is independent of it.
     """
-    rows = list(twins)
+    rows = list(tables)
     solved = [row for row in rows if "failure" not in row]
-    kinds = sorted({str(row["kind"]) for row in solved})
-
-    def share(name: str, kind: str | None = None) -> float:
-        chosen = [bool(row[name]) for row in solved if kind is None or row["kind"] == kind]
-        return float(np.mean(chosen)) if chosen else 0.0
-
-    def number(row: Mapping[str, object], name: str) -> float:
-        return math.inf if row[name] is None else float(str(row[name]))
-
     names = ["tau", "beta", "mu"] + ["further"] * any("further" in row for row in solved)
-    widths = [number(row, "tau_half_width") for row in solved]
-    warned = [bool(row["warned"]) for row in solved]
+    kinds = sorted({row["kind"] for row in solved})
+
+    def coverage(chosen: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+        return {name: sum(row[name] for row in chosen) / len(chosen) if chosen else 0.0 for name in names}
+
+    half_widths = [(row["tau_half_width"], row["warned"]) for row in solved]
+    widths = [(math.inf if width is None else width, warned) for width, warned in half_widths]
+    unwarned = [abs(row["tau_error"]) for row in solved if not row["warned"]]
     return {
         "twins": len(rows),
         "failures": len(rows) - len(solved),
-        "coverage": {name: share(name) for name in names},
-        "by_kind": {kind: {name: share(name, kind) for name in names} for kind in kinds},
-        "wide": sum(width > WIDE for width in widths),
-        "wide_without_warning": sum(w > WIDE and not said for w, said in zip(widths, warned, strict=True)),
-        "narrow": sum(width < NARROW for width in widths),
-        "narrow_with_warning": sum(w < NARROW and said for w, said in zip(widths, warned, strict=True)),
-        "narrow_whole": sum(2 * width < NARROW for width in widths),
-        "warned": sum(warned),
-        "unwarned_tau_error": max(
-            (abs(number(row, "tau_error")) for row, said in zip(solved, warned, strict=True) if not said),
-            default=None,
-        ),
-        "most_solves_per_load": max((number(row, "solves") - 1) / number(row, "loads") for row in solved),
+        "coverage": coverage(solved),
+        "by_kind": {kind: coverage([row for row in solved if row["kind"] == kind]) for kind in kinds},
+        "wide": sum(width > WIDE for width, _ in widths),
+        "wide_without_warning": sum(width > WIDE and not warned for width, warned in widths),
+        "narrow": sum(width < NARROW for width, _ in widths),
+        "narrow_with_warning": sum(width < NARROW and warned for width, warned in widths),
+        "narrow_whole": sum(2 * width < NARROW for width, _ in widths),
+        "warned": sum(warned for _, warned in widths),
+        "unwarned_tau_error": max(unwarned, default=None),
+        "most_solves_per_load": max((row["solves"] - 1) / row["loads"] for row in solved),
     }
 
 
 def study(
-    twins: TwinSet, log: Path | None = None, seeds: Iterable[int] | None = None
+    tables: TableSet, log: Path | None = None, seeds: Iterable[int] | None = None
 ) -> list[dict[str, object]]:
-    """Return the twins of all seeds, or of others; one without a converged solve holds its message.
+    """Return the fits of all seeds, or of others; one without a converged solve holds its message.
 
-    ``log`` keeps finished twins, a line each: the study goes on where it was.
+    ``log`` keeps finished fits, a line each: the study goes on where it was.
     """
-    seeds = list(twins.seeds if seeds is None else seeds)
+    seeds = list(tables.seeds if seeds is None else seeds)
     found = [json.loads(line) for line in log.read_text().splitlines()] if log and log.exists() else []
     found = [row for row in found if row["seed"] in seeds]
     line = Progress(len(seeds) - len(found))
     for seed in sorted(set(seeds) - {row["seed"] for row in found}):
         try:
-            found.append(judged(twins, seed))
+            found.append(fitted(tables, seed))
         except ArithmeticError as failure:
             found.append({"seed": seed, "failure": str(failure)})
         if log is not None:
             with log.open("a") as file:
                 file.write(json.dumps(jsonable(found[-1])) + "\n")
-        line.tick(f"twin {seed}")
+        line.tick(f"table {seed}")
     line.close()
     return found
 
 
 def shortened(row: Mapping[str, object]) -> dict[str, object]:
-    """Return a twin with its numbers to five digits.
+    """Return a fit with its numbers to five digits.
 
     >>> shortened({"noise": 0.0123456789, "tau": True})
     {'noise': 0.012346, 'tau': True}
@@ -192,13 +173,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, required=True)
     parser.add_argument("--sets", nargs="+", choices=SETS, default=list(SETS), help="default: all")
-    parser.add_argument("--log", type=Path, help="finished twins, to go on from")
+    parser.add_argument("--log", type=Path, help="finished fits, to go on from")
     options = parser.parse_args()
     document: dict[str, object] = {}
     for name in options.sets:
-        twins = study(SETS[name], options.log)
-        document[name] = {"summary": summary(twins), "twins": [shortened(row) for row in twins]}
-        print(name, summary(twins))
+        fits = study(SETS[name], options.log)
+        document[name] = {"summary": summary(fits), "twins": [shortened(row) for row in fits]}
+        print(name, summary(fits))
     write_result(document | {"provenance": provenance()}, options.json)
 
 

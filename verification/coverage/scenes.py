@@ -10,13 +10,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 import refimpl as rf
 from refimpl.model.materials import Pair
-from verification.coverage.shapes import Barrel, Waves, measured_like
-
-SIDE = 1e-3  # m; the problem is scale-free, so one side stands for all
+from verification.coverage.drawing import SIDE, Ball, Barrel, Dice, Waves, measured_like
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,19 +35,15 @@ def random_scene(seed: int) -> Drawn:
     return Drawn(seed, kind, CLASSES[kind](_Dice(seed)))
 
 
-class _Dice:
+class _Dice(Dice):
     """The random numbers of a scene, by what they mean."""
 
     def __init__(self, seed: int) -> None:
-        self.rng = np.random.default_rng([2001, seed])
+        super().__init__(2001, seed)
         self.seeds = 2 * seed, 2 * seed + 1  # seeds of both bodies' roughness
         lower, upper = self._material(), self._material()
         self.pair = Pair(lower=lower, upper=lower if self.rng.random() < 0.2 else upper)
         self.modulus = self.pair.reduced_modulus
-
-    def log(self, low: float, high: float) -> float:
-        """A log-uniform number."""
-        return math.exp(self.rng.uniform(math.log(low), math.log(high)))
 
     def _material(self) -> rf.Material:
         return rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49)))
@@ -72,57 +64,48 @@ class _Dice:
             friction=self.friction(pressure),
             load=load,
             side=SIDE,
-            sliding_direction=float(self.rng.uniform(0, 2 * math.pi)),
+            sliding_direction=self.angle(),
             periodic=periodic,
         )
 
+    def ball(self) -> Ball:
+        """A ball that touches on 0.08 to 0.3 of the side."""
+        return Ball(self.modulus, SIDE * self.log(2, 100), SIDE * self.log(0.08, 0.3))
 
-@dataclass(frozen=True)
-class _Ball:
-    """A Hertz contact: radius R (m), contact radius a (m), load (N), mean pressure (Pa), approach (m)."""
-
-    R: float
-    a: float
-    load: float
-    pressure: float
-    approach: float
-
-
-def _ball(dice: _Dice) -> _Ball:
-    R, a = SIDE * dice.log(2, 100), SIDE * dice.log(0.08, 0.3)
-    load = 4 * dice.modulus * a**3 / (3 * R)
-    return _Ball(R, a, load, load / (math.pi * a**2), a**2 / R)
+    def phases(self) -> tuple[float, float]:
+        """Phases along x and y (rad)."""
+        return self.angle(), self.angle()
 
 
 def _smooth(dice: _Dice) -> rf.Scene:
-    ball = _ball(dice)
+    ball = dice.ball()
     return dice.scene(rf.Sphere(ball.R), rf.Flat(), ball.load, ball.pressure)
 
 
 def _barrel(dice: _Dice) -> rf.Scene:
     """Elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves singular."""
-    ball, ratio = _ball(dice), dice.log(1.5, 10)
+    ball, ratio = dice.ball(), dice.log(1.5, 10)
     root = math.sqrt(ratio)
     shape = Barrel(ball.R / root, ball.R * root)
     return dice.scene(shape, rf.Flat(), ball.load / root, ball.pressure)
 
 
 def _wavy(dice: _Dice) -> rf.Scene:
-    ball = _ball(dice)
+    ball = dice.ball()
     numbers = tuple(int(n) for n in dice.rng.integers(2, 12, 2))
-    waves = Waves(ball.approach * dice.log(0.02, 0.5), (numbers[0], numbers[1]), _phases(dice))
+    waves = Waves(ball.approach * dice.log(0.02, 0.5), (numbers[0], numbers[1]), dice.phases())
     return dice.scene(rf.Sphere(ball.R), waves, ball.load, ball.pressure)
 
 
 def _rough_ball(dice: _Dice) -> rf.Scene:
-    ball = _ball(dice)
+    ball = dice.ball()
     rms, length = ball.approach * dice.log(0.01, 0.6), SIDE * dice.log(0.05, 0.3)
     rough = rf.GaussianRoughness(rms, length, dice.seeds[0])
     return dice.scene(rf.Sphere(ball.R), rough, ball.load, ball.pressure)
 
 
 def _both_rough(dice: _Dice) -> rf.Scene:
-    ball = _ball(dice)
+    ball = dice.ball()
     upper, lower = (
         rf.GaussianRoughness(ball.approach * dice.log(0.01, 0.3), SIDE * dice.log(0.05, 0.3), seed)
         for seed in dice.seeds
@@ -131,7 +114,7 @@ def _both_rough(dice: _Dice) -> rf.Scene:
 
 
 def _measured(dice: _Dice) -> rf.Scene:
-    ball, points = _ball(dice), int(dice.rng.integers(48, 161))
+    ball, points = dice.ball(), int(dice.rng.integers(48, 161))
     rms, hurst = ball.approach * dice.log(0.01, 0.4), float(dice.rng.uniform(0.6, 0.9))
     heights = measured_like(dice.rng, points, rms, hurst, roll_off=int(dice.rng.integers(3, 7)))
     return dice.scene(rf.Sphere(ball.R) + heights, rf.Flat(), ball.load, ball.pressure)
@@ -142,7 +125,7 @@ def _periodic_waves(dice: _Dice) -> rf.Scene:
     number, amplitude = int(dice.rng.integers(1, 4)), SIDE * dice.log(1e-4, 1e-2)
     flattening = math.sqrt(2) * math.pi * dice.modulus * amplitude * number / SIDE
     mean = flattening * dice.log(0.02, 0.66)
-    waves = Waves(amplitude / number, (number, number), _phases(dice))
+    waves = Waves(amplitude / number, (number, number), dice.phases())
     return dice.scene(waves, rf.Flat(), mean / number * SIDE**2, 2 * mean, periodic=True)
 
 
@@ -152,11 +135,6 @@ def _periodic_rough(dice: _Dice) -> rf.Scene:
     scale = dice.modulus * math.sqrt(2) * rough.rms_slope
     mean = scale * dice.log(0.02, 0.2)
     return dice.scene(rough, rf.Flat(), mean * SIDE**2, 0.4 * scale, periodic=True)
-
-
-def _phases(dice: _Dice) -> tuple[float, float]:
-    a, b = dice.rng.uniform(0, 2 * math.pi, 2)
-    return float(a), float(b)
 
 
 CLASSES: dict[str, Callable[[_Dice], rf.Scene]] = {

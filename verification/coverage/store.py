@@ -1,4 +1,4 @@
-"""Solved ladders of grids, one JSON line per scene and grid, so that a killed study goes on where it was."""
+"""Solved refinements, one JSON line per scene and grid, so that a killed study goes on where it was."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import Peak
 from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
 from refimpl.grid.straight_edges import StraightEdges
-from refimpl.model.friction import is_frictionless
+from refimpl.model.friction import FrictionLaw, is_frictionless
 from verification.coverage.scenes import random_scene
 from verification.framework.files import Progress
 
@@ -26,7 +26,7 @@ TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class Rung:
+class GridSolve:
     """One scene on one grid: its numbers, its status, its worst residual and what it cost.
 
     ``carried`` is the cost where the grid starts from the opening's answer, as in a refinement sequence;
@@ -48,13 +48,15 @@ class Rung:
         return longer_side(self.result)
 
 
-def climb(
-    path: Path, seeds: Iterable[int], grids: Iterable[int], solve: Callable[[int, int], Rung] | None = None
-) -> None:
-    """Solve what the store has not yet, by ``solve(seed, M)``; each finished solve is appended at once."""
+Solve = Callable[[int, int], GridSolve]
+"""Solve of a seed's scene on M x M elements."""
+
+
+def refine(path: Path, seeds: Iterable[int], grids: Iterable[int], solve: Solve | None = None) -> None:
+    """Solve what the store has not yet; each finished solve is appended at once."""
     solve = solve or _solved
     seeds, grids = list(seeds), list(grids)
-    known = {(rung.seed, rung.M) for rung in rungs(path)}
+    known = {(one.seed, one.M) for one in grid_solves(path)}
     todo = [(seed, M) for seed in seeds for M in grids if (seed, M) not in known]
     progress = Progress(len(todo))
     cut = path.exists() and not path.read_bytes().endswith(b"\n")
@@ -68,7 +70,7 @@ def climb(
     progress.close()
 
 
-def rungs(path: Path) -> Iterator[Rung]:
+def grid_solves(path: Path) -> Iterator[GridSolve]:
     """Everything in the store; a last line cut short by a kill is skipped, and solved again."""
     if not path.exists():
         return
@@ -77,7 +79,7 @@ def rungs(path: Path) -> Iterator[Rung]:
             record = json.loads(line)
         except json.JSONDecodeError:
             continue
-        yield Rung(**{**record, "result": _features(record["result"])})
+        yield GridSolve(**{**record, "result": _features(record["result"])})
 
 
 def _features(record: dict[str, Any]) -> GridFeatures:
@@ -88,20 +90,20 @@ def _features(record: dict[str, Any]) -> GridFeatures:
     return GridFeatures(**{**record, **peaks, **straight, "grid": restored})
 
 
-def ladders(path: Path) -> dict[int, list[Rung]]:
+def refinements(path: Path) -> dict[int, list[GridSolve]]:
     """The store's scenes by seed, coarse to fine."""
-    found: dict[int, list[Rung]] = {}
-    for rung in rungs(path):
-        found.setdefault(rung.seed, []).append(rung)
-    return {seed: sorted(found[seed], key=lambda rung: rung.M) for seed in sorted(found)}
+    found: dict[int, list[GridSolve]] = {}
+    for one in grid_solves(path):
+        found.setdefault(one.seed, []).append(one)
+    return {seed: sorted(found[seed], key=lambda one: one.M) for seed in sorted(found)}
 
 
-def _solved(seed: int, M: int) -> Rung:
+def _solved(seed: int, M: int) -> GridSolve:
     started = time.process_time()
     solution = rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE)
     seconds = time.process_time() - started
     begun = _begun(seed, M)
-    return Rung(
+    return GridSolve(
         seed=seed,
         result=solution.features,
         status=solution.status.value,
@@ -114,7 +116,7 @@ def _solved(seed: int, M: int) -> Rung:
 
 
 def _begun(seed: int, M: int) -> rf.Solution | None:
-    """The solution that starts from the opening's, if a climb may come by and the opening has converged."""
+    """The solution from the opening's answer, if a refinement asks for it and the opening has converged."""
     coarser = [grid for grid in FIRST_GRIDS if grid < M <= FINEST]
     start = _opened(seed, coarser[-1]) if coarser else None
     if start is None or not start.converged:
@@ -128,6 +130,11 @@ def _opened(seed: int, M: int) -> rf.Solution:
 
 
 def _apart(one: rf.Solution, other: rf.Solution) -> float:
-    """The largest relative difference of the numbers; without friction mu is rounding and left out."""
-    names = NUMBERS[1:] if is_frictionless(one.friction) else NUMBERS
+    """The largest relative difference of the numbers to be judged."""
+    names = judged_numbers(one.friction)
     return max(abs(float(getattr(one, name)) / float(getattr(other, name)) - 1) for name in names)
+
+
+def judged_numbers(friction: FrictionLaw) -> tuple[str, ...]:
+    """Return the names of the numbers to judge: not mu without friction, where it is rounding."""
+    return NUMBERS[1:] if is_frictionless(friction) else NUMBERS

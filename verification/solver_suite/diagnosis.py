@@ -43,17 +43,22 @@ PARTS = ("edges", "modulus", "borders", *OF_SLIDING)
 
 def row_of(slug: str) -> Row | None:
     """Return the row of a problem of the designs by its slug; or None."""
-    head, _, number = slug.rpartition("-")
-    design = head.removeprefix("design-")
-    if not head.startswith("design-"):
-        return None
-    found = _rows(design in FURTHER).get(design)
-    return None if found is None else found[int(number) - 1]
+    return _rows(_is_further(slug)).get(slug)
 
 
-def _rows(further: bool) -> Mapping[str, tuple[Row, ...]]:
-    """Rows of the designs in the order of the suite, of the further ones too where asked for."""
-    return rows() | (further_rows() if further else {})
+def _is_further(slug: str) -> bool:
+    return slug.removeprefix("design-").rpartition("-")[0] in FURTHER
+
+
+@cache
+def _rows(further: bool) -> Mapping[str, Row]:
+    """Rows by slug in the order of the suite, those of the further designs too where asked for."""
+    designs = rows() | (further_rows() if further else {})
+    return {
+        f"design-{design}-{number:02}": row
+        for design, found in designs.items()
+        for number, row in enumerate(found, start=1)
+    }
 
 
 def levels(slug: str) -> dict[str, Trait] | None:
@@ -67,7 +72,7 @@ def levels(slug: str) -> dict[str, Trait] | None:
     row = row_of(slug)
     if row is None:
         return None
-    further = slug.removeprefix("design-").rpartition("-")[0] in FURTHER
+    further = _is_further(slug)
     n, g, E = int(row["elements"]), float(row["slope"]), float(row["modulus"])
     wide, deep = shape_of(row)
     traits: dict[str, Trait] = {
@@ -106,9 +111,8 @@ def levels(slug: str) -> dict[str, Trait] | None:
 def _first_of_their_shapes(further: bool) -> frozenset[str]:
     """Slugs of the problems before which none of their shape and borders is posed; of no problems in turn."""
     first: dict[tuple[tuple[int, int], str], str] = {}
-    for design, found in _rows(further).items():
-        for number, row in enumerate(found, start=1):
-            first.setdefault((shape_of(row), row["borders"]), f"design-{design}-{number:02}")
+    for slug, row in _rows(further).items():
+        first.setdefault((shape_of(row), row["borders"]), slug)
     return frozenset(slug for slug in first.values() if "-memory-" not in slug)
 
 
@@ -120,15 +124,13 @@ def _changed_parts(further: bool) -> dict[str, frozenset[str]]:
     """
     met: dict[tuple[Hashable, ...], set[Hashable]] = {}
     changed: dict[str, frozenset[str]] = {}
-    for design, found in _rows(further).items():
-        for number, base in enumerate(found, start=1):
-            slug = f"design-{design}-{number:02}"
-            for parts in (_parts(row, slug) for row in in_turn(base)):
-                others = {name: met.setdefault((name, *_without(name, parts)), set()) for name in PARTS}
-                new = {name for name in PARTS if others[name] - {parts[name]}}
-                changed[slug] = changed.get(slug, frozenset()) | new
-                for name in PARTS:
-                    others[name].add(parts[name])
+    for slug, base in _rows(further).items():
+        for parts in (_parts(row, slug) for row in in_turn(base)):
+            others = {name: met.setdefault((name, *_without(name, parts)), set()) for name in PARTS}
+            new = {name for name in PARTS if others[name] - {parts[name]}}
+            changed[slug] = changed.get(slug, frozenset()) | new
+            for name in PARTS:
+                others[name].add(parts[name])
     return changed
 
 

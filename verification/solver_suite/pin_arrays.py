@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -77,16 +76,25 @@ def displacement(pressure: Array, coupling: Coupling | None, modulus: float) -> 
 
 @dataclass(frozen=True, eq=False)
 class PinArray:
-    """A square of 1 m whose exact ``pressure`` (Pa), shape ``(M, M)``, is known: zero on all but the pins."""
+    """A square of 1 m whose exact ``pressure`` (Pa), shape ``(M, M)``, is known: zero on all but the pins.
+
+    With a ``hardness`` (Pa) the bodies overlap by random depths where the pressure is at it.
+    """
 
     pressure: Array
     coupling: Coupling | None = None
     periodic: bool = False
     modulus: float = MODULUS
+    hardness: float | None = None
+
+    @classmethod
+    def yielding(cls, pressure: Array, coupling: Coupling | None = None) -> PinArray:
+        """Return the free array of pressures that end at `HARDNESS`."""
+        return cls(np.minimum(pressure, HARDNESS), coupling, hardness=HARDNESS)
 
     @property
     def load(self) -> float:
-        """N."""
+        """Load of the pressures (N)."""
         return float(self.pressure.mean())
 
     @property
@@ -105,8 +113,12 @@ class PinArray:
 
     @property
     def gap(self) -> Array:
-        """The gap (m) that the pressures close, `FAR` off the pins."""
-        return np.where(self.pressure > 0, self.touch - self.moved, FAR)
+        """The gap (m) that the pressures close, less the overlaps at the hardness; `FAR` off the pins."""
+        gap = np.where(self.pressure > 0, self.touch - self.moved, FAR)
+        if self.hardness is None:
+            return gap
+        depths = np.random.default_rng(7).uniform(0.05, 0.5, self.pressure.shape) * self.touch
+        return gap - np.where(self.pressure >= self.hardness, depths, 0.0)
 
     def under_load(self, entrant: Entrant) -> tuple[Pressed, Array]:
         """Return the solver's answer under the load of the pressures, and the pressures."""
@@ -117,35 +129,12 @@ class PinArray:
         approach = self.touch - (float(self.gap.mean()) if self.periodic else 0.0)
         return self._pressed(entrant, approach=approach), self.pressure
 
-    def _pressed(self, entrant: Entrant, **control: Any) -> Pressed:
-        how: dict[str, Any] = {"periodic": self.periodic, "coupling": self.coupling, "modulus": self.modulus}
-        return entrant.press(self.gap, **how, **control)
-
-
-@dataclass(frozen=True, eq=False)
-class YieldingPins:
-    """An array of pins, some of them at the hardness: there the bodies overlap by random depths."""
-
-    array: PinArray
-
-    @classmethod
-    def of(cls, pressure: Array, coupling: Coupling | None = None) -> YieldingPins:
-        """Return the free array of pressures that end at the hardness."""
-        return cls(PinArray(np.minimum(pressure, HARDNESS), coupling))
-
-    @property
-    def gap(self) -> Array:
-        """The gap (m) that the pressures close, less the depths where they are at the hardness."""
-        depths = np.random.default_rng(7).uniform(0.05, 0.5, self.array.pressure.shape) * self.array.touch
-        return self.array.gap - np.where(self.array.pressure >= HARDNESS, depths, 0.0)
-
-    def under_load(self, entrant: Entrant) -> tuple[Pressed, Array]:
-        """Return the solver's answer under the load of the pressures, and the pressures."""
-        return self._pressed(entrant, load=self.array.load), self.array.pressure
-
-    def at_approach(self, entrant: Entrant) -> tuple[Pressed, Array]:
-        """Return the solver's answer at the approach of the pressures, and the pressures."""
-        return self._pressed(entrant, approach=self.array.touch), self.array.pressure
-
-    def _pressed(self, entrant: Entrant, **control: Any) -> Pressed:
-        return entrant.press(self.gap, coupling=self.array.coupling, hardness=HARDNESS, **control)
+    def _pressed(self, entrant: Entrant, **control: float) -> Pressed:
+        return entrant.press(
+            self.gap,
+            periodic=self.periodic,
+            coupling=self.coupling,
+            modulus=self.modulus,
+            hardness=self.hardness,
+            **control,
+        )

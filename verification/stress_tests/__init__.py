@@ -1,1 +1,1 @@
-"""Extremes: every axis driven until something gives, each state judged by an independent oracle."""
+"""Stress tests: every axis driven to the point of failure, each state judged by an independent oracle."""

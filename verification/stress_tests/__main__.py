@@ -21,12 +21,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     from verification.framework.files import Progress, write_result
     from verification.stress_tests import study
-    from verification.stress_tests.state import axes, states
+    from verification.stress_tests.axes import AXES, states
 
-    unknown = [name for name in options.axis if name not in axes()]
+    unknown = [name for name in options.axis if name not in AXES]
     if unknown:
-        parser.error(f"--axis {unknown[0]!r}: expected one of {', '.join(axes())}")
-    progress = Progress(sum(1 for name in options.axis or axes() for _ in states(name)))
+        parser.error(f"--axis {unknown[0]!r}: expected one of {', '.join(AXES)}")
+    progress = Progress(sum(1 for name in options.axis or AXES for _ in states(name)))
     found = study.document(study.run(options.axis, progress.tick))
     progress.close()
     write_result(found, options.json)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from functools import partial
-from typing import Any
+from functools import partial, wraps
+from typing import Any, ParamSpec
 
 import mpmath as mp
 import numpy as np
@@ -24,28 +24,28 @@ M = 5
 """Elements a side of states that the oracle judges, unless an axis varies them."""
 SOLVERS: tuple[Method, ...] = ("fft", "dense")
 GOOD = (rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.NO_CONTACT)
+P = ParamSpec("P")
 
 
-def guarded(run: Callable[[], Judged]) -> Judged:
-    """The run's verdict; a refusal is a detected failure, an unforeseen exception a crash."""
+def guarded(judge: Callable[P, Judged]) -> Callable[P, Judged]:
+    """Return the judge with a verdict on exceptions: a refusal is a detected failure, all else a crash."""
 
-    def failed(verdict: Verdict, status: str, error: Exception) -> Judged:
-        oracle = "refused" if verdict is Verdict.HONEST else "none"
-        return Judged(verdict, status, None, WRONG_FROM, oracle, str(error).partition("\n")[0])
+    @wraps(judge)
+    def judged(*args: P.args, **kwargs: P.kwargs) -> Judged:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                return judge(*args, **kwargs)
+        # Exceptions of any kind are what the stress tests look for: here they are found, named and counted.
+        except Exception as error:
+            refused, unjudged = isinstance(error, rf.InputError), isinstance(error, NotSettled)
+            # documented: the frozen problem has no solution, or no approach carries the load
+            detected = refused or type(error) is ArithmeticError
+            status = "InputError" if refused else "unjudged" if unjudged else type(error).__name__
+            verdict, oracle = (Verdict.HONEST, "refused") if detected else (Verdict.CRASH, "none")
+            return Judged(verdict, status, None, WRONG_FROM, oracle, str(error).partition("\n")[0])
 
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return run()
-    except rf.InputError as refused:
-        return failed(Verdict.HONEST, "InputError", refused)
-    except NotSettled as unsettled:
-        return failed(Verdict.CRASH, "unjudged", unsettled)
-    # Exceptions of any kind are what the stress tests look for: here they are found, named and counted.
-    except Exception as broken:
-        # documented: the frozen problem has no solution, or no approach carries the load
-        documented = type(broken) is ArithmeticError
-        return failed(Verdict.HONEST if documented else Verdict.CRASH, type(broken).__name__, broken)
+    return judged
 
 
 def state(
@@ -57,20 +57,17 @@ def state(
     return Extreme(f"{series}, {method}", at, x, run, seconds)
 
 
+@guarded
 def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options: Any) -> Judged:
     """Pressure, approach and forces against the exact discrete state."""
-
-    def run() -> Judged:
-        solution = rf.solve(scene, elements, method=method, tolerance=TOLERANCE, **options)
-        try:
-            error, note = exact_error(scene, solution, **options)
-        except NotSettled as unsettled:
-            if solution.status in GOOD:
-                raise
-            error, note = np.inf, f"the oracle found no state either: {unsettled}"
-        return verdict(solution, error, "the exact discrete state, 34 digits", note)
-
-    return guarded(run)
+    solution = rf.solve(scene, elements, method=method, tolerance=TOLERANCE, **options)
+    try:
+        error, note = exact_error(scene, solution, **options)
+    except NotSettled as unsettled:
+        if solution.status in GOOD:
+            raise
+        error, note = np.inf, f"the oracle found no state either: {unsettled}"
+    return verdict(solution, error, "the exact discrete state, 34 digits", note)
 
 
 def verdict(
@@ -81,6 +78,12 @@ def verdict(
     if solution.status in GOOD:
         return number(error, limit, status, oracle, note, **data)
     return Judged(Verdict.HONEST, status, error if np.isfinite(error) else None, limit, oracle, note, data)
+
+
+def change(solution: rf.Solution, other: rf.Solution) -> float:
+    """Largest relative change of pressures, to the other solution's peak, and of the approach."""
+    pressures = float(np.abs(solution.pressure - other.pressure).max()) / other.max_pressure
+    return max(pressures, abs(solution.approach / other.approach - 1))
 
 
 def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple[float, str]:

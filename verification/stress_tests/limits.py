@@ -5,11 +5,10 @@ Each names the states of the study that reproduce it (a glob over their ids); a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class Limit:
+class Limit(NamedTuple):
     """One limit: ``states`` that show it, ``what`` happens there, ``why``, and the ``remedy`` if any."""
 
     states: str

@@ -6,9 +6,9 @@ and compared with 80 digits. Digits lost: those that the arithmetic carries less
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import mpmath as mp
 import numpy as np
@@ -21,39 +21,30 @@ REFERENCE_DIGITS, MP_DIGITS = 80, 30
 ORDER = 9  # Gauss-Legendre nodes over a strip, as in the kernels
 
 
-@dataclass(frozen=True)
-class Arithmetic:
-    """A number type with its elementary functions; ``carried`` decimal digits."""
+class Arithmetic(NamedTuple):
+    """A number type with ``carried`` decimal digits, and its elementary functions by numpy's names."""
 
     name: str
     carried: float
     number: Callable[[Any], Any]
     dtype: Any  # type of numpy, None for mpmath
-
-    def __getattr__(self, name: str) -> Any:
-        """An elementary function by numpy's name, of this arithmetic."""
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return (
-            getattr(np, name)
-            if self.dtype is not None
-            else getattr(mp, {"arctan": "atan", "arcsinh": "asinh"}.get(name, name))
-        )
+    functions: Any
 
 
 def arithmetics() -> tuple[Arithmetic, ...]:
     """Arithmetics of this machine: where long double is double, without additional digits."""
     floats = ((np.float32, "float32"), (np.float64, "float64"), (np.longdouble, "long double"))
-    found = [Arithmetic(name, -np.log10(float(np.finfo(t).eps)), t, t) for t, name in floats]
-    return (*found, Arithmetic(f"mpmath, {MP_DIGITS}", float(MP_DIGITS), mp.mpf, None))
+    found = [Arithmetic(name, -np.log10(float(np.finfo(t).eps)), t, t, np) for t, name in floats]
+    functions = SimpleNamespace(arcsinh=mp.asinh, arctan=mp.atan, log=mp.log)
+    return (*found, Arithmetic(f"mpmath, {MP_DIGITS}", float(MP_DIGITS), mp.mpf, None, functions))
 
 
 def _normal_corner(a: Arithmetic, X: Any, Y: Any) -> Any:
-    return X * a.arcsinh(Y / abs(X)) + Y * a.arcsinh(X / abs(Y))
+    return X * a.functions.arcsinh(Y / abs(X)) + Y * a.functions.arcsinh(X / abs(Y))
 
 
 def _tangential_corner(a: Arithmetic, X: Any, Y: Any) -> Any:
-    return Y * a.log(X * X + Y * Y) / 2 + X * a.arctan(Y / X)
+    return Y * a.functions.log(X * X + Y * Y) / 2 + X * a.functions.arctan(Y / X)
 
 
 NORMAL = ("normal kernel", _normal_corner, LOVE, kernel_reference.normal)
@@ -124,38 +115,41 @@ def _as_mpf(value: Any) -> Any:
     return mp.mpf(high) + mp.mpf(float(value - type(value)(high)))
 
 
-def _rows() -> Iterator[tuple[str, list[float | None], str, str]]:
-    """Quantity, digits lost in each arithmetic, cause, and what this code does instead."""
-    cancels = "corner terms grow with distance while their second difference decays: n^2 eps"
-    odd = "odd in x: even parts of the corner terms cancel"
-    strips = "strips with log1p near, quadrature far"
-    for offset, kernels, at, cause, cure in (
-        *(
-            (n, (NORMAL, TANGENTIAL), f"at {n:g} elements", cancels, strips)
-            for n in (1.0, 64.0, 4096.0, 262144.0)
-        ),
-        (2.0**-30, (TANGENTIAL,), "at x = 1e-9", odd, "differences of angles first"),
-    ):
-        for name, corner, own, reference in kernels:
-            exact = [reference(x, y, 1.0, 1.0) for x, y in around(offset)]
-            with mp.workdps(MP_DIGITS), np.errstate(all="ignore"):
-                by_textbook = [textbook_form(a, corner, offset) for a in arithmetics()]
-                by_own_form = [own_form(a, own, offset) for a in arithmetics()]
-            for form, found, why, instead in (
-                ("textbook", by_textbook, cause, cure),
-                ("this code", by_own_form, "none", ""),
-            ):
-                digits = [lost(a, values, exact) for a, values in zip(arithmetics(), found, strict=True)]
-                yield f"{name}, {form}, {at}", digits, why, instead
+CANCELS = "corner terms grow with distance while their second difference decays: n^2 eps"
+ODD = "odd in x: even parts of the corner terms cancel"
+PLACES = (
+    *(
+        (n, (NORMAL, TANGENTIAL), f"at {n:g} elements", CANCELS, "strips with log1p near, quadrature far")
+        for n in (1.0, 64.0, 4096.0, 262144.0)
+    ),
+    (2.0**-30, (TANGENTIAL,), "at x = 1e-9", ODD, "differences of angles first"),
+)
+"""Offset, kernels, its name, why the textbook form loses digits, and what this code does instead."""
 
 
 def table() -> dict[str, Any]:
     """The heat map: rows of digits lost, and for each quantity its cause and cure."""
-    rows = list(_rows())
+    kinds = arithmetics()
+    digits: dict[str, list[float | None]] = {}
+    causes: dict[str, str] = {}
+    cures: dict[str, str] = {}
+    for offset, kernels, at, cause, cure in PLACES:
+        for name, corner, own, reference in kernels:
+            exact = [reference(x, y, 1.0, 1.0) for x, y in around(offset)]
+            with mp.workdps(MP_DIGITS), np.errstate(all="ignore"):
+                by_textbook = [textbook_form(a, corner, offset) for a in kinds]
+                by_own_form = [own_form(a, own, offset) for a in kinds]
+            for form, found, why, instead in (
+                ("textbook", by_textbook, cause, cure),
+                ("this code", by_own_form, "none", ""),
+            ):
+                row = f"{name}, {form}, {at}"
+                digits[row] = [lost(a, values, exact) for a, values in zip(kinds, found, strict=True)]
+                causes[row], cures[row] = why, instead
     return {
-        "arithmetic": [kind.name for kind in arithmetics()],
-        "digits carried": [kind.carried for kind in arithmetics()],
-        "digits lost": {name: digits for name, digits, _, _ in rows},
-        "cause": {name: cause for name, _, cause, _ in rows},
-        "cure": {name: cure for name, _, _, cure in rows},
+        "arithmetic": [kind.name for kind in kinds],
+        "digits carried": [kind.carried for kind in kinds],
+        "digits lost": digits,
+        "cause": causes,
+        "cure": cures,
     }

@@ -1,9 +1,9 @@
-"""States of the stress tests, their verdicts, and the register of axes."""
+"""States of the stress tests, and their verdicts."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -66,35 +66,3 @@ def number(error: float, limit: float, status: str, oracle: str, note: str = "",
     """Judge a number that was given as good: right within the limit, else (NaN too) wrong."""
     verdict = Verdict.RIGHT if error <= limit else Verdict.WRONG
     return Judged(verdict, status, error if math.isfinite(error) else 1e300, limit, oracle, note, data)
-
-
-Axis = Callable[[], Iterable[Extreme]]
-_AXES: dict[str, Axis] = {}
-
-
-def axis(name: str) -> Callable[[Axis], Axis]:
-    """Register a function that yields the states of an axis."""
-
-    def register(states: Axis) -> Axis:
-        if name in _AXES:
-            raise ValueError(f"the axis {name!r} is declared twice")
-        _AXES[name] = states
-        return states
-
-    return register
-
-
-def axes() -> tuple[str, ...]:
-    """Names of the registered axes, in order of declaration."""
-    return tuple(_AXES)
-
-
-def states(name: str) -> Iterator[tuple[str, Extreme]]:
-    """Ids and states of an axis; raises ValueError when two have one id."""
-    seen = set()
-    for extreme in _AXES[name]():
-        unique = f"{name}/{extreme.series}/{extreme.at}"
-        if unique in seen:
-            raise ValueError(f"two states are called {unique!r}")
-        seen.add(unique)
-        yield unique, extreme

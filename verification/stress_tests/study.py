@@ -10,12 +10,12 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from typing import Any
 
-import verification.stress_tests.axes  # noqa: F401  # registers the axes
 from verification.framework.case import jsonable
 from verification.framework.provenance import provenance
 from verification.stress_tests import conditioning, precision, uniqueness
+from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.limits import LIMITS
-from verification.stress_tests.state import Extreme, Verdict, axes, states
+from verification.stress_tests.state import Extreme, Verdict
 
 FORMAT = "rough-friction extremes, version 1"
 Row = dict[str, Any]
@@ -42,7 +42,7 @@ def processor_time(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
 
 
-def judged(unique: str, extreme: Extreme) -> Row:
+def run_state(unique: str, extreme: Extreme) -> Row:
     """Run one state within its time."""
     started = time.process_time()
     with processor_time(extreme.seconds):
@@ -58,9 +58,9 @@ def judged(unique: str, extreme: Extreme) -> Row:
 def run(names: Iterable[str] = (), tick: Callable[[str], None] = lambda _: None) -> list[Row]:
     """Rows of the named axes (all by default)."""
     rows = []
-    for name in tuple(names) or axes():
+    for name in tuple(names) or AXES:
         for unique, extreme in states(name):
-            rows.append(judged(unique, extreme))
+            rows.append(run_state(unique, extreme))
             tick(f"{rows[-1]['verdict']:<14} {unique}")
     return rows
 
@@ -98,7 +98,7 @@ def document(rows: list[Row]) -> dict[str, Any]:
             "format": FORMAT,
             "counts": counts(rows),
             "table": summary(rows),
-            "limits": [asdict(limit) for limit in LIMITS],
+            "limits": [limit._asdict() for limit in LIMITS],
             "states": rows,
             "precision": precision.table(),
             "conditioning": conditioning.table(),

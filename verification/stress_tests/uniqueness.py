@@ -85,7 +85,8 @@ def _is_lawful(G: Array, shear: Array, h: Array, target: float, inside: NDArray[
 
 def count(tau: float, scenes: int = SCENES) -> Count:
     """Lawful states of seeded scenes at one tau, and whether the solvers' good states are among them."""
-    numbers, statuses, wrong = [], {"fft": {}, "dense": {}}, 0  # type: ignore[var-annotated]  # filled below
+    numbers, wrong = list[int](), 0
+    statuses: dict[str, dict[str, int]] = {method: {} for method in SOLVERS}
     for seed in range(scenes):
         this = scene(seed, tau, soft_below=seed % 2 == 0)
         lawful = lawful_states(this)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,3 +14,19 @@ def fills(values: Sequence[float], low: float, high: float, *, logarithmic: bool
     ends = np.log([low, high]) if logarithmic else np.array([low, high])
     place = (places - ends[0]) / (ends[1] - ends[0])
     return bool(place.min() >= -1e-9 and place.max() <= 1 + 1e-9 and place.min() < 0.2 and place.max() > 0.8)
+
+
+class Range(NamedTuple):
+    """A number of the scenes of a class, None of a scene without it, and the ends that its draws fill."""
+
+    kind: str
+    name: str
+    of: Callable[[Any], float | None]
+    low: float
+    high: float
+    logarithmic: bool = True
+
+    def filled_by(self, drawn: Iterable[Any]) -> bool:
+        """Whether the numbers of these scenes fill the range."""
+        values = [value for one in drawn if (value := self.of(one)) is not None]
+        return fills(values, self.low, self.high, logarithmic=self.logarithmic)

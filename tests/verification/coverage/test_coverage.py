@@ -1,69 +1,162 @@
-"""The study of error bars: scenes that know no grid, a store that survives kills, the document, its page."""
+"""The study of error bars: a store that survives kills, coverage by hand, the document, its page."""
 
 from __future__ import annotations
 
+import json
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from refimpl.accuracy.peak import Peak
 from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.model.friction import is_frictionless
 from reports.drawing import svg
 from reports.studies import exhibit
-from tests.verification.coverage.rungs import GRIDS, rung
+from tests.verification.coverage.made_up import GRIDS, grid_solve, refinement
 from verification.coverage import document
 from verification.coverage.document import grids_of, reference_check, solves
-from verification.coverage.judge import (
-    summary,
-    verdicts,
+from verification.coverage.judge import Coverage, coverages, reference_change, reference_of, summary
+from verification.coverage.scenes import CLASSES, random_scene
+from verification.coverage.store import NUMBERS, grid_solves, refine, refinements
+
+FRICTIONLESS = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
+
+
+def area_of(accuracy: float, wrong: dict[int, float] | None = None) -> Coverage:
+    """The contact area's coverage, with an area wrong by a share on some grids."""
+    made = [grid_solve(M, wrong=(wrong or {}).get(M, 0.0)) for M in GRIDS]
+    return coverages({3: made}, accuracy)[1]
+
+
+def test_a_lawful_refinement_is_covered_at_little_cost() -> None:
+    found = coverages({3: refinement()}, 0.02)
+    assert [one.number for one in found] == list(NUMBERS)
+    for one in found:
+        assert one.met
+        assert one.covered
+        assert one.grids[:2] == (32, 64)
+    area = found[1]
+    assert area.cheapest is not None
+    assert area.cheapest <= area.grids[-1]
+    first, *later = area.grids
+    assert area.cost == (first**2 + sum(0.75 * M**2 for M in later)) / area.cheapest**2
+    assert summary(found)["covered"] == 1.0
+    without = coverages({FRICTIONLESS: refinement(seed=FRICTIONLESS)}, 0.02)
+    assert [one.number for one in without] == list(NUMBERS[1:])
+
+
+def test_a_bar_that_misses_the_error_is_seen() -> None:
+    found = coverages({3: refinement(wrong=0.3)}, 0.05)
+    assert [one.number for one in found if one.covered] == ["max_pressure"]
+    assert summary(found)["covered"] == 0.25
+
+
+def test_the_cheapest_grid_is_one_that_no_finer_one_belies() -> None:
+    assert area_of(0.05).cheapest == 64  # off by 0.02
+    assert area_of(0.05, {128: 0.3}).cheapest == 192
+    spoilt = area_of(0.05, {256: 0.3})
+    assert (spoilt.cheapest, spoilt.cost) == (None, None)
+
+
+def test_an_accuracy_that_the_grids_cannot_give_is_not_met() -> None:
+    area = area_of(1e-4)
+    assert (area.met, area.cost) == (False, None)
+    assert area.grids[-1] == 256  # the reference itself is never asked for
+
+
+def test_a_reference_that_moves_is_seen() -> None:
+    assert reference_change(refinement()) < 1
+    assert reference_change(refinement(wrong=0.1)) > 1
+
+
+def test_references_known_values() -> None:
+    """Whole elements add 0.79 of the edge to the area, give or take 0.12, and tau on it to mu."""
+    before, finest = grid_solve(256), grid_solve(512)
+    area, edge = finest.result.numbers["contact_area"], finest.result.edge
+    both = [grid_solve(128), before, finest]
+    assert reference_of(both, "contact_area") == (area - 0.79 * edge, 0.12 * edge)
+    assert reference_of(both, "contact_area_corrected") == reference_of(both, "contact_area")
+    mu, bound = reference_of(both, "friction_coefficient")
+    assert mu == pytest.approx(0.1 + 1e5 * (area - 0.79 * edge), rel=1e-14)
+    assert bound == pytest.approx(1e5 * 0.12 * edge, rel=1e-9)  # without tau's share mu is 0.1
+    higher = replace(finest, result=replace(finest.result, peak=Peak(1.25, 1e-3, 0.0)))
+    assert reference_of([before, higher], "max_pressure") == (1.25, 0.25)
+    more = {**finest.result.numbers, "friction_coefficient": 0.3 + 1e5 * area}
+    with_more = [before, replace(finest, result=replace(finest.result, numbers=more))]
+    assert reference_of(with_more, "friction_coefficient")[1] == pytest.approx(bound + 0.2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("error", "bound", "bar", "covered", "at_worst"),
+    [
+        (0.25, 0.25, 0.5, True, True),
+        (0.25, 0.26, 0.5, True, False),
+        (0.5, 0.0, 0.5, True, True),
+        (0.51, 0.0, 0.5, False, False),
+        (1e-9, 1e-9, 0.0, False, False),
+        (0.25, 0.25, np.inf, True, True),
+    ],
 )
-from verification.coverage.scenes import CLASSES, SIDE, random_scene
-from verification.coverage.shapes import measured_like
-from verification.coverage.store import NUMBERS, climb, ladders, rungs
+def test_a_bar_holds_up_to_its_end(
+    error: float, bound: float, bar: float, covered: bool, at_worst: bool
+) -> None:
+    found = replace(area_of(0.02), bar=bar, error=error, reference_bound=bound)
+    assert (found.covered, found.covered_at_worst) == (covered, at_worst)
 
 
-@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
-def test_scenes_repeat_and_know_no_grid() -> None:
-    for seed, kind in enumerate(CLASSES):
-        drawn, again = random_scene(seed), random_scene(seed)
-        assert drawn.kind == kind
-        coarse, fine = (np.array(d.scene.heights(d.scene.grid(M))) for d, M in ((drawn, 32), (again, 96)))
-        # every third centre of the fine grid is one of the coarse; mid-heights differ by what is not sampled
-        shift = fine[:, 1::3, 1::3] - coarse
-        assert np.ptp(shift, axis=(1, 2)).max() <= 1e-12 * SIDE, kind
-
-
-def test_measured_like_heights_have_the_rms_asked_for() -> None:
-    heights = measured_like(np.random.default_rng(1), 64, 2e-6, 0.8, roll_off=4)
-    assert heights.std() == pytest.approx(2e-6)
-    assert abs(heights.mean()) < 1e-20
+def test_a_summary_known_values() -> None:
+    """Bars over errors: 4, 2, 0.5, no end, 8. Bounds over bars: 0.5, 0.5, 0.5, 0, 0.0625."""
+    made = [
+        replace(area_of(0.02), met=met, cost=cost, bar=bar, error=error, reference_bound=0.5)
+        for met, cost, bar, error in (
+            (True, 1.5, 1.0, 0.25),
+            (True, 2.0, 1.0, 0.5),
+            (True, 3.0, 1.0, 2.0),
+            (False, None, np.inf, 1.0),
+            (False, None, 8.0, 1.0),
+        )
+    ]
+    assert summary(made) == {
+        "scenes": 5,
+        "met": 0.6,
+        "covered": 0.8,
+        "covered_at_worst": 0.8,
+        "covered_where_met": 2 / 3,
+        "median_bar_over_error": 4.0,
+        "median_cost": 2.0,
+        "cost_at_most_2": 2 / 3,
+        "median_bar": 1.0,
+        "median_reference_bound_over_bar": 0.5,
+    }
+    never = summary(made[3:4])
+    endless = ("covered_where_met", "median_cost", "cost_at_most_2", "median_bar", "median_bar_over_error")
+    assert [never[name] for name in endless] == [None] * 5
 
 
 def test_the_store_resumes_after_a_kill(tmp_path: Path) -> None:
     store = tmp_path / "store.jsonl"
-    climb(store, [0], [32, 48])
-    whole = store.read_text()
-    store.write_text(whole[:-100])  # killed while the last line was written
-    assert [found.M for found in rungs(store)] == [32]
-    climb(store, [0], [32, 48])
-    assert [found.M for found in ladders(store)[0]] == [32, 48]
-    found = solves(ladders(store).values())
+    refine(store, [0], [32, 48])
+    store.write_text(store.read_text()[:-100])  # killed while the last line was written
+    assert [found.M for found in grid_solves(store)] == [32]
+    refine(store, [0], [32, 48])
+    first, second = refinements(store)[0]
+    assert (first.M, second.M) == (32, 48)
+    found = solves([[first, second]])
     assert found["not_converged"] == 0
     assert found["worst_apart"] <= 1e-6
-    first, second = ladders(store)[0]
     assert first.carried is None
     assert second.carried is not None
     assert second.carried < second.point_logs
 
 
 def test_the_reference_is_checked_on_one_more_grid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    module = "verification.coverage.document"
-    monkeypatch.setattr(f"{module}.CHECK", 128)
-    monkeypatch.setattr(f"{module}.grids_of", lambda seed: (32, 64))
+    monkeypatch.setattr(document, "CHECK", 128)
+    monkeypatch.setattr(document, "grids_of", lambda seed: (32, 64))
     store = tmp_path / "store.jsonl"
-    climb(store, [8], [32, 64])
+    refine(store, [8], [32, 64])
     found = reference_check([6, 8], store)
     assert found["seeds"] == [8]
     assert found["worst_over_bound"] is not None
@@ -82,44 +175,62 @@ def test_the_document_solves_what_is_wanting_and_judges_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(document, "grids_of", lambda _: (*FIRST_GRIDS, 128, 256))
-    frictionless = next(seed for seed in range(99) if is_frictionless(random_scene(seed).scene.friction))
-    store, seeds = tmp_path / "study.jsonl", [0, frictionless]
-    climb(store, [5], [*FIRST_GRIDS])  # of another study
+    store, seeds = tmp_path / "study.jsonl", [0, FRICTIONLESS]
+    refine(store, [5], [*FIRST_GRIDS])  # of another study
     found: dict[str, Any] = document.document([0.05], seeds, store)
     assert found["solves"]["count"] == 8
     (judged,) = found["accuracies"]
-    scenes = {number: judged["numbers"][number]["scenes"] for number in NUMBERS}
-    assert scenes == {name: 1 if name == "friction_coefficient" else 2 for name in NUMBERS}
-    assert {number: verdicts["seed"] for number, verdicts in judged["verdicts"].items()} == {
+    assert {number: columns["seed"] for number, columns in judged["verdicts"].items()} == {
         name: [0] if name == "friction_coefficient" else seeds for name in NUMBERS
     }
-    by_class = [judged["classes"][kind]["contact_area"]["scenes"] for kind in CLASSES]
-    assert sum(by_class) == 2
+    assert sum(judged["classes"][kind]["contact_area"]["scenes"] for kind in CLASSES) == 2
 
 
-def test_the_report_shows_the_study() -> None:
-    ladder = {3: [rung(M) for M in GRIDS]}
-    found = verdicts(ladder, 0.02)
-    columns = ("seed", "class", "grid", "met", "bar", "error", "cost")
-    judged = {
-        "accuracy": 0.02,
-        "numbers": {number: summary(v for v in found if v.number == number) for number in NUMBERS},
-        "classes": {"rough ball": {number: summary(found) for number in NUMBERS}},
-        "verdicts": {
-            v.number: dict(
-                zip(columns, ([3], [v.kind], [256], [v.met], [v.bar], [v.error], [v.cost]), strict=True)
-            )
-            for v in found
-        },
+def test_every_column_of_the_document(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From a store whose lines stand in no order; some solves of the second scene end oddly."""
+    seeds, path = [75, 76], tmp_path / "s.jsonl"  # no scenes that are checked on one more grid
+    odd = {32: "cycled", 64: "stagnated", 96: "iteration limit"}
+    several = refinement(seed=75) + [
+        grid_solve(M, seed=76, status=odd.get(M, "converged"), worst=M * 1e-9, seconds=0.5, apart=M * 1e-12)
+        for M in GRIDS
+    ]
+    order = np.random.default_rng(3).permutation(len(several))
+    path.write_text("".join(json.dumps(asdict(several[k])) + "\n" for k in order))
+    assert list(refinements(path)) == seeds
+    assert all([one.M for one in found] == list(GRIDS) for found in refinements(path).values())
+    monkeypatch.setattr(document, "grids_of", lambda _: GRIDS)
+    found: dict[str, Any] = document.document([0.03, 0.005], seeds, path)
+    assert found["solves"] == {
+        "count": 14,
+        "seconds": pytest.approx(7 * 0.1 + 7 * 0.5),
+        "worst_residual": pytest.approx(512e-9),
+        "worst_apart": pytest.approx(512e-12),
+        "not_converged": 2,  # a cycled solve is a solution
     }
-    study = {
-        "seeds": [3, 3],
-        "solves": {"count": 7, "seconds": 1.0, "worst_residual": 1e-8, "worst_apart": 1e-9},
-        "reference_check": {"grid": 1024, "seeds": [3], "worst_over_bound": 0.5},
-        "accuracies": [judged],
-    }
-    shown = exhibit("coverage", study)
+    assert (found["seeds"], found["reference_check"]["seeds"]) == (seeds, [])
+    assert [one["accuracy"] for one in found["accuracies"]] == [0.03, 0.005]
+    for judged in found["accuracies"]:
+        expected = coverages(refinements(path), judged["accuracy"])
+        for number in NUMBERS:
+            own, columns = [v for v in expected if v.number == number], judged["verdicts"][number]
+            assert columns["seed"] == [v.seed for v in own]
+            assert columns["class"] == [random_scene(v.seed).kind for v in own]
+            assert columns["grids"] == [list(v.grids) for v in own]
+            assert columns["grid"] == [max(v.grids) for v in own]
+            for name in ("met", "bar", "error", "reference_bound", "cheapest", "cost"):
+                exact = [getattr(v, name) for v in own]
+                assert columns[name] == [v if v is None else pytest.approx(v, rel=5e-4) for v in exact], name
+            assert judged["numbers"][number] == summary(own)
+            for kind in {random_scene(seed).kind for seed in seeds}:
+                assert judged["classes"][kind][number] == summary(v for v in own if v.kind == kind)
+    assert any(max(grids) > 64 for grids in found["accuracies"][1]["verdicts"]["contact_area"]["grids"])
+
+
+def test_the_report_shows_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "s.jsonl"
+    path.write_text("".join(json.dumps(asdict(one)) + "\n" for one in refinement()))
+    monkeypatch.setattr(document, "grids_of", lambda _: GRIDS)
+    shown = exhibit("coverage", json.loads(json.dumps(document.document([0.02], [3], path), default=str)))
     assert shown.tables[0].rows[0][:5] == ("mu", 0.02, 1, 100.0, 100.0)
     ((figure, data),) = shown.figures
-    drawn = svg(figure, data)
-    assert drawn is not None
+    assert svg(figure, data) is not None

@@ -1,33 +1,26 @@
-"""Twins of an identification: drawn from their seed alone, and counted as they should be."""
+"""Synthetic tables of an identification: drawn from their seed alone, and counted as they should be."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from refimpl import Scene
 from reports.result_files import committed
-from verification.coverage import twins
-from verification.coverage.identification import LEVEL, SETS, TwinSet, judged, study, summary
-from verification.coverage.twins import SHARP_NOISE, Twin, sharp_twin, twin
+from verification.coverage import synthetic_tables
+from verification.coverage.identification import LEVEL, SETS, TableSet, fitted, study, summary
+from verification.coverage.synthetic_tables import SHARP_NOISE, SyntheticTable, drawn_table, sharp_table
 
-ROW: dict[str, object] = {
-    "kind": "ball",
-    "loads": 4,
-    "tau": True,
-    "beta": True,
-    "mu": True,
-    "tau_half_width": 0.1,
-    "tau_error": -0.02,
-    "warned": False,
-    "solves": 9,
-}
+ROW: dict[str, Any] = dict.fromkeys(("tau", "beta", "mu"), True) | {
+    "kind": "ball", "loads": 4, "tau_half_width": 0.1, "tau_error": -0.02, "warned": False, "solves": 9,
+}  # fmt: skip
 
 
 def test_warnings_are_counted_by_the_width_of_the_interval() -> None:
-    rows: list[dict[str, object]] = [
+    rows: list[dict[str, Any]] = [
         ROW,
         ROW | {"tau_half_width": 0.3, "warned": True, "tau": False, "tau_error": 2.0},
         ROW | {"tau_half_width": None},
@@ -44,19 +37,26 @@ def test_warnings_are_counted_by_the_width_of_the_interval() -> None:
     assert found["most_solves_per_load"] == pytest.approx(4.0)
 
 
-def test_a_twin_follows_from_its_seed() -> None:
-    first, again = twin(5000), twin(5000)
+def test_a_table_follows_from_its_seed() -> None:
+    first, again = drawn_table(5000), drawn_table(5000)
     assert (first.rows, first.new_mu) == (again.rows, again.new_mu)
     assert 3 <= len(first.rows) <= 12
     assert 0.005 <= first.noise <= 0.05
 
 
-def test_sharp_twins_span_two_to_three_decades() -> None:
-    case = sharp_twin(1)
-    decades = math.log10(case.rows[-1].load / case.rows[0].load)
-    assert 2 <= decades <= 3
-    assert case.noise == SHARP_NOISE
-    assert case.scene.lower.material.hardness is not None  # odd seeds are capped
+def no_solve(monkeypatch: pytest.MonkeyPatch) -> list[Scene]:
+    """Friction of 0.1 in the place of solves; the scenes that would have been solved."""
+    asked: list[Scene] = []
+    monkeypatch.setattr(synthetic_tables, "true_friction", lambda scene, *_: asked.append(scene) or 0.1)
+    return asked
+
+
+def test_sharp_tables_span_two_to_three_decades(monkeypatch: pytest.MonkeyPatch) -> None:
+    no_solve(monkeypatch)
+    table = sharp_table(1)
+    assert 2 <= math.log10(table.rows[-1].load / table.rows[0].load) <= 3
+    assert table.noise == SHARP_NOISE
+    assert table.scene.lower.material.hardness is not None  # odd seeds are capped
 
 
 def test_sets_share_no_seed() -> None:
@@ -65,27 +65,21 @@ def test_sets_share_no_seed() -> None:
     assert len(SETS["drawn"].seeds) >= 300
 
 
-def test_a_twin_without_a_converged_solve_counts_as_a_failure() -> None:
-    def impossible(seed: int) -> Twin:
-        raise ArithmeticError(f"the solve of {seed} ended as stagnated")
+def test_finished_fits_are_read_from_the_log(tmp_path: Path) -> None:
+    """Seeds 3 and 4 are made once, whatever the order of the runs; others of the log do not count.
 
-    assert study(TwinSet(range(3, 4), impossible)) == [
-        {"seed": 3, "failure": "the solve of 3 ended as stagnated"}
-    ]
-
-
-def test_finished_twins_are_read_from_the_log(tmp_path: Path) -> None:
-    """Seeds 3 and 4 are made once, whatever the order of the runs; others of the log do not count."""
+    A table without a converged solve counts as a failure.
+    """
     made: list[int] = []
 
-    def impossible(seed: int) -> Twin:
+    def impossible(seed: int) -> SyntheticTable:
         made.append(seed)
-        raise ArithmeticError(str(seed))
+        raise ArithmeticError(f"the solve of {seed} ended as stagnated")
 
-    log, twins = tmp_path / "log", TwinSet(range(3, 6), impossible)
-    assert [row["seed"] for row in study(twins, log, [4, 3])] == [3, 4]
-    assert [row["seed"] for row in study(twins, log)] == [3, 4, 5]
-    assert [row["seed"] for row in study(twins, log, [5])] == [5]
+    log, tables = tmp_path / "log", TableSet(range(3, 6), impossible)
+    assert [row["seed"] for row in study(tables, log, [4, 3])] == [3, 4]
+    assert [row["seed"] for row in study(tables, log)] == [3, 4, 5]
+    assert study(tables, log, [5]) == [{"seed": 5, "failure": "the solve of 5 ended as stagnated"}]
     assert made == [3, 4, 5]
 
 
@@ -93,29 +87,23 @@ def test_finished_twins_are_read_from_the_log(tmp_path: Path) -> None:
 def test_a_hardness_to_fit_is_wrong_in_the_scene_and_right_in_the_rows(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solved: list[float | None] = []
-
-    def friction(scene: Scene, load: float, grid: int) -> float:
-        solved.append(scene.lower.material.hardness)
-        return 0.1
-
-    monkeypatch.setattr(twins, "true_friction", friction)
-    case = twins.yielding_twin(seed)
-    assert set(solved) == {case.further}
-    assert case.further is not None
-    assert case.scene.lower.material.hardness is not None
-    off = case.scene.lower.material.hardness / case.further
+    solved = no_solve(monkeypatch)
+    table = synthetic_tables.yielding_table(seed)
+    assert {scene.lower.material.hardness for scene in solved} == {table.further}
+    assert table.further is not None
+    assert table.scene.lower.material.hardness is not None
+    off = table.scene.lower.material.hardness / table.further
     assert 0.7 <= off <= 1.4
     assert abs(off - 1) > 1e-3
 
 
-def test_a_fit_of_a_twin_covers_its_truth() -> None:
-    found = judged(SETS["drawn"], 5009)
+def test_a_fit_of_a_table_covers_its_truth() -> None:
+    found = fitted(SETS["drawn"], 5009)
     assert (found["tau"], found["beta"], found["mu"], found["warned"]) == (True, True, True, True)
 
 
-def test_committed_intervals_cover_in_92_per_cent_of_all_twins() -> None:
-    """The full tier judges every third twin; what is claimed rests on all of them."""
+def test_committed_intervals_cover_in_92_per_cent_of_all_tables() -> None:
+    """The full tier judges every third table; what is claimed rests on all of them."""
     found = committed("identification")
     for name in ("drawn", "sharp", "hardness", "roughness"):
         row = found[name]["summary"]

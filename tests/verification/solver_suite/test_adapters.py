@@ -6,6 +6,7 @@ What a peer does when it is set up wrongly is shown here too, and that the suite
 from __future__ import annotations
 
 import importlib
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -13,61 +14,42 @@ import pytest
 
 from verification.adapters import aspher, contactmechanics, negative_controls, slippy, table, tamaas
 from verification.adapters.published_code import Peer, PeerAnswer, closure
+from verification.benchmarks.problems import problem
 from verification.framework.case import Unavailable
 from verification.solver_suite import gaps, reference_solution, suite
 from verification.solver_suite.own import solve as own
 from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported, ask
 
 PEERS = (tamaas.solve, contactmechanics.solve, aspher.solve)
-TABLE_1 = {"side": 1.61e-3, "radius": 0.14, "load": 70.0, "modulus": 1 / (0.91 / 200e9 + 0.91 / 118e9)}
+SPHERE = problem("smooth", 128, 1e-8)
+"""Table 1's paraboloid on a flat."""
+TINY = problem("smooth", 4, 1e-8)
 
 
 def needs(peer: Peer) -> pytest.MarkDecorator:
     return pytest.mark.skipif(peer.installed is None, reason=f"{peer.distribution} is not installed")
 
 
-def sphere(M: int = 128, *, periodic: bool = False) -> ContactProblem:
-    """Table 1's paraboloid on a flat."""
-    x, y = gaps.centres(TABLE_1["side"], M)
-    gap = (x**2 + y**2) / (2 * TABLE_1["radius"])
-    return ContactProblem(
-        gap - gap.min(),
-        TABLE_1["side"] / M,
-        TABLE_1["modulus"],
-        load=TABLE_1["load"],
-        periodic=periodic,
-    )
+BUMP, WAVE = gaps.rough_bump(24, 1) * 1e-3, gaps.waves(24, 3, shortest=8) * 1e-6
+SMALL: dict[str, tuple[Any, dict[str, Any]]] = {
+    "free": (BUMP, {"load": 20.0}),
+    "free, light": (BUMP, {"load": 0.5}),
+    "free, approach": (BUMP, {"approach": 1e-4}),
+    "free, punch": (0 * BUMP, {"load": 1.0}),
+    "periodic": (WAVE, {"load": 1.0, "periodic": True}),
+    "periodic, light": (WAVE, {"load": 1e-3, "periodic": True}),
+    "periodic, approach": (WAVE, {"approach": -1e-6, "periodic": True}),
+    "periodic, nearly full": (WAVE, {"approach": -1e-7, "periodic": True}),
+    "periodic, pressed flat": (WAVE, {"load": 200.0, "periodic": True}),
+}
+"""Small problems in SI units, two of them lopsided."""
 
 
-def small(name: str) -> ContactProblem:
-    """Small problems in SI units, two of them lopsided."""
-    bump, wave = gaps.rough_bump(24, 1) * 1e-3, gaps.waves(24, 3, shortest=8) * 1e-6
-    kinds: dict[str, tuple[Any, dict[str, Any]]] = {
-        "free": (bump, {"load": 20.0}),
-        "free, light": (bump, {"load": 0.5}),
-        "free, approach": (bump, {"approach": 1e-4}),
-        "free, punch": (0 * bump, {"load": 1.0}),
-        "periodic": (wave, {"load": 1.0, "periodic": True}),
-        "periodic, light": (wave, {"load": 1e-3, "periodic": True}),
-        "periodic, approach": (wave, {"approach": -1e-6, "periodic": True}),
-        "periodic, nearly full": (wave, {"approach": -1e-7, "periodic": True}),
-        "periodic, pressed flat": (wave, {"load": 200.0, "periodic": True}),
-    }
-    gap, control = kinds[name]
-    return ContactProblem(gap - gap.min(), 1e-3 / len(gap), 2e9, **control)
+def small(name: str, **other: Any) -> ContactProblem:
+    gap, control = SMALL[name]
+    return ContactProblem(gap - gap.min(), 1e-3 / len(gap), 2e9, **control, **other)
 
 
-NAMES = (
-    "free",
-    "free, light",
-    "free, approach",
-    "free, punch",
-    "periodic",
-    "periodic, light",
-    "periodic, approach",
-    "periodic, nearly full",
-    "periodic, pressed flat",
-)
 CANNOT = {
     ("tamaas", "free, approach"): "an approach in free space",
     ("tamaas", "free, punch"): "did not converge",  # its error is relative to the heights: there are none
@@ -77,25 +59,23 @@ CANNOT = {
 }
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SMALL)
 @pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS])
 def test_peer_meets_the_tolerance_or_refuses(peer: Peer, name: str) -> None:
-    problem = small(name)
+    posed = small(name)
     if (peer.extra, name) in CANNOT:
         with pytest.raises(Exception, match=CANNOT[peer.extra, name]):
-            ask(peer, problem)
+            ask(peer, posed)
         return
-    pressure = np.asarray(ask(peer, problem).pressure)
+    pressure = np.asarray(ask(peer, posed).pressure)
     # adapters derive their tolerances from bounds of mechanics, so the recomputed residual must comply
-    assert reference_solution.residual(problem, pressure).worst <= problem.tolerance
-    np.testing.assert_allclose(
-        pressure, np.asarray(own(problem).pressure), atol=1e-4 * pressure.max(), rtol=0
-    )
+    assert reference_solution.residual(posed, pressure).worst <= posed.tolerance
+    np.testing.assert_allclose(pressure, np.asarray(own(posed).pressure), atol=1e-4 * pressure.max(), rtol=0)
 
 
 @pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS])
 def test_peer_gives_table_1_in_free_space(peer: Peer) -> None:
-    answer = peer(sphere())
+    answer = peer(SPHERE)
     # 166.2417 MPa: all four codes at 128 x 128; the periodic problem has 171.0454 MPa
     assert float(np.max(np.asarray(answer.pressure))) == pytest.approx(166.2417e6, rel=1e-6)
     assert answer.converged is True
@@ -111,10 +91,10 @@ def test_pressures_that_deform_nothing_have_no_residual() -> None:
 
 
 def test_absent_peer_is_unavailable() -> None:
-    absent = Peer("no-such-solver", "none", "", Abilities(), lambda problem: PeerAnswer([], True))
+    absent = Peer("no-such-solver", "none", "", Abilities(), lambda _: PeerAnswer([], True))
     assert absent.version == "no-such-solver (not installed)"
     with pytest.raises(Unavailable, match=r"pip install -c constraints.txt -e '\.\[none\]' in a checkout"):
-        absent(sphere(4))
+        absent(TINY)
 
 
 @needs(tamaas.solve)
@@ -136,7 +116,7 @@ def test_slippy_is_unavailable_without_its_interpreter(monkeypatch: pytest.Monke
     monkeypatch.delenv(slippy.INTERPRETER, raising=False)
     assert slippy.solve.installed is None
     with pytest.raises(Unavailable, match="slippy is not installed: an interpreter"):
-        slippy.solve(sphere(4))
+        slippy.solve(TINY)
     monkeypatch.setenv(slippy.INTERPRETER, "/no/such/python")
     assert slippy.solve.installed is None
 
@@ -146,11 +126,9 @@ def test_slippy_is_unavailable_without_its_interpreter(monkeypatch: pytest.Monke
 )
 @pytest.mark.parametrize("periodic", [False, True])
 def test_slippy_gives_what_our_solver_gives(periodic: bool) -> None:
-    problem = small("periodic" if periodic else "free")
-    pressure = np.asarray(ask(slippy.solve, problem).pressure)
-    np.testing.assert_allclose(
-        pressure, np.asarray(own(problem).pressure), rtol=0, atol=1e-5 * pressure.max()
-    )
+    posed = small("periodic" if periodic else "free")
+    pressure = np.asarray(ask(slippy.solve, posed).pressure)
+    np.testing.assert_allclose(pressure, np.asarray(own(posed).pressure), rtol=0, atol=1e-5 * pressure.max())
 
 
 def test_designs_are_one_row_each_with_their_failures() -> None:
@@ -174,27 +152,40 @@ def test_present_peer_keeps_to_its_abilities() -> None:
     """NumPy is always there: a distribution that is installed."""
     peer = Peer("numpy", "none", "", Abilities(periodic=False), lambda p: PeerAnswer(p.gap, True))
     with pytest.raises(Unsupported, match="numpy does not offer: periodic"):
-        peer(sphere(4, periodic=True))
+        peer(replace(TINY, periodic=True))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SMALL)
 def test_closure_is_a_bound(name: str) -> None:
     """Where the mean gap under the pressure is `closure`, the relative gap is at most the tolerance."""
-    problem = small(name)
-    pressure = np.asarray(own(problem).pressure)
-    mean_displacement = (
-        2 * reference_solution.energy(problem, pressure) / (pressure.sum() * problem.element_area)
-    )
+    posed = small(name)
+    pressure = np.asarray(own(posed).pressure)
+    mean_displacement = 2 * reference_solution.energy(posed, pressure) / (pressure.sum() * posed.element_area)
     if mean_displacement > 0:  # one periodic element under load stores no energy in the reference's symbols
         rounding = 1e-12  # an exact equality where contact is full
-        assert closure(problem) / (0.5 * mean_displacement) <= problem.tolerance * (1 + rounding)
+        assert closure(posed) / (0.5 * mean_displacement) <= posed.tolerance * (1 + rounding)
+
+
+@pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS[:2]])
+def test_peers_refuse_an_approach_with_a_hardness(peer: Peer) -> None:
+    with pytest.raises(Unsupported, match="with a hardness"):
+        peer(small("periodic, approach", hardness=1e8))
+
+
+@needs(tamaas.solve)
+def test_negative_control_tamaas_saturated_in_pascal_stays_at_the_uniform_pressure() -> None:
+    gap = gaps.rough_bump(12, seed=71)
+    posed = ContactProblem(gap - gap.min(), 1 / 12, 2e9, load=4e7, periodic=True, hardness=2e8)
+    in_pascal, right = tamaas._saturated(posed, 1.0), tamaas.solve(posed)
+    assert in_pascal.converged is True
+    assert np.ptp(np.asarray(in_pascal.pressure)) < 1e-3 * np.ptp(np.asarray(right.pressure))
 
 
 @needs(tamaas.solve)
 def test_negative_control_tamaas_without_its_second_step_is_periodic() -> None:
     """`registerNonPeriodic` alone changes nothing, and nothing says so: 171.05 instead of 166.24 MPa."""
-    fallen_in = negative_controls.registered_only(sphere())
-    periodic = tamaas.solve(sphere(periodic=True))
+    fallen_in = negative_controls.registered_only(SPHERE)
+    periodic = tamaas.solve(replace(SPHERE, periodic=True))
     assert fallen_in.converged is True
     assert float(np.max(np.asarray(fallen_in.pressure))) == pytest.approx(171.0454e6, rel=1e-6)
     np.testing.assert_allclose(

@@ -17,7 +17,7 @@ from verification.cli import main
 from verification.framework.case import Result
 from verification.solver_suite import convergence, own, suite
 from verification.solver_suite.check import Entrant
-from verification.solver_suite.convergence import SLOW, WRONG, _OfField, exit_status, weighted
+from verification.solver_suite.convergence import SLOW, WRONG, exit_status, of_field, weighted
 from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, Contestant
 
 FREE = Abilities(periodic=False, coupling=True)
@@ -98,28 +98,24 @@ def test_a_fault_has_its_exit_status(how: str, status: int) -> None:
     assert exit_status(found) == status, found[0].note
 
 
-def test_nothing_judged_is_no_success() -> None:
-    assert exit_status([]) == WRONG
-    assert exit_status(results(averaging, ("other-hertz",))) == WRONG  # beyond its abilities
-
-
 @pytest.mark.parametrize(
     ("ends", "status"),
     [
-        (["pass", "unavailable"], 0),
-        (["unavailable"], WRONG),
-        (["pass", "fail"], WRONG),
-        (["pass", "error"], WRONG),
+        ([], WRONG),
+        ([("pass", 2.0), ("unavailable", 0.0)], 0),
+        ([("unavailable", 0.0)], WRONG),
+        ([("pass", 2.0), ("fail", 2.0)], WRONG),
+        ([("pass", 2.0), ("error", 2.0)], WRONG),
+        ([("pass", 1.19)], SLOW),  # below three fifths of the expected order
+        ([("pass", 1.21)], 0),
+        ([("pass", math.nan)], SLOW),
     ],
 )
-def test_one_wrong_or_broken_case_makes_the_whole_wrong(ends: list[str], status: int) -> None:
-    made: Any = [SimpleNamespace(id=str(k), status=end, data={}) for k, end in enumerate(ends)]
-    assert exit_status(made) == status
-
-
-@pytest.mark.parametrize(("order", "status"), [(1.19, SLOW), (1.21, 0), (math.nan, SLOW)])
-def test_orders_below_three_fifths_of_the_expected_one_are_slow(order: float, status: int) -> None:
-    made: Any = [SimpleNamespace(id="a", status="pass", data={"order": order, "expected": 2})]
+def test_the_exit_status_of_a_run(ends: list[tuple[str, float]], status: int) -> None:
+    made: Any = [
+        SimpleNamespace(id=str(k), status=end, data={"order": order, "expected": 2})
+        for k, (end, order) in enumerate(ends)
+    ]
     assert exit_status(made) == status
 
 
@@ -131,7 +127,7 @@ def test_fields_that_do_not_converge_are_judged_on_the_finest_grid(falls: int, e
         chessboard = (-1.0) ** np.add.outer(np.arange(n), np.arange(n))
         return 1 + 0.02 * (12 / n) ** falls * chessboard, np.ones((n, n))
 
-    found = _OfField(pose)(None)  # type: ignore[arg-type]  # nobody is asked
+    found = of_field(pose)(None)  # type: ignore[arg-type]  # nobody is asked
     assert found.value == pytest.approx(error, abs=1e-12)
     assert found.data["order"] == pytest.approx(falls, abs=1e-9)
 

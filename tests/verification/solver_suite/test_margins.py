@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Array
+from tests.verification.solver_suite.asked import watching
 from verification.solver_suite import own, reference_solution
 from verification.solver_suite.isolated import Limited
 from verification.solver_suite.protocol import LARGEST_PRECISION, ContactProblem
@@ -16,14 +17,10 @@ from verification.solver_suite.suite import run
 
 def posed_by(name: str) -> list[tuple[ContactProblem, Array]]:
     """The problems of a case with our pressures, sought to a hundredth of the claim."""
-    posed: list[tuple[ContactProblem, Array]] = []
-
-    def watching(asked: ContactProblem) -> Array:
-        pressure = np.asarray(own.solve(replace(asked, tolerance=1e-2 * asked.tolerance)).pressure)
-        posed.append((asked, pressure))
-        return pressure
-
-    (result,) = run(Limited(watching, own.solve.abilities), [f"contestant/{name}"])
+    solver, posed = watching(
+        lambda p: np.asarray(own.solve(replace(p, tolerance=1e-2 * p.tolerance)).pressure)
+    )
+    (result,) = run(solver, [f"contestant/{name}"])
     assert result.status == "pass"
     return posed
 

@@ -8,38 +8,22 @@ from itertools import product
 import numpy as np
 import pytest
 
-from refimpl.grid import Array
+from tests.verification.solver_suite.asked import problem_of
 from verification.exact.fourier import symbol_at
-from verification.properties.textbook import normal_offsets, shear_offsets
-from verification.solver_suite import own, reference_solution
-from verification.solver_suite.check import COMPLIANCE, MODULUS, Entrant
-from verification.solver_suite.checks.sliding_pins import FREE, PERIODIC
-from verification.solver_suite.gaps import rough_bump
-from verification.solver_suite.pin_arrays import FAR, PinArray, integrals, standing, uneven
+from verification.solver_suite import reference_solution
+from verification.solver_suite.check import COMPLIANCE, MODULUS
+from verification.solver_suite.checks.sliding import FREE, PERIODIC
+from verification.solver_suite.pin_arrays import FAR, PinArray, standing, uneven
 from verification.solver_suite.protocol import ContactProblem, Coupling
-from verification.solver_suite.suite import run
 
 ARRAYS = (*FREE, *PERIODIC)
-
-
-def problem(array: PinArray, *, by_load: bool = True) -> ContactProblem:
-    """The problem that an array poses."""
-    posed: list[ContactProblem] = []
-
-    def watching(asked: ContactProblem) -> Array:
-        posed.append(asked)
-        return array.pressure
-
-    watching.abilities = own.solve.abilities  # type: ignore[attr-defined]  # as solvers carry them
-    (array.under_load if by_load else array.at_approach)(Entrant(watching))
-    return posed[0]
 
 
 @pytest.mark.parametrize("array", ARRAYS)
 @pytest.mark.parametrize("by_load", [True, False], ids=["load", "approach"])
 def test_chosen_pressures_solve_what_is_posed(array: PinArray, by_load: bool) -> None:
     """To the rounding of the mean gap, a thousand times what the pins give way."""
-    assert reference_solution.residual(problem(array, by_load=by_load), array.pressure).worst < 1e-11
+    assert reference_solution.residual(problem_of(array, by_load=by_load), array.pressure).worst < 1e-11
 
 
 def solutions(array: PinArray, *, by_load: bool) -> int:
@@ -100,25 +84,6 @@ def test_periodic_displacement_is_the_sum_of_all_modes() -> None:
     assert u == pytest.approx(float(array.moved[2, 4]), rel=1e-12)
 
 
-def test_the_convolution_for_large_squares_is_the_dense_product(monkeypatch: pytest.MonkeyPatch) -> None:
-    gap, f = rough_bump(9, 7), np.random.default_rng(8).random((9, 9))
-    f[2:5, 3] = 0.0
-    coupling = Coupling(0.3, 0.4, COMPLIANCE, 0.9)
-    posed = ContactProblem(gap - gap.min(), 0.1, MODULUS, load=1.0, coupling=coupling)
-    dense = reference_solution.by_pressure(posed, f), reference_solution.displacement(posed, f)
-    monkeypatch.setattr(reference_solution, "LARGEST", 8)
-    np.testing.assert_allclose(reference_solution.by_pressure(posed, f), dense[0], rtol=1e-13)
-    np.testing.assert_allclose(reference_solution.displacement(posed, f), dense[1], rtol=1e-13)
-
-
-def test_tables_of_offsets_are_the_50_digit_integrals() -> None:
-    normal, shear = normal_offsets((160, 160)), shear_offsets((160, 160), 0.0)
-    for i, j in ((159, 159), (-159, 100), (3, -158), (-1, 1), (0, 0)):
-        exact = integrals(i, j)
-        assert normal[i + 159, j + 159] == pytest.approx(exact[0], rel=2e-11)
-        assert shear[i + 159, j + 159] == pytest.approx(exact[1], rel=3e-9, abs=1e-15)
-
-
 def test_a_bed_stands_in_all_corners_and_on_all_edges() -> None:
     contact = standing(12)
     assert np.count_nonzero(contact) == 12
@@ -126,15 +91,3 @@ def test_a_bed_stands_in_all_corners_and_on_all_edges() -> None:
     assert all(edge[1:-1].any() for edge in (contact[0], contact[-1], contact[:, 0], contact[:, -1]))
     array = PinArray(uneven(contact, 1))
     assert 0 <= array.gap[contact].min() < array.gap[contact].max() < 1e-2 * FAR
-
-
-def test_the_note_tells_where_a_wrong_answer_is_off() -> None:
-    def doubled(asked: ContactProblem) -> Array:
-        found = np.array(own.solve(asked).pressure)
-        found[2, 3] *= 2
-        return found
-
-    (result,) = run(doubled, ["contestant/pins"])
-    assert (result.status, result.unit) == ("fail", "claims")
-    assert "farthest off is element [2, 3]" in result.note
-    assert "of the right load" in result.note

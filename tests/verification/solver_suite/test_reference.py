@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,13 +15,14 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Array
+from tests.verification.solver_suite.asked import problem_of
 from verification.cli import export as cli_export
 from verification.cli import main
 from verification.solver_suite import own, reference_solution
-from verification.solver_suite.checks.sliding_pins import FREE, PERIODIC
+from verification.solver_suite.checks.sliding import FREE, PERIODIC
 from verification.solver_suite.gaps import rough_bump, waves
 from verification.solver_suite.pin_arrays import PinArray
-from verification.solver_suite.protocol import ContactProblem
+from verification.solver_suite.protocol import ContactProblem, Coupling
 from verification.solver_suite.reference import agreement, files
 from verification.solver_suite.reference.certified import (
     APPARENTLY_CONTACT,
@@ -35,11 +37,15 @@ from verification.solver_suite.reference.certified import (
 )
 from verification.solver_suite.reference.files import SUMS, checksums
 from verification.solver_suite.reference.periodic_bound import periodic_bound
-from verification.solver_suite.reference.posed import problems
+from verification.solver_suite.reference.posed import _key, problems
 
 E = 2e9
 SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*", "periodic-elimination")
 ONLY = [word for name in SMALL for word in ("--only", f"contestant/{name}")]
+
+
+def _lowest(heights: Array) -> Array:
+    return np.asarray(heights - heights.min())
 
 
 def within(found: Certified, exact: Array) -> None:
@@ -54,23 +60,10 @@ def within(found: Certified, exact: Array) -> None:
     assert ((found.contact == SEPARATED) <= (exact == 0)).all()
 
 
-def array_problem(array: PinArray, *, by_load: bool) -> ContactProblem:
-    M, gap = len(array.pressure), array.gap
-    control = (
-        {"load": array.load}
-        if by_load
-        else {"approach": array.touch - (gap.mean() if array.periodic else 0.0)}
-    )
-    least = float(gap.min())  # rounding may leave the lowest pin some 1e-19 m from zero
-    return ContactProblem(
-        gap - least, 1 / M, array.modulus, periodic=array.periodic, coupling=array.coupling, **control
-    )
-
-
 @pytest.mark.parametrize("by_load", [True, False])
 @pytest.mark.parametrize("array", [FREE[0], FREE[2], PERIODIC[0], PERIODIC[2]])
 def test_pressures_that_were_chosen_lie_within_the_bounds(array: PinArray, by_load: bool) -> None:
-    found = certified(array_problem(array, by_load=by_load))
+    found = certified(problem_of(array, by_load=by_load))
     # the pins' gaps are rounded (1e-16 of 0.5 m), which moves pressures by 1e-12 of the peak
     slack = replace(found.bounds, pressure=found.bounds.pressure + 1e-11 * array.pressure.max())
     assert float(np.abs(found.pressure - array.pressure).max()) <= slack.pressure
@@ -79,58 +72,51 @@ def test_pressures_that_were_chosen_lie_within_the_bounds(array: PinArray, by_lo
     assert np.array_equal(found.contact == SEPARATED, array.pressure == 0)
 
 
+WAVY = ContactProblem(_lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, approach=-0.006, periodic=True)
+BUMP = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, approach=0.01)
+
+
 @pytest.mark.parametrize("depth", [-0.016, -0.006, -0.0005])
 def test_at_a_periodic_approach_elimination_lies_within_the_bounds(depth: float) -> None:
-    problem = ContactProblem(
-        _lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, approach=depth, periodic=True
-    )
-    found = certified(problem)
-    within(found, reference_solution.eliminated(problem))
+    found = certified(replace(WAVY, approach=depth))
+    within(found, reference_solution.eliminated(found.problem))
     assert 0 < found.bounds.pressure < 1e-8 * found.pressure.max()
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
 def test_a_loose_solution_lies_within_its_periodic_bounds(tolerance: float) -> None:
     """Its error is large, so that a bound without a margin would show."""
-    problem = ContactProblem(
-        _lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, approach=-0.006, periodic=True
-    )
-    loose, exact = own.solved(problem, tolerance), reference_solution.eliminated(problem)
-    bound = periodic_bound(problem, loose)
+    loose, exact = own.solved(WAVY, tolerance), reference_solution.eliminated(WAVY)
+    bound = periodic_bound(WAVY, loose)
     assert bound is not None
     error = np.asarray(loose.pressure) - exact
     assert float(np.abs(error).max()) <= bound.pressure
-    assert abs(float(error.sum())) * problem.element_area <= bound.load
-    moved = reference_solution.by_pressure(problem, error)
-    assert float(np.vdot(error, moved)) * problem.element_area <= bound.energy
+    assert abs(float(error.sum())) * WAVY.element_area <= bound.load
+    moved = reference_solution.by_pressure(WAVY, error)
+    assert float(np.vdot(error, moved)) * WAVY.element_area <= bound.energy
     assert (bound.in_contact <= (exact > 0)).all()
     assert (bound.out_of_contact <= (exact == 0)).all()
 
 
-def test_where_planes_overlap_no_periodic_bound_is_claimed() -> None:
+def test_where_planes_overlap_or_are_free_no_periodic_bound_is_claimed() -> None:
     """Full contact: any mean pressure is a solution at approach 0, none beyond."""
-    problem = ContactProblem(_lowest(0.001 * waves(8, 5, shortest=2)), 1 / 8, E, load=2e8, periodic=True)
-    solution = own.solved(problem, 1e-10)
-    at_planes = replace(problem, load=None, approach=0.0)
+    under_load = replace(
+        WAVY, gap=_lowest(0.001 * waves(8, 5, shortest=2)), spacing=1 / 8, approach=None, load=2e8
+    )
+    solution = own.solved(under_load, 1e-10)
     assert solution.pressure.min() > 0
-    assert periodic_bound(at_planes, solution) is None
+    assert periodic_bound(replace(under_load, load=None, approach=0.0), solution) is None
+    assert periodic_bound(BUMP, own.solved(BUMP, 1e-10)) is None
 
 
-def test_a_free_problem_has_no_periodic_bound() -> None:
-    problem = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, approach=0.01)
-    assert periodic_bound(problem, own.solved(problem, 1e-10)) is None
-
-
-def test_what_cannot_be_certified_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bound_that_is_of_no_use_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("verification.solver_suite.reference.certified.USABLE", 1e-20)
-    problem = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, load=1e5)
     with pytest.raises(NotCertified, match="pressures are known to"):
-        certified(problem)
+        certified(replace(BUMP, approach=None, load=1e5))
 
 
 def test_without_contact_pressures_are_exactly_zero() -> None:
-    apart = ContactProblem(np.array([[0.0, 0.1], [0.2, 0.3]]), 1.0, E, approach=-0.05)
-    found = certified(apart)
+    found = certified(replace(BUMP, approach=-0.05))
     assert not found.pressure.any()
     assert found.bounds.pressure == 0
     assert (found.contact == SEPARATED).all()
@@ -143,20 +129,26 @@ def test_uniform_periodic_pressures_have_no_residual_and_their_bounds() -> None:
     assert (found.contact == CONTACT).all()
 
 
-def test_codes_of_elements() -> None:
-    touching = np.array([True, True, False, False])
-    inside, outside = np.array([True, False, False, False]), np.array([False, False, True, False])
-    assert list(_codes(touching, inside, outside)) == [
-        CONTACT, APPARENTLY_CONTACT, SEPARATED, APPARENTLY_SEPARATED,
-    ]  # fmt: skip
-
-
 def test_a_problem_is_posed_once_and_grids_are_small() -> None:
-    found = list(problems(["contestant/wide-pins", "contestant/hertz-*"]))
-    names = [named.name for named in found]
+    names = [named.name for named in problems(["contestant/wide-pins", "contestant/hertz-*"])]
     assert len(names) == len(set(names))
     assert "hertz-load" in names
     assert not any(name.startswith("wide-pins") for name in names)  # 160 elements a side
+
+
+def test_a_problem_that_differs_in_one_number_is_another_one() -> None:
+    gap = np.array([[0.0, 1.0, 5.0], [3.0, 2.0, 4.0]]) * 1e-7
+    slides = Coupling(tau=2e6, beta=0.7, shear_compliance=-3e-11, sliding_direction=2.5)
+    whole = ContactProblem(
+        gap, 1e-6, 5e9, approach=-4e-8, periodic=True, coupling=slides, spacing_y=3e-6, hardness=8e8
+    )
+    others: list[dict[str, Any]] = [
+        {"spacing": 2e-6}, {"spacing_y": 2e-6}, {"reduced_modulus": 1e9}, {"approach": -1e-8},
+        {"hardness": 1e9}, {"approach": None, "load": 1.0}, {"periodic": False}, {"gap": gap[::-1]},
+        {"gap": gap.reshape(3, 2)}, *({"coupling": replace(slides, **{key: 0.5})} for key in vars(slides)),
+    ]  # fmt: skip
+    posed = [whole, *(replace(whole, **other) for other in others)]
+    assert len({_key(problem) for problem in posed}) == len(posed)
 
 
 @pytest.fixture(scope="module")
@@ -220,34 +212,33 @@ def test_an_export_agrees_with_itself(folder: Path, capsys: pytest.CaptureFixtur
     assert "every problem agrees" in capsys.readouterr().out
 
 
-def _changed(folder: Path, tmp_path: Path, name: str, factor: float) -> Path:
-    """A copy whose array is multiplied by a factor."""
-    copy = tmp_path / "copy"
-    copy.mkdir()
-    for path in sorted(folder.rglob("*")):
-        target = copy / path.relative_to(folder)
-        target.mkdir() if path.is_dir() else target.write_bytes(path.read_bytes())
-    array = np.fromfile(copy / name, "<f8")
-    (factor * array).astype("<f8").tofile(copy / name)
-    return copy
+@pytest.fixture
+def copy(folder: Path, tmp_path: Path) -> Path:
+    """A copy of the export that may be changed."""
+    return Path(shutil.copytree(folder, tmp_path / "copy"))
 
 
-def test_a_changed_file_is_found(folder: Path, tmp_path: Path) -> None:
-    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1 + 1e-15)
+def multiply(copy: Path, factor: float) -> None:
+    """Multiply the pins' pressures by a factor."""
+    name = copy / "data/pins.pressure.f64"
+    (factor * np.fromfile(name, "<f8")).astype("<f8").tofile(name)
+
+
+def test_a_changed_file_is_found(copy: Path) -> None:
+    multiply(copy, 1 + 1e-15)
     found = list(agreement.disagreements(copy, ["pins"]))
     assert found == [f"data/pins.pressure.f64: its checksum is not the one in {SUMS}"]
 
 
-def test_a_file_that_has_no_checksum_is_found_and_one_that_is_missing(folder: Path, tmp_path: Path) -> None:
-    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1.0)
-    first, second, *rest = (copy / SUMS).read_text().splitlines(keepends=True)
-    (copy / SUMS).write_text(f"{'0' * 64}  data/lost.f64\n" + second + "".join(rest))
+def test_a_file_that_has_no_checksum_is_found_and_one_that_is_missing(copy: Path) -> None:
+    first, *rest = (copy / SUMS).read_text().splitlines(keepends=True)
+    (copy / SUMS).write_text(f"{'0' * 64}  data/lost.f64\n" + "".join(rest))
     found = {line.partition(":")[0] for line in agreement.disagreements(copy, ["pins"])}
     assert found == {"data/lost.f64", first.split()[1]}
 
 
-def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(folder: Path, tmp_path: Path) -> None:
-    copy = _changed(folder, tmp_path, "data/pins.pressure.f64", 1 + 1e-7)
+def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(copy: Path) -> None:
+    multiply(copy, 1 + 1e-7)
     (copy / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in checksums(copy).items()))
     (found,) = agreement.disagreements(copy, ["pins"])
     assert found.startswith("pins: pressure differs by")
@@ -284,10 +275,6 @@ def test_what_is_no_export_is_refused(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "an index whose format is" in capsys.readouterr().err
 
 
-def _lowest(heights: Array) -> Array:
-    return np.asarray(heights - heights.min())
-
-
 @pytest.mark.parametrize(("second", "status"), [(NoBound, 0), (NotCertified, 1)])
 def test_only_a_problem_that_could_have_a_proof_fails_an_export(
     second: type[NotCertified],
@@ -318,8 +305,13 @@ def test_only_a_problem_that_could_have_a_proof_fails_an_export(
 
 
 def test_codes_mean_what_the_index_says() -> None:
-    """Each text stands at its code."""
-    words = {CONTACT: "in contact, proven", SEPARATED: "separated, proven"}
-    words[APPARENTLY_CONTACT] = "in contact as exported, within the bounds of separation"
-    words[APPARENTLY_SEPARATED] = "separated as exported, within the bounds of contact"
-    assert [words[code] for code in range(4)] == list(files.CODES)
+    touching = np.array([True, True, False, False])
+    inside, outside = np.array([True, False, False, False]), np.array([False, False, True, False])
+    codes = _codes(touching, inside, outside)
+    assert list(codes) == [CONTACT, APPARENTLY_CONTACT, SEPARATED, APPARENTLY_SEPARATED]
+    assert [files.CODES[code] for code in codes] == [
+        "in contact, proven",
+        "in contact as exported, within the bounds of separation",
+        "separated, proven",
+        "separated as exported, within the bounds of contact",
+    ]

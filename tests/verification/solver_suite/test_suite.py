@@ -1,4 +1,7 @@
-"""The suite for anyone's solver: our own passes it, faulty ones do not, and the reference is right."""
+"""The suite for anyone's solver: faulty ones fail where they should, honest ones and other programs pass.
+
+Our own solver's pass is the case `contestants/own-solver` of the quick tier, which runs with the tests.
+"""
 
 from __future__ import annotations
 
@@ -9,26 +12,18 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
-import mpmath as mp
 import numpy as np
 import pytest
 
-import refimpl as rf
 from refimpl.grid import Array
-from refimpl.model.certificate import certify
-from refimpl.model.problem import Terms
-from refimpl.model.slopes import Slopes
-from refimpl.scene.discretise import discretise
-from verification.exact.dense_influence import DenseInfluence
-from verification.exact.kernel_reference import normal, tangential
 from verification.solver_suite import own, reference_solution
-from verification.solver_suite.check import COMPLIANCE, MODULUS, Entrant, Fault
+from verification.solver_suite.check import MODULUS, Entrant, Fault
 from verification.solver_suite.command import Command
-from verification.solver_suite.faulty_solvers.table import FAULTY, Faulty, asked, periodic
+from verification.solver_suite.faulty_solvers.table import FAULTY, Faulty
 from verification.solver_suite.gaps import rough_bump
 from verification.solver_suite.isolated import Limited
-from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, Contestant, Coupling
-from verification.solver_suite.suite import run, select, suite
+from verification.solver_suite.protocol import Abilities, ContactProblem, Contestant
+from verification.solver_suite.suite import run, suite
 
 FINE = (Fault.SINGLE_PRECISION, Fault.ABSOLUTE_THRESHOLD)
 """Faults below the laxest claim."""
@@ -38,27 +33,6 @@ SOURCE = Path(__file__).with_name("contestant.c")
 def naming(fault: Fault) -> list[str]:
     """Ids of the checks that name a fault."""
     return [check.id for check in suite() if fault in check.catches]
-
-
-def test_our_own_solver_passes_every_case_but_those_of_the_designs() -> None:
-    """`contestants/own-solver` of the quick tier, which runs here as well, has those too."""
-    posed: list[ContactProblem] = []
-
-    def counting(problem: ContactProblem) -> Answer:
-        posed.append(problem)
-        return own.solve(problem)
-
-    contestant = Limited(counting, own.solve.abilities)
-    assert len(suite()) >= 40
-    for check in suite():
-        if "/design-" in check.id:
-            continue
-        posed.clear()
-        result = check.case(contestant).run()
-        assert result.status == "pass", result
-        assert result.unit, f"{check.slug}: a number without its unit"
-        assert 1 <= len(posed) <= 6
-        assert max(problem.M for problem in posed) <= 512
 
 
 @pytest.mark.parametrize("name", ["periodic-elimination", "periodic-approach"])
@@ -94,6 +68,7 @@ def test_every_fault_is_named_and_described() -> None:
 def test_a_faulty_solver_fails_wherever_its_fault_is_named(fault: Fault) -> None:
     results = run(FAULTY[fault](), naming(fault))
     assert {r.id: r.status for r in results} == dict.fromkeys(naming(fault), "fail")
+    assert all(r.unit for r in results if r.value is not None)
 
 
 @pytest.mark.parametrize("fault", [f for f in FAULTY if f not in FINE], ids=str)
@@ -102,24 +77,10 @@ def test_the_laxest_claim_lets_no_faulty_solver_through(fault: Fault) -> None:
     assert any(run(lax, [name])[0].status == "fail" for name in naming(fault))
 
 
-@pytest.mark.parametrize("precision", [1e-10, 3e-7])
-def test_a_solver_is_held_to_the_precision_that_it_states(precision: float) -> None:
-    entrant = Entrant(Limited(own.solve, replace(own.solve.abilities, precision=precision)))
-    assert entrant.claim == precision
-
-
 def test_single_precision_that_says_so_is_held_to_what_it_says() -> None:
     noisy = naming(Fault.SINGLE_PRECISION)
     honest = Limited(FAULTY[Fault.SINGLE_PRECISION](), replace(own.solve.abilities, precision=1e-6))
     assert {r.status for r in run(honest, noisy)} == {"pass"}
-
-
-def test_the_periodic_problem_solved_silently_is_seen_by_its_peak() -> None:
-    gap = rough_bump(32, seed=70)
-    entrant, silent = Entrant(own.solve), Entrant(Faulty(asked(periodic)))
-    peaks = [e.press(gap, 1.0, load=0.05 * MODULUS).pressure.max() for e in (entrant, silent)]
-    assert 0.005 < abs(peaks[1] / peaks[0] - 1) < 0.1  # a few per cent, as in the published case
-    assert {r.status for r in run(silent.contestant, ["contestant/surroundings"])} == {"fail"}
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
@@ -132,86 +93,6 @@ def test_a_program_in_c_passes_what_applies_to_it(tmp_path: Path) -> None:
     assert {r.id: r for r in results if r.status in ("fail", "error")} == {}
     assert sum(status == "pass" for status in verdicts.values()) >= 20
     assert verdicts["contestant/westergaard-load"] == verdicts["contestant/sheared-pins"] == "unavailable"
-
-
-def test_an_empty_selection_is_refused() -> None:
-    with pytest.raises(LookupError, match="hertz-peek"):
-        select(["contestant/hertz-peek"])
-
-
-def problem(coupling: Coupling | None = None) -> ContactProblem:
-    gap = rough_bump(5, seed=71)
-    return ContactProblem(gap - gap.min(), 0.2, MODULUS, load=0.05 * MODULUS, coupling=coupling)
-
-
-def test_the_referees_displacement_is_the_sum_over_elements() -> None:
-    coupling = Coupling(0.02 * MODULUS, 0.3, COMPLIANCE, sliding_direction=1.1)
-    posed, f = problem(coupling), np.random.default_rng(72).uniform(0, 1, (5, 5)) * 1e-2 * MODULUS
-    f[2, 3] = 0.0
-    u = mp.mpf(0)
-    for i, j in np.ndindex(5, 5):
-        x, y, h = (1 - i) * 0.2, (4 - j) * 0.2, 0.2
-        r = coupling.tau * (f[i, j] > 0) + coupling.beta * f[i, j]
-        along = mp.cos(1.1) * tangential(x, y, h, h) + mp.sin(1.1) * tangential(y, x, h, h)
-        u += f[i, j] * normal(x, y, h, h) / (mp.pi * MODULUS) + r * COMPLIANCE * along
-    assert abs(reference_solution.displacement(posed, f)[1, 4] / float(u) - 1) < 1e-13
-
-
-@pytest.mark.parametrize("coupling", [None, Coupling(0.0, 0.4, COMPLIANCE, 0.5)], ids=["still", "sliding"])
-def test_the_energy_norm_error_is_bounded_by_the_gap(coupling: Coupling | None) -> None:
-    posed = problem(coupling)
-    exact, random = reference_solution.eliminated(posed), np.random.default_rng(73)
-    for size in (1e-6, 1e-3, 0.3):
-        f = np.abs(exact * (1 + size * random.standard_normal(exact.shape)))
-        f += size * exact.max() * (random.random(exact.shape) < 0.2)
-        f *= exact.sum() / f.sum()
-        found = reference_solution.residual(posed, f)
-        assert found.balance < 1e-14
-        scale = reference_solution.energy(posed, exact) / reference_solution.energy(posed, f)
-        assert 0 < reference_solution.misfit(posed, f, exact) * scale <= found.gap
-    assert reference_solution.residual(posed, exact).worst < 1e-13
-
-
-def test_elimination_agrees_with_our_dense_reference() -> None:
-    for posed in (problem(), replace(problem(), load=None, approach=0.08), replace(problem(), periodic=True)):
-        found = rf.solve(own.scene(posed), posed.M, method="dense", oblique=False, approach=posed.approach)
-        np.testing.assert_allclose(
-            reference_solution.eliminated(posed), found.pressure, atol=1e-9 * found.max_pressure
-        )
-
-
-@pytest.mark.parametrize("length", [1.0, 1e-7])
-def test_elimination_takes_back_what_it_dropped_too_much(length: float) -> None:
-    # On this plane two rounds of it are needed: without them elements would penetrate.
-    gap = np.random.default_rng(0).uniform(0, length, (8, 8))
-    posed = ContactProblem(gap - gap.min(), 0.2, MODULUS, approach=-0.02 * length, periodic=True)
-    assert reference_solution.residual(posed, reference_solution.eliminated(posed)).worst < 1e-13
-
-
-def test_an_element_left_out_is_seen_by_its_penetration() -> None:
-    for posed in (problem(), replace(problem(), load=None, approach=0.08)):
-        exact = reference_solution.eliminated(posed)
-        others = exact > 0
-        others[np.unravel_index(np.argmin(np.where(others, exact, np.inf)), exact.shape)] = False
-        f, _ = reference_solution._Elimination(posed).on(others.ravel())
-        found = reference_solution.residual(posed, f.reshape(exact.shape))
-        assert found.balance < 1e-13
-        assert found.gap > 1e-5
-
-
-def test_the_approach_of_a_state_is_counted_as_the_problem_counts_it() -> None:
-    for repeats, approach in ((False, 0.08), (True, -0.02)):
-        posed = replace(problem(), load=None, approach=approach, periodic=repeats)
-        assert reference_solution.approach_of(posed, reference_solution.eliminated(posed)) == pytest.approx(
-            approach, rel=1e-12
-        )
-
-
-def test_pressures_without_energy_cannot_be_judged() -> None:
-    nothing: Contestant = Limited(lambda p: np.zeros_like(p.gap), Abilities())
-    statuses = {r.id: r.status for r in run(nothing)}
-    assert "pass" not in {s for name, s in statuses.items() if name != "contestant/no-tension"}
-    assert statuses["contestant/no-tension"] == "error"
 
 
 def test_the_worst_of_several_answers_is_named() -> None:
@@ -285,26 +166,9 @@ def test_nonsense_passes_nothing_but_symmetries_and_warns_of_nothing(answer: Con
         warnings.simplefilter("always")
         results = run(Limited(answer, own.solve.abilities), SOME)
     passed = {r.id.partition("/")[2] for r in results if r.status == "pass"}
-    assert passed <= SYMMETRIC
+    nothing = answer is NONSENSE["nothing"]  # no load is carried: that nothing pulls cannot be judged
+    assert passed <= SYMMETRIC - ({"no-tension"} if nothing else set())
     assert [str(w.message) for w in warned] == []
-
-
-def test_what_the_suite_counts_at_an_approach_is_at_most_three_times_our_certificates() -> None:
-    """Whatever the pressures: what our adapter's `WORK` rests on, and no more than it takes."""
-    posed = replace(problem(), load=None, approach=0.08)
-    exact = reference_solution.eliminated(posed)
-    draw, ratios = np.random.default_rng(5), []
-    scene = own.scene(posed)
-    judged = discretise(scene, scene.grid(posed.M), Terms(oblique=False), posed.approach)
-    for _ in range(200):
-        off = exact * draw.normal(size=exact.shape) + draw.uniform(-0.5, 0.5) * exact
-        pressure = np.maximum(exact + 10 ** draw.uniform(-6, 0) * off, 0.0)
-        slopes = Slopes.flat(exact.shape)
-        state = certify(judged, DenseInfluence(judged.grid, 0.0), pressure, 0 * pressure, slopes)
-        ours = max(state.certificate.gap, state.certificate.load_error)
-        ratios.append(reference_solution.residual(posed, pressure).gap / ours)
-    assert max(ratios) <= own.WORK * (1 + 1e-6)
-    assert max(ratios) >= 0.8 * own.WORK
 
 
 @pytest.mark.parametrize("light", [0.001, 0.01, 0.05])

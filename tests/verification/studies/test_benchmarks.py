@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +12,13 @@ import pytest
 
 from refimpl.errors import InputError
 from reports.result_files import read_result
-from verification.benchmarks import child, rounds, run
-from verification.benchmarks.__main__ import known, main
+from verification.benchmarks import rounds
+from verification.benchmarks.__main__ import append, known, main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
-from verification.benchmarks.judge import judged, padded_box
 from verification.benchmarks.problems import problem
-from verification.benchmarks.rounds import Failed, Turns, error, in_turns, solved, tuned
-from verification.benchmarks.run import append
+from verification.benchmarks.rounds import Failed, Turns, error, in_turns, tuned, tuned_turns
 from verification.benchmarks.summary import lines, ratios, row
+from verification.benchmarks.timed import padded_box, peak_memory, residuals_of
 from verification.cli.output import columns
 from verification.solver_suite import own, reference_solution
 
@@ -51,40 +51,34 @@ def turns(code: str, *seconds: float) -> Turns:
 
 @pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 @pytest.mark.parametrize("kind", ["smooth", "rough"])
-def test_judge_agrees_with_the_dense_reference(kind: str) -> None:
+def test_residuals_agree_with_the_dense_reference(kind: str) -> None:
     posed = problem(kind, 24, 1e-4)
     pressure = np.array(own.solve(posed).pressure)
     pressure[pressure > 0] *= 1 + 0.01 * np.sin(np.arange((pressure > 0).sum()))  # far from converged
-    ours, theirs = judged(posed, pressure), reference_solution.residual(posed, pressure)
-    assert ours.gap == pytest.approx(theirs.gap, rel=1e-9)
-    assert ours.balance == pytest.approx(theirs.balance, rel=1e-9)
-    assert ours.gap > 1e-5
-    assert ours.area == pytest.approx((pressure > 0).sum() * posed.element_area)
+    ours, theirs = residuals_of(posed, pressure), reference_solution.residual(posed, pressure)
+    assert ours["gap"] == pytest.approx(theirs.gap, rel=1e-9)
+    assert ours["balance"] == pytest.approx(theirs.balance, rel=1e-9)
+    assert ours["gap"] > 1e-5
+    assert ours["area"] == pytest.approx((pressure > 0).sum() * posed.element_area)
 
 
-def test_judge_finds_penetration_and_tension_where_they_are() -> None:
+def test_penetration_and_tension_are_found_and_other_problems_refused() -> None:
     posed = problem("smooth", 24, 1e-8)
     pressure = np.array(own.solve(posed).pressure)
-    peak = pressure.max()
-    exact = judged(posed, pressure)
-    assert exact.tension == 0.0
-    assert exact.penetration < 1e-8
+    peak, exact = pressure.max(), residuals_of(posed, pressure)
+    assert exact["tension"] == 0.0
+    assert exact["penetration"] < 1e-8
     rim = np.unravel_index(np.argmin(np.where(pressure > 0, pressure, np.inf)), pressure.shape)
     pressure[rim] = -0.01 * peak
-    found = judged(posed, pressure)
+    off = residuals_of(posed, pressure)
     v = reference_solution.displacement(posed, pressure) + posed.gap
     approach = np.average(v, weights=pressure)
-    assert found.tension == pytest.approx(0.01, rel=1e-12)
-    assert found.peak == peak
-    assert found.penetration == pytest.approx((approach - v.min()) / approach, rel=1e-9)
-    assert found.penetration > 1e-3
-
-
-def test_judge_refuses_what_it_cannot_judge() -> None:
-    posed = problem("smooth", 8, 1e-8)
-    periodic = type(posed)(posed.gap, posed.spacing, 1e9, load=1.0, periodic=True)
+    assert off["tension"] == pytest.approx(0.01, rel=1e-12)
+    assert off["peak"] == peak
+    assert off["penetration"] == pytest.approx((approach - v.min()) / approach, rel=1e-9)
+    assert off["penetration"] > 1e-3
     with pytest.raises(ValueError, match="free space"):
-        judged(periodic, np.ones((8, 8)))
+        residuals_of(replace(posed, periodic=True), pressure)
 
 
 def test_padded_box_is_twice_the_contact() -> None:
@@ -93,18 +87,27 @@ def test_padded_box_is_twice_the_contact() -> None:
     assert padded_box(pressure) == (16, 12)
 
 
-@pytest.mark.parametrize("slack", [0.03, 1.0, 30.0])
-def test_tuning_finds_the_loosest_tolerance_within_two(slack: float) -> None:
-    """Gap in steps, as iterations have: the tolerance found will do, and twice that would not."""
+def tuning(gap: Callable[[float], float], start: float, seconds: float = 1.0) -> tuple[float, list[float]]:
+    """The tolerance found for a code whose gap follows from its tolerance, and all that were tried."""
     tried: list[float] = []
 
     def solve(tolerance: float) -> dict[str, Any]:
         tried.append(tolerance)
-        return found(1.0, gap=slack * 1.3 ** np.floor(np.log(tolerance) / np.log(1.3)))
+        return found(seconds, gap=gap(tolerance))
 
-    tolerance, best = tuned(solve, 1e-7, loosen=True)
-    assert error(best) <= rounds.TARGET < error(solve(2.6 * tolerance))
-    assert len(tried) <= 9
+    return tuned(solve, start, loosen=True)[0], tried
+
+
+@pytest.mark.parametrize("slack", [0.03, 1.0, 30.0])
+def test_tuning_finds_the_loosest_tolerance_within_two(slack: float) -> None:
+    """Gap in steps, as iterations have: the tolerance found will do, and twice that would not."""
+
+    def gap(tolerance: float) -> float:
+        return slack * 1.3 ** float(np.floor(np.log(tolerance) / np.log(1.3)))
+
+    tolerance, tried = tuning(gap, 1e-7)
+    assert gap(tolerance) <= rounds.TARGET < gap(2.6 * tolerance)
+    assert len(tried) <= 8
 
 
 def test_tuning_never_loosens_ours_and_gives_up_aloud() -> None:
@@ -114,64 +117,40 @@ def test_tuning_never_loosens_ours_and_gives_up_aloud() -> None:
         tuned(lambda t: found(1.0, gap=1e-6), 1e-8, loosen=True)
 
 
-def test_a_solve_that_takes_long_is_not_loosened() -> None:
-    tried: list[float] = []
-
-    def solve(seconds: float, tolerance: float) -> dict[str, Any]:
-        tried.append(tolerance)
-        return found(seconds, gap=tolerance / 100)
-
-    assert tuned(partial(solve, 21.0), 1e-8, loosen=True)[0] == 1e-8
-    assert tried == [1e-8]
-    assert tuned(partial(solve, 19.9), 1e-8, loosen=True)[0] > 4e-7
-
-
-def test_a_start_that_misses_is_tightened_by_as_much_and_loosened_again() -> None:
-    tried: list[float] = []
-
-    def solve(tolerance: float) -> dict[str, Any]:
-        tried.append(tolerance)
-        return found(1.0, gap=rounds.TARGET * (tolerance / 5e-8) ** 3)
-
-    assert 2.5e-8 <= tuned(solve, 1e-7, loosen=True)[0] <= 5e-8
-    assert tried[1] == pytest.approx(1e-7 / 8)
-
-
-def test_a_jump_too_far_is_taken_back_only_as_far_as_needed() -> None:
-    def solve(tolerance: float) -> dict[str, Any]:
-        return found(1.0, gap=rounds.TARGET * (tolerance / 8e-7) ** 4)
-
-    assert 4e-7 <= tuned(solve, 1e-7, loosen=True)[0] <= 8e-7
-
-
-def test_without_any_gap_tolerances_are_loosened_to_the_last_try() -> None:
-    assert tuned(lambda _: found(1.0, gap=0.0), 1e-10, loosen=True)[0] == pytest.approx(1e-3)
-
-
-def test_what_fails_within_a_factor_of_two_ends_the_search() -> None:
-    tried: list[float] = []
-
-    def solve(tolerance: float) -> dict[str, Any]:
-        tried.append(tolerance)
-        return found(1.0, gap=0.8e-8 if tolerance < 1.5e-7 else 1e-6)
-
-    assert tuned(solve, 1e-7, loosen=True)[0] == 1e-7
-    assert tried == [1e-7, 2e-7]
+@pytest.mark.parametrize(
+    ("gap", "start", "seconds", "low", "high", "first"),
+    [
+        (lambda t: t / 100, 1e-8, 21.0, 1e-8, 1e-8, [1e-8]),  # it takes long: not loosened
+        (lambda t: t / 100, 1e-8, 19.9, 4e-7, 1e-6, [1e-8]),
+        # the start misses by 8: tightened by as much, then loosened again
+        (lambda t: rounds.TARGET * (t / 5e-8) ** 3, 1e-7, 1.0, 2.5e-8, 5e-8, [1e-7, 1e-7 / 8]),
+        # a jump too far is taken back only as far as needed
+        (lambda t: rounds.TARGET * (t / 8e-7) ** 4, 1e-7, 1.0, 4e-7, 8e-7, [1e-7]),
+        (lambda _: 0.0, 1e-10, 1.0, 0.99e-3, 1.01e-3, [1e-10]),  # no gap at all: loosened to the last try
+        # a failure within a factor of two ends the search
+        (lambda t: 0.8e-8 if t < 1.5e-7 else 1e-6, 1e-7, 1.0, 1e-7, 1e-7, [1e-7, 2e-7]),
+    ],
+    ids=["long", "not so long", "start misses", "jump too far", "no gap", "within two"],
+)
+def test_a_search_for_a_tolerance(
+    gap: Callable[[float], float], start: float, seconds: float, low: float, high: float, first: list[float]
+) -> None:
+    tolerance, tried = tuning(gap, start, seconds)
+    assert low <= tolerance <= high
+    assert tried[: len(first)] == pytest.approx(first)
 
 
 def test_peers_are_loosened_and_ours_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run, "solved", lambda _c, _k, _m, tolerance, *_: found(1.0, gap=tolerance / 100))
+    monkeypatch.setattr(Turns, "solve", lambda _, tolerance, *__: found(1.0, gap=tolerance / 100))
     for name in (OWN, ALONE, SHEARED, SLOPED):
-        assert run._tuned(name, "smooth", 64, None, 1, 60.0).tolerance == rounds.CERTIFIED
-    first = run._tuned("peer", "smooth", 64, None, 1, 60.0)
+        assert tuned_turns(name, "smooth", 64, None, 1, 60.0).tolerance == rounds.CERTIFIED
+    first = tuned_turns("peer", "smooth", 64, None, 1, 60.0)
     assert 5e-7 <= first.tolerance <= 1e-6
     # on the next grid a peer goes on from there
     tried: list[float] = []
-    monkeypatch.setattr(
-        run, "solved", lambda _c, _k, _m, tolerance, *_: tried.append(tolerance) or found(30.0)
-    )
+    monkeypatch.setattr(Turns, "solve", lambda _, tolerance, *__: tried.append(tolerance) or found(30.0))
     first.rounds = [found(7.0), found(1.0)]
-    assert not run._tuned("peer", "smooth", 128, first, 1, 60.0).failure
+    assert not tuned_turns("peer", "smooth", 128, first, 1, 60.0).failure
     assert tried == [first.tolerance]
 
 
@@ -179,18 +158,14 @@ def test_who_cannot_make_it_is_left_out_with_the_reason(monkeypatch: pytest.Monk
     def never(*_: object) -> dict[str, Any]:
         raise Failed("out of memory")
 
-    monkeypatch.setattr(run, "solved", never)
-    broke = run._tuned("peer", "smooth", 64, None, 1, 60.0)
+    monkeypatch.setattr(Turns, "solve", never)
+    broke = tuned_turns("peer", "smooth", 64, None, 1, 60.0)
     assert broke.failure == "out of memory"
-    assert "after 64 x 64: out of memory" in run._tuned("peer", "smooth", 128, broke, 1, 60.0).failure
+    assert "after 64 x 64: out of memory" in tuned_turns("peer", "smooth", 128, broke, 1, 60.0).failure
     slow = turns("peer", 9.0, 1.5)  # times eight for twice the grid, of the quicker round
-    assert run._tuned("peer", "smooth", 128, slow, 1, 11.9).failure == "not run: 12 s expected"
-    assert run._tuned("peer", "smooth", 256, slow, 1, 95.0).failure == "not run: 96 s expected"
-    assert run._tuned("peer", "smooth", 128, slow, 1, 12.1).failure == "out of memory"
-
-
-def test_a_coupled_result_is_judged_by_its_certificate() -> None:
-    assert error(found(1.0, gap=0.02, residual=3e-9)) == 3e-9
+    assert tuned_turns("peer", "smooth", 128, slow, 1, 11.9).failure == "not run: 12 s expected"
+    assert tuned_turns("peer", "smooth", 256, slow, 1, 95.0).failure == "not run: 96 s expected"
+    assert tuned_turns("peer", "smooth", 128, slow, 1, 12.1).failure == "out of memory"
 
 
 def test_turns_alternate_and_a_failure_ends_only_its_own() -> None:
@@ -241,6 +216,8 @@ def test_rows_count_convolutions_on_the_padded_box() -> None:
     assert entry["memory of the solve"]["median"] == 2e8
     assert entry["seconds again"] == {"median": 0.375, "least": 0.25, "most": 0.5}
     assert entry["meets the target"] is True
+    one.rounds[0] |= {"gap": 0.02, "residual": 3e-9}  # with coupling the certificate counts
+    assert error(one.rounds[0]) == 3e-9
     assert "seconds" not in row(Turns("absent", "smooth", 64, 1e-8, failure="left out"))
 
 
@@ -274,23 +251,19 @@ def test_a_record_only_grows(tmp_path: Path) -> None:
 def test_our_codes_solve_table_1(name: str) -> None:
     pressed = codes()[name].ready("smooth", 48, 1e-8)()
     assert pressed.converged
-    verdict = judged(problem("smooth", 48, 1e-8), pressed.pressure)
+    found = residuals_of(problem("smooth", 48, 1e-8), pressed.pressure)
     if name in (OWN, ALONE):
-        assert verdict.gap <= 1e-8
-        assert verdict.balance <= 1e-8
+        assert found["gap"] <= 1e-8
+        assert found["balance"] <= 1e-8
         assert pressed.residual is None
     else:
         assert pressed.residual is not None
         assert pressed.residual <= 1e-8
-        assert verdict.gap > 1e-3  # copper and steel couple, so the frictionless judge must object
+        assert found["gap"] > 1e-3  # copper and steel couple, so the frictionless judge must object
 
 
 def test_peak_memory_is_of_this_process() -> None:
-    before = child.peak_memory()
-    held = np.ones(4_000_000)
-    assert child.peak_memory() >= before
-    assert 2e7 < before < 1e11
-    assert held.any()
+    assert 2e7 < peak_memory() < 1e11
 
 
 def test_a_run_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -303,4 +276,4 @@ def test_a_run_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "smooth 32" in capsys.readouterr().out
     assert recorded["conditions"]["versions"] == {OWN: codes()[OWN].version}
     with pytest.raises(Failed, match="KeyError"):
-        solved("no such code", "smooth", 32, 1e-8, threads=1, limit=60)
+        Turns("no such code", "smooth", 32, 1e-8).solve(1e-8, threads=1, limit=60)

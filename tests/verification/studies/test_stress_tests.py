@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -11,8 +12,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-import verification.stress_tests.axes  # noqa: F401  # registers the axes
-from appendix_a import wedge
 from refimpl.operators.fft import FFTInfluence
 from reports.result_files import committed, read_result
 from verification.cases.solvers.extremes import counted
@@ -29,11 +28,12 @@ from verification.stress_tests import (
     uniqueness,
 )
 from verification.stress_tests.__main__ import main
+from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.axes.contacts import on
 from verification.stress_tests.oracle import Oracle
-from verification.stress_tests.state import Extreme, Verdict, axes, number, states
+from verification.stress_tests.state import Extreme, Judged, Verdict, number
 
-ALL = [unique for name in axes() for unique, _ in states(name)]
+ALL = [unique for name in AXES for unique, _ in states(name)]
 BALL = pressed(lower=POLYMER, load=30.0, direction=0.7, friction=rf.Friction(1e5, 0.3))
 
 
@@ -128,13 +128,18 @@ def test_a_flipped_coupling_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     assert judge.by_oracle(BALL, 4, oblique=False).verdict is Verdict.WRONG
 
 
-def test_symmetric_parts_by_hand() -> None:
-    """Two by two elements without slope: the eigenvalues of the normal matrix, whatever c and beta are."""
+def eigenvalues() -> list[float]:
+    """Of the normal matrix of 2 x 2 elements, by its entries for self, beside and across the corner."""
     a, b, c = DenseInfluence(rf.Grid.square(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
-    expected = sorted([a + 2 * b + c, a - c, a - c, a - 2 * b + c])
+    return sorted([a + 2 * b + c, a - c, a - c, a - 2 * b + c])
+
+
+def test_symmetric_parts_known_values() -> None:
+    """Without slope the eigenvalues of the normal matrix, whatever c and beta; the correction ends that."""
     for beta in (0.0, 0.4, 1e3):
-        found = positive_definite.symmetric_part(2, beta, 0.3)
-        np.testing.assert_allclose(found, expected, rtol=1e-12)
+        np.testing.assert_allclose(positive_definite.symmetric_part(2, beta, 0.3), eigenvalues(), rtol=1e-12)
+    assert positive_definite.least_symbol() > 1.8
+    assert positive_definite.symmetric_part(4, 0.3, 0.3, slope=4.0)[0] < 0
 
 
 @pytest.mark.parametrize(("over", "error"), [(-1e-9, 0.0), (0.0, 0.0), (1e-9, 1.0), (0.5, 1.0)])
@@ -166,30 +171,27 @@ def test_support_is_where_tau_acts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_states_are_counted_for_both_orders_of_bodies(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without tau each contact set is the only one, and both solvers find it."""
     drawn: list[bool] = []
     scene = uniqueness.scene
-    monkeypatch.setattr(
-        uniqueness,
-        "scene",
-        lambda seed, tau, *, soft_below=True: (
-            drawn.append(soft_below),
-            scene(seed, tau, soft_below=soft_below),
-        )[1],
-    )
+
+    def watched(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
+        drawn.append(soft_below)
+        return scene(seed, tau, soft_below=soft_below)
+
+    monkeypatch.setattr(uniqueness, "scene", watched)
     found = uniqueness.count(0.0, scenes=4)
     assert drawn == [True, False, True, False]
     assert (found.none, found.one, found.several, found.most, found.wrong) == (0, 4, 0, 1, 0)
     assert found.statuses == {"fft": {"converged": 4}, "dense": {"converged": 4}}
 
 
-def test_conditions_by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Four elements: eigenvalues a + 2b + c, a - c twice, a - 2b + c of self, beside, across the corner."""
-    a, b, c = DenseInfluence(rf.Grid.square(2.0, 2), 0.0).normal_matrix[0, [0, 1, 3]]
+def test_conditions_known_values(monkeypatch: pytest.MonkeyPatch) -> None:
     solve = np.linalg.solve
     monkeypatch.setattr(np.linalg, "solve", lambda *system: solve(*system) * (1 + 1e-10))
     found = conditioning.measure(2)
-    assert found["largest"] == pytest.approx(a + 2 * b + c, rel=1e-14)
-    assert found["least"] == pytest.approx(min(a - c, a - 2 * b + c), rel=1e-13)
+    assert found["largest"] == pytest.approx(eigenvalues()[-1], rel=1e-14)
+    assert found["least"] == pytest.approx(eigenvalues()[0], rel=1e-13)
     assert found["condition"] == pytest.approx(found["largest"] / found["least"], rel=1e-14)
     assert found["digits lost by a direct solve"] == pytest.approx(np.log10(1e-10 / 2.0**-52), abs=1e-4)
     assert found["CG iterations"] == 3
@@ -203,42 +205,39 @@ def test_conjugate_gradients_take_a_step_for_each_eigenvalue(values: list[float]
     assert conditioning.conjugate_gradients(np.diag(many), np.arange(1.0, 1 + len(many))) == expected
 
 
-def test_verdicts() -> None:
-    assert number(1e-9, 1e-8, "value", "x").verdict is Verdict.RIGHT
-    assert number(float("nan"), 1e-8, "value", "x").verdict is Verdict.WRONG
-    refused = judge.guarded(lambda: rf.Material(-1.0, 0.3) and number(0.0, 1.0, "value", "x"))
-    assert (refused.verdict, refused.digits) == (Verdict.HONEST, None)
+@judge.guarded
+def raising(error: Exception) -> Judged:
+    raise error
 
-    def by_zero() -> study.Row:
-        raise ZeroDivisionError("float division by zero")
 
-    assert judge.guarded(by_zero).verdict is Verdict.CRASH  # type: ignore[arg-type]  # it raises
+@judge.guarded
+def endless() -> Judged:
+    while True:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("verdict", "status", "run"),
+    [
+        ("right", "value", lambda: number(1e-9, 1e-8, "value", "x")),
+        ("wrong", "value", lambda: number(float("nan"), 1e-8, "value", "x")),
+        ("honest failure", "InputError", lambda: judge.guarded(rf.Material)(-1.0, 0.3)),
+        ("honest failure", "ArithmeticError", lambda: raising(ArithmeticError("no state"))),
+        ("crash", "ZeroDivisionError", lambda: raising(ZeroDivisionError("division by zero"))),
+        ("crash", "OutOfTime", endless),
+    ],
+    ids=["right", "wrong", "refused", "no state", "crash", "endless"],
+)
+def test_verdicts(verdict: str, status: str, run: Callable[[], Judged]) -> None:
+    row = study.run_state("a/b/c", Extreme("b", "c", 0.0, run, 0.2))
+    assert (row["verdict"], row["status"]) == (verdict, status)
+    assert (row["digits"] is None) == (verdict in ("honest failure", "crash"))
+    assert counted([row]).value == (verdict in ("wrong", "crash"))
+
+
+def test_an_error_that_the_status_admits_is_a_detected_failure() -> None:
     failed = replace(rf.solve(BALL, 4), status=rf.Status.STAGNATED)
     assert judge.verdict(failed, 1.0, "x").verdict is Verdict.HONEST
-
-
-def test_a_state_without_an_end_is_a_crash() -> None:
-    def endless() -> study.Row:
-        while True:
-            pass
-
-    row = study.judged("a/b/c", Extreme("b", "c", 0.0, lambda: judge.guarded(endless), 0.2))  # type: ignore[arg-type]  # endless
-    assert (row["verdict"], row["status"]) == ("crash", "OutOfTime")
-
-
-def test_beta_changes_no_eigenvalue_and_the_slope_correction_does() -> None:
-    free, rubbed = (positive_definite.symmetric_part(4, beta, 0.3)[0] for beta in (0.0, 1e3))
-    assert rubbed == pytest.approx(free, rel=1e-11)
-    assert free > positive_definite.least_symbol() > 1.8
-    assert positive_definite.symmetric_part(4, 0.3, 0.3, slope=4.0)[0] < 0
-
-
-def test_without_tau_each_contact_set_is_the_only_one() -> None:
-    for seed in range(4):
-        lawful = uniqueness.lawful_states(uniqueness.scene(seed, 0.0))
-        assert len(lawful) == 1
-        solution = rf.solve(uniqueness.scene(seed, 0.0), uniqueness.M, oblique=False)
-        assert np.array_equal(solution.contact, lawful[0])
 
 
 def test_digits_lost_see_a_textbook_kernel() -> None:
@@ -246,12 +245,6 @@ def test_digits_lost_see_a_textbook_kernel() -> None:
     assert isinstance(lost, dict)
     assert lost["tangential kernel, textbook, at x = 1e-9"][1] > 6
     assert lost["tangential kernel, this code, at x = 1e-9"][1] < 1
-
-
-@pytest.mark.parametrize(("gamma", "r"), [(np.pi / 2 - 1e-9, 0.5), (np.pi / 2 - 1e-4, 1e300), (1.56, 1e-300)])
-def test_needles_are_refused_at_once(gamma: float, r: float) -> None:
-    with pytest.raises(ValueError, match=r"gamma = .* a wedge of at least"):
-        wedge.stresses(r, 0.0, gamma)
 
 
 def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -270,14 +263,3 @@ def test_the_committed_study_has_no_wrong_number() -> None:
     found = committed("extremes")
     assert len(found["states"]) >= 400
     assert found["counts"]["wrong"] == 0
-
-
-def test_a_crash_is_no_pass() -> None:
-    runs = {
-        "right": lambda: number(0.0, 0.1, "converged", "made up"),
-        "wrong": lambda: number(1.0, 0.1, "converged", "made up"),
-        "crash": lambda: judge.guarded(lambda: [][0]),  # type: ignore[arg-type]  # it never returns
-    }
-    rows = [study.judged(f"a/b/{name}", Extreme("b", name, 1.0, run)) for name, run in runs.items()]
-    assert [row["verdict"] for row in rows] == list(runs)
-    assert counted(rows).value == 2

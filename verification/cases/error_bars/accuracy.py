@@ -12,8 +12,8 @@ import refimpl as rf
 from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from verification.cases.contact import hertz
 from verification.cases.contact.hertz import mean_radii
-from verification.coverage.judge import verdicts
-from verification.coverage.store import NUMBERS, climb, ladders
+from verification.coverage.judge import coverages
+from verification.coverage.store import NUMBERS, refine, refinements
 from verification.exact.hertz import UNCERTAINTY, Sphere
 from verification.framework.case import Measured
 from verification.framework.registry import case
@@ -134,8 +134,8 @@ def coverage() -> Measured:
     """
     with tempfile.TemporaryDirectory() as folder:
         store = Path(folder) / "store.jsonl"
-        climb(store, SEEDS, GRIDS)
-        found = verdicts(ladders(store), 0.01)
+        refine(store, SEEDS, GRIDS)
+        found = coverages(refinements(store), 0.01)
     shares = {
         number: sum(v.covered for v in found if v.number == number) / sum(v.number == number for v in found)
         for number in NUMBERS

@@ -10,8 +10,8 @@ import refimpl as rf
 from refimpl.identification import Identification, Row, identify
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
-from verification.coverage.identification import SETS, TwinSet, study, summary
-from verification.coverage.twins import KINDS, ROUGHNESS_TOLERANCE, SHARP_FIT_GRID
+from verification.coverage.identification import SETS, TableSet, study, summary
+from verification.coverage.synthetic_tables import KINDS, ROUGHNESS_TOLERANCE, SHARP
 from verification.framework.case import Measured
 from verification.framework.registry import case, family
 
@@ -20,13 +20,11 @@ FINE, COARSE = 256, 128
 MOST_SOLVES = 60
 
 
-def _coverage(twins: TwinSet, seeds: range) -> Measured:
-    found = summary(study(twins, seeds=seeds))
-    coverage = found["coverage"]
-    assert isinstance(coverage, dict)
-    least = min(coverage.values())
-    wrong = int(str(found["wide_without_warning"])) + int(str(found["narrow_with_warning"]))
-    failed = int(str(found["failures"]))
+def _coverage(tables: TableSet, seeds: range) -> Measured:
+    found = summary(study(tables, seeds=seeds))
+    least = min(found["coverage"].values())
+    wrong = found["wide_without_warning"] + found["narrow_with_warning"]
+    failed = found["failures"]
     value = 0.0 if wrong or failed else least
     note = f"{found['twins']} twins, {found['narrow']} narrow; {wrong} warnings wrong, {failed} not solved"
     return Measured(value=value, data=found, note=note)
@@ -56,7 +54,7 @@ def twins_sample() -> Measured:
         "identification/sharp-twins": (
             "sharp", "95 % intervals of tau below 5 %, without a warning",
             "Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
-            f"{SHARP_FIT_GRID} elements a side: the intervals cover the truth, and no twin whose tau is "
+            f"{SHARP.fit} elements a side: the intervals cover the truth, and no twin whose tau is "
             "known within 5 % has the warning.",
             "as identification/twins, other seeds",
             0.85, "95 %, less two standard deviations of 20 twins (9.7 %) and rounding"),

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import refimpl as rf
 from refimpl.accuracy.refinement import uncertainty
-from verification.coverage.scenes import SIDE, random_scene
+from verification.coverage.drawing import SIDE
+from verification.coverage.scenes import random_scene
 from verification.framework.case import Measured
 from verification.framework.registry import family
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-import verification.stress_tests.axes  # noqa: F401  # registers the axes
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.stress_tests import conditioning, positive_definite, precision, uniqueness
-from verification.stress_tests.state import Verdict, axes, states
-from verification.stress_tests.study import Row, counts, judged, run, summary
+from verification.stress_tests.axes import AXES, states
+from verification.stress_tests.state import Verdict
+from verification.stress_tests.study import Row, counts, run, run_state, summary
 
 CLAIM = "at the extremes a result is right, refused or named a failure: none is wrong and nothing crashes"
 SOURCE = "exact discrete states in 34 digits, scaling laws, closed forms; see verification.stress_tests"
@@ -54,7 +54,7 @@ def declare(axis: str) -> None:
         return counted(run([axis]))
 
 
-for name in axes():
+for name in AXES:
     declare(name)
 
 
@@ -65,8 +65,8 @@ def sample() -> Measured:
     Source: exact discrete states in 34 digits, scaling laws, closed forms; see verification.stress_tests
     Tolerance: a count
     """
-    cheap = [name for name in axes() if name not in COSTLY]
-    return counted([judged(*state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
+    cheap = [name for name in AXES if name not in COSTLY]
+    return counted([run_state(*state) for name in cheap for state in islice(states(name), 7, None, EVERY)])
 
 
 @case("extremes/unit-scaling", metric="at_most", tolerance=0.0)

@@ -14,7 +14,7 @@ from verification.framework.case import Measured
 from verification.solver_suite.check import CLAIMS, MODULUS, Check, Entrant, Judge
 from verification.solver_suite.check import Fault as F
 from verification.solver_suite.gaps import centres
-from verification.solver_suite.pin_arrays import FAR, PinArray, YieldingPins, graded, standing, uneven
+from verification.solver_suite.pin_arrays import FAR, PinArray, graded, standing, uneven
 
 BOUND = "proven: the squared energy-norm error is at most the relative complementarity gap, 1 claim; "
 TWO_SIDED = BOUND + "a prescribed approach adds as much again for its penetration"
@@ -25,12 +25,12 @@ M, WIDE = 12, 160
 ALWAYS = (F.MODULUS_OFF, F.MODULUS_DOUBLED, F.NEAR_FIELD)
 
 
-def by_load(*arrays: PinArray | YieldingPins) -> Judge:
+def by_load(*arrays: PinArray) -> Judge:
     """Return the judge of pins under the load of the pressures that were chosen."""
     return lambda entrant: entrant.against(*(pins.under_load(entrant) for pins in arrays))
 
 
-def by_approach(pins: PinArray | YieldingPins) -> Judge:
+def by_approach(pins: PinArray) -> Judge:
     """Return the judge of pins at the approach of the pressures that were chosen."""
     return lambda entrant: entrant.against(pins.at_approach(entrant))
 

@@ -42,6 +42,17 @@ def sphere(side: float, n: int) -> Array:
     return np.asarray((x**2 + y**2) / (2 * SPHERE.radius))
 
 
+def hertz(entrant: Entrant, n: int) -> Fields:
+    """Pressures of `SPHERE` under its load."""
+    pressed = entrant.press(sphere(SIDE, n), SIDE, load=1.0)
+    return pressed.pressure, SPHERE.pressure(np.hypot(*centres(SIDE, n)))
+
+
+def load_at_approach(entrant: Entrant, n: int) -> float:
+    """Load (N) of `SPHERE` at its approach; exact is 1."""
+    return entrant.press(sphere(SIDE, n), SIDE, approach=SPHERE.approach).load
+
+
 def off_centre(entrant: Entrant, n: int, x0: float, y0: float) -> Fields:
     """Pressures of `SPHERE` with its tip off the middle, by shares of the side."""
     side = 3.2 * SPHERE.contact_radius
@@ -67,13 +78,12 @@ def cone(entrant: Entrant, n: int) -> Fields:
 
 
 def _peak(entrant: Entrant) -> Measured:
-    pressed, exact = entrant.press(sphere(SIDE, M), SIDE, load=1.0), SPHERE.peak_pressure
-    return Measured(float(pressed.pressure.max()), exact, exact * UNCERTAINTY, "Pa")
+    found, exact = hertz(entrant, M)[0].max(), SPHERE.peak_pressure
+    return Measured(float(found), exact, exact * UNCERTAINTY, "Pa")
 
 
 def _load(entrant: Entrant) -> Measured:
-    pressed = entrant.press(sphere(SIDE, M), SIDE, approach=SPHERE.approach)
-    return Measured(pressed.load, 1.0, UNCERTAINTY, "N")
+    return Measured(load_at_approach(entrant, M), 1.0, UNCERTAINTY, "N")
 
 
 def _load_doubling(entrant: Entrant) -> Measured:

@@ -15,7 +15,7 @@ from refimpl.grid import Array
 from refimpl.planning.plan import Method
 from verification.scenes.cross_checks import POLYMER, STEEL, TABLE1, pressed
 from verification.stress_tests.judge import SOLVERS, M, by_oracle, guarded, state
-from verification.stress_tests.state import Extreme, Judged, axis
+from verification.stress_tests.state import Extreme, Judged
 
 SIDE = 1e-3
 COULOMB = rf.Friction(0.0, 0.3)
@@ -47,7 +47,6 @@ def on(
     return replace(flat, lower=rf.Body(POLYMER, heights), friction=friction)
 
 
-@axis("load")
 def loads() -> Iterator[Extreme]:
     """Mean pressures over E* on every kind of scene; atoms under femtonewtons to micronewtons."""
     smooth = rf.Friction(0.0, 0.12)
@@ -85,7 +84,6 @@ def at_the_border() -> dict[str, Array]:
     }  # fmt: skip
 
 
-@axis("contact set")
 def contact_sets() -> Iterator[Extreme]:
     """Prescribed approaches from apart to deep; peaks that alone carry the load; flats; borders."""
     for method in SOLVERS:
@@ -115,12 +113,12 @@ def pair(upper: rf.Material, lower: rf.Material, beta: float = 0.3) -> rf.Scene:
     return replace(scene, load=load, friction=replace(TABLE1, tau=tau, beta=beta))
 
 
+@guarded
 def of_ratios(upper: float, lower: float, method: Method) -> Judged:
     """Bodies of two Poisson's ratios, which may be refused."""
-    return guarded(lambda: by_oracle(pair(rf.Material(2e11, upper), rf.Material(3e9, lower)), M, method))
+    return by_oracle(pair(rf.Material(2e11, upper), rf.Material(3e9, lower)), M, method)
 
 
-@axis("material")
 def materials() -> Iterator[Extreme]:
     """Poisson's ratio of one body, of both; the modulus of the lower body over the upper one's."""
     for method in SOLVERS:
@@ -143,7 +141,6 @@ def sheared(tau: float, beta: float, *, soft_below: bool = True) -> rf.Scene:
     return pressed(upper=upper, lower=lower, rms=0.5e-6, load=30.0, direction=0.7, friction=law)
 
 
-@axis("friction")
 def friction() -> Iterator[Extreme]:
     """Either sign of the coupling, half-space and periodic, slope terms kept, dropped and corrected."""
     flat: dict[str, Any] = {"oblique": False}

@@ -11,45 +11,34 @@ import numpy as np
 import refimpl as rf
 from verification.exact import hertz
 from verification.scenes.cross_checks import POLYMER, STEEL, pressed
-from verification.stress_tests.judge import GOOD, SOLVERS, TOLERANCE, guarded, state, verdict
-from verification.stress_tests.state import Extreme, Judged, axis
+from verification.stress_tests.judge import GOOD, SOLVERS, TOLERANCE, change, guarded, state, verdict
+from verification.stress_tests.state import Extreme, Judged
 
 TINY, PRIMES, LARGEST = (1, 2, 3, 5, 7), (11, 13, 17, 19, 23), 2048
 LINES = (1, 2, 4, 8, 16)
 
 
+@guarded
 def against_dense(scene: rf.Scene, M: int) -> Judged:
     """The production solver against the dense one, whose certificate is at rounding."""
-
-    def run() -> Judged:
-        found = rf.solve(scene, M, tolerance=TOLERANCE)
-        exact = rf.solve(scene, M, method="dense", tolerance=TOLERANCE)
-        if exact.status not in GOOD:
-            raise ArithmeticError(f"the dense reference ended {exact.status.value}")
-        error = float(np.abs(found.pressure - exact.pressure).max()) / exact.max_pressure
-        return verdict(found, max(error, abs(found.approach / exact.approach - 1)), "the dense solver")
-
-    return guarded(run)
+    found = rf.solve(scene, M, tolerance=TOLERANCE)
+    exact = rf.solve(scene, M, method="dense", tolerance=TOLERANCE)
+    if exact.status not in GOOD:
+        raise ArithmeticError(f"the dense reference ended {exact.status.value}")
+    return verdict(found, change(found, exact), "the dense solver")
 
 
+@guarded
 def against_hertz(M: int) -> Judged:
     """A smooth ball, frictionless: peak and approach within 2 (spacing / a)^2, the elements' cost."""
-
-    def run() -> Judged:
-        scene = replace(pressed(rms=None), friction=rf.Friction())
-        found = rf.solve(scene, M, oblique=False)
-        exact = hertz.Sphere(scene.load, 0.14, scene.materials.reduced_modulus)
-        error = max(
-            abs(found.max_pressure / exact.peak_pressure - 1), abs(found.approach / exact.approach - 1)
-        )
-        flipped = max(np.abs(found.pressure - p).max() for p in (found.pressure[::-1], found.pressure.T))
-        symmetry = float(flipped) / found.max_pressure
-        cell = found.grid.element_size / exact.contact_radius
-        return verdict(
-            found, error, "Hertz", f"asymmetry {symmetry:.0e}", limit=2 * cell**2 + 1e-7, symmetry=symmetry
-        )
-
-    return guarded(run)
+    scene = replace(pressed(rms=None), friction=rf.Friction())
+    found = rf.solve(scene, M, oblique=False)
+    exact = hertz.Sphere(scene.load, 0.14, scene.materials.reduced_modulus)
+    error = max(abs(found.max_pressure / exact.peak_pressure - 1), abs(found.approach / exact.approach - 1))
+    flipped = max(np.abs(found.pressure - p).max() for p in (found.pressure[::-1], found.pressure.T))
+    symmetry = float(flipped) / found.max_pressure
+    limit = 2 * (found.grid.element_size / exact.contact_radius) ** 2 + 1e-7
+    return verdict(found, error, "Hertz", f"asymmetry {symmetry:.0e}", limit, symmetry=symmetry)
 
 
 def ridge(M: int, across: int) -> rf.Scene:
@@ -60,7 +49,6 @@ def ridge(M: int, across: int) -> rf.Scene:
     return replace(flat, lower=rf.Body(POLYMER, z))
 
 
-@axis("grid")
 def grids() -> Iterator[Extreme]:
     """Tiny grids by the oracle, primes by the dense solver, large ones by Hertz, ridges of any aspect."""
     scene = pressed(lower=POLYMER, load=30.0, direction=0.7)

@@ -10,7 +10,7 @@ from typing import Any
 from refimpl.kernels import normal_integral, tangential_integral
 from verification.exact import kernel_reference as reference
 from verification.stress_tests.judge import guarded
-from verification.stress_tests.state import Extreme, Judged, axis, number
+from verification.stress_tests.state import Extreme, Judged, number
 
 LIMIT = 1e-13
 """The relative error promised by `refimpl.kernels`."""
@@ -23,23 +23,19 @@ INTEGRALS: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
 }
 
 
+@guarded
 def against_digits(kind: str, x: float, y: float, dx: float, dy: float) -> Judged:
     """One value against 50 digits; at x = 0 the tangential one is zero exactly."""
-
-    def run() -> Judged:
-        integral, exact = INTEGRALS[kind]
-        value = float(integral(x, y, dx, dy))
-        expected = exact(x, y, dx, dy)
-        if expected == 0:
-            return number(abs(value), 0.0, "value", "zero by symmetry")
-        # a subnormal result holds its absolute digits only: that is what doubles are
-        error = float(abs(value - expected) / max(abs(expected), sys.float_info.min))
-        return number(error, LIMIT, "value", "50-digit corner sums")
-
-    return guarded(run)
+    integral, exact = INTEGRALS[kind]
+    value = float(integral(x, y, dx, dy))
+    expected = exact(x, y, dx, dy)
+    if expected == 0:
+        return number(abs(value), 0.0, "value", "zero by symmetry")
+    # a subnormal result holds its absolute digits only: that is what doubles are
+    error = float(abs(value - expected) / max(abs(expected), sys.float_info.min))
+    return number(error, LIMIT, "value", "50-digit corner sums")
 
 
-@axis("kernel")
 def kernels() -> Iterator[Extreme]:
     """Along the axis, off it, near the zero of the odd kernel, in thin elements, in tiny and vast units."""
     for kind in INTEGRALS:

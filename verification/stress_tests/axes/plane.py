@@ -21,7 +21,7 @@ from appendix_a.fem.mesh import Source
 from appendix_a.wedge import reference
 from refimpl.grid import Array
 from verification.stress_tests.judge import guarded
-from verification.stress_tests.state import Extreme, Judged, Verdict, axis, number
+from verification.stress_tests.state import Extreme, Judged, Verdict, number
 
 WEDGE_LIMIT = 2e-10
 """Of the largest component; 1e-13 is promised for r in 1e-4 ... 1e4 only. Beyond, the weight r^(-1/2)
@@ -41,24 +41,21 @@ OFFSETS = np.array([-10.0, -4.0, -1.0, 0.5, 2.0, 3.0, 10.0])
 SETUP = Setup((Source(-1.0, -1.0, 2.0**-7, 1.0), Source(1.0, 1.0, 2.0**-7, 1.0)), 1024.0)
 
 
+@guarded
 def wedge_at(gamma: float, r: float) -> Judged:
     """Stresses half-way to a face against the other formulation in 18 digits, or the exact limits of r."""
-
-    def run() -> Judged:
-        theta = 0.5 * (math.pi / 2 - gamma)
-        try:
-            found = np.array(wedge.stresses(r, theta, gamma)).ravel()
-        except InputError as refused:
-            return Judged(Verdict.HONEST, "InputError", None, WEDGE_LIMIT, "refused", str(refused))
-        if r in LIMIT_RADII:
-            exact, oracle = _limits(gamma, theta, r), "Michell's radial field" if r > 1 else "hydrostatic tip"
-        else:
-            values = reference.stresses(r, theta, gamma, digits=36 if r > 1e6 else 18).values
-            exact, oracle = np.array([float(v) for v in values]), "the other formulation, mpmath"
-        error = float(np.abs(found - exact).max() / np.abs(exact).max())
-        return number(error, WEDGE_LIMIT, "value", oracle)
-
-    return guarded(run)
+    theta = 0.5 * (math.pi / 2 - gamma)
+    try:
+        found = np.array(wedge.stresses(r, theta, gamma)).ravel()
+    except InputError as refused:
+        return Judged(Verdict.HONEST, "InputError", None, WEDGE_LIMIT, "refused", str(refused))
+    if r in LIMIT_RADII:
+        exact, oracle = _limits(gamma, theta, r), "Michell's radial field" if r > 1 else "hydrostatic tip"
+    else:
+        values = reference.stresses(r, theta, gamma, digits=36 if r > 1e6 else 18).values
+        exact, oracle = np.array([float(v) for v in values]), "the other formulation, mpmath"
+    error = float(np.abs(found - exact).max() / np.abs(exact).max())
+    return number(error, WEDGE_LIMIT, "value", oracle)
 
 
 def _limits(gamma: float, theta: float, r: float) -> Array:
@@ -69,23 +66,18 @@ def _limits(gamma: float, theta: float, r: float) -> Array:
     return np.array([radial / r, 0.0, 0.0])
 
 
+@guarded
 def pressed(nu: float, *, formulation: str, jitter: float = 0.0) -> Judged:
     """Surface displacement of a flat body under a strip against the closed form."""
-
-    def run() -> Judged:
-        mesh = distorted(SETUP.mesh(1), jitter)
-        body = PlaneStrain.on(mesh, bend(mesh, flat()), 2 if formulation == "mixed" else 3)
-        if formulation == "direct" and nu == 0.5:
-            return Judged(
-                Verdict.HONEST, "excluded", None, FEM_LIMIT, "lambda is infinite", "use the mixed form"
-            )
-        u = body.displacements(nu) if formulation == "direct" else mixed.displacements(body, nu)
-        off = body.surface_values(u[1] - pressed_strip(body.basis.doflocs[0], nu), np.append(OFFSETS, 0.0))
-        exact = pressed_strip(OFFSETS, nu)
-        error = float(np.abs((off[:-1] - off[-1]) / exact).max())
-        return number(error, FEM_LIMIT, "value", "closed form of the strip (Johnson 1985)")
-
-    return guarded(run)
+    direct = formulation == "direct"
+    if direct and nu == 0.5:
+        return Judged(Verdict.HONEST, "excluded", None, FEM_LIMIT, "lambda is infinite", "use the mixed form")
+    mesh = distorted(SETUP.mesh(1), jitter)
+    body = PlaneStrain.on(mesh, bend(mesh, flat()), 3 if direct else 2)
+    u = body.displacements(nu) if direct else mixed.displacements(body, nu)
+    off = body.surface_values(u[1] - pressed_strip(body.basis.doflocs[0], nu), np.append(OFFSETS, 0.0))
+    error = float(np.abs((off[:-1] - off[-1]) / pressed_strip(OFFSETS, nu)).max())
+    return number(error, FEM_LIMIT, "value", "closed form of the strip (Johnson 1985)")
 
 
 def distorted(mesh: MeshTri, jitter: float) -> MeshTri:
@@ -100,7 +92,6 @@ def distorted(mesh: MeshTri, jitter: float) -> MeshTri:
     return replace(mesh, doflocs=mesh.p + moves)
 
 
-@axis("wedge")
 def wedges() -> Iterator[Extreme]:
     """All angles by all radii; the limits only where the slowest mode has died out by then."""
     for gamma in GAMMAS:
@@ -111,7 +102,6 @@ def wedges() -> Iterator[Extreme]:
                 yield Extreme(f"{kind}r = {r:g}", f"gamma = {gamma!r}", gamma, partial(wedge_at, gamma, r))
 
 
-@axis("finite elements")
 def finite_elements() -> Iterator[Extreme]:
     """Poisson's ratio up to 1/2 in both formulations; inner vertices moved, at nu = 0.3 and 0.4999."""
     for form in ("direct", "mixed"):

@@ -17,7 +17,7 @@ import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.scenes.cross_checks import COPPER, STEEL
 from verification.stress_tests.judge import guarded, verdict
-from verification.stress_tests.state import Extreme, Judged, axis
+from verification.stress_tests.state import Extreme, Judged
 
 TOLERANCE = 1e-12
 LIMIT = 1e-12
@@ -48,13 +48,16 @@ def scene(
     )
 
 
+def solved(method: Method, periodic: bool, oblique: bool, *scales: float) -> rf.Solution:
+    """The solution of a scene with lengths, stresses and load scaled."""
+    scaled = scene(*scales, periodic=periodic, oblique=oblique)
+    return rf.solve(scaled, SIZES[method], method=method, tolerance=TOLERANCE, oblique=oblique)
+
+
 @cache
 def unscaled(method: Method, periodic: bool, oblique: bool) -> rf.Solution:
-    """The solution that all scaled ones are held against."""
-    found = rf.solve(
-        scene(periodic=periodic, oblique=oblique), SIZES[method],
-        method=method, tolerance=TOLERANCE, oblique=oblique,
-    )  # fmt: skip
+    """The solution that all scaled ones are compared with."""
+    found = solved(method, periodic, oblique)
     if found.status is not rf.Status.CONVERGED:
         raise ArithmeticError(f"the unscaled scene ended {found.status.value}")
     return found
@@ -65,7 +68,7 @@ def change(
 ) -> tuple[float, str]:
     """Largest relative change of pressure field, approach, area, forces and friction coefficient.
 
-    With ``bars``, of what the grid leaves open of each as well.
+    With ``bars``, of the grid's part of their error bars as well.
     """
     pressure, area = stress * similar, (length * similar) ** 2
     factors = {
@@ -76,40 +79,26 @@ def change(
         "friction_force": pressure * area,
         "friction_coefficient": 1.0,
     }
-    found = {
-        name: abs(getattr(scaled, name) / factor / getattr(base, name) - 1)
-        for name, factor in factors.items()
-    }
-    if bars:
-        found |= {
-            f"the bar of {name}": abs(_grids_part(scaled, name) / factor / _grids_part(base, name) - 1)
-            for name, factor in factors.items()
-            if name != "normal_force"
-        }
+    found = {}
+    for name, factor in factors.items():
+        found[name] = abs(getattr(scaled, name) / factor / getattr(base, name) - 1)
+        if bars and name != "normal_force":
+            bar, base_bar = (s.uncertainty[name]["discretisation"] for s in (scaled, base))
+            found[f"the bar of {name}"] = abs(bar / factor / base_bar - 1)
     found["pressure"] = float(np.abs(scaled.pressure / pressure - base.pressure).max()) / base.max_pressure
     worst = max(found, key=lambda name: found[name])
     return found[worst], f"worst in {worst}"
 
 
-def _grids_part(solution: rf.Solution, name: str) -> float:
-    return solution.uncertainty[name]["discretisation"]
-
-
+@guarded
 def run(method: Method, periodic: bool, length: float, stress: float, similar: float, limit: float) -> Judged:
     """Solve the scaled scene and compare."""
-
-    def compare() -> Judged:
-        oblique = similar == 1.0
-        base = unscaled(method, periodic, oblique)
-        scaled = rf.solve(
-            scene(length, stress, similar, periodic=periodic, oblique=oblique), SIZES[method],
-            method=method, tolerance=TOLERANCE, oblique=oblique,
-        )  # fmt: skip
-        # powers of ten round what a bar's root is sought from, and it is found to 1e-4
-        error, note = change(scaled, base, length, stress, similar, bars=limit == 0)
-        return verdict(scaled, error, "the scaling law", note, limit)
-
-    return guarded(compare)
+    oblique = similar == 1.0
+    base = unscaled(method, periodic, oblique)
+    scaled = solved(method, periodic, oblique, length, stress, similar)
+    # powers of ten round what a bar's root is sought from, and it is found to 1e-4
+    error, note = change(scaled, base, length, stress, similar, bars=limit == 0)
+    return verdict(scaled, error, "the scaling law", note, limit)
 
 
 def scalings() -> Iterator[tuple[str, str, float, tuple[float, float, float], float]]:
@@ -127,7 +116,6 @@ def scalings() -> Iterator[tuple[str, str, float, tuple[float, float, float], fl
             yield "length and modulus", f"10^{length}, 10^{stress}", factors[0], factors, LIMIT
 
 
-@axis("units")
 def units() -> Iterator[Extreme]:
     """Every scaling for the production solver (half-space and periodic) and for the dense one."""
     seen = set()

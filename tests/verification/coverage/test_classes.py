@@ -1,0 +1,117 @@
+"""Bars and costs by class of scene: references and summaries, known values; the words of the pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace as Made
+from typing import Any
+
+import pytest
+
+import refimpl as rf
+from reports.result_files import read_result
+from tests.documents import ROOT
+from verification.coverage import class_costs, classes
+from verification.coverage.class_costs import SIZES, costs
+
+
+def test_references_known_values() -> None:
+    """The edge's 0.79 of 1e-8; straight ones, 1e-9, have 0.21 in the place of 0.79 (pi - 1 + ln 2) / 24."""
+    straight, grid = Made(faces=10, squares=16), Made(element_area=1e-10)
+    own = {"straight": straight, "grid": grid, "edge": 1e-8, "dmu_dA": 1e5, "peak": Made(height=6)}
+    numbers = dict(zip(classes.NUMBERS, (3e-6, 2e-6, 0.4, 5, 7), strict=True))
+    area, bound = 3e-6 - 7.9e-9 - 0.116690e-9, 0.12e-8 + 0.5 * 4 * 1e-10
+    for yields, peak in ((False, 6), (True, 5)):
+        bars = {name: {"a": 0.1, "b": 0.2} for name in numbers}
+        finest: Any = Made(**numbers, uncertainty=bars, features=Made(**own, yields=yields))
+        values, doubts = zip(*(classes.reference(finest, name) for name in numbers), strict=True)
+        assert values == pytest.approx((area, area, 0.4 + 1e5 * (area - 3e-6), peak, 7), rel=1e-9)
+        assert doubts == pytest.approx((bound, bound, 1e5 * bound, 0.3, 0.3))
+
+
+def test_scenes_are_counted_by_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seeds 3 to 7, of which 5 does not converge; all bars but the third hold."""
+    asked = []
+    ends = {3: (0.4, 0.1, 0.1), 4: (0.2, 0.2, 0.1), 6: (0.1, 0.3, 0.0), 7: (9.126, 1.0, 1.0)}
+
+    def rows(seed: int, M: int, _: object) -> list[dict[str, object]] | None:
+        asked.append(M)
+        row = zip(("bar", "error", "reference_bound"), ends.get(seed, ()), strict=False)
+        return None if seed == 5 else [{**dict(row), "number": "approach"}]
+
+    monkeypatch.setattr(classes, "single_grid_rows", rows)
+    monkeypatch.setattr(classes, "scene", lambda kind, seed, _: seed)
+    file = tmp_path / "c.json"
+    classes.main(["--first", "3", "--scenes", "5", "--only", "grooves", "--json", str(file)])
+    found = read_result(file)
+    assert (asked, found["not_converged"]) == ([128, 48, 64, 96, 128], {"grooves": 1})
+    every = found["table"][-1]
+    assert [every[key] for key in ("scenes", "held", "held_at_worst", "usable")] == [4, 0.75, 0.5, 0.75]
+    assert (every["held_of_usable"], every["median_bar_over_error"]) == pytest.approx((2 / 3, 2.5), rel=1e-5)
+    assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # probability of three of four, or fewer
+
+
+def test_bars_that_hold_more_often_than_they_need_are_no_failure() -> None:
+    """All of 100: p is 1, for only too few count. 90 of 100: P(at most 90, each at 92 %) is 0.2780."""
+    row = {"error": 0.1, "bar": 0.2, "reference_bound": 0.0}
+    missed = row | {"error": 0.3}
+    assert classes.summary(100 * [row])["p"] == pytest.approx(1.0)
+    assert classes.summary(90 * [row] + 10 * [missed])["p"] == pytest.approx(0.2780, abs=5e-5)
+
+
+def test_a_summary_of_costs_known_values() -> None:
+    """Three costs, of 1, 3 and 2; forecasts over last grids of 0.5, 3 and 1.25, none where not met."""
+    columns = ("cost", "forecast", "last", "met")
+    made = ((1.0, 64, 128, True), (3.0, 384, 128, True), (2.0, 120, 96, True), (None, 256, 512, False))
+    assert class_costs.summary([dict(zip(columns, row, strict=True)) for row in made]) == {
+        "scenes": 4,
+        "met": 0.75,
+        "compared": 3,
+        "median_cost": 2.0,
+        "cost_at_most_2": pytest.approx(2 / 3),
+        "median_forecast_over_last": 1.25,
+        "forecast_within_2": pytest.approx(2 / 3),
+    }
+
+
+def test_a_coarse_grid_that_is_right_by_chance_is_not_the_cheapest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mu of 1 to 0.02: so are 32 and 96 elements, but 64 between them are not. A to 0.05 by all."""
+    mu = {32: 1.01, 64: 1.05, 96: 0.981, 128: 1.0, class_costs.REFERENCE: 1.0}
+
+    def solved(one: rf.Scene, grid: int = 96, **_: object) -> Made:
+        return Made(
+            friction_coefficient=mu[grid],
+            contact_area_corrected=2e-6,
+            cost=Made(point_logs=float(grid**2)),
+            problem=Made(grid=Made(shape=(48, grid))),
+            status=rf.Status.CONVERGED,
+            converged=True,
+        )
+
+    monkeypatch.setattr(class_costs, "SIZES", [32, 64, 96, 128])
+    monkeypatch.setattr(class_costs.rf, "solve", solved)
+    monkeypatch.setattr(class_costs, "reference", lambda s, name: (getattr(s, name), 0.0))
+    monkeypatch.setattr(class_costs, "Options", lambda **_: Made(plan=lambda _: None))
+    monkeypatch.setattr(class_costs, "forecast", lambda *_: Made(refusal="no grid", grid=None))
+    by_mu, by_area = costs(rf.read_scene("table1-smooth"))
+    assert (by_mu["cheapest"], by_mu["cost"], by_mu["last"], by_mu["met"]) == (96, 1.0, 96, True)
+    assert (by_area["cheapest"], by_area["cost"]) == (32, 9.0)
+    assert by_mu["forecast"] is None
+
+
+def test_a_smooth_ball_costs_about_the_cheapest_grid() -> None:
+    """The smooth ball of Table 1: mu to 0.02 takes few elements, and the forecast names the last grid."""
+    mu = next(row for row in costs(rf.read_scene("table1-smooth")) if row["number"] == "friction_coefficient")
+    assert mu["met"]
+    assert mu["cheapest"] in SIZES
+    assert mu["last"] >= mu["cheapest"]
+    assert 0.5 <= mu["forecast"] / mu["last"] <= 2
+    assert mu["cost"] > 0  # below 1 where the last grid starts from the opening's answer
+
+
+def test_the_words_of_the_page_follow_from_the_committed_costs() -> None:
+    committed = read_result(ROOT / "reports" / "results" / "class_costs.json")["table"]
+    found = [one for one in committed if one["median_cost"] is not None]
+    medians = [one["median_cost"] for one in found]
+    assert (f"{min(medians):.1f}", f"{max(medians):.1f}") == ("0.7", "1.6")
+    assert min(one["forecast_within_2"] for one in found) >= 0.94
