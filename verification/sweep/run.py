@@ -41,13 +41,14 @@ OUTCOMES = (
     "friction_coefficient_corrected", "friction_coefficient_corrected_error",
     "friction_force_corrected", "friction_force_corrected_error",
 )  # fmt: skip
-"""What a run gives. ``..._corrected`` leaves out the mean excess of the contact edge; ``friction_coefficient``
-is the sum over elements, Eq. (4); ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
-that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` what an alternating contact
-edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border;
-``..._error`` a number's error bar (inf where unbounded); ``plasticity_index`` Eq. (12)'s, of the sampled
-slopes, None without a hardness; ``elements_x``, ``elements_y`` the grid solved on; ``warnings`` the names of
-the limits exceeded, separated by "; ".
+"""What a run gives. ``..._corrected`` leaves out the mean excess of the contact edge, and
+``friction_coefficient`` is the sum over elements, Eq. (4). ``elastic_friction`` is
+``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3) that is not local friction; ``residual`` the
+certificate's largest; ``..._cycle`` what an alternating contact edge under tau leaves open;
+``border_elements`` the elements in contact on the domain's border; ``..._error`` a number's error bar (inf
+where unbounded); ``plasticity_index`` Eq. (12)'s, of the sampled slopes, None without a hardness;
+``elements_x``, ``elements_y`` the grid solved on; ``warnings`` the names of the limits exceeded, separated by
+"; ".
 """
 
 LIBRARIES = ("numpy", "scipy", "ducc0")

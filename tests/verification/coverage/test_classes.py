@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 import refimpl as rf
-from reports.result_files import read_result
-from tests.documents import ROOT
+from reports.result_files import committed, read_result
 from verification.coverage import class_costs, classes
 from verification.coverage.class_costs import SIZES, costs
 
@@ -110,8 +109,8 @@ def test_a_smooth_ball_costs_about_the_cheapest_grid() -> None:
 
 
 def test_the_words_of_the_page_follow_from_the_committed_costs() -> None:
-    committed = read_result(ROOT / "reports" / "results" / "class_costs.json")["table"]
-    found = [one for one in committed if one["median_cost"] is not None]
+    stored = committed("class_costs")["table"]
+    found = [one for one in stored if one["median_cost"] is not None]
     medians = [one["median_cost"] for one in found]
     assert (f"{min(medians):.1f}", f"{max(medians):.1f}") == ("0.7", "1.6")
     assert min(one["forecast_within_2"] for one in found) >= 0.94
