@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.special import ellipk
 
 from refimpl.errors import InputError
-from verification.exact import archard, greenwood_tripp, jgh, rough_plane
+from verification.exact import greenwood_tripp, jgh, rough_plane
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits, overlap_integral, solve
 
 
@@ -139,10 +139,3 @@ def test_rough_plane_slopes() -> None:
     assert ratio == pytest.approx(np.pi / 2)
     assert float(rough_plane.kappa(0.02, 1e6, 1e11, 1e-3)) == pytest.approx(2.0)
     assert float(rough_plane.persson_area(5.0)) == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize("levels", [1, 2, 3])
-def test_archard_hierarchy_by_quadrature(levels: int) -> None:
-    surface = archard.Hierarchy((1.0, 1e-2, 1e-4)[:levels], (1e6, 1e10)[: levels - 1], 1e9)
-    assert surface.area(1.0) == pytest.approx(surface.area_by_quadrature(1.0), rel=1e-9)
-    assert surface.area(2.0) / surface.area(1.0) == pytest.approx(surface.doubling, rel=1e-13)

@@ -1,4 +1,4 @@
-"""The golden scenes: whole problems in exact binary numbers, each for one part of the model.
+"""The scenes: whole problems in exact binary numbers, each for one part of the model.
 
 Heights are multiples of 2^-40 m (2^-60 m in a near tie), so that any code forms gaps without rounding.
 """
@@ -20,7 +20,7 @@ NONE = rf.Friction()
 
 
 @dataclass(frozen=True, eq=False)
-class GoldenScene:
+class EnclosedScene:
     """Heights of the lower surface (m) below a flat upper one, materials, friction, load (N) or approach (m).
 
     ``tan_x``, ``tan_y`` are the slopes held in the proof, or None for ``oblique=False``.
@@ -83,14 +83,14 @@ def surface(M: int, seed: int, rms: float, radius: float | None = None, quantum:
     return np.asarray(np.rint(z / quantum) * quantum)
 
 
-def scenes() -> tuple[GoldenScene, ...]:
+def scenes() -> tuple[EnclosedScene, ...]:
     """All but the near ties and the oblique one, which take a proven or a solved scene to start from."""
     return (
-        GoldenScene("smooth", "a smooth bump without friction", surface(9, 0, 0.0, 0.2), load=12.0),
-        GoldenScene(
+        EnclosedScene("smooth", "a smooth bump without friction", surface(9, 0, 0.0, 0.2), load=12.0),
+        EnclosedScene(
             "rough", "a rough bump on identical metal", surface(12, 1, 0.1e-6, 0.3), upper=COPPER, load=6.0
         ),
-        GoldenScene(
+        EnclosedScene(
             "friction",
             "dissimilar bodies sliding askew, tau and beta",
             surface(8, 2, 0.3e-6, 0.1),
@@ -99,7 +99,7 @@ def scenes() -> tuple[GoldenScene, ...]:
             load=2.0,
             direction=0.7,
         ),
-        GoldenScene(
+        EnclosedScene(
             "other-sign",
             "coupling of the other sign, sliding backwards, a nearly incompressible and a cellular body",
             surface(7, 3, 0.2e-6, 0.1),
@@ -109,7 +109,7 @@ def scenes() -> tuple[GoldenScene, ...]:
             load=2.0,
             direction=2.5,
         ),
-        GoldenScene(
+        EnclosedScene(
             "approach",
             "prescribed approach, coupled",
             surface(9, 4, 0.3e-6, 0.1),
@@ -118,7 +118,7 @@ def scenes() -> tuple[GoldenScene, ...]:
             approach=2.0**-20,
             direction=1.0,
         ),
-        GoldenScene(
+        EnclosedScene(
             "periodic",
             "periodic rough plane with friction",
             surface(8, 5, 0.15e-6),
@@ -128,11 +128,11 @@ def scenes() -> tuple[GoldenScene, ...]:
             direction=0.3,
             periodic=True,
         ),
-        GoldenScene("single", "one element in contact", surface(5, 6, 2e-6), load=2.0**-10),
-        GoldenScene(
+        EnclosedScene("single", "one element in contact", surface(5, 6, 2e-6), load=2.0**-10),
+        EnclosedScene(
             "full", "every element in contact", surface(6, 7, 2e-9), lower=POLYMER, friction=SLIDING, load=4.0
         ),
-        GoldenScene(
+        EnclosedScene(
             "largest",
             "dissimilar, rough, with friction, on 144 elements",
             surface(12, 8, 0.2e-6, 0.2),
@@ -144,9 +144,9 @@ def scenes() -> tuple[GoldenScene, ...]:
     )
 
 
-def oblique_scene() -> GoldenScene:
+def oblique_scene() -> EnclosedScene:
     """A steep rough bump; held are the slopes that the dense reference ends with."""
-    start = GoldenScene(
+    start = EnclosedScene(
         "oblique",
         "slopes of some 0.05 in Eqs (2), (3) and (6), with tau and beta",
         surface(7, 9, 2e-6, 0.02),
@@ -159,7 +159,7 @@ def oblique_scene() -> GoldenScene:
     return replace(start, tan_x=solution.slopes.tan_x, tan_y=solution.slopes.tan_y)
 
 
-def near_tie(base: GoldenScene, name: str, element: tuple[int, int], rise: float) -> GoldenScene:
+def near_tie(base: EnclosedScene, name: str, element: tuple[int, int], rise: float) -> EnclosedScene:
     """``base`` with one element raised by about ``rise`` (m), so that it just does, or does not, touch."""
     quantum = 2.0**-60
     heights = base.heights.copy()
