@@ -58,12 +58,7 @@ def weak_lay() -> Measured:
     forces = np.array([[weak_forces(seed, phi) for phi in directions] for seed in range(1, 5)])
     found, exact = forces[..., 0], forces[..., 1]
     off = math.sqrt(float(np.mean((found - exact) ** 2) / np.mean(exact**2)))
-    data = {
-        "direction (deg)": np.degrees(directions),
-        "rms force (N)": np.sqrt(np.mean(found**2, axis=0)),
-        "rms first-order force (N)": np.sqrt(np.mean(exact**2, axis=0)),
-    }
-    return Measured(off, data=data)
+    return Measured(off)
 
 
 RMS, LENGTHS = 1.68e-6, {"isotropic": (104e-6, 104e-6), "lay along x": (208e-6, 52e-6)}
@@ -106,11 +101,8 @@ def fig10_lay() -> Measured:
         mu, area, elastic = np.moveaxis(turned(name), 2, 0)
         data |= {
             f"mu, {name}": mu.mean(axis=0),
-            f"standard error of mu, {name}": mu.std(axis=0, ddof=1) / math.sqrt(len(SEEDS)),
             f"A over its mean, {name}": area.mean(axis=0) / area.mean(),
-            f"scatter of A within a realisation, {name}": (area / area.mean(axis=1)[:, None]).std(axis=0),
             f"rms elastic part of mu, {name}": np.sqrt(np.mean(elastic**2, axis=0)),
-            f"A (mm^2), {name}": float(area.mean()) * 1e6,
         }
     elastic, area = turned("lay along x")[..., 2], turned("lay along x")[..., 1]
     along, across = (math.sqrt(float(np.mean(elastic[:, which] ** 2))) for which in ([0, 4], [2, 6]))

@@ -53,9 +53,6 @@ def greenwood_tripp_radius() -> Measured:
         "p/p0": np.mean(profiles, axis=0),
         "standard error": np.std(profiles, axis=0, ddof=1) / np.sqrt(len(SEEDS)),
         "Greenwood-Tripp p/p0": model.at(middle) / p0,
-        "alpha": sphere.alpha,
-        "mu": sphere.mu,
-        "a*/a0": np.asarray(radii) / a0,
     }
     uncertainty = model.effective_radius * greenwood_tripp.UNCERTAINTY
     return Measured(float(np.mean(radii)), model.effective_radius, uncertainty, "m", data)
@@ -128,9 +125,7 @@ def rough_plane_slope() -> Measured:
     data = {
         "p/(E* h')": list(LOADS),
         "A/A0": np.mean(curves, axis=0),
-        "kappa": kappa,
         "Persson": rough_plane.persson_area(LOADS),
-        "standard error": np.std(curves, axis=0, ddof=1) / np.sqrt(len(curves)) / np.asarray(LOADS),
     }
     return Measured(float(kappa[1]), (low + high) / 2, 0.0, "", data)
 
