@@ -27,7 +27,6 @@ def _series(curves: tuple[fig8.Curve, ...]) -> dict[str, object]:
     data: dict[str, object] = {
         "sigma_e (um)": curves[0].rms * 1e6,
         "psi": fig8.plasticity(curves[0].rms),
-        "psi as printed": fig8.plasticity(curves[0].rms, RESOLUTION),
         "sigma_e of rates (um)": curves[0].middle * 1e6,
     }
     for c in curves:
@@ -62,10 +61,8 @@ def exponential(tier: str) -> Measured:
         "1 / (1 + (sigma_e / s)^1.5), with as many parameters, misses by "
         f"{max(f.algebraic for f in fits):.1%}"
     )
-    data = _series(curves) | {"decay (um)": [f.scale * 1e6 for f in fits]}
-    data |= {"exponential's limit": [f.limit for f in fits], "misfit": [f.exponential for f in fits]}
+    data = _series(curves) | {"misfit": [f.exponential for f in fits]}
     data |= {"misfit of 1 / (1 + (sigma / s)^1.5)": [f.algebraic for f in fits]}
-    data |= {"misfit of a hyperbola": [f.hyperbolic for f in fits], "least mu less limit": beyond}
     data |= {"standard errors from the exponential": [f.standard_errors for f in fits]}
     ratio = min(fit.exponential / fit.algebraic for fit in fits)
     return judged(Verdict.REFUTED, sentence, ratio, data=data)
@@ -88,7 +85,7 @@ def rates(tier: str) -> Measured:
         f"rates rise before they fall, to {', '.join(f'{r:.2f} at {at}' for at, r in highest.items())}: no "
         "exponential's rate rises"
     )
-    return judged(Verdict.CONFIRMED, sentence, worst, data=_series(curves) | {"highest rate": highest})
+    return judged(Verdict.CONFIRMED, sentence, worst, data=_series(curves))
 
 
 @in_both_tiers("reproduction/fig8-threshold", metric="at_least", tolerance=1.3)

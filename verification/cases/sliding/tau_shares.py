@@ -122,31 +122,15 @@ def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
 
     Scenes are given by seed and elements per side. Raises RuntimeError where fewer than ``least`` cycle.
     """
-    found: dict[str, list[float]] = {
-        "scene": [], "elements per side": [], "excluded": [],
-        "mu": [], "mu in shares": [], "moves by": [], "bar": [],
-    }  # fmt: skip
+    shares = {}
     for seed, M in scenes:
         solution = rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE)
-        if solution.status is not rf.Status.CYCLED:
-            continue
-        numbers = (
-            float(seed),
-            float(M),
-            float(solution.excluded.sum()),
-            solution.friction_coefficient,
-            *in_shares(solution),
-            solution.uncertainty["friction_coefficient"]["active set"],
-        )
-        for column, number in zip(found.values(), numbers, strict=True):
-            column.append(number)
-    if len(found["scene"]) < least:
-        raise RuntimeError(f"{len(found['scene'])} of {len(scenes)} scenes cycle: too few to judge by")
-    off = np.abs(np.subtract(found["mu in shares"], found["mu"])) + found["moves by"]
-    names = [f"{s:.0f}: {n:.0f} excluded" for s, n in zip(found["scene"], found["excluded"], strict=True)]
-    shares = dict(zip(names, (off / found["bar"]).tolist(), strict=True))
-    return Measured(
-        max(shares.values()),
-        data={**found, "difference / bar": shares},
-        note=f"{len(shares)} scenes that cycle, of {len(scenes)}",
-    )
+        if solution.status is rf.Status.CYCLED:
+            mu, moves_by = in_shares(solution)
+            off = abs(mu - solution.friction_coefficient) + moves_by
+            bar = solution.uncertainty["friction_coefficient"]["active set"]
+            shares[f"{seed}: {solution.excluded.sum()} excluded"] = off / bar
+    note = f"{len(shares)} scenes that cycle, of {len(scenes)}"
+    if len(shares) < least:
+        raise RuntimeError(f"{note}: too few to judge by")
+    return Measured(max(shares.values()), data={"difference / bar": shares}, note=note)
