@@ -78,12 +78,12 @@ class _Balls:
         """The balls, if their signs prove the set."""
         pressures, approach = self._solution()
         separations = [self._separation(e, pressures, approach) for e in self.outside]
-        for element, ball in zip(self.inside, pressures, strict=True):
-            if not ball > 0:
-                raise NotProven(f"{self.known.name}: the pressure {ball} at {element} is not above 0")
-        for element, ball in zip(self.outside, separations, strict=True):
-            if not ball > 0:
-                raise NotProven(f"{self.known.name}: the separation {ball} at {element} is not above 0")
+        for what, elements, balls in (
+            ("pressure", self.inside, pressures), ("separation", self.outside, separations)
+        ):  # fmt: skip
+            for element, ball in zip(elements, balls, strict=True):
+                if not ball > 0:
+                    raise NotProven(f"{self.known.name}: the {what} {ball} at {element} is not above 0")
         return Proof(self.contact, pressures, separations, approach, self._forces(pressures))
 
     def _solution(self) -> tuple[list[Ball], Ball]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -72,9 +72,9 @@ def document(known: EnclosedScene, proof: Proof) -> dict[str, Any]:
             **_margins(proof),
         },
         "solution": {
-            "pressures": [enclosed_json(ball) for ball in proof.pressures],
-            "approach": enclosed_json(proof.approach),
-            **{name: enclosed_json(ball) for name, ball in proof.forces.items()},
+            "pressures": [asdict(enclosed(ball)) for ball in proof.pressures],
+            "approach": asdict(enclosed(proof.approach)),
+            **{name: asdict(enclosed(ball)) for name, ball in proof.forces.items()},
         },
         "provenance": provenance(),
     }
@@ -85,12 +85,6 @@ def enclosed(ball: Ball) -> Enclosed:
     mid = float(ball.mid())
     radius = float(abs(ball - arb().arb(mid)).upper())
     return Enclosed(mid, radius * (1 + 4 * _EPS))
-
-
-def enclosed_json(ball: Ball) -> dict[str, float]:
-    """`enclosed`, for JSON."""
-    found = enclosed(ball)
-    return {"mid": found.mid, "radius": found.radius}
 
 
 def write(known: EnclosedScene, proof: Proof, folder: Path) -> Path:
@@ -135,7 +129,12 @@ def parsed(content: Mapping[str, Any]) -> Enclosure:
     )
 
 
+_ARRAYS = ("heights", "tan_x", "tan_y")
+_NUMBERS = ("approach", "direction", "periodic")
+
+
 def _problem(known: EnclosedScene) -> dict[str, Any]:
+    arrays = {name: getattr(known, name) for name in _ARRAYS}
     return {
         "M": known.M,
         "side": SIDE,
@@ -143,32 +142,23 @@ def _problem(known: EnclosedScene) -> dict[str, Any]:
         "upper": {"E": known.upper.E, "nu": known.upper.nu},
         "friction": {"tau": known.friction.tau, "beta": known.friction.beta},
         "load": known.load if known.approach is None else None,
-        "approach": known.approach,
-        "direction": known.direction,
-        "periodic": known.periodic,
-        "heights": known.heights.tolist(),
-        "tan_x": None if known.tan_x is None else known.tan_x.tolist(),
-        "tan_y": None if known.tan_y is None else known.tan_y.tolist(),
+        **{name: getattr(known, name) for name in _NUMBERS},
+        **{name: None if array is None else array.tolist() for name, array in arrays.items()},
     }
 
 
 def _scene(content: Mapping[str, Any]) -> EnclosedScene:
     problem = content["problem"]
-    tangents = {
-        name: None if problem[name] is None else np.array(problem[name]) for name in ("tan_x", "tan_y")
-    }
+    arrays: Any = {n: None if problem[n] is None else np.array(problem[n]) for n in _ARRAYS}
     return EnclosedScene(
         name=content["name"],
         stresses=content["stresses"],
-        heights=np.array(problem["heights"]),
         lower=rf.Material(**problem["lower"]),
         upper=rf.Material(**problem["upper"]),
         friction=rf.Friction(**problem["friction"]),
         load=1.0 if problem["load"] is None else problem["load"],
-        approach=problem["approach"],
-        direction=problem["direction"],
-        periodic=problem["periodic"],
-        **tangents,
+        **{name: problem[name] for name in _NUMBERS},
+        **arrays,
     )
 
 

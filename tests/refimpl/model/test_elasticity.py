@@ -65,17 +65,6 @@ def test_pressure_and_its_shear_in_one_product(grid: Grid, coupled: bool) -> Non
     close(elasticity.normal_with_shear(operator, slope)(F), expected)
 
 
-@on_grids
-def test_matrices_are_the_products(grid: Grid) -> None:
-    dense, elasticity = DenseInfluence(grid, ANGLE), Elasticity(PAIR)
-    for matrix, product in (
-        (elasticity.normal_matrix(dense), elasticity.normal(dense, F)),
-        (elasticity.shear_matrix(dense), elasticity.gap_by_shear(dense.shear(F))),
-        (elasticity.shear_across_matrix(dense), elasticity.gap_by_shear(dense.shear_across(F))),
-    ):
-        close((matrix @ F.ravel()).reshape(F.shape), product)
-
-
 @pytest.mark.parametrize("q", [(1, 0), (0, 2), (3, -1)])
 def test_the_symbol_is_the_response_to_waves(q: tuple[int, int]) -> None:
     grid = GRIDS[1]

@@ -7,6 +7,7 @@ import numpy as np
 from verification.framework.case import Measured
 from verification.framework.verdict import Verdict, judged
 from verification.reproduction import slides
+from verification.reproduction.ensemble import rows_at
 from verification.reproduction.table1 import SMOOTH
 from verification.reproduction.tiers import in_both_tiers
 
@@ -20,7 +21,7 @@ def binormal(tier: str) -> Measured:
     Tolerance: largest |Q| over P: the rms slope under load, 0.004, averaged over some 20 contacts, with three
     standard deviations
     """
-    found = slides.full_fig9() if tier == "full" else slides.quick_fig9()
+    found = rows_at(tier, "fig9")
     directions = sorted({row["sliding_direction"] for row in found})
     offsets = sorted({row["sliding_offset"] for row in found})
     Q = np.array([row["binormal_force"] for row in found]).reshape(len(directions), len(offsets))
@@ -114,7 +115,7 @@ def snapshot(tier: str) -> Measured:
     averaging forward and backward slides of 40 surfaces; and four standard errors of 0.04 % (full) or 0.06 %
     (quick)
     """
-    found = slides.full_slide() if tier == "full" else slides.quick_slide()
+    found = rows_at(tier, "slide")
     mu, area, elastic, Q = (
         slides.trace(found, name)
         for name in ("friction_coefficient", "contact_area", "elastic_friction", "binormal_force")
@@ -139,7 +140,7 @@ def snapshot(tier: str) -> Measured:
 
 
 def _turning(tier: str) -> list[slides.Turning]:
-    return slides.turning(slides.full_fig10() if tier == "full" else slides.quick_fig10())
+    return slides.turning(rows_at(tier, "fig10"))
 
 
 def _fig10_data(curves: list[slides.Turning]) -> dict[str, object]:

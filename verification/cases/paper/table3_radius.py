@@ -9,7 +9,7 @@ from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.framework.verdict import Verdict, judged
 from verification.reproduction import table3
-from verification.reproduction.ensemble import column, estimate
+from verification.reproduction.ensemble import column, estimate, rows_at
 from verification.reproduction.errata import ROUNDED_RADIUS
 from verification.reproduction.printed import TABLE3
 from verification.reproduction.table1 import rough
@@ -35,7 +35,7 @@ def radius() -> Measured:
             for k in range(REALISATIONS)
         ]
         for name in table3.QUANTITIES:
-            stated = column(table3.full_rows(), name, lower_rms=printed.flat_rms, grid=MESH)
+            stated = column(rows_at("full", "table3"), name, lower_rms=printed.flat_rms, grid=MESH)
             values = [float(getattr(s, name)) for s in solved]
             changes.append(estimate([new / old for new, old in zip(values, stated, strict=True)]).mean - 1)
             exact = getattr(printed, name)[-1]
