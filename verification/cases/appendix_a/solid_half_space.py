@@ -62,14 +62,11 @@ def scene_of(pair: WavyPair, M: int) -> rf.Scene:
         pair.amplitude * np.add.outer(np.cos(WAVENUMBER * (x - crest)), np.cos(WAVENUMBER * x))
         for crest in (-pair.shift / 2, pair.shift / 2)
     )
-    return rf.Scene(
-        upper=rf.Body(rf.Material(pair.upper.E, pair.upper.nu), -upper),
-        lower=rf.Body(rf.Material(pair.lower.E, pair.lower.nu), lower),
-        friction=rf.Friction(beta=pair.beta),
-        load=SHARE * pair.full_contact_pressure,
-        side=1.0,
-        periodic=True,
+    above, below = (
+        rf.Body(rf.Material(body.E, body.nu), z) for body, z in ((pair.upper, -upper), (pair.lower, lower))
     )
+    load = SHARE * pair.full_contact_pressure
+    return rf.Scene(above, below, rf.Friction(beta=pair.beta), load, side=1.0, periodic=True)
 
 
 def _by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -31,10 +32,7 @@ def solved(M: int, x: float = 0.0, y: float = 0.0) -> rf.Solution:
     h = SCENE.lengths[0] / M
     offset = (2 * np.arange(M) + 1 - M) * (h / 2)
     ball = ((offset - x * h)[:, None] ** 2 + (offset - y * h)[None, :] ** 2) / (2 * RADIUS)
-    scene = rf.Scene(
-        rf.Body(SCENE.upper.material, ball), SCENE.lower, SCENE.friction, SCENE.load, SCENE.lengths[0]
-    )
-    solution = rf.solve(scene, M)
+    solution = rf.solve(replace(SCENE, upper=rf.Body(SCENE.upper.material, ball)), M)
     if solution.status is not rf.Status.CONVERGED:
         raise RuntimeError(f"ended {solution.status.value} on {M} x {M} elements")
     return solution
@@ -236,12 +234,7 @@ def small_slope() -> Measured:
     radius, share, soft = 1e-3, 0.33, rf.Material(E=1e9, nu=0.3)
     a = share * radius
     load = 4 * soft.plane_strain_modulus * a**3 / (3 * radius)
-    scene = rf.Scene(
-        upper=rf.Body(rf.Material(E=math.inf, nu=0.3), rf.Sphere(radius)),
-        lower=rf.Body(soft, rf.Flat()),
-        friction=rf.Friction(),
-        load=load,
-        side=3 * a,
-    )
+    ball = rf.Body(rf.Material(E=math.inf, nu=0.3), rf.Sphere(radius))
+    scene = rf.Scene(ball, rf.Body(soft, rf.Flat()), rf.Friction(), load, side=3 * a)
     steep, flat = (rf.solve(scene, 128, oblique=oblique) for oblique in (True, False))
     return Measured(steep.max_pressure / flat.max_pressure - 1, 0.0645)

@@ -27,14 +27,8 @@ def weak_forces(seed: int, direction: float) -> tuple[float, float]:
     a = ball.contact_radius
     side = 3 * a
     roughness = rf.GaussianRoughness(WEAK_RMS, (a, a / 4), seed, lay=LAY)
-    scene = rf.Scene(
-        upper=rf.Body(STEEL, rf.Sphere(ball.radius)),
-        lower=rf.Body(STEEL, roughness),
-        friction=rf.Friction(),
-        load=ball.load,
-        side=side,
-        sliding_direction=direction,
-    )
+    bodies = rf.Body(STEEL, rf.Sphere(ball.radius)), rf.Body(STEEL, roughness)
+    scene = rf.Scene(*bodies, rf.Friction(), ball.load, side, sliding_direction=direction)
     solution = rf.solve(scene, grid=128)
     grid, step = Grid.square(side, 256), 1e-3 * a
     pressure = ball.pressure(np.hypot(grid.x[:, None] - side / 2, grid.y[None, :] - side / 2))

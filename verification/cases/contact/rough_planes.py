@@ -59,13 +59,8 @@ def greenwood_tripp_radius() -> Measured:
 
 
 def _press_rough_sphere(seed: int, M: int) -> rf.Solution:
-    scene = rf.Scene(
-        upper=rf.Body(STEEL, rf.Sphere(radius=RADIUS)),
-        lower=rf.Body(COPPER, rf.GaussianRoughness(rms=RMS, correlation_length=CORRELATION, seed=seed)),
-        friction=rf.Friction(),
-        load=LOAD,
-        side=SIDE,
-    )
+    flat = rf.Body(COPPER, rf.GaussianRoughness(RMS, CORRELATION, seed))
+    scene = rf.Scene(rf.Body(STEEL, rf.Sphere(RADIUS)), flat, rf.Friction(), LOAD, SIDE)
     return rf.solve(scene, grid=M, oblique=False)
 
 

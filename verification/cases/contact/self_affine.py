@@ -37,14 +37,8 @@ def pressed(
     surface: rf.Surface, M: int, load: float, *, periodic: bool, tolerance: float = 1e-8
 ) -> rf.Solution:
     """A flat on the surface, without friction and slope terms."""
-    scene = rf.Scene(
-        upper=rf.Body(SPLIT, rf.Flat()),
-        lower=rf.Body(SPLIT, surface),
-        friction=rf.Friction(),
-        load=load,
-        side=SIDE,
-        periodic=periodic,
-    )
+    bodies = rf.Body(SPLIT, rf.Flat()), rf.Body(SPLIT, surface)
+    scene = rf.Scene(*bodies, rf.Friction(), load, SIDE, periodic=periodic)
     solution = rf.solve(scene, grid=M, oblique=False, tolerance=tolerance)
     if solution.status is not rf.Status.CONVERGED:
         raise RuntimeError(f"the solver ended {solution.status.value} on {M} x {M} elements")
@@ -125,14 +119,8 @@ def kappas() -> Kappas:
         longest = SIDE / waves
         M, found = waves * ratio * ELEMENTS, []
         for seed in SEEDS:
-            surface = rf.SelfAffineRoughness(
-                hurst=hurst,
-                rms_gradient=1e-3,
-                roll_off=longest,
-                long_cut=longest,
-                short_cut=longest / ratio,
-                seed=seed,
-            )
+            waves_of = {"roll_off": longest, "long_cut": longest, "short_cut": longest / ratio}
+            surface = rf.SelfAffineRoughness(hurst=hurst, rms_gradient=1e-3, seed=seed, **waves_of)
             heights = surface.sample(Grid.square(SIDE, M, periodic=True))
             gradient = rough_plane.spectral_rms_gradient(heights, SIDE)
             pressure = PRESSURE * MODULUS * gradient

@@ -38,13 +38,11 @@ REASON = (
 def worst(
     kernel: Callable[..., Any], error: Callable[[float, Point], float], groups: dict[str, Iterable[Point]]
 ) -> Measured:
-    """Largest error over groups of points; ``data`` has it group by group, with where and how many."""
-    largest, where, count = {}, {}, {}
-    for name, points in groups.items():
-        errors = [(error(float(kernel(*point)), point), point) for point in points]
-        (largest[name], where[name]), count[name] = max(errors), len(errors)
-    data = {"group": list(groups), "worst": largest, "where (x, y, dx, dy)": where, "points": count}
-    return Measured(value=max(largest.values()), data=data, note=f"{sum(count.values())} points")
+    """Largest error over groups of points; ``data`` has it group by group."""
+    errors = {name: [error(float(kernel(*p)), p) for p in points] for name, points in groups.items()}
+    largest = {name: max(found) for name, found in errors.items()}
+    note = f"{sum(map(len, errors.values()))} points"
+    return Measured(value=max(largest.values()), data={"worst": largest}, note=note)
 
 
 def all_points() -> dict[str, Iterable[Point]]:

@@ -74,8 +74,6 @@ def trailing_edge() -> Measured:
         "x": x,
         "pressure along": solution.pressure[:, middle] / 1e6,
         "traction along": solution.traction[:, middle] / 1e6,
-        "pressure across": solution.pressure[middle, :] / 1e6,
-        "traction across": solution.traction[middle, :] / 1e6,
         "hertz pressure": hertz.pressure(offset()) / 1e6,
         "hertz traction": 0.08 * hertz.pressure(offset()) / 1e6,
         "change by friction": (solution.pressure - still.pressure)[:, middle] / 1e6,
