@@ -36,11 +36,8 @@ def sphere_scene(hardness: float, load: float = LOAD) -> rf.Scene:
     """The frictionless sphere on a flat of that hardness (Pa), in 2.6 times the contact's largest radius."""
     sphere = replace(SPHERE, load=load)
     radius = max(sphere.contact_radius, plastic_limit(sphere, hardness)[0])
-    upper, lower = (
-        rf.Body(MATERIAL, rf.Sphere(RADIUS)),
-        rf.Body(replace(MATERIAL, hardness=hardness), rf.Flat()),
-    )
-    return rf.Scene(upper, lower, rf.Friction(), load, side=2.6 * radius)
+    flat = rf.Body(replace(MATERIAL, hardness=hardness), rf.Flat())
+    return rf.Scene(rf.Body(MATERIAL, rf.Sphere(RADIUS)), flat, rf.Friction(), load, side=2.6 * radius)
 
 
 @cache
