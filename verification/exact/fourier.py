@@ -78,17 +78,3 @@ def symbol_at(
     along = np.cos(direction) * qx + np.sin(direction) * qy
     safe = np.where(q > 0, q, 1.0)
     return np.where(q > 0, 2 / (modulus * safe) * (1 - 1j * slip * along / safe), 0.0)
-
-
-def single_wave(amplitude: float, wavelength: float, modulus: float, slip: float) -> tuple[float, float]:
-    """Pressure amplitude (Pa) and phase lag (rad) under the gap -amplitude cos(2 pi x/wavelength), sliding
-    along x.
-
-    tan(phi) = d beta; the amplitude is pi E* Delta/lambda times cos(phi), and the pressure's crests lie at
-    x = -phi lambda/(2 pi), on the trailing side of the wave's.
-
-    >>> single_wave(1.0, np.pi, 1.0, slip=0.0)
-    (1.0, 0.0)
-    """
-    phi = float(np.arctan(slip))
-    return float(np.pi * modulus * amplitude / wavelength * np.cos(phi)), phi

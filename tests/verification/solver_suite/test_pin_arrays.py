@@ -10,7 +10,7 @@ import pytest
 
 from refimpl.grid import Array
 from verification.exact.fourier import symbol_at
-from verification.properties.textbook import normal_offsets, shear_offsets
+from verification.exact.textbook import normal_offsets, shear_offsets
 from verification.solver_suite import own, reference_solution
 from verification.solver_suite.check import COMPLIANCE, MODULUS, Entrant
 from verification.solver_suite.checks.sliding_pins import FREE, PERIODIC

@@ -125,13 +125,6 @@ def outer_boundary() -> Measured:
     return Measured(value=float(np.max(np.abs(largest - middle))), unit="percentage points")
 
 
-def _flat_patch(level: int, nu: float) -> float:
-    radii = np.array([0.0, 0.5, 0.9, 1.5, 3.0, 10.0])
-    body = body_on(flat(), 8.0, 512.0, level)
-    u = body.displacements(nu)[1] - circular_patch(body.basis.doflocs[0], nu)
-    return float(np.max(np.abs(body.surface_values(u, radii) / circular_patch(radii, nu))))
-
-
 @case("appendix-fem/axisymmetric-flat", metric="at_most", tolerance=1e-5, tier="full")
 def axisymmetric_flat() -> Measured:
     """Flat boundary under a circular patch.
@@ -140,4 +133,9 @@ def axisymmetric_flat() -> Measured:
     Source: Johnson 1985, Eqs (3.29)
     Tolerance: as required for plane problems
     """
-    return Measured(value=max(_flat_patch(5, nu) for nu in (0.0, 0.3)))
+    radii, body = np.array([0.0, 0.5, 0.9, 1.5, 3.0, 10.0]), body_on(flat(), 8.0, 512.0, 5)
+    off = {}
+    for nu in (0.0, 0.3):
+        u = body.displacements(nu)[1] - circular_patch(body.basis.doflocs[0], nu)
+        off[f"nu {nu}"] = float(np.max(np.abs(body.surface_values(u, radii) / circular_patch(radii, nu))))
+    return Measured(value=max(off.values()), data=off)

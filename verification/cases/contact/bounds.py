@@ -16,10 +16,10 @@ from refimpl.solution.bounds import Bounds, proven_bounds
 from refimpl.solution.energy_norm import EnergyNorm
 from verification.enclosures.store import Enclosure, named, stored
 from verification.exact.dense_influence import DenseInfluence
+from verification.exact.textbook import normal_matrix
 from verification.framework.case import Measured
 from verification.framework.registry import case
 from verification.properties.states import compliances
-from verification.properties.textbook import normal_matrix
 from verification.scenes.cross_checks import pressed
 
 SOURCE = "derivation in refimpl/solution/bounds.py; truth from ball arithmetic, verification/enclosures"
@@ -177,16 +177,11 @@ def least_eigenvalue() -> Measured:
     """
     ratios = []
     for M in (1, 2, 3, 5, 8, 12, 16):
-        problem = pressed_problem(M)
+        problem = rf.solve(pressed(rms=None), M, tolerance=0.5, oblique=False).problem
         matrix = problem.pair.normal_compliance * normal_matrix(problem.grid)
         floor = EnergyNorm(problem, np.ones((M, M))).floor
         ratios.append(floor / float(np.linalg.eigvalsh(matrix)[0]))
     return Measured(value=max(ratios) if ratios[-1] > 0.995 else math.inf, data={"bound": ratios})
-
-
-def pressed_problem(M: int) -> Problem:
-    """Some scene's problem on ``M x M`` elements."""
-    return rf.solve(pressed(rms=None), M, tolerance=0.5, oblique=False).problem
 
 
 @case("bounds/production", metric="at_most", tolerance=1e-6, source=SOURCE)

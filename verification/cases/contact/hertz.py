@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -13,7 +12,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from verification.exact.hertz import UNCERTAINTY, Sphere
 from verification.framework.case import Measured
-from verification.framework.rates import Order, fit_order
+from verification.framework.rates import fit_order
 from verification.framework.registry import case, family
 
 SOURCE = "Hertz 1882; Johnson 1985, section 4.2; paper Table 1, P = 70 N"
@@ -45,34 +44,9 @@ def distance(M: int) -> Array:
     return apart
 
 
-def from_axis(M: int) -> float:
-    """Approach (m) from the sphere's lowest point, which lies between the four innermost centres."""
-    return solved(M).approach + float(distance(M).min()) ** 2 / (2 * RADIUS)
-
-
 def spacings() -> list[float]:
     """Element edges (m), coarse to fine."""
     return [SCENE.lengths[0] / M for M in GRIDS]
-
-
-def peak_errors() -> list[float]:
-    """Relative error of the peak pressure on each grid."""
-    return [abs(solved(M).max_pressure / EXACT.peak_pressure - 1) for M in GRIDS]
-
-
-def approach_errors() -> list[float]:
-    """Relative error of the approach from first contact of the elements, on each grid."""
-    return [abs(solved(M).approach / EXACT.approach - 1) for M in GRIDS]
-
-
-def profile_errors() -> list[float]:
-    """Largest error of the pressure within 0.8 of the radius over the peak, on each grid."""
-    errors = []
-    for M in GRIDS:
-        r = distance(M)
-        off = np.abs(solved(M).pressure - EXACT.pressure(r))[r < 0.8 * EXACT.contact_radius]
-        errors.append(float(off.max()) / EXACT.peak_pressure)
-    return errors
 
 
 @case("hertz/peak-pressure", metric="relative", tolerance=1e-4, source=SOURCE)
@@ -102,26 +76,26 @@ def peak_pressure() -> Measured:
 
 
 @family(
-    "error, name, tolerance, tolerance_reason",
+    "number, exact, name, tolerance, tolerance_reason",
     {
         "hertz/peak-order": (
-            peak_errors, "peak pressure", 0.25,
+            "max_pressure", EXACT.peak_pressure, "peak pressure", 0.25,
             "the contact's fit to the grid scatters single errors by some 20 %, which over a factor of 16 in "
             "h moves a fitted order by 0.1; twice that. Measured 2.04"),
         "hertz/approach-order": (
-            approach_errors, "approach", 0.15,
+            "approach", EXACT.approach, "approach", 0.15,
             "counted from the lowest centres it lacks h^2/(4 R), which dominates and is exactly of second "
             "order; the solver's own part is 10 % of it and of order 2.0 to 2.9. Measured 2.03"),
     },
     metric="absolute", source=SOURCE,
 )  # fmt: skip
-def order(error: Callable[[], list[float]], name: str) -> Measured:
+def order(number: str, exact: float, name: str) -> Measured:
     """Order of the {name} over 32 ... 512.
 
     Claim: the error of the {name} falls with the square of the element
     """
-    errors = error()
-    found: Order = fit_order(spacings(), errors)
+    errors = [abs(getattr(solved(M), number) / exact - 1) for M in GRIDS]
+    found = fit_order(spacings(), errors)
     return Measured(
         value=found.order,
         reference=2.0,
@@ -138,12 +112,9 @@ def approach() -> Measured:
     Tolerance: an integral of the pressure, so (h/a)^2 / 10 = 2e-5; measured 6e-6. From the elements' first
     contact, h^2/(4 R) higher, it is 5e-5 short
     """
-    return Measured(
-        value=from_axis(FINE),
-        reference=EXACT.approach,
-        reference_uncertainty=UNCERTAINTY * EXACT.approach,
-        unit="m",
-    )
+    # the sphere's lowest point lies between the four innermost centres
+    found = solved(FINE).approach + float(distance(FINE).min()) ** 2 / (2 * RADIUS)
+    return Measured(found, EXACT.approach, UNCERTAINTY * EXACT.approach, unit="m")
 
 
 @case("hertz/profile", metric="at_most", tolerance=1e-4, source=SOURCE)
@@ -154,7 +125,11 @@ def profile() -> Measured:
     Tolerance: second order away from the edge: p'' h^2/24 at 0.8 a is 4e-5 of p0, and twice that for the
     smoothing by the collocation. Over p0; measured 3.4e-5
     """
-    errors = profile_errors()
+    errors = []
+    for M in GRIDS:
+        r = distance(M)
+        off = np.abs(solved(M).pressure - EXACT.pressure(r))[r < 0.8 * EXACT.contact_radius]
+        errors.append(float(off.max()) / EXACT.peak_pressure)
     fitted = fit_order(spacings(), errors).order
     data = {"spacing": spacings(), "profile": errors}
     return Measured(value=errors[GRIDS.index(FINE)], data=data, note=f"order {fitted:.2f} over 32 ... 512")
