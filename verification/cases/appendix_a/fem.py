@@ -15,9 +15,8 @@ from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source
 from appendix_a.fem.sinusoid import departures, setup_for
 from verification.exact.rational_bump import RationalBump
-from verification.framework.case import Measured
+from verification.framework import Measured, case
 from verification.framework.rates import fit_order
-from verification.framework.registry import case
 
 Array = NDArray[np.float64]
 NEIGHBOURS = np.array([-20.0, -10.0, -6.0, -4.0, -2.0, 2.0, 4.0, 6.0, 10.0, 20.0])

@@ -15,9 +15,7 @@ from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.table import Series, equivalent_slope, slope_of
 from appendix_a.fem3d.wavy import Waviness
 from verification.cases.appendix_a.fem3d import FLANK, NU, SOURCE, WAVELENGTH, shipped
-from verification.framework.case import Measured
-from verification.framework.registry import case
-from verification.framework.verdict import Verdict, judged
+from verification.framework import Measured, Verdict, case, judged
 
 Array = NDArray[np.float64]
 COPPER, STEEL = (118e9, 0.3), (200e9, 0.3)

@@ -16,8 +16,7 @@ from appendix_a.strip import first_order
 from refimpl import Material
 from refimpl.solution.influence_error import coefficient_error
 from verification.cases.appendix_a.fem import POINTS, POINTS_REASON, percent
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 
 def shipped_map() -> CoefficientMap:

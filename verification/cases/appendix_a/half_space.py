@@ -21,8 +21,7 @@ from verification.cases.appendix_a.undeformed_study import (
     drawn,
     judged,
 )
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 COUNT = 56  # contacts judged in the plane
 SOURCE = "scikit-fem, second-order elements, contact on the deformed surfaces; boundary perturbation"

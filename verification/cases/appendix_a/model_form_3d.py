@@ -21,8 +21,7 @@ from verification.cases.appendix_a.solid_half_space import (
     distance_of,
     scene_of,
 )
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 SHIFT, SLOPE = -0.25, 6.5
 MESHES, GRIDS = (3, 4, 5), (64, 128, 256)

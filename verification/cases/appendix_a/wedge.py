@@ -10,8 +10,7 @@ import numpy as np
 from appendix_a import wedge
 from appendix_a.wedge import enclosure, printed, reference, residues
 from verification.exact.wedge_residuals import residuals
-from verification.framework.case import Measured, Unavailable
-from verification.framework.registry import case
+from verification.framework import Measured, Unavailable, case
 
 SOURCE = "Tranter 1948; paper Eqs (A4)-(A9), derived anew"
 SEED = 2001

@@ -17,8 +17,7 @@ from refimpl.solution.energy_norm import EnergyNorm
 from verification.enclosures.store import Enclosure, named, stored
 from verification.exact.dense_influence import DenseInfluence
 from verification.exact.textbook import normal_matrix
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 from verification.properties.states import compliances
 from verification.scenes.cross_checks import pressed
 

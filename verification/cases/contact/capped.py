@@ -10,8 +10,7 @@ import numpy as np
 import refimpl as rf
 from verification.cases.contact.manufactured import METHODS, ROUNDING, misfit
 from verification.exact.manufactured import PEAK, manufacture
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 SCENES, M, SIDE = 20, 16, 1e-3
 STATES = 200

@@ -8,8 +8,7 @@ import numpy as np
 
 from verification.adapters import contactmechanics, tamaas
 from verification.adapters.published_code import Peer
-from verification.framework.case import Measured
-from verification.framework.registry import family
+from verification.framework import Measured, family
 from verification.solver_suite import own
 from verification.solver_suite.check import MODULUS
 from verification.solver_suite.gaps import rough_bump, waves

@@ -20,8 +20,7 @@ from verification.exact.sphere_plasticity import (
     kogut_etsion,
     yield_factor,
 )
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 RADIUS, LOAD = 5e-3, 20.0
 MATERIAL = rf.Material(118e9, 0.34)

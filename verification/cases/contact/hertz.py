@@ -11,9 +11,8 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from verification.exact.hertz import UNCERTAINTY, Sphere
-from verification.framework.case import Measured
+from verification.framework import Measured, case, family
 from verification.framework.rates import fit_order
-from verification.framework.registry import case, family
 
 SOURCE = "Hertz 1882; Johnson 1985, section 4.2; paper Table 1, P = 70 N"
 SCENE = rf.read_scene("hertz")

@@ -7,8 +7,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.exact.manufactured import Manufactured, manufacture
-from verification.framework.case import Measured
-from verification.framework.registry import family
+from verification.framework import Measured, family
 
 SOURCE = "method of manufactured solutions (Roache 2002); sums of 50-digit integrals"
 M, SEEDS, ANGLE = 12, (1, 2, 3), 0.7

@@ -17,9 +17,8 @@ from verification.cases.solvers import cross_check
 from verification.cases.solvers.cross_check import worst_of
 from verification.exact.hertz import Sphere
 from verification.exact.westergaard import Wave
-from verification.framework.case import Measured
+from verification.framework import Measured, case, family
 from verification.framework.rates import fit_order
-from verification.framework.registry import case, family
 from verification.scenes.cross_checks import Trial, pressed
 from verification.scenes.rectangles import rectangles
 

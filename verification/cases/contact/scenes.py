@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from verification.exact.sliding_plane import dundurs
-from verification.framework.case import Measured
+from verification.framework import Measured
 from verification.framework.rates import fit_order
 
 Array = NDArray[np.float64]

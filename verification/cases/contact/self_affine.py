@@ -25,8 +25,7 @@ from refimpl.grid import Array, Grid
 from verification.adapters import contactmechanics, tamaas
 from verification.adapters.published_code import Peer
 from verification.exact import rough_plane
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
+from verification.framework import Measured, case, family
 from verification.solver_suite.protocol import ContactProblem
 
 MODULUS, SIDE = 1e9, 1e-3  # E* (Pa), m

@@ -14,8 +14,7 @@ from verification.exact.hertz import Ellipse
 from verification.exact.patch import UNCERTAINTY as PATCH_UNCERTAINTY
 from verification.exact.patch import Patch
 from verification.exact.power_law import Cone, PowerLaw
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
+from verification.framework import Measured, case, family
 
 ELLIPSE = Ellipse(load=1.0, curvature_x=2.0, curvature_y=6.0, modulus=MODULUS)
 CONE = Cone(load=1.0, slope=0.05, modulus=MODULUS)

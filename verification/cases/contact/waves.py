@@ -19,8 +19,7 @@ from verification.cases.contact.scenes import (
 )
 from verification.exact import fourier, jgh, westergaard
 from verification.exact.westergaard import Wave
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 AMPLITUDE, WAVELENGTH = 1e-3, 1.0
 GRIDS = (32, 48, 64, 96, 128)

@@ -15,8 +15,7 @@ from verification.cases.contact.hertz import mean_radii
 from verification.coverage.judge import verdicts
 from verification.coverage.store import NUMBERS, climb, ladders
 from verification.exact.hertz import UNCERTAINTY, Sphere
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 SCENE = rf.read_scene("hertz")
 EXACT = Sphere(load=SCENE.load, radius=0.14, modulus=SCENE.materials.reduced_modulus)

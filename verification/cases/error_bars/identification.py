@@ -12,8 +12,7 @@ from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
 from verification.coverage.identification import SETS, TwinSet, study, summary
 from verification.coverage.twins import KINDS, ROUGHNESS_TOLERANCE, SHARP_FIT_GRID
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
+from verification.framework import Measured, case, family
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128

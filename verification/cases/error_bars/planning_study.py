@@ -7,8 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 from verification.scenes.neglected_terms import CORRECTION, Trial, trials
 
 SOURCE = (

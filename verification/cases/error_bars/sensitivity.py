@@ -14,8 +14,7 @@ from refimpl.scene.parameters import moving, with_parameter
 from refimpl.sensitivities.budget import budget
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
 from verification.coverage.scenes import random_scene
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 SEEDS = range(3000, 3008)  # one scene of each class; none that anything was fitted to
 M, TIGHT, STEP = 48, 1e-11, 1e-5

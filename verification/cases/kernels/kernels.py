@@ -24,8 +24,7 @@ from verification.exact.kernel_points import (
     boundary_points,
     random_points,
 )
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
+from verification.framework import Measured, case, family
 
 LOVE_SOURCE = "Love 1929; Johnson 1985, Eq. (3.25); paper section 3"
 CERRUTI_SOURCE = "Cerruti 1882; Johnson 1985, section 3.6; paper section 3"

@@ -7,9 +7,7 @@ from functools import cache
 import numpy as np
 
 from verification.exact.coupled_indentation import first_order_shift
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
-from verification.framework.verdict import Verdict, judged
+from verification.framework import Measured, Verdict, case, family, judged
 from verification.reproduction import fig5, fig6, fig7
 from verification.reproduction.printed import FIG6_RMS
 from verification.reproduction.table1 import SMOOTH, coupling, hertz

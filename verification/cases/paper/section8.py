@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.framework.case import Measured
-from verification.framework.verdict import Verdict, judged
+from verification.framework import Measured, Verdict, judged
 from verification.reproduction import fig8
 from verification.reproduction.ensemble import column, estimate, rows_at
 from verification.reproduction.printed import CRITICAL_RMS, LOADS, RESOLUTION, TABLE3

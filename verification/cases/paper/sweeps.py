@@ -11,8 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from verification.framework.case import Measured, Unavailable
-from verification.framework.registry import case
+from verification.framework import Measured, Unavailable, case
 from verification.sweep.engine import sweep
 from verification.sweep.export import to_csv
 from verification.sweep.study import Study

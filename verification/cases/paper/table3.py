@@ -12,9 +12,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.friction import friction_coefficient_at
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
-from verification.framework.verdict import Verdict, judged
+from verification.framework import Measured, Verdict, case, family, judged
 from verification.reproduction import table3
 from verification.reproduction.ensemble import QUICK_MESH, Estimate, column, estimate, rows_at
 from verification.reproduction.printed import (

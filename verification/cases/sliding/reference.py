@@ -12,8 +12,7 @@ from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
 from verification.exact.hertz import Sphere
 from verification.exact.sliding_plane import SlidingCylinder
 from verification.exact.sliding_wave import UNCERTAINTY, SlidingWave
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
+from verification.framework import Measured, case, family
 
 STAR = np.pi * MODULUS * AMPLITUDE / WAVELENGTH
 BETA = 0.8

@@ -15,8 +15,7 @@ from refimpl.operators.preconditioner import SpectralPreconditioner, extended
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.tau_active_set import FixedSet
 from verification.coverage.scenes import random_scene
-from verification.framework.case import Measured
-from verification.framework.registry import family
+from verification.framework import Measured, family
 
 NINE = [*((seed, 64) for seed in (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)), (2071, 128)]
 """Seed and elements per side. Eight of the eleven scenes that cycle at 64 x 64, with the longest error bars;

@@ -12,8 +12,7 @@ import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.enclosures.proof import prove
 from verification.enclosures.store import Enclosure, enclosed, named, relative, stored
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.framework import Measured, case
 
 SOURCE = "ball arithmetic (python-flint) on Love's and Cerruti's coefficients: verification/enclosures"
 METHODS: tuple[Method, ...] = ("dense", "fft")

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
+from verification.framework import Measured, case, family
 from verification.solver_suite import own
 from verification.solver_suite.check import Fault
 from verification.solver_suite.faulty_solvers.table import FAULTY
