@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from appendix_a.facet import facet_coefficient, neighbours
-from verification.framework import Measured, case, family
+from verification.cases import Measured, case, family
 from verification.reproduction.ensemble import estimate
 from verification.reproduction.table1 import rough
 

@@ -14,8 +14,8 @@ from appendix_a.fem.geometry import Boundary, flat, sinusoid_boundary
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source
 from appendix_a.fem.sinusoid import departures, setup_for
+from verification.cases import Measured, case
 from verification.exact.rational_bump import RationalBump
-from verification.framework import Measured, case
 from verification.framework.rates import fit_order
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from appendix_a.fem3d.patch import normal_coefficient, tilted_plane
 from appendix_a.fem3d.surface import X, Y, flat_sample, sample
 from appendix_a.fem3d.table import Series, Table3D
 from appendix_a.fem3d.wavy import Kind, Waviness
-from verification.framework import Measured, case
+from verification.cases import Measured, case
 
 Array = NDArray[np.float64]
 NU, WAVELENGTH, SLOPE = 0.3, 20.0, 10.0

@@ -14,8 +14,8 @@ from appendix_a.fem3d.patch import normal_coefficient
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.table import Series, equivalent_slope, slope_of
 from appendix_a.fem3d.wavy import Waviness
+from verification.cases import Measured, Verdict, case, judged
 from verification.cases.appendix_a.fem3d import FLANK, NU, SOURCE, WAVELENGTH, shipped
-from verification.framework import Measured, Verdict, case, judged
 
 Array = NDArray[np.float64]
 COPPER, STEEL = (118e9, 0.3), (200e9, 0.3)

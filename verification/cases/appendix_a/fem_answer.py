@@ -15,8 +15,8 @@ from appendix_a.fem.sinusoid import departures, setup_for
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.leading_order import facet_prediction, first_order
 from appendix_a.wedge_tip import relative_difference
+from verification.cases import Measured, Verdict, case, judged
 from verification.cases.appendix_a.fem import NEIGHBOURS, POINTS, POINTS_REASON, percent  # noqa: F401  # in docstrings
-from verification.framework import Measured, Verdict, case, judged
 
 Array = NDArray[np.float64]
 CURVE = np.array([x for x in np.linspace(-12.0, 12.0, 49) if x != 0.0])

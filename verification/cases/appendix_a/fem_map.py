@@ -15,8 +15,8 @@ from appendix_a.leading_order import slope_of_error
 from appendix_a.strip import first_order
 from refimpl import Material
 from refimpl.solution.influence_error import coefficient_error
+from verification.cases import Measured, case
 from verification.cases.appendix_a.fem import POINTS, POINTS_REASON, percent
-from verification.framework import Measured, case
 
 
 def shipped_map() -> CoefficientMap:

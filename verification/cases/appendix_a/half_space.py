@@ -12,6 +12,7 @@ from appendix_a.contact_fem.scene import Material as Elastic
 from refimpl.model.materials import Material
 from refimpl.solution.influence_error import coefficient_error
 from refimpl.solution.influence_error_3d import element_error
+from verification.cases import Measured, case
 from verification.cases.appendix_a import finite_strain, solid_half_space
 from verification.cases.appendix_a.undeformed_study import (
     JUDGED_ON,
@@ -21,7 +22,6 @@ from verification.cases.appendix_a.undeformed_study import (
     drawn,
     judged,
 )
-from verification.framework import Measured, case
 
 COUNT = 56  # contacts judged in the plane
 SOURCE = "scikit-fem, second-order elements, contact on the deformed surfaces; boundary perturbation"

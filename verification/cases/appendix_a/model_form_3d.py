@@ -11,6 +11,7 @@ import numpy as np
 import refimpl as rf
 from appendix_a.contact_fem.scene import WavyPair
 from appendix_a.contact_fem.sequence import Estimate
+from verification.cases import Measured, case
 from verification.cases.appendix_a.solid_half_space import (
     BETA,
     COPPER,
@@ -21,7 +22,6 @@ from verification.cases.appendix_a.solid_half_space import (
     distance_of,
     scene_of,
 )
-from verification.framework import Measured, case
 
 SHIFT, SLOPE = -0.25, 6.5
 MESHES, GRIDS = (3, 4, 5), (64, 128, 256)

@@ -10,7 +10,7 @@ import numpy as np
 
 from appendix_a import wedge
 from appendix_a.strip import field, first_order, printed
-from verification.framework import Measured, Verdict, case, judged
+from verification.cases import Measured, Verdict, case, judged
 
 SOURCE = "boundary perturbation to first order in the slope, derived in appendix_a.strip.perturbation"
 DIGITS = 40

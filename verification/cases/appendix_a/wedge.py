@@ -9,8 +9,8 @@ import numpy as np
 
 from appendix_a import wedge
 from appendix_a.wedge import enclosure, printed, reference, residues
+from verification.cases import Measured, Unavailable, case
 from verification.exact.wedge_residuals import residuals
-from verification.framework import Measured, Unavailable, case
 
 SOURCE = "Tranter 1948; paper Eqs (A4)-(A9), derived anew"
 SEED = 2001

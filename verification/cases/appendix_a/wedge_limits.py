@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from appendix_a import wedge, wedge_tip
 from appendix_a.strip import field
-from verification.framework import Measured, case
+from verification.cases import Measured, case
 
 Array = NDArray[np.float64]
 

@@ -14,10 +14,10 @@ from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.solution.bounds import Bounds, proven_bounds
 from refimpl.solution.energy_norm import EnergyNorm
+from verification.cases import Measured, case
 from verification.enclosures.store import Enclosure, named, stored
 from verification.exact.dense_influence import DenseInfluence
 from verification.exact.textbook import normal_matrix
-from verification.framework import Measured, case
 from verification.properties.states import compliances
 from verification.scenes.cross_checks import pressed
 

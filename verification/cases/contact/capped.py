@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 
 import refimpl as rf
+from verification.cases import Measured, case
 from verification.cases.contact.manufactured import METHODS, ROUNDING, misfit
 from verification.exact.manufactured import PEAK, manufacture
-from verification.framework import Measured, case
 
 SCENES, M, SIDE = 20, 16, 1e-3
 STATES = 200

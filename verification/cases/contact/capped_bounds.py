@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 import refimpl as rf
+from verification.cases import Measured, case
 from verification.cases.contact.capped import SIDE, peak_of, rough_scene, with_hardness
-from verification.framework import Measured, case
 
 GRID, SCENES, TOLERANCES = 16, 16, (1e-4, 1e-8, 1e-11)
 SHARES = (0.8, 0.4, 0.2, 0.1)

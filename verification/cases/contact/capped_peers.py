@@ -8,7 +8,7 @@ import numpy as np
 
 from verification.adapters import contactmechanics, tamaas
 from verification.adapters.published_code import Peer
-from verification.framework import Measured, family
+from verification.cases import Measured, family
 from verification.solver_suite import own
 from verification.solver_suite.check import MODULUS
 from verification.solver_suite.gaps import rough_bump, waves

@@ -9,6 +9,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.model.materials import Pair
+from verification.cases import Measured, case
 from verification.cases.contact.capped import rough_scene, with_hardness
 from verification.exact.capped_sphere import Capped, capped_sphere, plastic_limit
 from verification.exact.hertz import Sphere
@@ -20,7 +21,6 @@ from verification.exact.sphere_plasticity import (
     kogut_etsion,
     yield_factor,
 )
-from verification.framework import Measured, case
 
 RADIUS, LOAD = 5e-3, 20.0
 MATERIAL = rf.Material(118e9, 0.34)

@@ -7,8 +7,8 @@ from itertools import product
 import numpy as np
 
 import refimpl as rf
+from verification.cases import Measured, case
 from verification.cases.contact.capped import with_hardness
-from verification.framework import Measured, case
 
 SIDE, SIZES, SEEDS = 1e-3, (128, 256, 512), (1, 2)
 SHARES = {False: (0.7, 0.4, 0.22, 0.12), True: (0.7, 0.45, 0.3, 0.2)}

@@ -10,8 +10,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
+from verification.cases import Measured, case, family
 from verification.exact.hertz import UNCERTAINTY, Sphere
-from verification.framework import Measured, case, family
 from verification.framework.rates import fit_order
 
 SOURCE = "Hertz 1882; Johnson 1985, section 4.2; paper Table 1, P = 70 N"

@@ -10,8 +10,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Grid
+from verification.cases import Measured, case
 from verification.exact.hertz import Sphere
-from verification.framework import Measured, case
 from verification.reproduction.table1 import SMOOTH, hertz
 
 STEEL = rf.Material(E=200e9, nu=0.3)

@@ -6,8 +6,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
+from verification.cases import Measured, family
 from verification.exact.manufactured import Manufactured, manufacture
-from verification.framework import Measured, family
 
 SOURCE = "method of manufactured solutions (Roache 2002); sums of 50-digit integrals"
 M, SEEDS, ANGLE = 12, (1, 2, 3), 0.7

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from verification.cases import Measured, case
 from verification.cases.contact.scenes import MODULUS, Array, centres, measured_order, press
 from verification.exact.punch import UNCERTAINTY_CIRCLE, UNCERTAINTY_SQUARE, CircularPunch, square_stiffness
-from verification.framework import Measured, case
 
 DEPTH = 1e-3
 """Prescribed approach (m); the elements outside the punch stand off by 1 m and never touch."""

@@ -12,12 +12,12 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Grid, Mask
+from verification.cases import Measured, case, family
 from verification.cases.contact.scenes import MODULUS
 from verification.cases.solvers import cross_check
 from verification.cases.solvers.cross_check import worst_of
 from verification.exact.hertz import Sphere
 from verification.exact.westergaard import Wave
-from verification.framework import Measured, case, family
 from verification.framework.rates import fit_order
 from verification.scenes.cross_checks import Trial, pressed
 from verification.scenes.rectangles import rectangles

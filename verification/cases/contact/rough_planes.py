@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 
 import refimpl as rf
+from verification.cases import Measured, case
 from verification.cases.contact.scenes import MODULUS, Array, centres, press
 from verification.exact import greenwood_tripp, rough_plane
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits
-from verification.framework import Measured, case
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RADIUS, LOAD, SIDE = 0.14, 70.0, 2e-3

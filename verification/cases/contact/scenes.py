@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import refimpl as rf
+from verification.cases import Measured
 from verification.exact.sliding_plane import dundurs
-from verification.framework import Measured
 from verification.framework.rates import fit_order
 
 Array = NDArray[np.float64]

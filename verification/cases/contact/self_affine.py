@@ -24,8 +24,8 @@ import refimpl as rf
 from refimpl.grid import Array, Grid
 from verification.adapters import contactmechanics, tamaas
 from verification.adapters.published_code import Peer
+from verification.cases import Measured, case, family
 from verification.exact import rough_plane
-from verification.framework import Measured, case, family
 from verification.solver_suite.protocol import ContactProblem
 
 MODULUS, SIDE = 1e9, 1e-3  # E* (Pa), m

@@ -8,6 +8,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.model.friction import is_frictionless
+from verification.cases import Measured, case
 from verification.cases.contact.scenes import (
     COUPLING,
     MODULUS,
@@ -19,7 +20,6 @@ from verification.cases.contact.scenes import (
 )
 from verification.exact import fourier, jgh, westergaard
 from verification.exact.westergaard import Wave
-from verification.framework import Measured, case
 
 AMPLITUDE, WAVELENGTH = 1e-3, 1.0
 GRIDS = (32, 48, 64, 96, 128)

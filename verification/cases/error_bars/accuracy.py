@@ -10,12 +10,12 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import EDGE_SIZE, EDGE_SIZE_SPREAD
+from verification.cases import Measured, case
 from verification.cases.contact import hertz
 from verification.cases.contact.hertz import mean_radii
 from verification.coverage.judge import verdicts
 from verification.coverage.store import NUMBERS, climb, ladders
 from verification.exact.hertz import UNCERTAINTY, Sphere
-from verification.framework import Measured, case
 
 SCENE = rf.read_scene("hertz")
 EXACT = Sphere(load=SCENE.load, radius=0.14, modulus=SCENE.materials.reduced_modulus)

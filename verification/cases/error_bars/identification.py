@@ -10,9 +10,9 @@ import refimpl as rf
 from refimpl.identification import Identification, Row, identify
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
+from verification.cases import Measured, case, family
 from verification.coverage.identification import SETS, TwinSet, study, summary
 from verification.coverage.twins import KINDS, ROUGHNESS_TOLERANCE, SHARP_FIT_GRID
-from verification.framework import Measured, case, family
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from verification.framework import Measured, case
+from verification.cases import Measured, case
 from verification.scenes.neglected_terms import CORRECTION, Trial, trials
 
 SOURCE = (

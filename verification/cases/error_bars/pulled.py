@@ -10,7 +10,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.model.materials import Pair
-from verification.framework import Measured, case
+from verification.cases import Measured, case
 
 SIDE, SOFT = 1e-3, 1e9  # m; Pa, the more compliant body's modulus
 FINER = 4  # times the elements per side of the reference

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import refimpl as rf
 from refimpl.accuracy.refinement import uncertainty
+from verification.cases import Measured, family
 from verification.coverage.scenes import SIDE, random_scene
-from verification.framework import Measured, family
 
 SEEDS = range(5000, 5100)
 RATIOS = (1.4, 2.0, 3.0, 3.9)

@@ -13,8 +13,8 @@ from refimpl.model.friction import is_frictionless
 from refimpl.scene.parameters import moving, with_parameter
 from refimpl.sensitivities.budget import budget
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
+from verification.cases import Measured, case
 from verification.coverage.scenes import random_scene
-from verification.framework import Measured, case
 
 SEEDS = range(3000, 3008)  # one scene of each class; none that anything was fitted to
 M, TIGHT, STEP = 48, 1e-11, 1e-5

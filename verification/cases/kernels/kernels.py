@@ -14,6 +14,7 @@ from refimpl.kernels import normal_integral, normal_table, tangential_integral, 
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.love import LOVE
 from refimpl.kernels.quadrature import ORDERS, across, relative_error_bound
+from verification.cases import Measured, case, family
 from verification.exact import kernel_reference as reference
 from verification.exact import textbook
 from verification.exact.kernel_points import (
@@ -24,7 +25,6 @@ from verification.exact.kernel_points import (
     boundary_points,
     random_points,
 )
-from verification.framework import Measured, case, family
 
 LOVE_SOURCE = "Love 1929; Johnson 1985, Eq. (3.25); paper section 3"
 CERRUTI_SOURCE = "Cerruti 1882; Johnson 1985, section 3.6; paper section 3"

@@ -9,7 +9,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.framework import Measured, Verdict, case, judged
+from verification.cases import Measured, Verdict, case, judged
 from verification.reproduction import assumptions
 from verification.reproduction.fig6 import NO_FRICTION
 from verification.reproduction.table1 import rough

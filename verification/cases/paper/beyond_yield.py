@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.framework import Measured, Verdict, judged
+from verification.cases import Measured, Verdict, judged
 from verification.reproduction.beyond_yield import LOWEST, MODELS, Point, cells, crossing, points
 from verification.reproduction.printed import HARDNESS, LOADS, TABLE3
 from verification.reproduction.tiers import in_both_tiers

@@ -6,8 +6,8 @@ from functools import cache
 
 import numpy as np
 
+from verification.cases import Measured, Verdict, case, family, judged
 from verification.exact.coupled_indentation import first_order_shift
-from verification.framework import Measured, Verdict, case, family, judged
 from verification.reproduction import fig5, fig6, fig7
 from verification.reproduction.printed import FIG6_RMS
 from verification.reproduction.table1 import SMOOTH, coupling, hertz

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 from appendix_a import errata as appendix
-from verification.framework import Measured, family
+from verification.cases import Measured, family
 from verification.reproduction import errata as body
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.solvers.paper import PAPER_TOLERANCE
+from verification.cases import Measured, case
 from verification.cases.paper.scheme import PRESSURE_TOLERANCE, SOURCE, STEPS_LEFT, TIGHT, traced
-from verification.framework import Measured, case
 
 SCENES = ("hertz", "table1-rough")
 LOADS = (7.0, 14.0, 42.0, 70.0, 140.0, 210.0)

@@ -15,7 +15,7 @@ from refimpl.model.friction import is_frictionless
 from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
-from verification.framework import Measured, case, family
+from verification.cases import Measured, case, family
 from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "paper section 5 and Fig. 3"

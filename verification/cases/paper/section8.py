@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.framework import Measured, Verdict, judged
+from verification.cases import Measured, Verdict, judged
 from verification.reproduction import fig8
 from verification.reproduction.ensemble import column, estimate, rows_at
 from verification.reproduction.printed import CRITICAL_RMS, LOADS, RESOLUTION, TABLE3

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.framework import Measured, Verdict, judged
+from verification.cases import Measured, Verdict, judged
 from verification.reproduction import slides
 from verification.reproduction.ensemble import rows_at
 from verification.reproduction.table1 import SMOOTH

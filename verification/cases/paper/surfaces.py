@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from verification.framework import Measured, Verdict, judged
+from verification.cases import Measured, Verdict, judged
 from verification.reproduction import fig4, fig11
 from verification.reproduction.printed import CORRELATION_LENGTH, FLAT_RMS, LARGEST_SLOPE, QUOTED_SLOPES, SIDE
 from verification.reproduction.tiers import in_both_tiers

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from verification.framework import Measured, Unavailable, case
+from verification.cases import Measured, Unavailable, case
 from verification.sweep.engine import sweep
 from verification.sweep.export import to_csv
 from verification.sweep.study import Study

@@ -12,7 +12,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.friction import friction_coefficient_at
-from verification.framework import Measured, Verdict, case, family, judged
+from verification.cases import Measured, Verdict, case, family, judged
 from verification.reproduction import table3
 from verification.reproduction.ensemble import QUICK_MESH, Estimate, column, estimate, rows_at
 from verification.reproduction.printed import (

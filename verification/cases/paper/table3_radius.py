@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import refimpl as rf
-from verification.framework import Measured, Verdict, case, judged
+from verification.cases import Measured, Verdict, case, judged
 from verification.reproduction import table3
 from verification.reproduction.ensemble import column, estimate, rows_at
 from verification.reproduction.errata import ROUNDED_RADIUS

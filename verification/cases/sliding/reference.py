@@ -6,13 +6,13 @@ import numpy as np
 from scipy.integrate import quad
 
 import refimpl as rf
+from verification.cases import Measured, case, family
 from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, press
 from verification.cases.contact.waves import AMPLITUDE, WAVELENGTH, ridge
 from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
 from verification.exact.hertz import Sphere
 from verification.exact.sliding_plane import SlidingCylinder
 from verification.exact.sliding_wave import UNCERTAINTY, SlidingWave
-from verification.framework import Measured, case, family
 
 STAR = np.pi * MODULUS * AMPLITUDE / WAVELENGTH
 BETA = 0.8

@@ -10,8 +10,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
+from verification.cases import Measured, case, family
 from verification.exact.hertz import Sphere
-from verification.framework import Measured, case, family
 
 SOURCE = "paper sections 3 and 7, Fig. 5; Johnson 1985, sections 3.6, 3.7"
 SCENE = rf.read_scene("table1-smooth")

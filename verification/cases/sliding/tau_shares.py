@@ -14,8 +14,8 @@ from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import SpectralPreconditioner, extended
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.tau_active_set import FixedSet
+from verification.cases import Measured, family
 from verification.coverage.scenes import random_scene
-from verification.framework import Measured, family
 
 NINE = [*((seed, 64) for seed in (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)), (2071, 128)]
 """Seed and elements per side. Eight of the eleven scenes that cycle at 64 x 64, with the longest error bars;

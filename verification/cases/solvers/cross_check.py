@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 import refimpl as rf
-from verification.framework import Measured, case, family
+from verification.cases import Measured, case, family
 from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "principal pivoting on dense matrices (Murty 1974; Judice and Pires 1994)"

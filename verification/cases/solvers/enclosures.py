@@ -10,9 +10,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
+from verification.cases import Measured, case
 from verification.enclosures.proof import prove
 from verification.enclosures.store import Enclosure, enclosed, named, relative, stored
-from verification.framework import Measured, case
 
 SOURCE = "ball arithmetic (python-flint) on Love's and Cerruti's coefficients: verification/enclosures"
 METHODS: tuple[Method, ...] = ("dense", "fft")

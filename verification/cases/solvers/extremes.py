@@ -10,7 +10,7 @@ import numpy as np
 import refimpl as rf
 import verification.stress_tests.axes  # noqa: F401  # registers the axes
 from refimpl.planning.plan import Method
-from verification.framework import Measured, case, family
+from verification.cases import Measured, case, family
 from verification.stress_tests import conditioning, positive_definite, precision, uniqueness
 from verification.stress_tests.state import Verdict, axes, states
 from verification.stress_tests.study import Row, counts, judged, run, summary

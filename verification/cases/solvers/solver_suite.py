@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from verification.framework import Measured, case, family
+from verification.cases import Measured, case, family
 from verification.solver_suite import own
 from verification.solver_suite.check import Fault
 from verification.solver_suite.faulty_solvers.table import FAULTY

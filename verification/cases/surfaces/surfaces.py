@@ -10,7 +10,7 @@ import numpy as np
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import GaussianRoughness
 from refimpl.surfaces.statistics import slopes
-from verification.framework import Measured, case
+from verification.cases import Measured, case
 
 SOURCE = "paper Eq. (9)"
 # Section 6.1: sigma, correlation radius (m) of the ball's roughness; its quoted slope (degrees)
